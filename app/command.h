@@ -1,0 +1,16 @@
+#pragma once
+// The subcommands of `mjdiag`: one file each, added to the parser by one function each.
+
+#include <CLI/CLI.hpp>
+
+namespace mjdiag::app {
+
+void AddSimulate(CLI::App& app);
+void AddLinearize(CLI::App& app);
+void AddCompare(CLI::App& app);
+void AddRender(CLI::App& app);
+
+/// The command line as it was typed, for files that say how they were made.
+const std::string& CommandLine();
+
+}  // namespace mjdiag::app

@@ -1,0 +1,91 @@
+// mjdiag compare: what the simulation gets wrong on a measured record.
+
+#include <memory>
+
+#include "app/command.h"
+#include "app/format.h"
+#include "app/machine.h"
+#include "app/output.h"
+#include "app/progress.h"
+#include "mjdiag/discovery/comparison.h"
+#include "mjdiag/report/comparison_json.h"
+#include "mjdiag/report/comparison_page.h"
+#include "mjdiag/signals/quantity.h"
+#include "mjdiag/signals/text_file.h"
+
+namespace mjdiag::app {
+namespace {
+
+struct CompareOptions {
+  MachineOptions machine;
+  OutputOptions output;
+  std::string record;
+  std::uint64_t seed = 1;
+};
+
+std::string ChannelTable(const Comparison& comparison) {
+  Table table({"channel", "rms mismatch", "relative error", "noise floor",
+               "above noise", "worst window"});
+  for (const ChannelMismatch& channel : comparison.channels) {
+    table.Add({channel.name, FormatQuantity(channel.rms, channel.unit),
+               Short(channel.relative_error_percent) + " %",
+               FormatQuantity(channel.noise_floor.rms, channel.unit),
+               channel.exceeds_noise ? "yes" : "no",
+               FormatQuantity(channel.worst.rms, channel.unit) + " at " +
+                   Short(channel.worst.start) + " s"});
+  }
+  return table.ToString();
+}
+
+std::string DerivedTable(const Comparison& comparison) {
+  if (comparison.derived.empty()) return "";
+  Table table({"derived", "relative error"});
+  for (const DerivedMismatch& derived : comparison.derived) {
+    table.Add({derived.name, Short(derived.relative_error_percent) + " %"});
+  }
+  return "\n" + table.ToString();
+}
+
+void Compare(const CompareOptions& options) {
+  Machine machine = LoadMachine(options.machine);
+  machine.options.seed = options.seed;
+  const Record measured = ReadRecord(options.record, machine.setup.record);
+  PrepareOutput(options.output);
+  Comparison comparison;
+  {
+    ProgressBar bar("comparing");
+    machine.options.progress = [&bar](double fraction) { bar.Show(fraction); };
+    comparison = Compare(machine.setup, *machine.plant, measured, machine.options);
+  }
+
+  nlohmann::json document = ToJson(comparison);
+  document.update(ToJson(machine.options));
+  document["record"] = options.record;
+  document["command"] = CommandLine();
+  std::string text = ComparisonVerdict(comparison) + "\n\n" + ChannelTable(comparison) +
+                     DerivedTable(comparison);
+  if (!options.output.folder.empty()) {
+    const RunDescription run{
+        CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
+    const auto page = std::filesystem::path(options.output.folder) / "compare.html";
+    WriteTextFile(page, ComparisonPage(comparison, run));
+    text += "\npage: " + page.string() + "\n";
+  }
+  Publish(options.output, "compare", document, text);
+}
+
+}  // namespace
+
+void AddCompare(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand(
+      "compare", "What the simulation gets wrong on a measured record");
+  AddMachineOptions(*command, options->machine);
+  command->add_option("--record", options->record, "Measured record, CSV or MAT")
+      ->required();
+  command->add_option("--seed", options->seed, "Seed of the noise floor's simulation");
+  AddOutputOptions(*command, options->output, false);
+  command->callback([options] { Compare(*options); });
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,23 @@
+#pragma once
+// Numbers and tables for people.
+
+#include <string>
+#include <vector>
+
+namespace mjdiag::app {
+
+/// Up to six significant digits: "1.2", "6.02e+23".
+std::string Short(double value);
+
+/// Columns padded to their widest cell, the first to the left, the rest to the right.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> header);
+  void Add(std::vector<std::string> row);
+  std::string ToString() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace mjdiag::app

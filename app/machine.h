@@ -1,0 +1,63 @@
+#pragma once
+// The options that say which machine a command works on and what is wrong with it.
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/simulation.h"
+
+namespace mjdiag::app {
+
+/// What the user asked for, as text.
+struct MachineOptions {
+  std::string setup;
+  std::vector<std::string> overrides;
+  std::vector<std::string> faults;
+  std::vector<std::string> effects;
+  bool no_friction = false;
+};
+
+/// What moves it, and how.
+struct MotionOptions {
+  std::string trajectory;
+  std::string replay;
+  double duration = 0.0;
+  std::string mode = "both";
+  double noise_scale = 1.0;
+  std::uint64_t seed = 1;
+  bool linear = false;
+};
+
+/// The setup with its plant loaded and the options parsed.
+struct Machine {
+  Setup setup;
+  ModelPtr plant;
+  RunOptions options;
+};
+
+/// Accepts finite numbers in least .. most only; CLI11's own ranges let NaN pass.
+CLI::Validator Within(double least, double most);
+
+void AddMachineOptions(CLI::App& command, MachineOptions& options);
+void AddMotionOptions(CLI::App& command, MotionOptions& options);
+
+/// InputError on a fault or effect that the machine does not have.
+Machine LoadMachine(const MachineOptions& options);
+
+/// The trajectory (cut to the duration) or the replayed record.
+Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion);
+/// Mode, noise and seed into the run's options.
+void SetMotion(const MotionOptions& motion, RunOptions& options);
+/// A run as the options want it, with a progress bar named `label`.
+Record Run(const Machine& machine, const MotionOptions& motion,
+           const Excitation& excitation, const RunOptions& options,
+           const std::string& label);
+
+/// Folder names of the faults and effects, for titles: "zeta_x = 1.2, ..."; "healthy".
+std::string Describe(const RunOptions& options);
+/// The same for machines to read.
+nlohmann::json ToJson(const RunOptions& options);
+
+}  // namespace mjdiag::app

@@ -1,0 +1,42 @@
+#include "app/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace mjdiag::app {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+constexpr auto kQuiet = milliseconds(2000);
+constexpr auto kBetweenDraws = milliseconds(100);
+constexpr int kWidth = 32;
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::string label)
+    : label_(std::move(label)),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
+      last_(start_) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::Show(double fraction) {
+  const auto now = Clock::now();
+  if (!terminal_ || now - start_ < kQuiet || now - last_ < kBetweenDraws) return;
+  last_ = now;
+  drawn_ = true;
+  const double part = std::clamp(fraction, 0.0, 1.0);
+  const int full = static_cast<int>(part * kWidth);
+  const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
+                          std::string(static_cast<std::size_t>(kWidth - full), '.');
+  std::fprintf(stderr, "\r%s [%s] %3.0f %%", label_.c_str(), bar.c_str(), 100.0 * part);
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,26 @@
+#pragma once
+// A progress bar on a terminal for what takes longer than two seconds.
+
+#include <chrono>
+#include <string>
+
+namespace mjdiag::app {
+
+/// Draws on stderr, and only if that is a terminal; wipes itself at the end.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string label);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  void Show(double fraction);
+
+ private:
+  std::string label_;
+  bool terminal_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace mjdiag::app

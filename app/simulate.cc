@@ -1,0 +1,106 @@
+// mjdiag simulate: a run of the machine, as a record.
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+#include "app/format.h"
+#include "app/machine.h"
+#include "app/output.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag::app {
+namespace {
+
+struct SimulateOptions {
+  MachineOptions machine;
+  MotionOptions motion;
+  OutputOptions output;
+  std::string format = "csv";
+  bool log_joints = false;
+};
+
+/// Largest |reference - reading| of every axis.
+std::map<std::string, double> LargestTrackingErrors(const Setup& setup,
+                                                    const Record& record) {
+  std::map<std::string, double> errors;
+  for (const AxisSetup& axis : setup.axes) {
+    const Channel* reference = record.Find(axis.name + "_ref");
+    if (reference == nullptr) continue;
+    errors[axis.name] =
+        (reference->samples - record.At(axis.sensor).samples).lpNorm<Eigen::Infinity>();
+  }
+  return errors;
+}
+
+std::string Summary(const Setup& setup, const Machine& machine, const Record& record,
+                    const nlohmann::json& document) {
+  std::string text = setup.name + ", " + Describe(machine.options) + ": " +
+                     std::to_string(record.samples()) + " samples, " +
+                     Short(record.duration()) + " s, " +
+                     Short(document["real_time_factor"]) + " times real time\n\n";
+  Table table({"axis", "largest tracking error", "peak input"});
+  for (const AxisSetup& axis : setup.axes) {
+    const Channel& input = record.At(axis.actuator);
+    table.Add({axis.name,
+               FormatQuantity(document["tracking_error_max"][axis.name],
+                              setup.Sensor(axis.sensor).unit),
+               FormatQuantity(input.samples.lpNorm<Eigen::Infinity>(), input.unit)});
+  }
+  return text + (setup.axes.empty() ? "" : table.ToString());
+}
+
+void Simulate(const SimulateOptions& options) {
+  Machine machine = LoadMachine(options.machine);
+  SetMotion(options.motion, machine.options);
+  CheckMode(machine.setup, machine.options.mode);
+  machine.options.log_joints = options.log_joints;
+  const Excitation excitation = MakeExcitation(machine.setup, options.motion);
+  PrepareOutput(options.output);
+
+  const auto start = std::chrono::steady_clock::now();
+  const Record record =
+      Run(machine, options.motion, excitation, machine.options, "simulating");
+  const std::chrono::duration<double> elapsed =
+      std::chrono::steady_clock::now() - start;
+
+  nlohmann::json document = ToJson(machine.options);
+  document["schema"] = "mjdiag.simulate/1";
+  document["setup"] = machine.setup.name;
+  document["command"] = CommandLine();
+  document["linear"] = options.motion.linear;
+  document["seed"] = options.motion.seed;
+  document["samples"] = record.samples();
+  document["sample_time"] = record.sample_time();
+  document["tracking_error_max"] = LargestTrackingErrors(machine.setup, record);
+  document["real_time_factor"] = record.duration() / elapsed.count();
+  std::string text = Summary(machine.setup, machine, record, document);
+  if (!options.output.folder.empty()) {
+    const RecordFormat format = ParseRecordFormat(options.format);
+    const auto file =
+        std::filesystem::path(options.output.folder) / ("record" + Extension(format));
+    WriteRecord(file, record, format);
+    document["record"] = file.filename().string();
+    text += "\nrecord: " + file.string() + "\n";
+  }
+  Publish(options.output, "simulate", document, text);
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& app) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "Run the machine and write the record");
+  AddMachineOptions(*command, options->machine);
+  AddMotionOptions(*command, options->motion);
+  AddOutputOptions(*command, options->output, false);
+  command->add_option("--format", options->format, "Format of the record")
+      ->check(CLI::IsMember({"csv", "mat", "mat73"}));
+  command->add_flag("--log-joints", options->log_joints,
+                    "Also record the position of every joint");
+  command->callback([options] { Simulate(*options); });
+}
+
+}  // namespace mjdiag::app

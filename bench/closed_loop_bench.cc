@@ -1,0 +1,77 @@
+// What the control callback costs: closed loop over bare mj_step of the same model, the
+// same number of steps and the same motion. The two are timed in turn, in short slices,
+// so that whatever else the machine does meets both alike; the figure is the median of
+// the slices' ratios.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "mjdiag/plugin/instance.h"
+#include "mjdiag/plugin/scenery.h"
+#include "mjdiag/plugin/start_state.h"
+
+namespace mjdiag {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kTicksPerSlice = 400;
+
+double Seconds(const mjModel& model, mjData& data, int steps) {
+  const auto start = Clock::now();
+  for (int i = 0; i < steps; ++i) mj_step(&model, &data);
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+void ClosedLoopOverBareSteps(benchmark::State& state, bool static_friction) {
+  Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
+  setup.static_friction = static_friction;
+  const ModelPtr model = LoadPlant(setup);
+  const Excitation excitation =
+      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  const Eigen::VectorXd start = StartPosition(setup, *model, {});
+  DropScenery(*model);
+  const int steps = kTicksPerSlice * setup.substeps;
+  std::vector<double> ratios;
+  double bare_seconds = 0.0;
+  for (auto _ : state) {
+    Instance instance(setup, *model, excitation, {});
+    const DataPtr closed = MakeData(*model);
+    const DataPtr bare = MakeData(*model);
+    std::copy(start.begin(), start.end(), closed->qpos);
+    Attach(*model, *closed, instance);
+    for (Eigen::Index tick = 0; tick + kTicksPerSlice <= excitation.samples();
+         tick += kTicksPerSlice) {
+      // The bare machine starts each slice where the controlled one is, so both solve
+      // the same problem.
+      mj_copyData(bare.get(), model.get(), closed.get());
+      Detach(*model, *bare);
+      const double with_control = Seconds(*model, *closed, steps);
+      const double without = Seconds(*model, *bare, steps);
+      bare_seconds += without;
+      ratios.push_back(with_control / without);
+    }
+  }
+  state.counters["closed_over_bare"] = Median(ratios);
+  state.counters["us_per_bare_step"] =
+      1e6 * bare_seconds / (static_cast<double>(ratios.size()) * steps);
+}
+
+BENCHMARK_CAPTURE(ClosedLoopOverBareSteps, without_friction, false)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(5);
+BENCHMARK_CAPTURE(ClosedLoopOverBareSteps, with_friction, true)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(5);
+
+}  // namespace
+}  // namespace mjdiag
+
+BENCHMARK_MAIN();

@@ -1,0 +1,50 @@
+#pragma once
+// Left null space of H(p): the rows of which residuals are made. With H of a state
+// space (Eq. 13 of the seed) a row N = [N_x, N_y] has N H = 0 exactly when
+//
+//   sum_i N_y,i C A^i = 0   and   N_x,k = sum_{i>k} N_y,i C A^(i-k-1),
+//
+// so only N_y is sought, in the left null space of the stack [C; CA; ...; CA^d]. That
+// is far smaller than the bar matrix of Eq. 19 and better conditioned, provided that
+// the system is in a fitting unit of time (UnitMassStateSpace): in seconds the powers
+// of A span 25 decades and double precision sees a null space that is not there.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/diagnosis/dae_model.h"
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/signals/state_space.h"
+
+namespace mjdiag {
+
+/// [C; C A; ...; C A^degree], (degree + 1) ny x nx.
+Eigen::MatrixXd ObservabilityStack(const StateSpace& system, int degree);
+
+/// Rank of the observability stack for degrees 0 .. max_degree. (degree + 1) ny minus
+/// the rank is the number of independent residual rows up to that degree.
+std::vector<int> ObservabilityRanks(const StateSpace& system, int max_degree);
+
+/// One coefficient of N_y that is given: of `output`, at p^power.
+struct RowPin {
+  Eigen::Index output = 0;
+  int power = 0;
+  double value = 0.0;
+};
+
+/// The row N of that degree with N H = 0 and the pinned coefficients in N_y.
+/// NumericalError unless there is exactly one.
+PolynomialMatrix LeftNullRow(const StateSpace& system, int degree,
+                             const std::vector<RowPin>& pins);
+
+/// Numerators of a residual in SI units, r = sum_i outputs_i(s) y_i + inputs_j(s) u_j.
+struct ResidualRow {
+  Eigen::MatrixXd outputs;  ///< ny x (degree + 1), ascending powers of s
+  Eigen::MatrixXd inputs;   ///< nu x (degree + 1), ascending powers of s
+};
+
+/// N(s) L of the continuous-time model; the pins are coefficients of `outputs`.
+ResidualRow PinnedResidualRow(const MechanicalModel& model, int degree,
+                              const std::vector<RowPin>& pins);
+
+}  // namespace mjdiag

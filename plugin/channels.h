@@ -1,0 +1,18 @@
+#pragma once
+// Where the channels of a setup lie in MuJoCo's data.
+
+#include <mujoco/mujoco.h>
+
+#include <vector>
+
+#include "mjdiag/plugin/setup.h"
+
+namespace mjdiag {
+
+/// Index into mjData.sensordata of every sensor channel of the setup. InputError names
+/// a missing element or a component that the sensor does not have.
+std::vector<int> SensorAddresses(const Setup& setup, const mjModel& model);
+/// Index into mjData.ctrl of every actuator channel of the setup.
+std::vector<int> ActuatorAddresses(const Setup& setup, const mjModel& model);
+
+}  // namespace mjdiag

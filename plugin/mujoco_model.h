@@ -1,0 +1,34 @@
+#pragma once
+// Ownership of mjModel and mjData, and MuJoCo's errors as exceptions.
+
+#include <mujoco/mujoco.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace mjdiag {
+
+struct ModelDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
+using DataPtr = std::unique_ptr<mjData, DataDeleter>;
+
+/// Loads and compiles an MJCF file. InputError with file and line of what MuJoCo
+/// rejects. From then on errors inside MuJoCo (mju_error) throw NumericalError instead
+/// of ending the process, and its warnings are neither printed nor logged.
+ModelPtr LoadModel(const std::filesystem::path& mjcf);
+ModelPtr CopyModel(const mjModel& model);
+DataPtr MakeData(const mjModel& model);
+
+/// mj_name2id that fails with InputError("<model>: no <kind> named ..., expected one of
+/// ...") instead of returning -1.
+int FindElement(const mjModel& model, mjtObj kind, const std::string& name);
+/// Name of an element, or "<kind> <id>" for a nameless one.
+std::string ElementName(const mjModel& model, mjtObj kind, int id);
+
+}  // namespace mjdiag

@@ -1,0 +1,108 @@
+#pragma once
+// A setup: the plant and everything around it that makes a machine - rates, channels,
+// controllers, noise, trajectories. docs/setup.md describes every key of the file.
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mjdiag/controllers/axis_controller.h"
+#include "mjdiag/controllers/trajectory.h"
+#include "mjdiag/signals/record_file.h"
+
+namespace mjdiag {
+
+/// [sensors.<channel>]: a component of an MJCF sensor, read once a control tick.
+struct SensorSetup {
+  std::string channel;
+  std::string element;      ///< MJCF sensor
+  int component = 0;        ///< index within the sensor's data
+  std::string unit;         ///< SI
+  double noise_sd = 0.0;    ///< white noise a sample [unit]
+  double resolution = 0.0;  ///< quantisation step [unit]; 0: none
+};
+
+/// [actuators.<channel>]: an MJCF actuator, held over the substeps of a tick.
+struct ActuatorSetup {
+  std::string channel;
+  std::string element;  ///< MJCF actuator
+  std::string unit;     ///< SI unit of its control signal
+  double limit = 0.0;   ///< |u| is clamped to it; 0: not
+};
+
+/// [axes.<name>]: one controlled axis.
+struct AxisSetup {
+  std::string name;
+  std::string sensor;       ///< sensor channel
+  std::string actuator;     ///< actuator channel
+  double drive_gain = 1.0;  ///< actuator unit per command unit, for example N/A
+  FeedforwardGains feedforward;
+  std::optional<DiscreteCompensator> feedback;
+  std::optional<NestedLoops> nested;
+  std::string known_disturbance;  ///< record channel added to the command; empty: none
+  MoveLimits limits;              ///< all 0: the setup gives none
+};
+
+/// [disturbances.<name>]: the multisine of Eq. 7 on actuator channels, switched on by
+/// its magnitude (gamma; 0: healthy).
+struct MultisineSetup {
+  std::string name;
+  std::vector<double> frequencies;          ///< [Hz]
+  std::map<std::string, double> amplitude;  ///< actuator channel -> A = r |F_max|
+};
+
+/// [compare]: how figures of a measured record are computed.
+struct CompareSetup {
+  int skip_samples = 0;    ///< left out at the start
+  int low_pass_order = 0;  ///< zero-phase Butterworth before differentiating; 0: none
+  double low_pass_cutoff = 0.0;  ///< [Hz]
+  /// actuator channel -> factor and name of the derived force, for example gtau
+  struct Derived {
+    std::string name;
+    std::string channel;
+    double factor = 1.0;
+    std::string unit;
+  };
+  std::vector<Derived> forces;
+};
+
+struct Setup {
+  std::filesystem::path folder;
+  std::string name;
+  std::filesystem::path plant;                     ///< MJCF file
+  std::optional<std::filesystem::path> analytic;   ///< linear chain, see linear_chain.h
+  std::optional<std::filesystem::path> published;  ///< printed residual row
+  double control_rate = 0.0;                       ///< [Hz]
+  int substeps = 1;                                ///< physics steps a control tick
+  bool gravity = true;
+  bool static_friction = true;
+  std::vector<SensorSetup> sensors;
+  std::vector<ActuatorSetup> actuators;
+  std::vector<AxisSetup> axes;  ///< empty: open loop, records drive the actuators
+  std::vector<MultisineSetup> disturbances;
+  std::vector<Trajectory> trajectories;
+  std::string default_trajectory;
+  std::optional<ColumnMap> record;  ///< how a measured file becomes a Record
+  CompareSetup compare;
+
+  double sample_time() const { return 1.0 / control_rate; }
+  const SensorSetup& Sensor(std::string_view channel) const;
+  const ActuatorSetup& Actuator(std::string_view channel) const;
+  /// Place of a channel in `sensors` and `actuators`; InputError as above.
+  std::ptrdiff_t SensorIndex(std::string_view channel) const;
+  std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
+  const Trajectory& FindTrajectory(std::string_view trajectory) const;
+};
+
+/// Reads `<where>/setup.toml`, or `where` itself if it is a file. `overrides` are
+/// `key.path=value` in TOML syntax and replace values of the file. InputError names
+/// file, line and key: malformed TOML, unknown or missing key, wrong type, value out of
+/// range, a name that nothing declares.
+Setup ReadSetup(const std::filesystem::path& where,
+                const std::vector<std::string>& overrides = {});
+
+}  // namespace mjdiag

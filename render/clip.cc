@@ -1,0 +1,54 @@
+#include "mjdiag/render/clip.h"
+
+#include <cmath>
+
+#include "mjdiag/render/clip_painter.h"
+#include "mjdiag/render/clip_writer.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+void CheckPositive(const char* name, double value) {
+  if (std::isfinite(value) && value > 0.0) return;
+  throw InputError(name, std::to_string(value), "a finite number > 0");
+}
+
+}  // namespace
+
+ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
+                       const ClipOptions& options, const std::filesystem::path& file) {
+  CheckPositive("fps", options.fps);
+  CheckPositive("speed", options.speed);
+  const double step = options.speed / options.fps;
+  ClipPainter painter(model, runs, options.picture, options.speed, step);
+  ClipWriter writer(file, options.picture.width, options.picture.height, options.fps,
+                    options.frames);
+
+  const TimeRange range = painter.range();
+  const int frames = 1 + static_cast<int>((range.end - range.begin) / step + 1e-6);
+  Image picture;
+  for (int n = 0; n < frames; ++n) {
+    painter.Paint(range.begin + n * step, picture);
+    writer.Write(picture);
+    if (options.progress) options.progress((n + 1.0) / frames);
+  }
+  writer.Finish();
+  return {frames, writer.codec()};
+}
+
+void RenderStill(const mjModel& model, std::span<const ClipRun> runs,
+                 const PictureOptions& options, double time,
+                 const std::filesystem::path& file) {
+  ClipPainter painter(model, runs, options, 0.0, 1e-4);
+  const TimeRange range = painter.range();
+  if (!(time >= range.begin && time <= range.end)) {
+    throw InputError("time of the still", std::to_string(time) + " s",
+                     std::to_string(range.begin) + " to " + std::to_string(range.end));
+  }
+  Image picture;
+  painter.Paint(time, picture);
+  WritePng(file, picture);
+}
+
+}  // namespace mjdiag

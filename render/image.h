@@ -1,0 +1,23 @@
+#pragma once
+// A picture in memory, and as a PNG file.
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace mjdiag {
+
+/// 8-bit RGB, rows from the top, no padding: rgb[3 * (y * width + x) + channel].
+struct Image {
+  int width = 0;   ///< [px]
+  int height = 0;  ///< [px]
+  std::vector<std::uint8_t> rgb;
+
+  bool operator==(const Image&) const = default;
+};
+
+/// Writes a PNG under a temporary name that is renamed at the end. InputError if the
+/// folder is missing or not writable.
+void WritePng(const std::filesystem::path& file, const Image& image);
+
+}  // namespace mjdiag

@@ -1,0 +1,49 @@
+#pragma once
+// One strip chart: a quantity of every run over time, drawn up to the present moment in
+// full colour and beyond it faintly.
+
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "mjdiag/render/clip_layout.h"
+#include "mjdiag/render/engineering.h"
+#include "mjdiag/render/trace.h"
+#include "mjdiag/render/typesetter.h"
+
+namespace mjdiag {
+
+class StripChart {
+ public:
+  StripChart(const ClipLayout& layout, const ChartLayout& place, const Trace& trace,
+             std::span<const Record* const> runs, TimeRange range);
+
+  /// Caption, axes, grid and the faint traces: what stays the same in all frames.
+  void DrawBackground(Typesetter& type, cv::Mat& picture) const;
+  /// The traces up to `time`, and a cursor there.
+  void DrawUpTo(double time, cv::Mat& picture) const;
+
+ private:
+  // A run's trace in plot coordinates, fractions of a pixel.
+  struct Curve {
+    std::vector<double> times;  // of the points [s]
+    std::vector<cv::Point2d> points;
+  };
+
+  Curve MakeCurve(const Record& record, const Eigen::VectorXd& samples) const;
+  cv::Point2d Place(double time, double value) const;
+  void DrawValueAxis(Typesetter& type, cv::Mat& picture) const;
+  void DrawTimeAxis(Typesetter& type, cv::Mat& picture) const;
+
+  ChartLayout place_;
+  Font font_;
+  double line_width_ = 1.0;  // [px]
+  std::string caption_;
+  TimeRange range_;
+  ValueRange values_;
+  std::vector<double> value_ticks_;
+  EngineeringFormat value_format_;
+  std::vector<Curve> curves_;
+};
+
+}  // namespace mjdiag

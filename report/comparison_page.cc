@@ -1,0 +1,189 @@
+#include "mjdiag/report/comparison_page.h"
+
+#include <limits>
+
+#include "mjdiag/report/page.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+namespace {
+
+std::string Percent(double value) { return FormatNumber(value) + " %"; }
+
+std::string Seconds(double value) { return FormatNumber(value, 4); }
+
+std::string Ratio(const ChannelMismatch& channel) {
+  if (channel.rms == 0.0) return "0";
+  return FormatNumber(channel.rms / channel.noise_floor.rms);
+}
+
+std::string Join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void AddFacts(Page& page, const Comparison& comparison, const RunDescription& run) {
+  const Record& record = comparison.measured;
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"Setup", comparison.setup},
+      {"Record", run.record},
+      {"Replayed", comparison.closed_loop ? "measured reference, in closed loop"
+                                          : "measured input, in open loop"},
+      {"Length", std::to_string(record.samples()) + " samples at " +
+                     FormatQuantity(1.0 / record.sample_time(), "Hz") + ", " +
+                     FormatQuantity(record.duration(), "s")},
+      {"Left out at the start",
+       std::to_string(comparison.options.skip_samples) + " samples"}};
+  if (!comparison.not_measured.empty()) {
+    facts.emplace_back("Not measured", Join(comparison.not_measured));
+  }
+  page.AddFacts(facts);
+}
+
+constexpr const char* kHowToRead =
+    "Mismatch is measured minus simulated. The noise floor is what the sensor noise "
+    "found "
+    "in the record explains, through the control loop where there is one. Beyond "
+    "noise: "
+    "the mean square of the mismatch is larger than that of the floor, in a one-sided "
+    "F "
+    "test at a level of ";
+
+void AddChannelTable(Page& page, const Comparison& comparison) {
+  Table table;
+  table.columns = {{"Channel"},           {"Mismatch, rms", true},
+                   {"Peak", true},        {"Relative error", true},
+                   {"Noise floor", true}, {"Times the floor", true},
+                   {"Beyond noise"},      {"Worst window", true},
+                   {"Its rms", true}};
+  for (const ChannelMismatch& channel : comparison.channels) {
+    const WorstWindow& worst = channel.worst;
+    const std::string end = Seconds(worst.start + worst.duration) + " s";
+    table.rows.push_back({channel.name, FormatQuantity(channel.rms, channel.unit),
+                          FormatQuantity(channel.peak, channel.unit),
+                          Percent(channel.relative_error_percent),
+                          FormatQuantity(channel.noise_floor.rms, channel.unit),
+                          Ratio(channel), channel.exceeds_noise ? "yes" : "no",
+                          Seconds(worst.start) + " to " + end,
+                          FormatQuantity(worst.rms, channel.unit)});
+  }
+  page.AddTable(table);
+  const double level = 100.0 * comparison.options.level;
+  page.AddParagraph(kHowToRead + FormatNumber(level, 1) + " % for each channel.");
+}
+
+void AddDerivedTable(Page& page, const Comparison& comparison) {
+  if (comparison.derived.empty()) return;
+  page.AddHeading("Derived signals");
+  Table table;
+  table.columns = {{"Signal"}, {"Mismatch, rms", true}, {"Relative error", true}};
+  for (const DerivedMismatch& derived : comparison.derived) {
+    table.rows.push_back({derived.name, FormatQuantity(derived.rms, derived.unit),
+                          Percent(derived.relative_error_percent)});
+  }
+  page.AddTable(table);
+}
+
+TimePlot TimeAxis(const Record& record, const Channel& channel) {
+  TimePlot plot;
+  plot.quantity = channel.name;
+  plot.unit = channel.unit;
+  plot.start_time = record.start_time();
+  plot.sample_time = record.sample_time();
+  return plot;
+}
+
+Band WorstBand(const ChannelMismatch& channel) {
+  return {channel.worst.start, channel.worst.start + channel.worst.duration,
+          "worst window"};
+}
+
+void AddSignalPlot(Page& page, const Comparison& comparison,
+                   const ChannelMismatch& channel) {
+  const Channel& measured = comparison.measured.At(channel.name);
+  const Channel& simulated = comparison.simulated.At(channel.name);
+  TimePlot plot = TimeAxis(comparison.measured, measured);
+  plot.caption = channel.name + ", measured and simulated";
+  plot.curves = {{"measured", CurveRole::kMeasured, measured.samples},
+                 {"simulated", CurveRole::kSimulated, simulated.samples}};
+  plot.bands = {WorstBand(channel)};
+  page.AddPlot(plot);
+}
+
+void AddMismatchPlot(Page& page, const Comparison& comparison,
+                     const ChannelMismatch& channel) {
+  const Record& measured = comparison.measured;
+  TimePlot plot = TimeAxis(measured, measured.At(channel.name));
+  plot.caption = channel.name + ", mismatch";
+  Eigen::VectorXd mismatch =
+      measured.At(channel.name).samples - comparison.simulated.At(channel.name).samples;
+  // What the figures leave out must not set the scale of the axis either.
+  mismatch.head(comparison.options.skip_samples)
+      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  plot.curves = {{"measured - simulated", CurveRole::kMismatch, mismatch}};
+  plot.bands = {WorstBand(channel)};
+  const double floor = channel.noise_floor.rms;
+  plot.levels = {{floor, "noise floor (rms)"}, {-floor, "noise floor (rms)"}};
+  plot.height = 200;
+  page.AddPlot(plot);
+}
+
+void AddMismatchSpectrum(Page& page, const ChannelMismatch& channel) {
+  SpectrumPlot plot;
+  plot.caption = channel.name + ", spectrum of the mismatch";
+  plot.quantity = channel.name;
+  plot.unit = channel.unit;
+  plot.frequency = channel.spectrum.frequency;
+  plot.curves = {
+      {"mismatch", CurveRole::kMismatch, channel.spectrum.density.cwiseSqrt()}};
+  const Spectrum& noise = channel.noise_floor.spectrum;
+  if (noise.density.size() == channel.spectrum.density.size()) {
+    plot.curves.push_back(
+        {"noise floor", CurveRole::kNoise, noise.density.cwiseSqrt()});
+  }
+  page.AddPlot(plot);
+}
+
+}  // namespace
+
+std::string ComparisonVerdict(const Comparison& comparison) {
+  if (!comparison.exceeds_noise()) {
+    std::vector<std::string> names;
+    for (const ChannelMismatch& channel : comparison.channels) {
+      names.push_back(channel.name);
+    }
+    return "No mismatch beyond the noise floor in " + Join(names) + ".";
+  }
+  const ChannelMismatch* worst = comparison.Worst();
+  const std::string size = FormatQuantity(worst->rms, worst->unit) + " rms, " +
+                           Percent(worst->relative_error_percent);
+  if (worst->noise_floor.rms == 0.0) {
+    return "The simulation misses " + worst->name + ", which is free of noise (" +
+           size + ").";
+  }
+  return "The mismatch of " + worst->name + " is " + Ratio(*worst) +
+         " times its noise floor (" + size + ").";
+}
+
+std::string ComparisonPage(const Comparison& comparison, const RunDescription& run) {
+  Page page("Measured against simulated: " + comparison.setup);
+  page.AddVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
+                  ComparisonVerdict(comparison));
+  AddFacts(page, comparison, run);
+  page.AddHeading("Channels");
+  AddChannelTable(page, comparison);
+  AddDerivedTable(page, comparison);
+  for (const ChannelMismatch& channel : comparison.channels) {
+    page.AddHeading("Channel " + channel.name);
+    AddSignalPlot(page, comparison, channel);
+    AddMismatchPlot(page, comparison, channel);
+    AddMismatchSpectrum(page, channel);
+  }
+  page.AddHeading("To do it again");
+  page.AddCode(run.command);
+  page.AddFacts(run.versions);
+  return page.Html();
+}
+
+}  // namespace mjdiag

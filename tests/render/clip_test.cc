@@ -1,0 +1,186 @@
+#include "mjdiag/render/clip.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "mjdiag/render/clip_writer.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
+#include "test_machine.h"
+
+namespace mjdiag {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Clip : public ::testing::Test {
+ protected:
+  Clip() {
+    options_.picture.width = 640;
+    options_.picture.height = 360;
+    options_.picture.camera = "front";
+    options_.picture.smoothing = Smoothing::kNone;
+    options_.fps = 10.0;
+    options_.speed = 0.1;  // 0.1 s of run: frames 0 .. 10
+  }
+
+  std::string Failure(const ClipOptions& options, const std::filesystem::path& file) {
+    try {
+      RenderClip(*model_, runs_, options, file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const ModelPtr model_ = test::Machine();
+  const Record healthy_ = test::Run({});
+  const Record faulty_ = test::Run({.mount = 4e-8, .stage = 3e-6});
+  const std::vector<ClipRun> runs_{{"Healthy", &healthy_}, {"Faulty", &faulty_}};
+  const test::ScratchFolder folder_{
+      ::testing::UnitTest::GetInstance()->current_test_info()->name()};
+  ClipOptions options_;
+};
+
+TEST_F(Clip, CanBeReadBackFrameByFrame) {
+  const auto file = folder_ / "clip.mp4";
+  const ClipSummary summary = RenderClip(*model_, runs_, options_, file);
+  EXPECT_EQ(summary.frames, 11);
+  cv::VideoCapture video(file.string());
+  ASSERT_TRUE(video.isOpened());
+  EXPECT_EQ(video.get(cv::CAP_PROP_FRAME_WIDTH), 640);
+  EXPECT_EQ(video.get(cv::CAP_PROP_FRAME_HEIGHT), 360);
+  EXPECT_NEAR(video.get(cv::CAP_PROP_FPS), 10.0, 1e-6);
+  int frames = 0;
+  for (cv::Mat frame; video.read(frame);) ++frames;
+  EXPECT_EQ(frames, 11);
+  EXPECT_EQ(folder_.Entries(), 1);
+}
+
+TEST_F(Clip, GivesTheSameFramesEveryTime) {
+  options_.frames = folder_ / "a";
+  RenderClip(*model_, runs_, options_, folder_ / "a.mp4");
+  options_.frames = folder_ / "b";
+  RenderClip(*model_, runs_, options_, folder_ / "b.mp4");
+  for (const char* name :
+       {"frame_000000.png", "frame_000005.png", "frame_000010.png"}) {
+    EXPECT_EQ(ReadTextFile(folder_ / "a" / name), ReadTextFile(folder_ / "b" / name));
+  }
+  EXPECT_NE(ReadTextFile(folder_ / "a" / "frame_000000.png"),
+            ReadTextFile(folder_ / "a" / "frame_000005.png"));
+}
+
+TEST_F(Clip, FramesReplaceThoseOfALongerClip) {
+  options_.frames = folder_ / "frames";
+  RenderClip(*model_, runs_, options_, folder_ / "clip.mp4");
+  options_.picture.end = 0.05;
+  EXPECT_EQ(RenderClip(*model_, runs_, options_, folder_ / "clip.mp4").frames, 6);
+  EXPECT_TRUE(std::filesystem::exists(options_.frames / "frame_000005.png"));
+  EXPECT_FALSE(std::filesystem::exists(options_.frames / "frame_000006.png"));
+}
+
+TEST_F(Clip, StillIsTheClipsFrameButForTheSpeed) {
+  const auto file = folder_ / "still.png";
+  RenderStill(*model_, runs_, options_.picture, 0.05, file);
+  const cv::Mat still = cv::imread(file.string());
+  EXPECT_EQ(still.size(), cv::Size(640, 360));
+  options_.frames = folder_ / "frames";
+  RenderClip(*model_, runs_, options_, folder_ / "clip.mp4");
+  const cv::Mat frame = cv::imread((options_.frames / "frame_000005.png").string());
+  const cv::Rect below_header(0, 40, 640, 320);
+  EXPECT_EQ(cv::norm(still(below_header), frame(below_header), cv::NORM_INF), 0.0);
+}
+
+TEST_F(Clip, ShowsTheFaultyRunDifferently) {
+  const auto file = folder_ / "still.png";
+  RenderStill(*model_, runs_, options_.picture, 0.03, file);
+  const cv::Mat still = cv::imread(file.string());
+  // Below titles and readouts, above the charts.
+  const cv::Mat left = still(cv::Rect(0, 120, 319, 140));
+  const cv::Mat right = still(cv::Rect(321, 120, 319, 140));
+  EXPECT_GT(cv::norm(left, right, cv::NORM_INF), 50.0);
+}
+
+TEST_F(Clip, WorksWithoutTrackedAxes) {
+  Record joints(1e-3);
+  for (const char* name : {"joint.mount", "joint.stage", "joint.tilt", "joint.arm"}) {
+    joints.Add(healthy_.At(name));
+  }
+  const std::array runs{ClipRun{"Open loop", &joints}};
+  RenderStill(*model_, runs, options_.picture, 0.05, folder_ / "still.png");
+  EXPECT_FALSE(cv::imread((folder_ / "still.png").string()).empty());
+}
+
+TEST_F(Clip, LeavesNothingBehindWhenItFailsMidway) {
+  options_.frames = folder_ / "frames";
+  options_.progress = [](double fraction) {
+    if (fraction > 0.5) throw NumericalError("stop");
+  };
+  EXPECT_THROW(RenderClip(*model_, runs_, options_, folder_ / "clip.mp4"),
+               NumericalError);
+  EXPECT_EQ(folder_.Entries(), 0);
+}
+
+TEST_F(Clip, NamesWhatIsWrongAndWritesNothing) {
+  const auto file = folder_ / "clip.mp4";
+  ClipOptions camera = options_;
+  camera.picture.camera = "side";
+  EXPECT_THAT(Failure(camera, file), HasSubstr("one of: front, top"));
+  ClipOptions axis = options_;
+  axis.picture.axes = {"y"};
+  EXPECT_THAT(Failure(axis, file), HasSubstr("no channel \"y\""));
+  ClipOptions range = options_;
+  range.picture.end = 3.0;
+  EXPECT_THAT(Failure(range, file), HasSubstr("time range"));
+  ClipOptions speed = options_;
+  speed.speed = 0.0;
+  EXPECT_THAT(Failure(speed, file), HasSubstr("speed"));
+  ClipOptions size = options_;
+  size.picture.width = 641;
+  EXPECT_THAT(Failure(size, file), HasSubstr("641 px"));
+  EXPECT_THAT(Failure(options_, folder_ / "clip.avi"), HasSubstr(".mp4"));
+  EXPECT_NE(Failure(options_, folder_ / "none" / "clip.mp4"), "");
+  EXPECT_EQ(folder_.Entries(), 0);
+}
+
+TEST_F(Clip, NamesTheJointThatARunLacks) {
+  Record incomplete(1e-3);
+  incomplete.Add(healthy_.At("joint.mount"));
+  const std::array runs{runs_[0], ClipRun{"Faulty", &incomplete}};
+  try {
+    RenderStill(*model_, runs, options_.picture, 0.05, folder_ / "still.png");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("\"x\""));
+  }
+  PictureOptions no_axes = options_.picture;
+  Record joints(1e-3);
+  joints.Add(healthy_.At("joint.mount"));
+  const std::array only{ClipRun{"Open loop", &joints}};
+  try {
+    RenderStill(*model_, only, no_axes, 0.05, folder_ / "still.png");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("\"joint.stage\""));
+  }
+  EXPECT_EQ(folder_.Entries(), 0);
+}
+
+TEST(ClipWriter, LeavesNothingWithoutFinish) {
+  const test::ScratchFolder folder("writer");
+  {
+    ClipWriter writer(folder / "clip.mp4", 320, 240, 30.0, folder / "frames");
+    for (int i = 0; i < 20; ++i) {
+      Image picture{320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)};
+      writer.Write(picture);
+    }
+  }
+  EXPECT_EQ(folder.Entries(), 0);
+}
+
+}  // namespace
+}  // namespace mjdiag

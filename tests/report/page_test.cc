@@ -1,0 +1,111 @@
+#include "mjdiag/report/page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+namespace mjdiag {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kHostile = "<script>alert('a & \"b\"')</script>";
+constexpr const char* kHarmless =
+    "&lt;script&gt;alert(&#39;a &amp; &quot;b&quot;&#39;)&lt;/script&gt;";
+
+TimePlot Ramp(Eigen::Index samples) {
+  TimePlot plot;
+  plot.caption = "x";
+  plot.quantity = "x";
+  plot.unit = "m";
+  plot.sample_time = 1e-3;
+  plot.curves = {{"measured", CurveRole::kMeasured,
+                  Eigen::VectorXd::LinSpaced(samples, 0.0, 1.0)}};
+  return plot;
+}
+
+int Count(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos;
+       at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(Page, EscapesAllText) {
+  Page page(kHostile);
+  page.AddVerdict(Tone::kBad, kHostile);
+  page.AddHeading(kHostile);
+  page.AddParagraph(kHostile);
+  page.AddFacts({{kHostile, kHostile}});
+  page.AddTable({{{kHostile}}, {{kHostile}}});
+  page.AddCode(kHostile);
+  const std::string html = page.Html();
+  EXPECT_THAT(html, Not(HasSubstr("alert('")));
+  // The title stands twice: in the head and as the heading.
+  EXPECT_EQ(Count(html, kHarmless), 10);
+}
+
+TEST(Page, DataOfAPlotCannotEndItsElement) {
+  Page page("x");
+  TimePlot plot = Ramp(3);
+  plot.caption = plot.quantity = plot.curves[0].label = kHostile;
+  page.AddPlot(plot);
+  const std::string html = page.Html();
+  EXPECT_THAT(html, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(html, HasSubstr("\\u003cscript>alert"));
+}
+
+TEST(Page, NeedsNoNetwork) {
+  Page page("x");
+  page.AddPlot(Ramp(3));
+  const std::string html = page.Html();
+  const std::regex loads(R"((src|href|srcset|action)\s*=\s*["']?\s*(https?:)?//)");
+  EXPECT_FALSE(std::regex_search(html, loads));
+  EXPECT_THAT(html, Not(HasSubstr("url(")));
+  EXPECT_THAT(html, Not(HasSubstr("@import")));
+  EXPECT_THAT(html, Not(HasSubstr("sourceMappingURL")));
+  EXPECT_THAT(html, Not(HasSubstr("<link")));
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+}
+
+TEST(Page, CarriesThePlotLibraryOnlyIfItHasPlots) {
+  Page page("x");
+  EXPECT_THAT(page.Html(), Not(HasSubstr("<script")));
+  page.AddPlot(Ramp(3));
+  page.AddPlot(Ramp(3));
+  const std::string html = page.Html();
+  EXPECT_THAT(html, HasSubstr("Dygraph.synchronize = "));
+  EXPECT_EQ(Count(html, "<figure"), 2);
+  EXPECT_EQ(Count(html, "id=\"reset-zoom\""), 1);
+}
+
+TEST(Page, AlignsNumbersOfATable) {
+  Page page("x");
+  page.AddTable({{{"name"}, {"rms", true}}, {{"q", "1"}}});
+  EXPECT_THAT(page.Html(), HasSubstr("<td>q</td><td class=\"number\">1</td></tr>"));
+}
+
+TEST(Page, FollowsTheSchemeOfTheReader) {
+  const std::string html = Page("x").Html();
+  EXPECT_THAT(html, HasSubstr("prefers-color-scheme: dark"));
+  EXPECT_THAT(html, HasSubstr("@media print"));
+  EXPECT_THAT(html, HasSubstr("width=device-width"));
+}
+
+TEST(Page, OfTwelveChannelsStaysSmall) {
+  Page page("x");
+  TimePlot two = Ramp(20000);
+  two.curves.push_back(two.curves[0]);
+  for (int channel = 0; channel < 12; ++channel) {
+    page.AddPlot(two);
+    page.AddPlot(Ramp(20000));
+  }
+  EXPECT_LT(page.Html().size(), 5'000'000U);
+}
+
+}  // namespace
+}  // namespace mjdiag

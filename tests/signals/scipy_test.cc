@@ -1,0 +1,216 @@
+// Against SciPy, which runs here and now: no stored numbers that could be our own.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "mjdiag/signals/butterworth.h"
+#include "mjdiag/signals/derivative.h"
+#include "mjdiag/signals/discretize.h"
+#include "mjdiag/signals/simulate_lti.h"
+#include "mjdiag/signals/spectrum.h"
+#include "mjdiag/signals/zero_phase.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr const char* kPython = "/usr/bin/python3";
+
+struct Output {
+  int status = -1;
+  std::string text;
+};
+
+Output RunCommand(const std::string& command) {
+  Output output;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return output;
+  char block[4096];
+  for (std::size_t n = 0; (n = fread(block, 1, sizeof block, pipe)) > 0;) {
+    output.text.append(block, n);
+  }
+  output.status = pclose(pipe);
+  return output;
+}
+
+std::map<std::string, MatrixXd> Parse(const std::string& text) {
+  std::map<std::string, MatrixXd> values;
+  std::istringstream stream(text);
+  std::string name;
+  Eigen::Index rows = 0;
+  Eigen::Index columns = 0;
+  while (stream >> name >> rows >> columns) {
+    MatrixXd matrix(rows, columns);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      for (Eigen::Index j = 0; j < columns; ++j) stream >> matrix(i, j);
+    }
+    values[name] = matrix;
+  }
+  return values;
+}
+
+class Scipy : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const std::string python(kPython);
+    present_ = RunCommand(python + " -c 'import scipy.signal' 2>/dev/null").status == 0;
+    if (!present_) return;
+    const Output output = RunCommand(python + " " + MJDIAG_SOURCE_DIR +
+                                     "/tests/signals/scipy_reference.py");
+    ASSERT_EQ(output.status, 0);
+    values_ = Parse(output.text);
+  }
+
+  void SetUp() override {
+    if (present_) return;
+    const char* ci = std::getenv("CI");
+    ASSERT_FALSE(ci && std::string(ci) == "true") << "python3-scipy is not installed";
+    GTEST_SKIP() << "python3-scipy is not installed: no comparison with SciPy";
+  }
+
+  static const MatrixXd& Value(const std::string& name) { return values_.at(name); }
+  static VectorXd Row(const std::string& name, Eigen::Index row = 0) {
+    return Value(name).row(row);
+  }
+  static StateSpace System(const std::string& prefix, double sample_time) {
+    return {Value(prefix + "A"), Value(prefix + "B"), Value(prefix + "C"),
+            Value(prefix + "D"), sample_time};
+  }
+
+ private:
+  inline static bool present_ = false;
+  inline static std::map<std::string, MatrixXd> values_;
+};
+
+/// Largest difference, relative to the largest reference value.
+double Difference(const MatrixXd& actual, const MatrixXd& reference) {
+  if (actual.rows() != reference.rows() || actual.cols() != reference.cols()) {
+    ADD_FAILURE() << "shapes differ";
+    return 1.0;
+  }
+  return (actual - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
+}
+
+/// Numerator and denominator (two rows) of the whole filter.
+MatrixXd Multiply(const SecondOrderSections& sections, Eigen::Index order) {
+  MatrixXd product = MatrixXd::Zero(2, 2 * sections.size() + 1);
+  product.col(0).setOnes();
+  for (const SecondOrderSection& section : sections) {
+    for (Eigen::Index k = product.cols() - 1; k >= 0; --k) {
+      const double x1 = k > 0 ? product(0, k - 1) : 0.0;
+      const double x2 = k > 1 ? product(0, k - 2) : 0.0;
+      const double y1 = k > 0 ? product(1, k - 1) : 0.0;
+      const double y2 = k > 1 ? product(1, k - 2) : 0.0;
+      product(0, k) = section.b0 * product(0, k) + section.b1 * x1 + section.b2 * x2;
+      product(1, k) += section.a1 * y1 + section.a2 * y2;
+    }
+  }
+  return product.leftCols(order + 1);
+}
+
+struct ButterworthCase {
+  FilterKind kind;
+  int order;
+  double cutoff;
+  double rate;
+};
+
+ButterworthCase ReadCase(const VectorXd& values) {
+  return {values[0] > 0.0 ? FilterKind::kHighPass : FilterKind::kLowPass,
+          static_cast<int>(values[1]), values[2], values[3]};
+}
+
+TEST_F(Scipy, AgreesOnButterworthFilters) {
+  const int cases = static_cast<int>(Value("butter.cases")(0, 0));
+  for (int i = 0; i < cases; ++i) {
+    const std::string name = "butter" + std::to_string(i);
+    SCOPED_TRACE(name);
+    const ButterworthCase c = ReadCase(Row(name + ".case"));
+
+    const TransferFunction continuous =
+        ContinuousButterworth(c.kind, c.order, c.cutoff);
+    const MatrixXd& reference = Value(name + ".continuous");
+    for (int k = 0; k <= c.order; ++k) {
+      EXPECT_NEAR(continuous.numerator[k], reference(0, k), 1e-12 * reference(0, k));
+      EXPECT_NEAR(continuous.denominator[k], reference(1, k), 1e-12 * reference(1, k));
+    }
+
+    const auto sections = DigitalButterworth(c.kind, c.order, c.cutoff, 1.0 / c.rate);
+    const MatrixXd digital = Multiply(sections, c.order);
+    EXPECT_LT(Difference(digital.row(0), Value(name + ".digital").row(0)), 1e-11);
+    EXPECT_LT(Difference(digital.row(1), Value(name + ".digital").row(1)), 1e-12);
+
+    const VectorXd frequencies = Row(name + ".frequencies");
+    for (Eigen::Index k = 0; k < frequencies.size(); ++k) {
+      const auto response = FrequencyResponse(sections, frequencies[k], 1.0 / c.rate);
+      const MatrixXd& expected = Value(name + ".response");
+      EXPECT_NEAR(response.real(), expected(0, k), 1e-9);
+      EXPECT_NEAR(response.imag(), expected(1, k), 1e-9);
+    }
+  }
+}
+
+TEST_F(Scipy, AgreesOnZeroPhaseFiltering) {
+  const VectorXd input = Row("filtfilt.input");
+  const auto filtered = [&](FilterKind kind, int order, double cutoff) -> MatrixXd {
+    return FilterZeroPhase(DigitalButterworth(kind, order, cutoff, 1e-3), input)
+        .transpose();
+  };
+  const MatrixXd low4 = filtered(FilterKind::kLowPass, 4, 100.0);
+  EXPECT_LT(Difference(low4, Value("filtfilt.low4")), 1e-12);
+  EXPECT_LT(Difference(low4, Value("filtfilt.low4.polynomial")), 1e-11);
+  EXPECT_LT(Difference(filtered(FilterKind::kLowPass, 7, 50.0), Value("filtfilt.low7")),
+            1e-11);
+  const MatrixXd high3 = filtered(FilterKind::kHighPass, 3, 100.0);
+  EXPECT_LT(Difference(high3, Value("filtfilt.high3")), 1e-12);
+  EXPECT_LT(Difference(high3, Value("filtfilt.high3.polynomial")), 1e-12);
+}
+
+TEST_F(Scipy, AgreesOnWelchDensities) {
+  const VectorXd input = Row("filtfilt.input");
+  for (const auto& [segment, overlap] :
+       std::map<Eigen::Index, Eigen::Index>{{256, 128}, {255, 100}, {1500, 0}}) {
+    const Spectrum spectrum = WelchDensity(input, 1e-3, segment, overlap);
+    const MatrixXd& reference = Value("welch." + std::to_string(segment));
+    EXPECT_LT(Difference(spectrum.frequency.transpose(), reference.row(0)), 1e-14);
+    EXPECT_LT(Difference(spectrum.density.transpose(), reference.row(1)), 1e-13);
+  }
+}
+
+TEST_F(Scipy, AgreesOnCentralDifferences) {
+  const MatrixXd derivative =
+      CentralDifference(Row("filtfilt.input"), 1e-3).transpose();
+  EXPECT_LT(Difference(derivative, Value("gradient")), 1e-13);
+}
+
+TEST_F(Scipy, AgreesOnDiscretisationAndSimulation) {
+  const StateSpace continuous = System("lti.", 0.0);
+  const double T = 1.0 / 8000.0;
+  const VectorXd initial = VectorXd::LinSpaced(6, 0.0, 5e-6);
+  const std::map<std::string, StateSpace> methods{
+      {"lti.zoh.", DiscretizeZoh(continuous, T)},
+      {"lti.bilinear.", DiscretizeTustin(continuous, T)}};
+  for (const auto& [prefix, discrete] : methods) {
+    SCOPED_TRACE(prefix);
+    const StateSpace reference = System(prefix, T);
+    EXPECT_LT(Difference(discrete.A, reference.A), 1e-12);
+    EXPECT_LT(Difference(discrete.B, reference.B), 1e-12);
+    EXPECT_LT(Difference(discrete.C, reference.C), 1e-12);
+    EXPECT_LT(Difference(discrete.D, reference.D), 1e-12);
+    const MatrixXd output = SimulateLti(discrete, Value("lti.input"), initial);
+    const MatrixXd& expected = Value(prefix + "output");
+    for (Eigen::Index i = 0; i < output.rows(); ++i) {
+      EXPECT_LT(Difference(output.row(i), expected.row(i)), 1e-10) << "output " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mjdiag
