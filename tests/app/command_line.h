@@ -11,6 +11,8 @@
 #include <iterator>
 #include <string>
 
+#include "support/temporary_folder.h"
+
 namespace mjdiag {
 
 struct CommandResult {
@@ -19,30 +21,7 @@ struct CommandResult {
   std::string err;
 };
 
-/// A fresh folder that goes with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name =
-        (std::filesystem::temp_directory_path() / "mjdiag-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::string Write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using test::TemporaryFolder;
 
 inline std::string ReadAll(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);

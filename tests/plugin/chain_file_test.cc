@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "mjdiag/signals/error.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -32,17 +33,16 @@ axis = [1, 0, 0]
 point = [0, 0, 0]
 )";
 
-std::filesystem::path Written(const std::string& text) {
-  const std::filesystem::path file = testing::TempDir() + "chain_file_test.toml";
-  std::ofstream(file) << text;
-  return file;
+auto Read(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return ReadLinearChain(folder.Write("chain_file_test.toml", text));
 }
 
 std::string ErrorAfter(const std::string& from, const std::string& to) {
   std::string text = kStage;
   text.replace(text.find(from), from.size(), to);
   try {
-    ReadLinearChain(Written(text));
+    Read(text);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -50,7 +50,7 @@ std::string ErrorAfter(const std::string& from, const std::string& to) {
 }
 
 TEST(ChainFile, ReadsWhatItSays) {
-  const LinearChain chain = ReadLinearChain(Written(kStage));
+  const LinearChain chain = Read(kStage);
   ASSERT_EQ(chain.bodies.size(), 1u);
   EXPECT_EQ(chain.bodies[0].mass, 2.0);
   EXPECT_EQ(chain.bodies[0].inertia.z(), 0.02);

@@ -8,6 +8,7 @@
 #include "mjdiag/plugin/force_effect.h"
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/signals/error.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {
@@ -16,16 +17,6 @@ using ::testing::HasSubstr;
 
 ModelPtr Emps() {
   return LoadModel(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/emps/plant.xml");
-}
-
-template <typename Work>
-std::string MessageOf(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
 }
 
 TEST(Effect, IsParsedFromTheCommandLineForm) {
@@ -37,19 +28,22 @@ TEST(Effect, IsParsedFromTheCommandLineForm) {
 }
 
 TEST(Effect, SaysWhatIsMalformed) {
-  EXPECT_THAT(MessageOf([] { ParseEffect("coulomb_friction"); }), HasSubstr("no site"));
-  EXPECT_THAT(MessageOf([] { ParseEffect("coulomb_friction@X:force"); }),
-              HasSubstr("'force' has no value"));
-  EXPECT_THAT(MessageOf([] { ParseEffect("coulomb_friction@X:force=big"); }),
-              HasSubstr("'big' is not a number"));
-  EXPECT_THAT(MessageOf([] { ParseEffect("a@X:force=1,force=2"); }),
+  EXPECT_THAT(test::MessageOf<InputError>([] { ParseEffect("coulomb_friction"); }),
+              HasSubstr("no site"));
+  EXPECT_THAT(
+      test::MessageOf<InputError>([] { ParseEffect("coulomb_friction@X:force"); }),
+      HasSubstr("'force' has no value"));
+  EXPECT_THAT(
+      test::MessageOf<InputError>([] { ParseEffect("coulomb_friction@X:force=big"); }),
+      HasSubstr("'big' is not a number"));
+  EXPECT_THAT(test::MessageOf<InputError>([] { ParseEffect("a@X:force=1,force=2"); }),
               HasSubstr("given twice"));
 }
 
 TEST(Effect, NamesTheKnownOnesWhenItIsNotOne) {
   const ModelPtr model = Emps();
   const auto message = [&](const char* text) {
-    return MessageOf([&] { CheckEffect(*model, ParseEffect(text)); });
+    return test::MessageOf<InputError>([&] { CheckEffect(*model, ParseEffect(text)); });
   };
   EXPECT_THAT(message("stiction@load:force=1"), HasSubstr("coulomb_friction"));
   EXPECT_THAT(message("coulomb_friction@lode:force=1"), HasSubstr("load"));

@@ -9,6 +9,7 @@
 
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/signals/error.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -23,12 +24,12 @@ ModelPtr Bonder() {
 
 /// A model whose only knob is `data`.
 ModelPtr WithKnob(const std::string& data) {
-  const std::string file = testing::TempDir() + "fault_test.xml";
-  std::ofstream(file) << R"(<mujoco><custom><text name="fault.knob" data=")" << data
-                      << R"("/></custom><worldbody><body>
+  const test::TemporaryFolder folder;
+  return LoadModel(folder.Write(
+      "fault_test.xml", R"(<mujoco><custom><text name="fault.knob" data=")" + data +
+                            R"("/></custom><worldbody><body>
       <joint name="x" type="slide"/>
-      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>)";
-  return LoadModel(file);
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>)"));
 }
 
 std::string ErrorOf(const std::function<void()>& action) {

@@ -17,6 +17,7 @@
 #include "mjdiag/plugin/published_row.h"
 #include "mjdiag/plugin/transition.h"
 #include "mjdiag/signals/error.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -266,9 +267,8 @@ TEST(Linearize, LeavesTheControlCallbackAlone) {
 
 /// A small model from text.
 ModelPtr FromText(const std::string& name, const std::string& xml) {
-  const std::string file = testing::TempDir() + name + ".xml";
-  std::ofstream(file) << xml;
-  return LoadModel(file);
+  const test::TemporaryFolder folder;
+  return LoadModel(folder.Write(name + ".xml", xml));
 }
 
 TEST(StaticEquilibrium, OfAHangingMassIsWhereSpringAndWeightBalance) {

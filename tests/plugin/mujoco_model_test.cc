@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "mjdiag/signals/error.h"
+#include "support/message_of.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -17,19 +19,11 @@ using testing::Not;
 
 const std::string kBonder = std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383/plant.xml";
 
-template <typename Error>
-std::string MessageOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error of the expected kind";
-}
+using test::MessageOf;
 
 std::string LoadError(const std::string& xml) {
-  const std::string file = testing::TempDir() + "mujoco_model_test.xml";
-  std::ofstream(file) << xml;
+  const test::TemporaryFolder folder;
+  const std::string file = folder.Write("mujoco_model_test.xml", xml);
   return MessageOf<InputError>([&] { LoadModel(file); });
 }
 
@@ -78,11 +72,10 @@ TEST(FindElement, ListsWhatIsThere) {
 
 TEST(ElementName, OfANamelessElementIsItsKindAndNumber) {
   EXPECT_EQ(ElementName(*LoadModel(kBonder), mjOBJ_LIGHT, 0), "key");
-  std::ofstream(testing::TempDir() + "nameless.xml")
-      << "<mujoco><worldbody><light/></worldbody></mujoco>";
-  EXPECT_EQ(
-      ElementName(*LoadModel(testing::TempDir() + "nameless.xml"), mjOBJ_LIGHT, 0),
-      "light 0");
+  const test::TemporaryFolder folder;
+  const std::string file =
+      folder.Write("nameless.xml", "<mujoco><worldbody><light/></worldbody></mujoco>");
+  EXPECT_EQ(ElementName(*LoadModel(file), mjOBJ_LIGHT, 0), "light 0");
 }
 
 TEST(CopyModel, IsADeepCopy) {

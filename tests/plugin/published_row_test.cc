@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "mjdiag/signals/error.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -23,17 +24,16 @@ y = [-50.0, -3.0, -2.0]
 u = [1.0]
 )";
 
-std::filesystem::path Written(const std::string& text) {
-  const std::filesystem::path file = testing::TempDir() + "published_row_test.toml";
-  std::ofstream(file) << text;
-  return file;
+auto Read(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return ReadPublishedRow(folder.Write("published_row_test.toml", text));
 }
 
 std::string ErrorAfter(const std::string& from, const std::string& to) {
   std::string text = kRow;
   text.replace(text.find(from), from.size(), to);
   try {
-    ReadPublishedRow(Written(text));
+    Read(text);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -41,7 +41,7 @@ std::string ErrorAfter(const std::string& from, const std::string& to) {
 }
 
 TEST(PublishedRowFile, ReadsWhatItSays) {
-  const PublishedRow row = ReadPublishedRow(Written(kRow));
+  const PublishedRow row = Read(kRow);
   EXPECT_EQ(row.degree, 2);
   EXPECT_EQ(row.digits, 4);
   ASSERT_EQ(row.pins.size(), 1u);

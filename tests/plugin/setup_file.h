@@ -12,6 +12,7 @@
 
 #include "mjdiag/plugin/setup.h"
 #include "mjdiag/signals/error.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 
@@ -89,20 +90,13 @@ force = { channel = "u", factor = 35.15, unit = "N" }
 class SetupFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ("mjdiag_setup_" + std::string(info->name()) + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
     for (const char* name : {"plant.xml", "analytic.toml", "published.toml"}) {
-      std::ofstream(folder_ / name) << "x";
+      temporary_.Write(name, "x");
     }
     Write(kEveryKey);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  void Write(const std::string& text) {
-    std::ofstream(folder_ / "setup.toml", std::ios::binary) << text;
-  }
+  void Write(const std::string& text) { temporary_.Write("setup.toml", text); }
 
   /// The message that ReadSetup throws on the full setup with `from` replaced by `to`.
   std::string MessageWith(const std::string& from, const std::string& to) {
@@ -129,7 +123,8 @@ class SetupFile : public ::testing::Test {
     return (folder_ / "setup.toml").string() + ":" + std::to_string(line) + ": " + rest;
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 }  // namespace mjdiag

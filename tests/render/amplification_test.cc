@@ -8,6 +8,7 @@
 #include "mjdiag/render/amplification_label.h"
 #include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/signals/error.h"
+#include "support/message_of.h"
 #include "test_machine.h"
 
 namespace mjdiag {
@@ -25,16 +26,6 @@ Amplification Amplify(const Record& healthy, const Record& faulty,
                       const AmplificationOptions& options) {
   const std::array runs{&healthy, &faulty};
   return Amplification(kJoints, healthy, runs, {0.0, 0.1}, options);
-}
-
-template <typename Action>
-std::string MessageOf(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(RoundDown125, TakesTheNextRoundNumberBelow) {
@@ -122,18 +113,18 @@ TEST(Amplification, NamesTheMissingJointChannel) {
   const Record healthy = test::Run({});
   Record faulty(1e-3);
   faulty.Add({"joint.mount", "m", healthy.At("joint.mount").samples});
-  EXPECT_THAT(MessageOf([&] { Amplify(healthy, faulty, {}); }),
+  EXPECT_THAT(test::MessageOf<InputError>([&] { Amplify(healthy, faulty, {}); }),
               HasSubstr("no channel \"joint.stage\""));
 }
 
 TEST(Amplification, RefusesUnknownJointsAndSenselessFactors) {
   const Record run = test::Run({});
   EXPECT_THAT(
-      MessageOf([&] {
+      test::MessageOf<InputError>([&] {
         Amplify(run, run, {.factors = {{"knee", 2.0}}});
       }),
       AllOf(HasSubstr("no joint \"knee\""), HasSubstr("mount, stage, tilt, arm")));
-  EXPECT_THAT(MessageOf([&] {
+  EXPECT_THAT(test::MessageOf<InputError>([&] {
                 Amplify(run, run, {.factors = {{"arm", -1.0}}});
               }),
               HasSubstr("amplification of arm"));

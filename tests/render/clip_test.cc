@@ -41,8 +41,7 @@ class Clip : public ::testing::Test {
   const Record healthy_ = test::Run({});
   const Record faulty_ = test::Run({.mount = 4e-8, .stage = 3e-6});
   const std::vector<ClipRun> runs_{{"Healthy", &healthy_}, {"Faulty", &faulty_}};
-  const test::ScratchFolder folder_{
-      ::testing::UnitTest::GetInstance()->current_test_info()->name()};
+  const test::TemporaryFolder folder_;
   ClipOptions options_;
 };
 
@@ -58,7 +57,7 @@ TEST_F(Clip, CanBeReadBackFrameByFrame) {
   int frames = 0;
   for (cv::Mat frame; video.read(frame);) ++frames;
   EXPECT_EQ(frames, 11);
-  EXPECT_EQ(folder_.Entries(), 1);
+  EXPECT_EQ(folder_.size(), 1);
 }
 
 TEST_F(Clip, GivesTheSameFramesEveryTime) {
@@ -122,7 +121,7 @@ TEST_F(Clip, LeavesNothingBehindWhenItFailsMidway) {
   };
   EXPECT_THROW(RenderClip(*model_, runs_, options_, folder_ / "clip.mp4"),
                NumericalError);
-  EXPECT_EQ(folder_.Entries(), 0);
+  EXPECT_EQ(folder_.size(), 0);
 }
 
 TEST_F(Clip, NamesWhatIsWrongAndWritesNothing) {
@@ -144,7 +143,7 @@ TEST_F(Clip, NamesWhatIsWrongAndWritesNothing) {
   EXPECT_THAT(Failure(size, file), HasSubstr("641 px"));
   EXPECT_THAT(Failure(options_, folder_ / "clip.avi"), HasSubstr(".mp4"));
   EXPECT_NE(Failure(options_, folder_ / "none" / "clip.mp4"), "");
-  EXPECT_EQ(folder_.Entries(), 0);
+  EXPECT_EQ(folder_.size(), 0);
 }
 
 TEST_F(Clip, NamesTheJointThatARunLacks) {
@@ -167,11 +166,11 @@ TEST_F(Clip, NamesTheJointThatARunLacks) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("\"joint.stage\""));
   }
-  EXPECT_EQ(folder_.Entries(), 0);
+  EXPECT_EQ(folder_.size(), 0);
 }
 
 TEST(ClipWriter, LeavesNothingWithoutFinish) {
-  const test::ScratchFolder folder("writer");
+  const test::TemporaryFolder folder;
   {
     ClipWriter writer(folder / "clip.mp4", 320, 240, 30.0, folder / "frames");
     for (int i = 0; i < 20; ++i) {
@@ -179,7 +178,7 @@ TEST(ClipWriter, LeavesNothingWithoutFinish) {
       writer.Write(picture);
     }
   }
-  EXPECT_EQ(folder.Entries(), 0);
+  EXPECT_EQ(folder.size(), 0);
 }
 
 }  // namespace

@@ -3,13 +3,12 @@
 // driven hinge that has a soft spring of its own, with records of its joints.
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/signals/record.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag::test {
 
@@ -47,35 +46,9 @@ inline constexpr const char* kMachine = R"(<mujoco>
   </actuator>
 </mujoco>)";
 
-/// A folder of its own for each test, removed at the end.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / ("mjdiag_render_" + name)) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-  std::ptrdiff_t Entries() const {
-    return std::distance(std::filesystem::directory_iterator(path_),
-                         std::filesystem::directory_iterator());
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 inline ModelPtr Machine() {
-  const ScratchFolder folder("model");
-  const auto file = folder / "machine.xml";
-  std::ofstream(file) << kMachine;
-  return LoadModel(file);
+  const TemporaryFolder folder;
+  return LoadModel(folder.Write("machine.xml", kMachine));
 }
 
 /// A run of `samples` at 1 kHz: joints with the given peak deviations, and axis "x"

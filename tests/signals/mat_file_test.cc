@@ -10,7 +10,7 @@
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 #include "mjdiag/signals/text_file.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -58,7 +58,7 @@ std::string Error(const std::filesystem::path& file,
 }
 
 TEST(MatFile, ReadsVectorsOfOtherPrograms) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
     const auto file = folder / ("foreign" + std::to_string(version) + ".mat");
     {
@@ -81,7 +81,7 @@ TEST(MatFile, ReadsVectorsOfOtherPrograms) {
 }
 
 TEST(MatFile, SaysWhichVariableIsWrong) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = folder / "r.mat";
   {
     ForeignMat mat(file);
@@ -120,7 +120,7 @@ TEST(MatFile, SaysWhichVariableIsWrong) {
 class TruncatedMat : public testing::TestWithParam<RecordFormat> {};
 
 TEST_P(TruncatedMat, IsRefusedAtEveryLength) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   Record record(1.0 / 8000.0);
   record.Add({"x", "m", Eigen::VectorXd::LinSpaced(60, 0.0, 1.0)});
   record.Add({"joint.u", "N", Eigen::VectorXd::LinSpaced(60, 1.0, 2.0)});
@@ -139,7 +139,7 @@ TEST_P(TruncatedMat, IsRefusedAtEveryLength) {
 }
 
 TEST_P(TruncatedMat, IsCalledTruncated) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   Record record(1.0);
   record.Add({"x", "m", Eigen::VectorXd::Zero(100)});
   WriteRecord(folder / "r.mat", record, GetParam());

@@ -11,7 +11,7 @@
 
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -58,7 +58,7 @@ Record DemandingRecord(double sample_time, double start_time) {
 class RoundTrip : public testing::TestWithParam<RecordFormat> {};
 
 TEST_P(RoundTrip, IsBitwise) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const double sample_time : {1.0 / 8000.0, 1.0 / 3000.0, 0.001, 0.1}) {
     const Record record = DemandingRecord(sample_time, 0.25);
     WriteRecord(folder / "record", record, GetParam());
@@ -77,7 +77,7 @@ TEST_P(RoundTrip, IsBitwise) {
 }
 
 TEST_P(RoundTrip, RefusesToWriteWhatCouldNotBeReadBack) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto write = [&](const Channel& channel) {
     Record record(1.0);
     record.Add(channel);
@@ -124,7 +124,7 @@ class CsvRecord : public testing::Test {
   }
 
  private:
-  TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(CsvRecord, ReadsTheDialectsOfOtherPrograms) {

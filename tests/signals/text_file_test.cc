@@ -7,7 +7,7 @@
 #include <csignal>
 
 #include "mjdiag/signals/error.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(TextFile, ComesBackAsItWasWritten) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string text("a\r\nb\0c\n", 7);
   WriteTextFile(folder / "x.txt", "old");
   WriteTextFile(folder / "x.txt", text);
@@ -25,7 +25,7 @@ TEST(TextFile, ComesBackAsItWasWritten) {
 }
 
 TEST(TextFile, NamesTheFileThatCannotBeRead) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_THAT([&] { ReadTextFile(folder / "none"); },
               ThrowsMessage<InputError>(HasSubstr("none: cannot be opened")));
   EXPECT_THAT([&] { ReadTextFile(folder.path()); },
@@ -33,20 +33,20 @@ TEST(TextFile, NamesTheFileThatCannotBeRead) {
 }
 
 TEST(TextFile, NamesTheFolderThatIsMissing) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_THAT([&] { WriteTextFile(folder / "none/x.txt", ""); },
               ThrowsMessage<InputError>(HasSubstr("no folder")));
 }
 
 TEST(TextFile, DoesNotReplaceFoldersAndDevices) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_THROW(WriteTextFile(folder.path(), "text"), InputError);
   EXPECT_THROW(WriteTextFile("/dev/null", "text"), InputError);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 TEST(TextFile, KeepsTheOldFileWhenTheDiskIsFull) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   WriteTextFile(folder / "x.txt", "old");
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
@@ -61,14 +61,14 @@ TEST(TextFile, KeepsTheOldFileWhenTheDiskIsFull) {
 }
 
 TEST(MakeOutputFolder, MakesParentsAndLeavesThemEmpty) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   MakeOutputFolder(folder / "a/b");
   MakeOutputFolder(folder / "a/b");
   EXPECT_TRUE(std::filesystem::is_empty(folder / "a/b"));
 }
 
 TEST(MakeOutputFolder, RefusesAPathThroughAFile) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   WriteTextFile(folder / "file", "");
   EXPECT_THROW(MakeOutputFolder(folder / "file"), InputError);
   EXPECT_THROW(MakeOutputFolder(folder / "file/a"), InputError);
