@@ -7,8 +7,11 @@ namespace mjdiag::app {
 
 void AddSimulate(CLI::App& app);
 void AddLinearize(CLI::App& app);
+void AddDesign(CLI::App& app);
+void AddDiagnose(CLI::App& app);
 void AddCompare(CLI::App& app);
 void AddRender(CLI::App& app);
+void AddStudy(CLI::App& app);
 
 /// The command line as it was typed, for files that say how they were made.
 const std::string& CommandLine();

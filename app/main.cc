@@ -60,8 +60,11 @@ int Main(int argc, char** argv) {
       "3 numerical failure.");
   AddSimulate(app);
   AddLinearize(app);
+  AddDesign(app);
+  AddDiagnose(app);
   AddCompare(app);
   AddRender(app);
+  AddStudy(app);
   try {
     RequireKnownCommand(app, argc, argv);
     app.parse(argc, argv);

@@ -3,12 +3,17 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/command.h"
+#include "app/diagnosis_output.h"
 #include "app/format.h"
 #include "app/machine.h"
 #include "app/output.h"
+#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/report/diagnosis_json.h"
 #include "mjdiag/signals/quantity.h"
+#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -19,6 +24,8 @@ struct SimulateOptions {
   OutputOptions output;
   std::string format = "csv";
   bool log_joints = false;
+  bool diagnose = false;
+  DiagnosisSource source;
 };
 
 /// Largest |reference - reading| of every axis.
@@ -59,6 +66,16 @@ void Simulate(const SimulateOptions& options) {
   const Excitation excitation = MakeExcitation(machine.setup, options.motion);
   PrepareOutput(options.output);
 
+  std::optional<ReadyDiagnosis> ready;
+  std::optional<DiagnosisMonitor> monitor;
+  std::optional<MonitorObserver> observer;
+  if (options.diagnose) {
+    ready =
+        PrepareDiagnosis(options.source, machine, excitation, options.motion.linear);
+    monitor.emplace(ready->design, excitation.samples(), ready->baseline);
+    observer.emplace(*monitor);
+    machine.options.observer = &*observer;
+  }
   const auto start = std::chrono::steady_clock::now();
   const Record record =
       Run(machine, options.motion, excitation, machine.options, "simulating");
@@ -84,6 +101,15 @@ void Simulate(const SimulateOptions& options) {
     document["record"] = file.filename().string();
     text += "\nrecord: " + file.string() + "\n";
   }
+  if (options.diagnose) {
+    const DiagnosisResult result = Conclude(ready->design, *monitor);
+    document["diagnosis"] = ToJson(result);
+    text += "\n" + Describe(result);
+    if (!options.output.folder.empty()) {
+      WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
+                    document["diagnosis"].dump(2) + "\n");
+    }
+  }
   Publish(options.output, "simulate", document, text);
 }
 
@@ -100,6 +126,9 @@ void AddSimulate(CLI::App& app) {
       ->check(CLI::IsMember({"csv", "mat", "mat73"}));
   command->add_flag("--log-joints", options->log_joints,
                     "Also record the position of every joint");
+  command->add_flag("--diagnose", options->diagnose,
+                    "Run the diagnosis inside the control callback");
+  AddDiagnosisOptions(*command, options->source);
   command->callback([options] { Simulate(*options); });
 }
 

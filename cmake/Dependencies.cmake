@@ -28,6 +28,8 @@ mjdiag_library(mjdiag::mujoco_library HEADER mujoco/mujoco.h LIBRARIES mujoco)
 mjdiag_library(mjdiag::osmesa_library HEADER GL/osmesa.h LIBRARIES OSMesa)
 mjdiag_library(mjdiag::opencv_library HEADER opencv2/core.hpp SUFFIXES opencv4
                LIBRARIES opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio)
+mjdiag_library(mjdiag::opencv_ml_library HEADER opencv2/ml.hpp SUFFIXES opencv4
+               LIBRARIES opencv_ml opencv_core)
 mjdiag_library(mjdiag::matio_library HEADER matio.h LIBRARIES matio)
 mjdiag_library(mjdiag::clp_library HEADER ClpSimplex.hpp SUFFIXES coin
                LIBRARIES Clp CoinUtils)

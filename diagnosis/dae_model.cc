@@ -12,10 +12,6 @@ MatrixXd Stacked(const MatrixXd& upper, const MatrixXd& lower) {
   return result;
 }
 
-SignalEntry NoSignal(const StateSpace& system) {
-  return {MatrixXd(system.states(), 0), MatrixXd(system.outputs(), 0)};
-}
-
 }  // namespace
 
 Eigen::MatrixXcd PolynomialMatrix::At(std::complex<double> p) const {
@@ -37,6 +33,10 @@ PolynomialMatrix operator*(const PolynomialMatrix& left,
     }
   }
   return product;
+}
+
+SignalEntry NoSignal(const StateSpace& system) {
+  return {MatrixXd(system.states(), 0), MatrixXd(system.outputs(), 0)};
 }
 
 DaeModel MakeDae(const StateSpace& system, const SignalEntry& unknown_inputs,

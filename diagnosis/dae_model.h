@@ -41,6 +41,9 @@ struct SignalEntry {
   Eigen::MatrixXd D;  ///< ny x n
 };
 
+/// No signal at all: no columns.
+SignalEntry NoSignal(const StateSpace& system);
+
 /// Eq. 13 of the seed:
 ///   H = [-p I + A, B_d; C, D_d],  L = [0, B_u; -I, D_u],  F = [B_f; D_f]
 DaeModel MakeDae(const StateSpace& system, const SignalEntry& unknown_inputs,

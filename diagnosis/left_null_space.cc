@@ -42,10 +42,33 @@ Equilibrated Equilibrate(const MatrixXd& matrix) {
   return result;
 }
 
+int RankOf(const VectorXd& singular_values) {
+  return static_cast<int>(
+      (singular_values.array() > kRankTolerance * singular_values[0]).count());
+}
+
 int Rank(const MatrixXd& matrix) {
-  const Eigen::JacobiSVD<MatrixXd> svd(Equilibrate(matrix).matrix);
-  const VectorXd& values = svd.singularValues();
-  return static_cast<int>((values.array() > kRankTolerance * values[0]).count());
+  return RankOf(
+      Eigen::JacobiSVD<MatrixXd>(Equilibrate(matrix).matrix).singularValues());
+}
+
+/// [C A^i | for every k: what N_x,k B_d + N_y,k D_d takes from N_y,i], i = 0 .. degree:
+/// the observability stack beside the block Toeplitz matrix of the unknown inputs.
+MatrixXd Equations(const StateSpace& system, const SignalEntry& unknown, int degree) {
+  const Index ny = system.outputs();
+  const Index nx = system.states();
+  const Index nd = unknown.B.cols();
+  const MatrixXd stack = ObservabilityStack(system, degree);
+  MatrixXd equations = MatrixXd::Zero(stack.rows(), nx + (degree + 1) * nd);
+  equations.leftCols(nx) = stack;
+  for (Index k = 0; k <= degree && nd > 0; ++k) {
+    const Index column = nx + k * nd;
+    equations.block(k * ny, column, ny, nd) = unknown.D;
+    const Index below = degree - k;
+    equations.block((k + 1) * ny, column, below * ny, nd) =
+        stack.topRows(below * ny) * unknown.B;
+  }
+  return equations;
 }
 
 /// The one row p with p * equations = right_side.
@@ -107,24 +130,62 @@ std::vector<int> ObservabilityRanks(const StateSpace& system, int max_degree) {
   return ranks;
 }
 
-PolynomialMatrix LeftNullRow(const StateSpace& system, int degree,
-                             const std::vector<RowPin>& pins) {
+NullSpace LeftNullSpace(const StateSpace& system, const SignalEntry& unknown_inputs,
+                        int degree) {
+  if (degree < 0) {
+    throw InputError("residual", "degree " + std::to_string(degree), "0 or more");
+  }
+  const Equilibrated scaled = Equilibrate(Equations(system, unknown_inputs, degree));
+  const Eigen::JacobiSVD<MatrixXd> svd(scaled.matrix, Eigen::ComputeFullU);
+  const VectorXd& values = svd.singularValues();
+  const int rank = RankOf(values);
+  const MatrixXd basis = svd.matrixU().rightCols(scaled.matrix.rows() - rank);
+  return {degree, basis.transpose() * scaled.rows.asDiagonal(),
+          values[rank - 1] / values[0]};
+}
+
+NullSpace LeftNullSpace(const StateSpace& system, int degree) {
+  return LeftNullSpace(system, NoSignal(system), degree);
+}
+
+int MinimalDegree(const StateSpace& system, const SignalEntry& unknown_inputs,
+                  int max_degree) {
+  std::string found;
+  for (int degree = 0; degree <= max_degree; ++degree) {
+    const MatrixXd equations = Equations(system, unknown_inputs, degree);
+    const int rank = Rank(equations);
+    if (rank < equations.rows()) return degree;
+    found += (degree > 0 ? ", " : "") + std::to_string(rank) + " of " +
+             std::to_string(equations.rows());
+  }
+  throw InputError("residual",
+                   "no row of degree " + std::to_string(max_degree) +
+                       " or less is blind to nominal motion (ranks " + found + ")",
+                   "a higher degree, more sensors or fewer unknown inputs");
+}
+
+PolynomialMatrix CompleteRows(const StateSpace& system, const MatrixXd& output_part) {
   const Index nx = system.states();
   const Index ny = system.outputs();
-  const RowVectorXd outputs =
-      SolveOutputPart(ObservabilityStack(system, degree), ny, pins);
-  PolynomialMatrix row;
-  row.coefficients.assign(static_cast<std::size_t>(degree + 1),
-                          MatrixXd::Zero(1, nx + ny));
-  // Synthetic division: N_x,k-1 = N_x,k A + N_y,k C.
-  RowVectorXd states = RowVectorXd::Zero(nx);
-  for (int k = degree; k >= 0; --k) {
-    MatrixXd& coefficient = row.coefficients[static_cast<std::size_t>(k)];
+  const Index degree = output_part.cols() / ny - 1;
+  PolynomialMatrix rows;
+  rows.coefficients.assign(static_cast<std::size_t>(degree + 1),
+                           MatrixXd::Zero(output_part.rows(), nx + ny));
+  MatrixXd states = MatrixXd::Zero(output_part.rows(), nx);
+  for (Index k = degree; k >= 0; --k) {
+    MatrixXd& coefficient = rows.coefficients[static_cast<std::size_t>(k)];
+    const auto outputs = output_part.middleCols(k * ny, ny);
     coefficient.leftCols(nx) = states;
-    coefficient.rightCols(ny) = outputs.segment(k * ny, ny);
-    states = states * system.A + outputs.segment(k * ny, ny) * system.C;
+    coefficient.rightCols(ny) = outputs;
+    states = (states * system.A + outputs * system.C).eval();
   }
-  return row;
+  return rows;
+}
+
+PolynomialMatrix LeftNullRow(const StateSpace& system, int degree,
+                             const std::vector<RowPin>& pins) {
+  return CompleteRows(system, SolveOutputPart(ObservabilityStack(system, degree),
+                                              system.outputs(), pins));
 }
 
 ResidualRow PinnedResidualRow(const MechanicalModel& model, int degree,

@@ -37,6 +37,35 @@ struct RowPin {
 PolynomialMatrix LeftNullRow(const StateSpace& system, int degree,
                              const std::vector<RowPin>& pins);
 
+/// Rows N with N H = 0, as many as there are up to a degree.
+struct NullSpace {
+  int degree = 0;
+  /// N_y of every row, k x (degree + 1) ny: [N_y,0 .. N_y,degree]
+  Eigen::MatrixXd rows;
+  /// Smallest singular value of the equilibrated equations that counts, over the
+  /// largest: how far the null space is from being wider than it is.
+  double separation = 0.0;
+};
+
+/// All rows of that degree that are blind to the state and to unknown inputs d:
+///   sum_i N_y,i C A^i = 0,   N_x,k B_d + N_y,k D_d = 0 for every k.
+/// Without unknown inputs pass an entry of no columns, or leave it out. An empty basis
+/// is a result, not an error. From the singular value decomposition of the equations
+/// with rows and columns equilibrated.
+NullSpace LeftNullSpace(const StateSpace& system, const SignalEntry& unknown_inputs,
+                        int degree);
+NullSpace LeftNullSpace(const StateSpace& system, int degree);
+
+/// The smallest degree at which a row exists. InputError with the ranks found if there
+/// is none up to `max_degree`.
+int MinimalDegree(const StateSpace& system, const SignalEntry& unknown_inputs,
+                  int max_degree);
+
+/// N from its output part: N_x by synthetic division, N_x,k-1 = N_x,k A + N_y,k C.
+/// @param output_part  k x (degree + 1) ny
+PolynomialMatrix CompleteRows(const StateSpace& system,
+                              const Eigen::MatrixXd& output_part);
+
 /// Numerators of a residual in SI units, r = sum_i outputs_i(s) y_i + inputs_j(s) u_j.
 struct ResidualRow {
   Eigen::MatrixXd outputs;  ///< ny x (degree + 1), ascending powers of s

@@ -46,6 +46,10 @@ const Trajectory& Setup::FindTrajectory(std::string_view trajectory) const {
   return FindNamed(*this, trajectories, &Trajectory::name, trajectory, "trajectory");
 }
 
+const FaultSizes& Setup::Study(std::string_view study) const {
+  return FindNamed(*this, studies, &FaultSizes::name, study, "[studies] table");
+}
+
 Setup ReadSetup(const std::filesystem::path& where,
                 const std::vector<std::string>& overrides) {
   std::set<std::string> known_keys;

@@ -8,10 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/controllers/axis_controller.h"
 #include "mjdiag/controllers/trajectory.h"
+#include "mjdiag/diagnosis/diagnosis_options.h"
 #include "mjdiag/signals/record_file.h"
 
 namespace mjdiag {
@@ -70,6 +72,13 @@ struct CompareSetup {
   std::vector<Derived> forces;
 };
 
+/// [studies.<name>]: fault -> value, in the order of the file: the sizes that a study
+/// works on, for example those that were published.
+struct FaultSizes {
+  std::string name;
+  std::vector<std::pair<std::string, double>> values;
+};
+
 struct Setup {
   std::filesystem::path folder;
   std::string name;
@@ -88,6 +97,8 @@ struct Setup {
   std::string default_trajectory;
   std::optional<ColumnMap> record;  ///< how a measured file becomes a Record
   CompareSetup compare;
+  DiagnosisOptions diagnosis;
+  std::vector<FaultSizes> studies;
 
   double sample_time() const { return 1.0 / control_rate; }
   const SensorSetup& Sensor(std::string_view channel) const;
@@ -95,6 +106,7 @@ struct Setup {
   /// Place of a channel in `sensors` and `actuators`; InputError as above.
   std::ptrdiff_t SensorIndex(std::string_view channel) const;
   std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
+  const FaultSizes& Study(std::string_view study) const;
   const Trajectory& FindTrajectory(std::string_view trajectory) const;
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "mjdiag/plugin/diagnosis_reader.h"
 #include "mjdiag/plugin/toml_table.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/unit.h"
@@ -393,6 +394,13 @@ void ReadCompare(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
   }
 }
 
+/// Faults are checked against the plant when a study runs.
+void ReadStudies(const TomlTable& root, Setup& setup) {
+  for (const TomlTable& table : root.NamedTables("studies", "<study>")) {
+    setup.studies.push_back({table.name(), table.AllNumbers("<fault>", kNonNegative)});
+  }
+}
+
 }  // namespace
 
 Setup ReadSetup(const fs::path& where, const std::vector<std::string>& overrides,
@@ -413,6 +421,10 @@ Setup ReadSetup(const fs::path& where, const std::vector<std::string>& overrides
   ReadTrajectories(root, setup);
   ReadRecordMap(root, setup, channels);
   ReadCompare(root, setup, channels);
+  if (const auto diagnosis = root.FindTable("diagnosis")) {
+    setup.diagnosis = ReadDiagnosis(*diagnosis, setup);
+  }
+  ReadStudies(root, setup);
   document.RefuseUnknownKeys();
   known_keys.insert(document.known_keys().begin(), document.known_keys().end());
   return setup;

@@ -243,6 +243,25 @@ std::vector<double> TomlTable::Numbers(std::string_view key,
   return values;
 }
 
+std::vector<std::string> TomlTable::Texts(
+    std::string_view key, const std::vector<std::string>& fallback) const {
+  const toml::node* node = Find(key);
+  if (!node) return fallback;
+  const std::string expected = "an array of texts";
+  const toml::array* array = node->as_array();
+  if (!array) Fail(key, "is " + TypeName(*node), expected);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const auto text = array->get(i)->value_exact<std::string>();
+    if (!text) {
+      FailAt(*array->get(i), Element(Join(path_, key), i),
+             "is " + TypeName(*array->get(i)), "a text");
+    }
+    texts.push_back(*text);
+  }
+  return texts;
+}
+
 TomlTable TomlTable::Child(const toml::node& node, const std::string& path,
                            const std::string& pattern) const {
   const toml::table* table = node.as_table();
@@ -275,11 +294,15 @@ std::vector<TomlTable> TomlTable::NamedTables(std::string_view key,
 std::vector<std::pair<std::string, double>> TomlTable::NamedNumbers(
     std::string_view key, const std::string& placeholder,
     const NumberRule& rule) const {
-  const TomlTable parent = Table(key);
+  return Table(key).AllNumbers(placeholder, rule);
+}
+
+std::vector<std::pair<std::string, double>> TomlTable::AllNumbers(
+    const std::string& placeholder, const NumberRule& rule) const {
   std::vector<std::pair<std::string, double>> numbers;
-  for (const std::string& name : parent.Names(placeholder)) {
-    const toml::node& node = *parent.table_->get(name);
-    numbers.emplace_back(name, CheckedNumber(node, Join(parent.path_, name), rule));
+  for (const std::string& name : Names(placeholder)) {
+    const toml::node& node = *table_->get(name);
+    numbers.emplace_back(name, CheckedNumber(node, Join(path_, name), rule));
   }
   return numbers;
 }

@@ -77,6 +77,9 @@ class TomlTable {
   std::string Text(std::string_view key, const std::string& fallback) const;
   /// A non-empty array of numbers.
   std::vector<double> Numbers(std::string_view key, const NumberRule& rule) const;
+  /// An array of texts; `fallback` without the key.
+  std::vector<std::string> Texts(std::string_view key,
+                                 const std::vector<std::string>& fallback) const;
 
   TomlTable Table(std::string_view key) const;
   std::optional<TomlTable> FindTable(std::string_view key) const;
@@ -89,6 +92,9 @@ class TomlTable {
   std::vector<std::pair<std::string, double>> NamedNumbers(
       std::string_view key, const std::string& placeholder,
       const NumberRule& rule) const;
+  /// The numbers of this table, in the order of the file.
+  std::vector<std::pair<std::string, double>> AllNumbers(const std::string& placeholder,
+                                                         const NumberRule& rule) const;
   /// The tables of the array `key`; none if the key is missing.
   std::vector<TomlTable> TableArray(std::string_view key) const;
   /// The keys of this table, which are names chosen by the file, in the file's order.

@@ -5,7 +5,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "diagnosis/test_stage.h"
 #include "mjdiag/signals/error.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {
@@ -106,6 +108,103 @@ TEST(PinnedResidualRow, IsZeroOnTheMachinesOwnResponse) {
     size += std::abs(row.inputs(0, k) * power);
   }
   EXPECT_LT(std::abs(residual), 1e-11 * size);
+}
+
+/// The largest coefficient.
+double Largest(const PolynomialMatrix& polynomial) {
+  double largest = 0.0;
+  for (const MatrixXd& coefficient : polynomial.coefficients) {
+    largest = std::max(largest, coefficient.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+/// Rows of N with N_y = `output_part` against H, relative to their size.
+double Violation(const StateSpace& system, const SignalEntry& unknown,
+                 const MatrixXd& output_part) {
+  const PolynomialMatrix rows = CompleteRows(system, output_part);
+  const PolynomialMatrix H = MakeDae(system, unknown, NoSignal(system)).H;
+  return Largest(rows * H) / (Largest(rows) * Largest(H));
+}
+
+TEST(LeftNullSpace, AnnihilatesHAtEveryDegreeAndIsAllOfIt) {
+  const StateSpace system = DeltaForm(test::Stage(), test::kTiming);
+  const std::vector<int> ranks = ObservabilityRanks(system, 9);
+  for (int degree = 0; degree <= 9; ++degree) {
+    const NullSpace null = LeftNullSpace(system, degree);
+    const int expected = 2 * (degree + 1) - ranks[static_cast<std::size_t>(degree)];
+    EXPECT_EQ(null.rows.rows(), expected) << degree;
+    EXPECT_EQ(null.degree, degree);
+    if (expected == 0) continue;
+    EXPECT_LT(Violation(system, NoSignal(system), null.rows), 1e-13) << degree;
+    EXPECT_EQ(MatrixXd(null.rows).fullPivLu().rank(), expected) << degree;
+    // Ten decades apart from the rank tolerance is the delta form's promise.
+    EXPECT_GT(null.separation, 1e-6) << degree;
+  }
+}
+
+TEST(LeftNullSpace, AnnihilatesTheUnknownForceAndTheUnknownReading) {
+  const MechanicalModel model = test::Stage();
+  const StateSpace system = DeltaForm(model, test::kTiming);
+  const SignalEntry force =
+      HeldForces(model, test::kTiming, Eigen::Vector3d(1.0, 0.0, 0.0));
+  SignalEntry reading = NoSignal(system);
+  reading.B = MatrixXd::Zero(system.states(), 1);
+  reading.D = Eigen::Vector2d(0.0, 1.0);
+  for (const SignalEntry& unknown : {force, reading}) {
+    int found = 0;
+    for (int degree = 0; degree <= 9; ++degree) {
+      const NullSpace null = LeftNullSpace(system, unknown, degree);
+      EXPECT_LE(null.rows.rows(), LeftNullSpace(system, degree).rows.rows());
+      if (null.rows.rows() == 0) continue;
+      EXPECT_LT(Violation(system, unknown, null.rows), 1e-13) << degree;
+      found = static_cast<int>(null.rows.rows());
+    }
+    // An unknown signal leaves one scalar relation: p^0 .. p^j times its shortest row.
+    EXPECT_GT(found, 1);
+    EXPECT_LT(found, 10);
+  }
+}
+
+TEST(LeftNullSpace, RefusesANegativeDegree) {
+  EXPECT_THROW(LeftNullSpace(DeltaForm(test::Stage(), test::kTiming), -1), InputError);
+}
+
+TEST(MinimalDegree, IsTheFirstThatTheObservabilityRanksAllow) {
+  for (const MechanicalModel& model : {Row(), test::Stage()}) {
+    const StateSpace system = DeltaForm(model, test::kTiming);
+    const std::vector<int> ranks = ObservabilityRanks(system, 8);
+    int expected = 0;
+    while (2 * (expected + 1) == ranks[static_cast<std::size_t>(expected)]) ++expected;
+    EXPECT_EQ(MinimalDegree(system, NoSignal(system), 8), expected);
+  }
+}
+
+TEST(MinimalDegree, SaysTheRanksWhereThereIsNone) {
+  const StateSpace system = DeltaForm(test::Stage(), test::kTiming);
+  SignalEntry readings;
+  readings.B = MatrixXd::Zero(system.states(), 2);
+  readings.D = MatrixXd::Identity(2, 2);
+  const std::string message =
+      test::MessageOf<InputError>([&] { (void)MinimalDegree(system, readings, 3); });
+  EXPECT_EQ(message,
+            "residual: no row of degree 3 or less is blind to nominal motion (ranks 2 "
+            "of 2, 4 of 4, 6 of 6, 8 of 8); expected a higher degree, more sensors or "
+            "fewer unknown inputs");
+}
+
+TEST(CompleteRows, SatisfyTheDivisionOfTheirOutputPart) {
+  // N_x,k = sum_{i>k} N_y,i C A^(i-k-1), for any N_y.
+  const StateSpace system = DeltaForm(test::Stage(), test::kTiming);
+  const MatrixXd output_part = test::WhiteNoise(2, 3 * 2, 1.0, 1);
+  const PolynomialMatrix rows = CompleteRows(system, output_part);
+  ASSERT_EQ(rows.degree(), 2);
+  const auto outputs = [&](int k) { return output_part.middleCols(2 * k, 2); };
+  const MatrixXd first = outputs(1) * system.C + outputs(2) * system.C * system.A;
+  EXPECT_TRUE(rows.coefficients[0].leftCols(6).isApprox(first, 1e-14));
+  EXPECT_TRUE(rows.coefficients[1].leftCols(6).isApprox(outputs(2) * system.C, 1e-14));
+  EXPECT_TRUE(rows.coefficients[2].leftCols(6).isZero(0.0));
+  EXPECT_EQ(rows.coefficients[1].rightCols(2), outputs(1));
 }
 
 }  // namespace

@@ -76,8 +76,8 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
        "trajectories.slow.moves[0].to: unknown key; expected one of at, by"},
       {"[compare.forces]", "[comparison]\n[compare.forces]", 66,
        "comparison: unknown key; expected one of actuators, analytic, axes, compare, "
-       "default_trajectory, disturbances, name, physics, plant, published, rates, "
-       "record, schema, sensors, trajectories"},
+       "default_trajectory, diagnosis, disturbances, name, physics, plant, published, "
+       "rates, record, schema, sensors, studies, trajectories"},
       // missing keys and wrong types
       {"control = 1000.0", "", 7, "rates.control: is missing; expected a number > 0"},
       {"control = 1000.0", "control = \"fast\"", 8,
@@ -232,6 +232,115 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
       {"nested = {", "feedforward = { velocity = 1 }\nnested = {", 41,
        "axes.r.feedforward: does not go with nested loops; expected feedback, or no "
        "key"},
+  };
+  for (const BadSetup& bad : cases) {
+    EXPECT_EQ(MessageWith(bad.from, bad.to), At(bad.line, bad.message))
+        << bad.from << " -> " << bad.to;
+  }
+}
+
+TEST_F(SetupErrors, RefusesABadDiagnosisInOneLine) {
+  const std::vector<BadSetup> cases = {
+      // unknown keys and wrong types
+      {"degree = 3", "degre = 3", 69,
+       "diagnosis.degre: unknown key; expected one of cutoff, degree, disturbance, "
+       "estimation, order, robust, thresholds, unknown_forces"},
+      {"margin = 3.0", "alpha = 3.0", 74,
+       "diagnosis.thresholds.alpha: unknown key; expected one of false_alarms, "
+       "integral_window, margin, trajectories"},
+      {"horizon = 1.5", "window = 1.5", 81,
+       "diagnosis.estimation.window: unknown key; expected one of forgetting, horizon, "
+       "magnitudes, rows, sampling"},
+      {"segment = 1024", "segments = 4", 88,
+       "diagnosis.disturbance.segments: unknown key; expected one of cutoff, "
+       "high_pass, order, peak_margin, segment, tone_false_alarm, total_margin"},
+      {"high_pass = { order = 2,", "high_pass = { degree = 2,", 87,
+       "diagnosis.disturbance.high_pass.degree: unknown key; expected one of cutoff, "
+       "order"},
+      {"runs = 12", "seeds = 12", 96,
+       "diagnosis.robust.seeds: unknown key; expected one of cutoff, degree, order, "
+       "runs"},
+      {"[diagnosis.robust]", "[diagnosis.sturdy]", 92,
+       "diagnosis.sturdy: unknown key; expected one of cutoff, degree, disturbance, "
+       "estimation, order, robust, thresholds, unknown_forces"},
+      {"degree = 3", "degree = 3.0", 69,
+       "diagnosis.degree: is a number; expected an integer from 1 to 40"},
+      {"unknown_forces = [\"slide\", \"hinge\"]", "unknown_forces = \"slide\"", 72,
+       "diagnosis.unknown_forces: is text; expected an array of texts"},
+      {"unknown_forces = [\"slide\", \"hinge\"]", "unknown_forces = [1]", 72,
+       "diagnosis.unknown_forces[0]: is an integer; expected a text"},
+      {"magnitudes = { zeta = 0.02, beta = 0.03 }", "magnitudes = 0.02", 83,
+       "diagnosis.estimation.magnitudes: is a number; expected a table"},
+      // out of range
+      {"degree = 3", "degree = 0", 69,
+       "diagnosis.degree: is 0; expected an integer from 1 to 40"},
+      {"order = 5", "order = 21", 70,
+       "diagnosis.order: is 21; expected an integer from 1 to 20"},
+      {"cutoff = 60.0", "cutoff = 0.0", 71,
+       "diagnosis.cutoff: is 0; expected a number > 0"},
+      {"cutoff = 60.0", "cutoff = 500.0", 71,
+       "diagnosis.cutoff: is 500.000000 Hz; expected less than half the control rate"},
+      {"margin = 3.0", "margin = 0.9", 74,
+       "diagnosis.thresholds.margin: is 0.9; expected a number >= 1"},
+      {"false_alarms = 0.01", "false_alarms = 1", 75,
+       "diagnosis.thresholds.false_alarms: is 1; expected a number >= 0 and < 1"},
+      {"integral_window = 0.125", "integral_window = 0", 76,
+       "diagnosis.thresholds.integral_window: is 0; expected a number > 0"},
+      {"rows = 2", "rows = -1", 79,
+       "diagnosis.estimation.rows: is -1; expected an integer from 0 to 100"},
+      {"sampling = 0.004", "sampling = 0", 80,
+       "diagnosis.estimation.sampling: is 0; expected a number > 0"},
+      {"horizon = 1.5", "horizon = -1.5", 81,
+       "diagnosis.estimation.horizon: is -1.5; expected a number >= 0"},
+      {"forgetting = 0.75", "forgetting = inf", 82,
+       "diagnosis.estimation.forgetting: is inf; expected a number >= 0"},
+      {"zeta = 0.02", "zeta = 0", 83,
+       "diagnosis.estimation.magnitudes.zeta: is 0; expected a number > 0"},
+      {"order = 6", "order = 0", 85,
+       "diagnosis.disturbance.order: is 0; expected an integer from 1 to 20"},
+      {"cutoff = 200.0", "cutoff = 750.0", 86,
+       "diagnosis.disturbance.cutoff: is 750.000000 Hz; expected less than half the "
+       "control "
+       "rate"},
+      {"high_pass = { order = 2,", "high_pass = { order = 13,", 87,
+       "diagnosis.disturbance.high_pass.order: is 13; expected an integer from 1 to "
+       "12"},
+      {"cutoff = 40.0", "cutoff = 600.0", 87,
+       "diagnosis.disturbance.high_pass.cutoff: is 600.000000 Hz; expected less than "
+       "half the "
+       "control rate"},
+      {"segment = 1024", "segment = 63", 88,
+       "diagnosis.disturbance.segment: is 63; expected an integer from 64 to 1000000"},
+      {"peak_margin = 0.6", "peak_margin = -0.1", 89,
+       "diagnosis.disturbance.peak_margin: is -0.1; expected a number >= 0"},
+      {"total_margin = 0.7", "total_margin = -0.1", 90,
+       "diagnosis.disturbance.total_margin: is -0.1; expected a number >= 0"},
+      {"tone_false_alarm = 1e-3", "tone_false_alarm = 0", 91,
+       "diagnosis.disturbance.tone_false_alarm: is 0; expected a number > 0 and <= 1"},
+      {"degree = 9", "degree = 41", 93,
+       "diagnosis.robust.degree: is 41; expected an integer from 1 to 40"},
+      {"order = 10", "order = 0", 94,
+       "diagnosis.robust.order: is 0; expected an integer from 1 to 20"},
+      {"cutoff = 150.0", "cutoff = 1000", 95,
+       "diagnosis.robust.cutoff: is 1000.000000 Hz; expected less than half the "
+       "control rate"},
+      {"runs = 12", "runs = 1", 96,
+       "diagnosis.robust.runs: is 1; expected an integer from 2 to 1000"},
+      // names
+      {"trajectories = [\"slow\", \"fast\"]", "trajectories = [\"slow\", \"swift\"]",
+       77,
+       "diagnosis.thresholds.trajectories: there is no trajectory 'swift'; expected "
+       "names under [trajectories]"},
+      // studies
+      {"zeta = 1.01", "zeta = -1.01", 98,
+       "studies.small.zeta: is -1.01; expected a number >= 0"},
+      {"zeta = 1.01", "zeta = \"much\"", 98,
+       "studies.small.zeta: is text; expected a number >= 0"},
+      {"zeta = 1.01", "\"zeta 1\" = 1.01", 98,
+       "studies.small.zeta 1: is not a name; expected letters, digits and _, beginning "
+       "with a letter"},
+      {"[studies.small]", "[studies]\nsmall = 1\n[studies.tiny]", 98,
+       "studies.small: is an integer; expected a table"},
   };
   for (const BadSetup& bad : cases) {
     EXPECT_EQ(MessageWith(bad.from, bad.to), At(bad.line, bad.message))

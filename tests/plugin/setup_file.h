@@ -84,6 +84,41 @@ skip_samples = 49
 low_pass = { order = 4, cutoff = 100.0 }
 [compare.forces]
 force = { channel = "u", factor = 35.15, unit = "N" }
+[diagnosis]
+degree = 3
+order = 5
+cutoff = 60.0
+unknown_forces = ["slide", "hinge"]
+[diagnosis.thresholds]
+margin = 3.0
+false_alarms = 0.01
+integral_window = 0.125
+trajectories = ["slow", "fast"]
+[diagnosis.estimation]
+rows = 2
+sampling = 0.004
+horizon = 1.5
+forgetting = 0.75
+magnitudes = { zeta = 0.02, beta = 0.03 }
+[diagnosis.disturbance]
+order = 6
+cutoff = 200.0
+high_pass = { order = 2, cutoff = 40.0 }
+segment = 1024
+peak_margin = 0.6
+total_margin = 0.7
+tone_false_alarm = 1e-3
+[diagnosis.robust]
+degree = 9
+order = 10
+cutoff = 150.0
+runs = 12
+[studies.small]
+zeta = 1.01
+gamma = 0.002
+[studies.large]
+eta = 0.9
+beta = 0.25
 )";
 
 /// A folder with a setup and the files that it names.

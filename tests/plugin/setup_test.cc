@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/setup_reader.h"
+#include "mjdiag/signals/error.h"
 #include "setup_file.h"
 
 namespace mjdiag {
@@ -19,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Pair;
 
 const fs::path kSource = MJDIAG_SOURCE_DIR;
 
@@ -141,6 +144,86 @@ TEST_F(SetupFile, FillsRecordAndCompare) {
   EXPECT_EQ(setup.compare.forces[0].unit, "N");
 }
 
+TEST_F(SetupFile, FillsTheFiltersAndThresholdsOfTheDiagnosis) {
+  const DiagnosisOptions diagnosis = ReadSetup(folder_).diagnosis;
+  EXPECT_EQ(diagnosis.degree, 3);
+  EXPECT_EQ(diagnosis.denominator.order, 5);
+  EXPECT_EQ(diagnosis.denominator.cutoff, 60.0);
+  EXPECT_THAT(diagnosis.unknown_forces, ElementsAre("slide", "hinge"));
+  EXPECT_EQ(diagnosis.margin, 3.0);
+  EXPECT_EQ(diagnosis.false_alarms, 0.01);
+  EXPECT_EQ(diagnosis.integral_window, 0.125);
+  EXPECT_THAT(diagnosis.trajectories, ElementsAre("slow", "fast"));
+  EXPECT_EQ(diagnosis.robust.degree, 9);
+  EXPECT_EQ(diagnosis.robust.denominator.order, 10);
+  EXPECT_EQ(diagnosis.robust.denominator.cutoff, 150.0);
+  EXPECT_EQ(diagnosis.robust.runs, 12);
+}
+
+TEST_F(SetupFile, FillsTheEstimationAndDisturbancesOfTheDiagnosis) {
+  const DiagnosisOptions diagnosis = ReadSetup(folder_).diagnosis;
+  EXPECT_EQ(diagnosis.estimation_rows, 2);
+  EXPECT_EQ(diagnosis.sampling, 0.004);
+  EXPECT_EQ(diagnosis.horizon, 1.5);
+  EXPECT_EQ(diagnosis.forgetting, 0.75);
+  EXPECT_THAT(diagnosis.magnitudes,
+              ElementsAre(Pair("beta", 0.03), Pair("zeta", 0.02)));
+  EXPECT_EQ(diagnosis.disturbance_denominator.order, 6);
+  EXPECT_EQ(diagnosis.disturbance_denominator.cutoff, 200.0);
+  EXPECT_EQ(diagnosis.high_pass_order, 2);
+  EXPECT_EQ(diagnosis.high_pass_cutoff, 40.0);
+  EXPECT_EQ(diagnosis.disturbance.segment, 1024);
+  EXPECT_EQ(diagnosis.disturbance.peak_margin, 0.6);
+  EXPECT_EQ(diagnosis.disturbance.total_margin, 0.7);
+  EXPECT_EQ(diagnosis.disturbance.tone_false_alarm, 1e-3);
+}
+
+TEST_F(SetupFile, FillsTheStudiesInTheOrderOfTheFile) {
+  const auto setup = ReadSetup(folder_);
+  ASSERT_EQ(setup.studies.size(), 2u);
+  EXPECT_EQ(setup.studies[0].name, "small");
+  EXPECT_EQ(setup.studies[1].name, "large");
+  EXPECT_THAT(setup.Study("small").values,
+              ElementsAre(Pair("zeta", 1.01), Pair("gamma", 0.002)));
+  EXPECT_THAT(setup.Study("large").values,
+              ElementsAre(Pair("eta", 0.9), Pair("beta", 0.25)));
+  EXPECT_THROW(setup.Study("middle"), InputError);
+}
+
+/// The settings of the seed's chapter 4, as far as the manual gives them as defaults.
+TEST_F(SetupFile, WithoutDiagnosisHasTheDefaultsOfTheManual) {
+  const std::string text = kEveryKey;
+  Write(text.substr(0, text.find("[diagnosis]")));
+  const auto setup = ReadSetup(folder_);
+  const DiagnosisOptions& diagnosis = setup.diagnosis;
+  EXPECT_THAT(setup.studies, IsEmpty());
+  EXPECT_EQ(diagnosis.degree, 7);
+  EXPECT_EQ(diagnosis.denominator.order, 7);
+  EXPECT_EQ(diagnosis.denominator.cutoff, 50.0);
+  EXPECT_THAT(diagnosis.unknown_forces, IsEmpty());
+  EXPECT_EQ(diagnosis.margin, 2.0);
+  EXPECT_EQ(diagnosis.false_alarms, 0.0);
+  EXPECT_EQ(diagnosis.integral_window, 0.25);
+  EXPECT_THAT(diagnosis.trajectories, IsEmpty());
+  EXPECT_EQ(diagnosis.estimation_rows, 1);
+  EXPECT_EQ(diagnosis.sampling, 0.0005);
+  EXPECT_EQ(diagnosis.horizon, 0.0);
+  EXPECT_EQ(diagnosis.forgetting, 0.0);
+  EXPECT_THAT(diagnosis.magnitudes, IsEmpty());
+  EXPECT_EQ(diagnosis.disturbance_denominator.order, 7);
+  EXPECT_EQ(diagnosis.disturbance_denominator.cutoff, 750.0);
+  EXPECT_EQ(diagnosis.high_pass_order, 3);
+  EXPECT_EQ(diagnosis.high_pass_cutoff, 100.0);
+  EXPECT_EQ(diagnosis.disturbance.segment, 4096);
+  EXPECT_EQ(diagnosis.disturbance.peak_margin, 1.0);
+  EXPECT_EQ(diagnosis.disturbance.total_margin, 0.25);
+  EXPECT_EQ(diagnosis.disturbance.tone_false_alarm, 1e-4);
+  EXPECT_EQ(diagnosis.robust.degree, 8);
+  EXPECT_EQ(diagnosis.robust.denominator.order, 8);
+  EXPECT_EQ(diagnosis.robust.denominator.cutoff, 200.0);
+  EXPECT_EQ(diagnosis.robust.runs, 8);
+}
+
 TEST_F(SetupFile, IsReadByItsOwnNameToo) {
   EXPECT_EQ(ReadSetup(folder_ / "setup.toml").plant, folder_ / "plant.xml");
 }
@@ -206,6 +289,7 @@ TEST_F(SetupFile, OfTheManualsExamplesReads) {
   EXPECT_EQ(Message({}), "nothing thrown");
   const auto closed = ReadSetup(folder_);
   EXPECT_EQ(closed.axes.size(), 1u);
+  EXPECT_EQ(closed.diagnosis.degree, 2);
   EXPECT_NO_THROW(SampleTrajectory(closed.FindTrajectory(closed.default_trajectory),
                                    {"slide"}, 1e-3));
 }

@@ -1,0 +1,97 @@
+// mjdiag diagnose: what has worn, from a measured or simulated record.
+
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+#include "app/diagnosis_output.h"
+#include "app/output.h"
+#include "mjdiag/diagnosis/refined_estimate.h"
+#include "mjdiag/plugin/fault_models.h"
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/linearize.h"
+#include "mjdiag/report/diagnosis_json.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag::app {
+namespace {
+
+struct DiagnoseOptions {
+  MachineOptions machine;
+  OutputOptions output;
+  DiagnosisSource source;
+  std::string record;
+  bool linear = false;
+  bool refine = false;
+};
+
+/// First sample of the horizon at the end of the record.
+Eigen::Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
+  const double horizon = design.options.horizon;
+  if (horizon == 0.0) return 0;
+  if (horizon > record.duration() * (1.0 + 1e-9)) {
+    throw InputError(
+        "horizon", FormatQuantity(horizon, "s"),
+        "no more than the record's " + FormatQuantity(record.duration(), "s"));
+  }
+  return record.samples() -
+         static_cast<Eigen::Index>(horizon / record.sample_time() + 0.5);
+}
+
+DiagnosisResult DiagnoseRecord(const DiagnoseOptions& options, const Machine& machine,
+                               const ReadyDiagnosis& ready, const Record& record) {
+  const DiagnosisDesign& design = ready.design;
+  const Eigen::Index from = HorizonStart(design, record);
+  DiagnosisMonitor monitor(design, record.samples(), ready.baseline);
+  monitor.RegressFrom(from);
+  Run(monitor, design, record);
+  if (!options.refine) return Conclude(design, monitor);
+  const MechanicalModel healthy = Linearize(*machine.plant, machine.setup);
+  const RefinedEstimate refined =
+      RefineEstimate(design, SynthesisOf(machine.setup, healthy),
+                     FaultModels(*machine.plant, machine.setup),
+                     Magnitudes(*machine.plant, machine.setup), record, from);
+  return Conclude(design, monitor, refined.estimate);
+}
+
+void Diagnose(const DiagnoseOptions& options) {
+  if (options.refine && options.source.baseline) {
+    throw InputError("--refine", "does not go with --baseline",
+                     "one of the two: a baseline belongs to the healthy filters");
+  }
+  const Machine machine = LoadMachine(options.machine);
+  const Record record = ReadRecord(options.record, machine.setup.record);
+  const bool needs_motion = options.source.baseline || !options.source.robust.empty();
+  const Excitation excitation =
+      needs_motion ? Replay(machine.setup, record) : Excitation{};
+  PrepareOutput(options.output);
+  const ReadyDiagnosis ready =
+      PrepareDiagnosis(options.source, machine, excitation, options.linear);
+  const DiagnosisResult result = DiagnoseRecord(options, machine, ready, record);
+  nlohmann::json document = ToJson(result);
+  document["command"] = CommandLine();
+  document["record"] = std::filesystem::path(options.record).filename().string();
+  Publish(options.output, "diagnosis", document, Describe(result));
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App& app) {
+  auto options = std::make_shared<DiagnoseOptions>();
+  CLI::App* command =
+      app.add_subcommand("diagnose", "Find faults in a measured or simulated record");
+  AddMachineOptions(*command, options->machine);
+  AddOutputOptions(*command, options->output, false);
+  AddDiagnosisOptions(*command, options->source);
+  command->add_option("--record", options->record, "Record to be diagnosed")
+      ->required();
+  command->add_flag("--linear", options->linear,
+                    "Thresholds from runs of the linearised plant");
+  command->add_flag("--refine", options->refine,
+                    "Make the filters anew about the estimate until it settles: exact "
+                    "for large faults where the linear model holds");
+  command->callback([options] { Diagnose(*options); });
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,113 @@
+#include "app/diagnosis_output.h"
+
+#include "app/format.h"
+#include "app/progress.h"
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/robust_design.h"
+#include "mjdiag/report/filters_file.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag::app {
+namespace {
+
+constexpr int kMostRuns = 10000;
+
+template <typename Element>
+std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
+  std::vector<std::string> channels;
+  for (const Element& element : elements) channels.push_back(element.channel);
+  return channels;
+}
+
+void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
+                        const Setup& setup) {
+  if (design.outputs != ChannelsOf(setup.sensors) ||
+      design.inputs != ChannelsOf(setup.actuators)) {
+    throw InputError(file, "its channels are not those of '" + setup.name + "'",
+                     "filters designed for this setup");
+  }
+  if (std::abs(design.sample_time() * setup.control_rate - 1.0) > 1e-9) {
+    throw InputError(
+        file, "made for a tick of " + Short(design.sample_time() * 1e3) + " ms",
+        "the control tick of the setup, " + Short(setup.sample_time() * 1e3) + " ms");
+  }
+}
+
+std::string TimeText(const std::optional<double>& time) {
+  return time ? "at " + Short(*time) + " s" : "never";
+}
+
+std::string SpectrumText(const DisturbanceReport& report) {
+  std::string text = "disturbance  power " + Short(report.total) + " (limit " +
+                     Short(report.total_threshold) + "), noise " +
+                     Short(report.noise_ratio) + " times nominal" +
+                     (report.noise_raised ? ", raised" : "") + "\n";
+  for (const DisturbanceTone& tone : report.tones) {
+    text += "  tone at " + Short(tone.frequency) + " Hz, density " + Short(tone.psd) +
+            " (limit " + Short(tone.threshold) + ")\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source) {
+  command.add_option("--filters", source.filters,
+                     "filters.json of `mjdiag design` instead of designing now");
+  command.add_flag(
+      "--baseline", source.baseline,
+      "Subtract the residual that the healthy plant leaves on this motion");
+  command.add_option("--robust", source.robust,
+                     "Fault to be seen by the residual row that nominal runs of the "
+                     "nonlinear plant excite least");
+  command.add_option("--nominal-runs", source.runs, "Healthy runs a limit comes from")
+      ->check(CLI::Range(2, kMostRuns));
+}
+
+ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
+                                const Excitation& excitation, bool linear) {
+  const Setup& setup = machine.setup;
+  ReadyDiagnosis ready;
+  if (!source.filters.empty()) {
+    ready.design = ReadFilters(source.filters);
+    RequireSameMachine(source.filters, ready.design, setup);
+  } else if (!source.robust.empty()) {
+    ready.design = DesignRobustFilters(setup, *machine.plant, source.robust, excitation,
+                                       source.baseline);
+  } else {
+    ready.design = DesignFilters(setup, *machine.plant);
+  }
+  ProgressBar bar("healthy runs");
+  NominalRuns runs;
+  runs.linear = linear;
+  runs.runs = source.runs;
+  runs.progress = [&bar](double fraction) { bar.Show(fraction); };
+  if (source.baseline) {
+    ready.baseline =
+        ResidualBaseline(ready.design, setup, *machine.plant, excitation, runs);
+    runs.seed += static_cast<std::uint64_t>(source.runs);
+    ready.design.limits = CalibrateLimits(ready.design, setup, *machine.plant,
+                                          excitation, ready.baseline, runs);
+  } else if (!ready.design.limits.known) {
+    ready.design.limits = CalibrateLimits(ready.design, setup, *machine.plant, runs);
+  }
+  return ready;
+}
+
+std::string Describe(const DiagnosisResult& result) {
+  std::string text = result.detected ? "A fault or disturbance is there.\n\n"
+                                     : "Nothing is wrong that this run shows.\n\n";
+  text += "residual     " + Short(result.residual.min) + " to " +
+          Short(result.residual.max) + ", limits " + Short(result.limits.min) + " to " +
+          Short(result.limits.max) + "; left them " + TimeText(result.first_detection) +
+          ", lasting " + TimeText(result.lasting) + "\n";
+  text += SpectrumText(result.disturbance) + "\n";
+  Table table({"fault", "value", "95 % from", "to", "detected"});
+  for (const FaultVerdict& fault : result.faults) {
+    table.Add({fault.name, Short(fault.value), Short(fault.ci95.min),
+               Short(fault.ci95.max), fault.detected ? "yes" : "no"});
+  }
+  return text + table.ToString();
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,36 @@
+#pragma once
+// What `diagnose` and `simulate --diagnose` have in common: where the diagnosis comes
+// from and how its answer is shown.
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "app/machine.h"
+#include "mjdiag/diagnosis/diagnosis_result.h"
+
+namespace mjdiag::app {
+
+struct DiagnosisSource {
+  std::string filters;    ///< filters.json; empty: designed on the spot
+  bool baseline = false;  ///< subtract what the healthy plant leaves on this motion
+  std::string robust;     ///< fault for which the row is made robust; empty: none
+  int runs = 5;           ///< nominal runs a limit comes from
+};
+
+void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source);
+
+/// A diagnosis and what to subtract from its residuals.
+struct ReadyDiagnosis {
+  DiagnosisDesign design;
+  Eigen::MatrixXd baseline;
+};
+
+/// From the file or designed, with limits; for this motion if a baseline is wanted.
+/// InputError if the file belongs to other channels or another rate than the setup.
+ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
+                                const Excitation& excitation, bool linear);
+
+/// The table for people.
+std::string Describe(const DiagnosisResult& result);
+
+}  // namespace mjdiag::app

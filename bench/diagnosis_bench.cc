@@ -1,0 +1,151 @@
+// What a diagnosis costs: a closed loop with a monitor in its control callback over the
+// same loop without, and the time of synthesis. The two loops run the same motion and
+// are timed in turn, in short slices, the one that goes first changing from slice to
+// slice, so that whatever else the machine does meets both alike; the figure is the
+// median of the slices' ratios. Synthesis is a time against a limit in the same unit:
+// each part is the median of its repetitions.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/plugin/fault_models.h"
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/instance.h"
+#include "mjdiag/plugin/linearize.h"
+#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/scenery.h"
+#include "mjdiag/plugin/start_state.h"
+
+namespace mjdiag {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kTicksPerSlice = 400;
+
+template <typename Action>
+double Seconds(const Action& action) {
+  const auto start = Clock::now();
+  action();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+Setup Bonder(bool static_friction) {
+  return ReadSetup(
+      std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
+      {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
+}
+
+Excitation DefaultMotion(const Setup& setup) {
+  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+}
+
+/// A closed loop that stands at its first tick.
+class Loop {
+ public:
+  Loop(const Setup& setup, const mjModel& model, const Eigen::VectorXd& start,
+       TickObserver* observer)
+      : model_(model),
+        instance_(setup, model, DefaultMotion(setup), Options(observer)),
+        data_(MakeData(model)) {
+    std::copy(start.begin(), start.end(), data_->qpos);
+    Attach(model, *data_, instance_);
+  }
+  double TimeSteps(int steps) {
+    return Seconds([&] {
+      for (int i = 0; i < steps; ++i) mj_step(&model_, data_.get());
+    });
+  }
+
+ private:
+  static RunOptions Options(TickObserver* observer) {
+    RunOptions options;
+    options.observer = observer;
+    return options;
+  }
+  const mjModel& model_;
+  Instance instance_;
+  DataPtr data_;
+};
+
+void MonitoredOverPlainLoop(benchmark::State& state, bool static_friction) {
+  const Setup setup = Bonder(static_friction);
+  const ModelPtr model = LoadPlant(setup);
+  const Eigen::Index ticks = DefaultMotion(setup).samples();
+  DiagnosisDesign design = DesignFilters(setup, *model);
+  NominalRuns nominal;
+  nominal.linear = true;
+  design.limits = CalibrateLimits(design, setup, *model, nominal);
+  const Eigen::VectorXd start = StartPosition(setup, *model, {});
+  DropScenery(*model);
+  const int steps = kTicksPerSlice * setup.substeps;
+  std::vector<double> ratios;
+  double added = 0.0;
+  for (auto _ : state) {
+    DiagnosisMonitor monitor(design, ticks);
+    MonitorObserver observer(monitor);
+    Loop plain(setup, *model, start, nullptr);
+    Loop monitored(setup, *model, start, &observer);
+    bool plain_first = false;
+    for (Eigen::Index tick = 0; tick + kTicksPerSlice <= ticks;
+         tick += kTicksPerSlice) {
+      const double before = plain_first ? plain.TimeSteps(steps) : 0.0;
+      const double with = monitored.TimeSteps(steps);
+      const double without = plain_first ? before : plain.TimeSteps(steps);
+      plain_first = !plain_first;
+      added += with - without;
+      ratios.push_back(with / without);
+    }
+  }
+  state.counters["monitored_over_plain"] = Median(ratios);
+  state.counters["us_added_a_tick"] =
+      1e6 * added / (static_cast<double>(ratios.size()) * kTicksPerSlice);
+}
+
+BENCHMARK_CAPTURE(MonitoredOverPlainLoop, with_friction, true)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(5);
+BENCHMARK_CAPTURE(MonitoredOverPlainLoop, without_friction, false)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(5);
+
+void Synthesis(benchmark::State& state) {
+  const Setup setup = Bonder(true);
+  const ModelPtr plant = LoadPlant(setup);
+  const MechanicalModel healthy = Linearize(*plant, setup);
+  const SynthesisOptions options = SynthesisOf(setup, healthy);
+  std::vector<TurnedModels> turned;
+  std::vector<double> linearise;
+  std::vector<double> synthesise;
+  std::vector<double> design;
+  for (auto _ : state) {
+    linearise.push_back(Seconds([&] { turned = TurnModels(*plant, setup); }));
+    synthesise.push_back(Seconds([&] {
+      const ResidualSpace space = MakeResidualSpace(healthy, options);
+      const Eigen::Index size = space.rows.front().rows();
+      benchmark::DoNotOptimize(SynthesiseBank(
+          space, Eigen::MatrixXd::Identity(size, size), turned, options));
+    }));
+    design.push_back(
+        Seconds([&] { benchmark::DoNotOptimize(DesignFilters(setup, *plant)); }));
+  }
+  state.counters["ms_linearisations"] = 1e3 * Median(linearise);
+  state.counters["ms_bank"] = 1e3 * Median(synthesise);
+  state.counters["ms_design"] = 1e3 * Median(design);
+}
+
+BENCHMARK(Synthesis)->Unit(benchmark::kMillisecond)->Iterations(11);
+
+}  // namespace
+}  // namespace mjdiag
+
+BENCHMARK_MAIN();

@@ -1,0 +1,90 @@
+#include "mjdiag/diagnosis/diagnosis_result.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+
+std::optional<double> TimeOf(const std::optional<Index>& sample, double sample_time) {
+  if (!sample) return std::nullopt;
+  return static_cast<double>(*sample) * sample_time;
+}
+
+std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
+                                const FaultEstimate& estimate) {
+  const std::vector<std::string> names = design.FaultNames();
+  const auto count = static_cast<double>(names.size());
+  const double reach = TwoSidedQuantile(kFalseFault / count);
+  const double half = TwoSidedQuantile(0.05);
+  std::vector<FaultVerdict> verdicts;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    const double deviation = estimate.value[at];
+    const double sd = std::sqrt(estimate.covariance(at, at));
+    const double value = design.Healthy(at) + deviation;
+    const bool usual =
+        !design.limits.estimates.empty() && design.limits.estimates[i].Holds(deviation);
+    verdicts.push_back({names[i],
+                        value,
+                        sd,
+                        {value - half * sd, value + half * sd},
+                        std::abs(deviation) > reach * sd && !usual});
+  }
+  return verdicts;
+}
+
+void RequireSeparableFaults(const DiagnosisDesign& design,
+                            const FaultEstimator& estimator) {
+  const std::vector<Index> inseparable = estimator.Inseparable();
+  if (inseparable.empty()) return;
+  const std::vector<std::string> names = design.FaultNames();
+  std::string list;
+  for (const Index fault : inseparable) {
+    list += (list.empty() ? "" : ", ") + names[static_cast<std::size_t>(fault)];
+  }
+  throw InputError("regression",
+                   inseparable.size() == 1
+                       ? "this motion does not excite " + list
+                       : "this motion does not tell these faults apart: " + list,
+                   "a trajectory that moves every axis, or fewer knobs");
+}
+
+}  // namespace
+
+DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+                         const FaultEstimate& estimate) {
+  const MonitorLog log = monitor.Log();
+  DiagnosisResult result;
+  result.setup = design.setup;
+  result.samples = monitor.samples();
+  result.sample_time = design.sample_time();
+  result.first_detection = TimeOf(monitor.first_detection(), result.sample_time);
+  result.lasting = TimeOf(monitor.first_lasting(), result.sample_time);
+  result.residual = {log.residual.minCoeff(), log.residual.maxCoeff()};
+  result.limits = design.limits.residual.limits;
+  result.disturbance =
+      AnalyseDisturbance(log.disturbance, result.sample_time, design.limits.disturbance,
+                         design.options.disturbance);
+  // Noisier sensors than the setup says make estimates less certain than it says.
+  FaultEstimate honest = estimate;
+  honest.covariance *= std::max(1.0, result.disturbance.noise_ratio);
+  result.faults = Judge(design, honest);
+  result.detected =
+      result.first_detection.has_value() || result.disturbance.disturbed ||
+      std::any_of(result.faults.begin(), result.faults.end(),
+                  [](const FaultVerdict& fault) { return fault.detected; });
+  return result;
+}
+
+DiagnosisResult Conclude(const DiagnosisDesign& design,
+                         const DiagnosisMonitor& monitor) {
+  RequireSeparableFaults(design, monitor.estimator());
+  return Conclude(design, monitor, monitor.estimator().Estimate());
+}
+
+}  // namespace mjdiag

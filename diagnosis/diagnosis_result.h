@@ -1,0 +1,48 @@
+#pragma once
+// The answer of a diagnosis: is something wrong, since when, which fault and how large.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/monitor.h"
+
+namespace mjdiag {
+
+struct FaultVerdict {
+  std::string name;
+  double value = 0.0;  ///< the knob: 1 healthy; disturbances: 0 healthy
+  double sd = 0.0;
+  Interval ci95;
+  bool detected = false;
+};
+
+struct DiagnosisResult {
+  std::string setup;
+  Eigen::Index samples = 0;
+  double sample_time = 0.0;  ///< [s]
+  bool detected = false;     ///< by the residual, an estimate or the disturbance
+  std::optional<double> first_detection;  ///< of the residual [s]
+  /// When the windowed mean of |r| left its limit: not a passing disturbance [s].
+  std::optional<double> lasting;
+  Interval residual;  ///< extremes of r
+  Interval limits;    ///< Eq. 20
+  std::vector<FaultVerdict> faults;
+  DisturbanceReport disturbance;
+};
+
+/// An estimate counts as a fault if it is farther from healthy than its standard
+/// deviation explains with this probability over all faults, and outside the limits
+/// that nominal runs gave it.
+inline constexpr double kFalseFault = 1e-4;
+
+/// From a monitor at the end of its run. InputError names the faults that the motion
+/// does not tell apart.
+DiagnosisResult Conclude(const DiagnosisDesign& design,
+                         const DiagnosisMonitor& monitor);
+
+/// The same with estimates from elsewhere (RefineEstimate).
+DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+                         const FaultEstimate& estimate);
+
+}  // namespace mjdiag

@@ -1,0 +1,95 @@
+#pragma once
+// Fault magnitudes by regression of the residuals on the prefiltered signals,
+//
+//   r_t = sum_i phi_i,t f_i + n_t,   f^ = (G^T G)^-1 G^T r     (Eq. 25 and 26 of the
+//   seed)
+//
+// one sample at a time, with exponential forgetting if wanted: G^T G and G^T r are
+// summed, and solved on request. Without forgetting that is the batch estimate.
+//
+// The noise n of the residuals is coloured: white sensor noise w behind the residual
+// filter, xi+ = A xi + B w, n = C xi + D w. Ordinary least squares stays unbiased, but
+// its usual standard errors would be far too small. The exact covariance of the
+// estimate,
+//
+//   Cov f^ = (G^T G)^-1 E[m m^T] (G^T G)^-1,   m = G^T n,
+//
+// is carried along by the recursion of the joint covariance of m and xi: with
+// m+ = l m + g_t n_t for the forgetting factor l,
+//   M+ = l^2 M + l (Y g^T + g Y^T) + g N g^T,  Y = X C^T,  N = C S C^T + D Q D^T
+//   X+ = l X A^T + g E[n xi+^T]
+// where S is the stationary covariance of xi, M that of m, X = E[m xi^T].
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/filter_bank.h"
+#include "mjdiag/signals/state_space.h"
+
+namespace mjdiag {
+
+/// The noise of n residuals at the rate at which they are regressed.
+struct ResidualNoise {
+  Eigen::MatrixXd A;       ///< over one stride, ns x ns
+  Eigen::MatrixXd C;       ///< n x ns
+  Eigen::MatrixXd output;  ///< N, n x n
+  Eigen::MatrixXd
+      ahead;  ///< E[xi+ n^T] = A^stride S C^T + A^(stride-1) B Q D^T, ns x n
+};
+
+/// Of the first `residuals` outputs of a bank, every `stride`-th sample.
+/// @param noise_sd  nz, of every signal
+ResidualNoise MakeResidualNoise(const FilterBank& bank, Eigen::Index residuals,
+                                const Eigen::VectorXd& noise_sd, int stride);
+
+struct FaultEstimate {
+  Eigen::VectorXd value;       ///< nf, deviation from the point of design
+  Eigen::MatrixXd covariance;  ///< nf x nf
+};
+
+class FaultEstimator {
+ public:
+  /// @param faults      nf
+  /// @param forgetting  lambda: weight of a squared residual against the next one,
+  ///                    0 < lambda <= 1
+  FaultEstimator(Eigen::Index faults, ResidualNoise noise, double forgetting);
+
+  /// One regressed sample. Does not allocate, lock or throw.
+  /// @param residuals   n
+  /// @param regressors  nf x n, phi of every fault for every residual
+  void Add(const Eigen::Ref<const Eigen::VectorXd>& residuals,
+           const Eigen::Ref<const Eigen::MatrixXd>& regressors) noexcept;
+
+  /// f^ so far into `value`; all 0 while the regression is rank deficient. Does not
+  /// allocate, lock or throw.
+  void Solve(Eigen::Ref<Eigen::VectorXd> value) noexcept;
+
+  /// Value and covariance. NumericalError if the regression is rank deficient:
+  /// Inseparable() says which faults are why.
+  FaultEstimate Estimate() const;
+
+  /// The faults that carry the direction that the data leave undetermined, by index;
+  /// empty if they determine all.
+  std::vector<Eigen::Index> Inseparable() const;
+
+  Eigen::Index samples() const { return samples_; }
+
+ private:
+  ResidualNoise noise_;
+  double forgetting_;
+  Eigen::Index samples_ = 0;
+  Eigen::MatrixXd information_;  // G^T G
+  Eigen::VectorXd right_;        // G^T r
+  Eigen::MatrixXd spread_;       // M, nf x nf
+  Eigen::MatrixXd memory_;       // X, nf x ns
+  // Work space, so that nothing allocates.
+  Eigen::MatrixXd next_memory_;
+  Eigen::MatrixXd from_memory_;  // Y, nf x n
+  Eigen::MatrixXd weighted_;     // g N, nf x n
+  Eigen::MatrixXd scaled_;       // nf x nf
+  Eigen::VectorXd scale_;
+  Eigen::VectorXd solution_;
+};
+
+}  // namespace mjdiag

@@ -1,0 +1,215 @@
+#include "mjdiag/diagnosis/monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A transient that has decayed to this part is no longer seen.
+constexpr double kSettled = 1e-6;
+/// A first reading within this many standard deviations is one at rest.
+constexpr double kSigmas = 6.0;
+
+VectorXd SignalNoise(const DiagnosisDesign& design) {
+  VectorXd noise = VectorXd::Zero(design.bank.filters.inputs());
+  noise.head(design.sensor_noise.size()) = design.sensor_noise;
+  return noise;
+}
+
+/// The residual generators with the commands' columns repeated for every disturbance:
+/// residuals that a unit of each leaves. What the machine gets beyond u is what R lacks
+/// in u, hence the sign.
+FilterBank WaveformBank(const DiagnosisDesign& design) {
+  const FilterBank& all = design.bank.filters;
+  const Index n = design.bank.residuals;
+  const Index m = all.outputs();
+  const auto ny = static_cast<Index>(design.outputs.size());
+  const Index nu = all.inputs() - ny;
+  const auto count = static_cast<Index>(design.disturbances.size());
+  FilterBank bank = all;
+  bank.B = MatrixXd::Zero(all.order() * n * count, nu * count);
+  bank.D = MatrixXd::Zero(n * count, nu * count);
+  for (Index i = 0; i < count; ++i) {
+    for (Index k = 0; k < all.order(); ++k) {
+      bank.B.block((k * count + i) * n, i * nu, n, nu) = -all.B.block(k * m, ny, n, nu);
+    }
+    bank.D.block(i * n, i * nu, n, nu) = -all.D.block(0, ny, n, nu);
+  }
+  return bank;
+}
+
+double ForgettingFactor(const DiagnosisDesign& design) {
+  const double time = design.options.forgetting;
+  return time > 0.0 ? std::exp(-design.stride * design.sample_time() / time) : 1.0;
+}
+
+Index WindowSamples(const DiagnosisDesign& design) {
+  const double samples = design.options.integral_window / design.sample_time();
+  return std::max<Index>(1, static_cast<Index>(std::lround(samples)));
+}
+
+}  // namespace
+
+DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, Index capacity,
+                                   MatrixXd baseline)
+    : design_(design),
+      baseline_(std::move(baseline)),
+      filters_(design.bank.filters),
+      disturbance_filter_(design.disturbance.filter),
+      waveform_filter_(WaveformBank(design)),
+      high_pass_(design.disturbance.high_pass),
+      estimator_(design.faults(),
+                 MakeResidualNoise(design.bank.filters, design.bank.residuals,
+                                   SignalNoise(design), design.stride),
+                 ForgettingFactor(design)),
+      settling_away_(SettlingSamples(design.bank.filters, kSettled)),
+      z_(VectorXd::Zero(design.bank.filters.inputs())),
+      residuals_(VectorXd::Zero(design.bank.residuals)),
+      regressors_(MatrixXd::Zero(design.faults(), design.bank.residuals)),
+      waveforms_(MatrixXd::Zero(static_cast<Index>(design.inputs.size()),
+                                static_cast<Index>(design.disturbances.size()))),
+      drive_(VectorXd::Zero(waveforms_.size())),
+      estimate_(VectorXd::Zero(design.faults())),
+      window_(VectorXd::Zero(WindowSamples(design))),
+      rows_(design.bank.residuals, capacity),
+      integral_(capacity),
+      disturbance_(capacity),
+      estimates_(design.faults(), capacity / design.stride + 1) {
+  if (baseline_.size() > 0 && baseline_.rows() != design.bank.residuals) {
+    throw InputError("baseline", std::to_string(baseline_.rows()) + " residuals",
+                     std::to_string(design.bank.residuals));
+  }
+}
+
+void DiagnosisMonitor::Start() noexcept {
+  const Index ny = design_.offset.size();
+  for (Index i = 0; i < ny; ++i) {
+    if (std::abs(z_[i]) > kSigmas * design_.sensor_noise[i]) {
+      // The record begins elsewhere than at rest. Settling on a reading with noise
+      // leaves a transient, which has to die before anything is judged.
+      filters_.Settle(z_);
+      disturbance_filter_.Settle(z_);
+      settling_ = settling_away_;
+      return;
+    }
+  }
+}
+
+void DiagnosisMonitor::Add(std::span<const double> outputs,
+                           std::span<const double> inputs) noexcept {
+  const Index ny = design_.offset.size();
+  for (Index i = 0; i < ny; ++i) {
+    z_[i] = outputs[static_cast<std::size_t>(i)] - design_.offset[i];
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    z_[ny + static_cast<Index>(i)] = inputs[i];
+  }
+  if (samples_ == 0) Start();
+
+  const VectorXd& filtered = filters_.Step(z_);
+  const Index n = design_.bank.residuals;
+  const auto knobs = static_cast<Index>(design_.bank.faults.size());
+  residuals_ = filtered.head(n);
+  if (samples_ < baseline_.cols()) residuals_ -= baseline_.col(samples_);
+  for (Index i = 0; i < knobs; ++i) {
+    regressors_.row(i) = filtered.segment((i + 1) * n, n).transpose();
+  }
+  if (waveforms_.cols() > 0) {
+    Waveforms(design_.disturbances,
+              static_cast<double>(samples_) * design_.sample_time(), waveforms_);
+    drive_ = waveforms_.reshaped();
+    const VectorXd& response = waveform_filter_.Step(drive_);
+    for (Index i = 0; i < waveforms_.cols(); ++i) {
+      regressors_.row(knobs + i) = response.segment(i * n, n).transpose();
+    }
+  }
+  const double disturbance = high_pass_.Update(disturbance_filter_.Step(z_)[0]);
+
+  Detect();
+  if (samples_ >= std::max(settling_, first_regressed_) &&
+      samples_ % design_.stride == 0) {
+    if (estimates_made_ == 0) first_estimate_ = samples_;
+    Regress();
+  }
+  if (samples_ < rows_.cols()) {
+    rows_.col(samples_) = residuals_;
+    disturbance_[samples_] = disturbance;
+    logged_ = samples_ + 1;
+  }
+  ++samples_;
+}
+
+void DiagnosisMonitor::Detect() noexcept {
+  const double residual = residuals_[0];
+  double& oldest = window_[samples_ % window_.size()];
+  const double level = samples_ < settling_ ? 0.0 : std::abs(residual);
+  window_sum_ += level - oldest;
+  oldest = level;
+  const double integral = window_sum_ / static_cast<double>(window_.size());
+  if (samples_ < integral_.size()) integral_[samples_] = integral;
+  if (!design_.limits.known || samples_ < settling_) return;
+  if (first_detection_ < 0 && !design_.limits.residual.limits.Holds(residual)) {
+    first_detection_ = samples_;
+  }
+  if (first_lasting_ < 0 && integral > design_.limits.integral) {
+    first_lasting_ = samples_;
+  }
+}
+
+void DiagnosisMonitor::Regress() noexcept {
+  estimator_.Add(residuals_, regressors_);
+  estimator_.Solve(estimate_);
+  if (estimates_made_ < estimates_.cols()) {
+    estimates_.col(estimates_made_) = estimate_;
+    ++estimates_made_;
+  }
+}
+
+std::optional<Index> DiagnosisMonitor::first_detection() const {
+  return first_detection_ < 0 ? std::nullopt : std::optional(first_detection_);
+}
+
+std::optional<Index> DiagnosisMonitor::first_lasting() const {
+  return first_lasting_ < 0 ? std::nullopt : std::optional(first_lasting_);
+}
+
+MonitorLog DiagnosisMonitor::Log() const {
+  const VectorXd index =
+      VectorXd::LinSpaced(estimates_made_, 0.0,
+                          static_cast<double>(std::max<Index>(0, estimates_made_ - 1)));
+  const double tick = design_.sample_time();
+  return {
+      rows_.row(0).head(logged_), integral_.head(logged_), disturbance_.head(logged_),
+      tick * (index.array() * design_.stride + static_cast<double>(first_estimate_)),
+      estimates_.leftCols(estimates_made_)};
+}
+
+void Run(DiagnosisMonitor& monitor, const DiagnosisDesign& design,
+         const Record& record) {
+  if (std::abs(record.sample_time() / design.sample_time() - 1.0) > 1e-4) {
+    throw InputError(
+        "record", "sampled every " + std::to_string(record.sample_time() * 1e3) + " ms",
+        "the sample time of the filters, " +
+            std::to_string(design.sample_time() * 1e3) + " ms");
+  }
+  std::vector<const Channel*> outputs;
+  std::vector<const Channel*> inputs;
+  for (const auto& name : design.outputs) outputs.push_back(&record.At(name));
+  for (const auto& name : design.inputs) inputs.push_back(&record.At(name));
+  std::vector<double> y(outputs.size());
+  std::vector<double> u(inputs.size());
+  for (Index k = 0; k < record.samples(); ++k) {
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = outputs[i]->samples[k];
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = inputs[i]->samples[k];
+    monitor.Add(y, u);
+  }
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,60 @@
+#include "mjdiag/diagnosis/refined_estimate.h"
+
+#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+std::vector<TurnedModels> TurnAbout(const std::vector<std::string>& names,
+                                    const VectorXd& knobs, const VectorXd& magnitudes,
+                                    const ModelAt& model_at) {
+  std::vector<TurnedModels> turned;
+  for (Index i = 0; i < knobs.size(); ++i) {
+    VectorXd minus = knobs;
+    VectorXd plus = knobs;
+    minus[i] -= magnitudes[i];
+    plus[i] += magnitudes[i];
+    turned.push_back({names[static_cast<std::size_t>(i)], magnitudes[i],
+                      model_at(minus), model_at(plus)});
+  }
+  return turned;
+}
+
+RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
+                               const SynthesisOptions& options, const ModelAt& model_at,
+                               const VectorXd& magnitudes, const Record& record,
+                               Index from) {
+  constexpr int kSteps = 12;
+  // Of the standard deviation: what rounding in the rows leaves of a step.
+  constexpr double kConverged = 0.25;
+  const auto count = static_cast<Index>(design.bank.faults.size());
+  VectorXd knobs = VectorXd::Ones(count);
+  DiagnosisDesign moved = design;
+  moved.limits = {};
+  for (int step = 1; step <= kSteps; ++step) {
+    if (step > 1) {
+      moved.bank =
+          MoveBank(design.bank.rows, MakeResidualSpace(model_at(knobs), options),
+                   TurnAbout(design.bank.faults, knobs, magnitudes, model_at), options);
+    }
+    DiagnosisMonitor monitor(moved, record.samples());
+    monitor.RegressFrom(from);
+    Run(monitor, moved, record);
+    FaultEstimate estimate = monitor.estimator().Estimate();
+    const VectorXd change = estimate.value.head(count);
+    const VectorXd sd = estimate.covariance.diagonal().head(count).cwiseSqrt();
+    const bool converged = (change.array().abs() <= kConverged * sd.array()).all();
+    knobs = (knobs + change).cwiseMax(magnitudes);
+    if (converged) {
+      estimate.value.head(count) = knobs.array() - 1.0;
+      return {estimate, step};
+    }
+  }
+  throw NumericalError("the fault estimates have not settled after " +
+                       std::to_string(kSteps) + " steps");
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,185 @@
+#include "mjdiag/diagnosis/residual_bank.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <unsupported/Eigen/KroneckerProduct>
+
+#include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Sensor noise as noise of z = [y; u]; the commands are known exactly.
+VectorXd SignalNoise(const SynthesisOptions& options, Index signals) {
+  const VectorXd& noise = options.sensor_noise;
+  VectorXd all = VectorXd::Zero(signals);
+  all.head(noise.size()) = noise.isZero(0.0) ? VectorXd::Ones(noise.size()) : noise;
+  return all;
+}
+
+/// Column j of the forces and of the readings is one signal.
+void RequireShape(const MatrixXd& columns, Index rows, Index count, const char* what) {
+  if (columns.cols() == 0) return;
+  if (columns.rows() == rows && columns.cols() == count) return;
+  throw InputError("unknown inputs",
+                   std::string(what) + " of " + std::to_string(columns.rows()) + " x " +
+                       std::to_string(columns.cols()),
+                   std::to_string(rows) + " x " + std::to_string(count));
+}
+
+/// Where the unknown inputs enter the delta form of a machine.
+SignalEntry Entry(const MechanicalModel& model, const StateSpace& system,
+                  const SynthesisOptions& options) {
+  const UnknownInputs& unknown = options.unknown_inputs;
+  const Index count = std::max(unknown.forces.cols(), unknown.readings.cols());
+  if (count == 0) return NoSignal(system);
+  RequireShape(unknown.forces, model.M.rows(), count, "forces");
+  RequireShape(unknown.readings, system.outputs(), count, "readings");
+  SignalEntry entry{MatrixXd::Zero(system.states(), count),
+                    MatrixXd::Zero(system.outputs(), count)};
+  if (unknown.forces.cols() > 0) {
+    entry.B = HeldForces(model, options.timing, unknown.forces).B;
+  }
+  if (unknown.readings.cols() > 0) entry.D = unknown.readings;
+  return entry;
+}
+
+Numerators Stack(const std::vector<Numerators>& parts) {
+  Index rows = 0;
+  for (const Numerators& part : parts) rows += part.front().rows();
+  Numerators stacked(parts.front().size(),
+                     MatrixXd(rows, parts.front().front().cols()));
+  for (std::size_t k = 0; k < stacked.size(); ++k) {
+    Index row = 0;
+    for (const Numerators& part : parts) {
+      stacked[k].middleRows(row, part[k].rows()) = part[k];
+      row += part[k].rows();
+    }
+  }
+  return stacked;
+}
+
+MatrixXd Covariance(const Numerators& rows, const SynthesisOptions& options) {
+  return OutputCovariance(
+      MakeFilterBank(rows, options.denominator, options.timing.tick()),
+      SignalNoise(options, rows.front().cols()));
+}
+
+/// Orthonormal in the metric of the output noise. The covariance squares the condition
+/// of the rows, so one pass resolves half of the digits; the next ones do the rest.
+Numerators Orthonormalised(Numerators rows, const SynthesisOptions& options) {
+  constexpr int kPasses = 6;
+  constexpr double kFloor = 1e-13;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const MatrixXd covariance = Covariance(rows, options);
+    const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+        scale.asDiagonal() * covariance * scale.asDiagonal());
+    const VectorXd root =
+        eigen.eigenvalues().cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
+    rows = Combine(
+        root.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal(),
+        rows);
+  }
+  const MatrixXd covariance = Covariance(rows, options);
+  if (!covariance.isIdentity(1e-3)) {
+    throw NumericalError("the residual rows of degree " +
+                         std::to_string(options.degree) + " at " +
+                         std::to_string(options.denominator.cutoff) +
+                         " Hz cannot be told apart in double precision");
+  }
+  return rows;
+}
+
+/// The rows of `space` nearest to `rows` in the metric of the output noise.
+Numerators Nearest(const Numerators& rows, const Numerators& space,
+                   const SynthesisOptions& options) {
+  const MatrixXd joint = Covariance(Stack({rows, space}), options);
+  const Index n = rows.front().rows();
+  return Combine(joint.topRightCorner(n, space.front().rows()), space);
+}
+
+/// Residuals with the prefilters of the faults about the machine they are blind to.
+ResidualBank BankOf(const Numerators& residual, const std::vector<TurnedModels>& faults,
+                    const SynthesisOptions& options) {
+  const auto turned = [&](const MechanicalModel& model) {
+    return Nearest(residual, MakeResidualSpace(model, options).rows, options);
+  };
+  ResidualBank bank;
+  bank.residuals = residual.front().rows();
+  bank.rows = residual;
+  std::vector<Numerators> outputs{residual};
+  for (const TurnedModels& fault : faults) {
+    bank.faults.push_back(fault.name);
+    const Numerators minus = turned(fault.minus);
+    const Numerators plus = turned(fault.plus);
+    Numerators slope;
+    for (std::size_t k = 0; k < plus.size(); ++k) {
+      slope.push_back((minus[k] - plus[k]) / (2.0 * fault.magnitude));
+    }
+    outputs.push_back(std::move(slope));
+  }
+  bank.filters =
+      MakeFilterBank(Stack(outputs), options.denominator, options.timing.tick());
+  return bank;
+}
+
+}  // namespace
+
+Numerators Combine(const MatrixXd& combination, const Numerators& rows) {
+  Numerators result;
+  for (const MatrixXd& coefficient : rows) result.push_back(combination * coefficient);
+  return result;
+}
+
+ResidualBank Mix(const ResidualBank& bank, const MatrixXd& rows) {
+  const Index groups = bank.filters.outputs() / bank.residuals;
+  const MatrixXd mixing =
+      Eigen::kroneckerProduct(MatrixXd::Identity(groups, groups), rows);
+  ResidualBank mixed = bank;
+  mixed.residuals = rows.rows();
+  mixed.rows = Combine(rows, bank.rows);
+  mixed.filters.D = mixing * bank.filters.D;
+  mixed.filters.B.resize(mixing.rows() * bank.filters.order(), bank.filters.inputs());
+  for (Index k = 0; k < bank.filters.order(); ++k) {
+    mixed.filters.B.middleRows(k * mixing.rows(), mixing.rows()) =
+        mixing * bank.filters.B.middleRows(k * mixing.cols(), mixing.cols());
+  }
+  return mixed;
+}
+
+ResidualSpace MakeResidualSpace(const MechanicalModel& model,
+                                const SynthesisOptions& options) {
+  const StateSpace system = DeltaForm(model, options.timing);
+  const SignalEntry unknown = Entry(model, system, options);
+  const NullSpace null = LeftNullSpace(system, unknown, options.degree);
+  if (null.rows.rows() == 0) {
+    // Says from which degree on there is one, or that there is none at all.
+    constexpr int kHighest = 40;
+    const int degree = MinimalDegree(system, unknown, kHighest);
+    throw InputError("residual", "no row of degree " + std::to_string(options.degree),
+                     "a degree of at least " + std::to_string(degree));
+  }
+  const PolynomialMatrix residual = CompleteRows(system, null.rows) * MakeDae(system).L;
+  Numerators rows(residual.coefficients.begin(), residual.coefficients.end());
+  return {options.degree, null.separation, Orthonormalised(std::move(rows), options)};
+}
+
+ResidualBank SynthesiseBank(const ResidualSpace& space, const MatrixXd& rows,
+                            const std::vector<TurnedModels>& faults,
+                            const SynthesisOptions& options) {
+  return BankOf(Combine(rows, space.rows), faults, options);
+}
+
+ResidualBank MoveBank(const Numerators& reference, const ResidualSpace& moved,
+                      const std::vector<TurnedModels>& faults,
+                      const SynthesisOptions& options) {
+  return BankOf(Nearest(reference, moved.rows, options), faults, options);
+}
+
+}  // namespace mjdiag

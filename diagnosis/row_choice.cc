@@ -1,0 +1,131 @@
+#include "mjdiag/diagnosis/row_choice.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd TopEigenvector(const MatrixXd& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(symmetric);
+  return eigen.eigenvectors().col(symmetric.rows() - 1);
+}
+
+MatrixXd NormalisedSum(const std::vector<MatrixXd>& matrices) {
+  MatrixXd sum = MatrixXd::Zero(matrices[0].rows(), matrices[0].cols());
+  for (const MatrixXd& matrix : matrices) {
+    if (matrix.trace() > 0.0) sum += matrix / matrix.trace();
+  }
+  return sum;
+}
+
+/// Each over what the row has of it; one of which it has nothing weighs the most.
+MatrixXd WeightedSum(const std::vector<MatrixXd>& matrices, const VectorXd& row) {
+  constexpr double kLeast = 1e-12;
+  MatrixXd sum = MatrixXd::Zero(row.size(), row.size());
+  for (const MatrixXd& matrix : matrices) {
+    const double share = std::max(row.dot(matrix * row), kLeast * matrix.trace());
+    if (share > 0.0) sum += matrix / share;
+  }
+  return sum;
+}
+
+/// sum log a^T G a; minus infinity if the row has nothing of one of them.
+double LogProduct(const std::vector<MatrixXd>& matrices, const VectorXd& row) {
+  double sum = 0.0;
+  for (const MatrixXd& matrix : matrices) {
+    if (matrix.trace() > 0.0) sum += std::log(std::max(0.0, row.dot(matrix * row)));
+  }
+  return sum;
+}
+
+Eigen::LLT<MatrixXd> Factor(const MatrixXd& nuisance) {
+  Eigen::LLT<MatrixXd> factor(nuisance);
+  if (factor.info() != Eigen::Success) {
+    throw NumericalError("the energy of the nominal runs is not positive definite");
+  }
+  return factor;
+}
+
+}  // namespace
+
+std::vector<MatrixXd> FaultEnergies(const ResidualBank& bank, const MatrixXd& signals) {
+  const Index n = bank.residuals;
+  const MatrixXd outputs = FilterSignals(bank.filters, signals);
+  std::vector<MatrixXd> energies;
+  for (std::size_t i = 0; i < bank.faults.size(); ++i) {
+    const auto phi = outputs.middleRows((static_cast<Index>(i) + 1) * n, n);
+    energies.emplace_back(phi * phi.transpose());
+  }
+  return energies;
+}
+
+VectorXd MostSensitiveRow(const std::vector<MatrixXd>& energies) {
+  const Index size = energies.front().rows();
+  return BestRatioRow(energies, {MatrixXd::Identity(size, size)});
+}
+
+VectorXd LeastExcitedRow(const MatrixXd& nuisance, const MatrixXd& response) {
+  const MatrixXd solved = Factor(nuisance).solve(response);
+  // Of the programme of column j the least energy is 1 / g_j^T Q^-1 g_j.
+  Index best = 0;
+  response.cwiseProduct(solved).colwise().sum().maxCoeff(&best);
+  return solved.col(best).normalized();
+}
+
+VectorXd BestRatioRow(const MatrixXd& energy, const MatrixXd& nuisance) {
+  const auto factor = Factor(nuisance);
+  const MatrixXd half = factor.matrixL().solve(energy);
+  const MatrixXd ratio = factor.matrixL().solve(half.transpose());
+  const VectorXd top = TopEigenvector(0.5 * (ratio + ratio.transpose()));
+  return factor.matrixU().solve(top).normalized();
+}
+
+VectorXd BestRatioRow(const std::vector<MatrixXd>& energies,
+                      const std::vector<MatrixXd>& nuisances) {
+  VectorXd row = BestRatioRow(NormalisedSum(energies), NormalisedSum(nuisances));
+  // The gradient of sum log a^T G_i a - sum log a^T Q_i a vanishes where a is the best
+  // ratio of sum G_i / (a^T G_i a) to sum Q_i / (a^T Q_i a). A step that gains nothing
+  // is halved, which keeps two faults that pull apart from taking turns.
+  const auto product = [&](const VectorXd& a) {
+    return LogProduct(energies, a) - LogProduct(nuisances, a);
+  };
+  constexpr int kIterations = 200;
+  constexpr double kShortest = 1e-8;
+  double best = product(row);
+  double step = 1.0;
+  for (int k = 0; k < kIterations && step > kShortest; ++k) {
+    VectorXd next =
+        BestRatioRow(WeightedSum(energies, row), WeightedSum(nuisances, row));
+    if (next.dot(row) < 0.0) next = -next;
+    next = (row + step * next).normalized();
+    const double gained = product(next);
+    if (gained > best) {
+      row = next;
+      best = gained;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return row;
+}
+
+MatrixXd CompleteBasis(const VectorXd& first, int n) {
+  const Index size = first.size();
+  const Index rows = n == 0 ? size : std::min<Index>(n, size);
+  MatrixXd basis =
+      MatrixXd(first.householderQr().householderQ()).leftCols(rows).transpose();
+  basis.row(0) = first.transpose();
+  return basis;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,24 @@
+#pragma once
+// The information bound of every fault, and what the estimators make of it.
+
+#include "mjdiag/diagnosis/cramer_rao.h"
+#include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/study_table.h"
+
+namespace mjdiag {
+
+/// Cramer-Rao bound of all knobs and disturbances for a motion of the healthy linear
+/// plant: knobs in the order of the plant, then the setup's disturbances.
+InformationBound FaultBound(const Setup& setup, const mjModel& plant,
+                            const Excitation& motion);
+
+/// Place of a fault in that order; InputError on an unknown one.
+std::ptrdiff_t BoundIndex(const Setup& setup, const mjModel& plant,
+                          const std::string& fault);
+
+/// Bound alone and together, the standard deviation of the estimators with one row and
+/// with all rows, and their multiples of the bound; of the default trajectory.
+std::vector<StudyTable> BoundStudy(const Setup& setup, const mjModel& plant,
+                                   const StudyOptions& options);
+
+}  // namespace mjdiag

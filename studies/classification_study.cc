@@ -1,0 +1,202 @@
+#include "mjdiag/studies/classification_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/studies/features.h"
+#include "mjdiag/studies/svm_classifier.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr int kHealthy = 0;
+
+struct Case {
+  int label = kHealthy;  ///< 0 healthy, else 1 + number of the fault
+  std::vector<SizedFault> faults;
+};
+
+/// What the two methods need of a run.
+struct Sample {
+  Eigen::VectorXd features;
+  bool detected = false;  ///< by the residual or its spectrum
+  int named = kHealthy;   ///< the fault with the most significant estimate
+};
+
+std::vector<Case> DrawCases(const Setup& setup, int runs, std::uint64_t seed) {
+  const auto& from = setup.Study("table4_from").values;
+  const auto& to = setup.Study("table4_to").values;
+  if (from.size() != to.size()) {
+    throw InputError("studies.table4_to", std::to_string(to.size()) + " faults",
+                     "those of table4_from");
+  }
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform;
+  const auto kinds = static_cast<int>(from.size());
+  std::vector<Case> cases;
+  for (int i = 0; i < runs; ++i) {
+    if (i % 2 == 0) {
+      cases.push_back({});
+      continue;
+    }
+    const int kind = (i / 2) % kinds;
+    const auto& [name, low] = from[static_cast<std::size_t>(kind)];
+    const double healthy = HealthyValue(setup, name);
+    const double first = std::log(std::abs(low - healthy));
+    const double last =
+        std::log(std::abs(to[static_cast<std::size_t>(kind)].second - healthy));
+    const double size = std::exp(first + (last - first) * uniform(generator));
+    cases.push_back({1 + kind, {{name, healthy + std::copysign(size, low - healthy)}}});
+  }
+  return cases;
+}
+
+/// The fault that deviates most in its own standard deviations.
+int MostSignificant(const DiagnosisResult& result,
+                    const std::vector<std::pair<std::string, double>>& kinds,
+                    const Setup& setup) {
+  int named = kHealthy;
+  double most = 0.0;
+  for (const FaultVerdict& fault : result.faults) {
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      if (kinds[i].first != fault.name) continue;
+      const double significance =
+          std::abs(fault.value - HealthyValue(setup, fault.name)) / fault.sd;
+      if (significance > most) {
+        most = significance;
+        named = 1 + static_cast<int>(i);
+      }
+    }
+  }
+  return named;
+}
+
+std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
+                             const std::vector<Case>& cases,
+                             const StudyOptions& options) {
+  const Excitation motion =
+      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  DiagnosisDesign design = DesignFilters(setup, plant);
+  NominalRuns nominal;
+  nominal.linear = true;
+  design.limits = CalibrateLimits(design, setup, plant, nominal);
+  std::vector<std::string> channels = design.outputs;
+  channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
+  const auto& kinds = setup.Study("table4_from").values;
+
+  std::vector<Sample> samples(cases.size());
+  ParallelFor(
+      static_cast<int>(cases.size()),
+      [&](int i) {
+        const Case& drawn = cases[static_cast<std::size_t>(i)];
+        const Record record =
+            SimulateLinear(setup, plant, motion,
+                           WithFaults(setup, plant, drawn.faults,
+                                      options.seed + static_cast<std::uint64_t>(i)));
+        DiagnosisMonitor monitor(design, record.samples());
+        Run(monitor, design, record);
+        const DiagnosisResult result = Conclude(design, monitor);
+        samples[static_cast<std::size_t>(i)] = {
+            Features(record, channels),
+            result.first_detection.has_value() || result.disturbance.disturbed,
+            MostSignificant(result, kinds, setup)};
+      },
+      options.progress);
+  return samples;
+}
+
+/// Rows and labels of the cases that `chosen` picks.
+template <typename Predicate>
+std::pair<MatrixXd, std::vector<int>> Select(const std::vector<Case>& cases,
+                                             const std::vector<Sample>& samples,
+                                             const Predicate& chosen) {
+  std::vector<int> labels;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!chosen(i)) continue;
+    rows.push_back(i);
+    labels.push_back(cases[i].label);
+  }
+  MatrixXd features(static_cast<Index>(rows.size()), samples.front().features.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    features.row(static_cast<Index>(i)) = samples[rows[i]].features;
+  }
+  return {features, labels};
+}
+
+std::vector<int> FaultyOrNot(std::vector<int> labels) {
+  for (int& label : labels) label = label == kHealthy ? 0 : 1;
+  return labels;
+}
+
+std::vector<Cell> Row(const std::string& method, const Confusion& detection,
+                      const Confusion& isolation) {
+  return {method, 100.0 * detection.accuracy(),
+          100.0 * detection.false_alarm_rate(kHealthy),
+          100.0 * detection.missed_detection_rate(kHealthy),
+          100.0 * isolation.accuracy()};
+}
+
+}  // namespace
+
+std::vector<StudyTable> ClassificationStudy(const Setup& setup, const mjModel& plant,
+                                            const StudyOptions& options) {
+  const std::vector<Case> cases = DrawCases(setup, options.runs, options.seed);
+  const std::vector<Sample> samples = RunCases(setup, plant, cases, options);
+  // Pairs of a healthy and a faulty run go to training and test in turn, a round of all
+  // faults at a time.
+  const std::size_t round = 2 * setup.Study("table4_from").values.size();
+  const auto in_training = [&](std::size_t i) { return (i / round) % 2 == 0; };
+  const auto in_test = [&](std::size_t i) { return !in_training(i); };
+  const auto faulty = [&](std::size_t i) { return cases[i].label != kHealthy; };
+
+  const auto [train, train_labels] = Select(cases, samples, in_training);
+  const auto [test, test_labels] = Select(cases, samples, in_test);
+  const auto [faulty_train, faulty_train_labels] = Select(
+      cases, samples, [&](std::size_t i) { return in_training(i) && faulty(i); });
+  const auto [faulty_test, faulty_test_labels] =
+      Select(cases, samples, [&](std::size_t i) { return in_test(i) && faulty(i); });
+
+  const SvmClassifier detector = SvmClassifier::Train(train, FaultyOrNot(train_labels));
+  const SvmClassifier isolator =
+      SvmClassifier::Train(faulty_train, faulty_train_labels);
+  std::vector<int> detected;
+  std::vector<int> named;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!in_test(i)) continue;
+    detected.push_back(samples[i].detected ? 1 : 0);
+    if (faulty(i)) named.push_back(samples[i].named);
+  }
+  const std::vector<int> truth = FaultyOrNot(test_labels);
+  StudyTable table{
+      "Residual-based and data-driven diagnosis on the same runs",
+      {"method", "detection [%]", "false alarms [%]", "missed [%]", "isolation [%]"},
+      {},
+      {std::to_string(train.rows()) +
+           " runs trained the support vector "
+           "machines, " +
+           std::to_string(test.rows()) + " others are judged here.",
+       "Isolation is counted over faulty runs."}};
+  table.rows.push_back(Row("residuals", CountConfusion(truth, detected),
+                           CountConfusion(faulty_test_labels, named)));
+  table.rows.push_back(
+      Row("support vector machine", CountConfusion(truth, detector.PredictRows(test)),
+          CountConfusion(faulty_test_labels, isolator.PredictRows(faulty_test))));
+
+  StudyTable ranges{"Ranges of the faults", {"fault", "from", "to"}, {}, {}};
+  const auto& from = setup.Study("table4_from").values;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    ranges.rows.push_back(
+        {from[i].first, from[i].second, setup.Study("table4_to").values[i].second});
+  }
+  return {table, ranges};
+}
+
+}  // namespace mjdiag

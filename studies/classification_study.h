@@ -1,0 +1,20 @@
+#pragma once
+// The residual-based diagnosis beside a data-driven one on the same runs: the seed's
+// Table 4.
+
+#include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/study_table.h"
+
+namespace mjdiag {
+
+/// Single faults of log-uniform size between [studies.table4_from] and
+/// [studies.table4_to], and healthy runs, on the linear plant; half of the runs train
+/// the support vector machines, the other half is judged by both methods.
+/// `options.runs` runs in all, as many of every fault, and as many healthy ones as
+/// faulty ones. The residual-based method detects by thresholds and spectrum and names
+/// the fault whose estimate is most significant; it is trained on nothing but healthy
+/// runs.
+std::vector<StudyTable> ClassificationStudy(const Setup& setup, const mjModel& plant,
+                                            const StudyOptions& options);
+
+}  // namespace mjdiag

@@ -1,0 +1,252 @@
+#include "mjdiag/studies/detection_study.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/plugin/robust_design.h"
+#include "mjdiag/studies/bound_study.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr double kResolution = 1.02;
+constexpr double kCoarseResolution = 1.15;  // a nonlinear run takes longer
+
+Excitation DefaultMotion(const Setup& setup) {
+  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+}
+
+std::optional<double> PublishedSize(const FaultSizes& sizes, const std::string& fault) {
+  for (const auto& [name, value] : sizes.values) {
+    if (name == fault) return value;
+  }
+  return std::nullopt;
+}
+
+Cell SizeCell(const std::optional<double>& deviation, double healthy) {
+  return deviation ? Cell(healthy + *deviation) : Cell("not seen");
+}
+
+/// A deviation as people write it: +0.5 %.
+Cell DeviationCell(const std::optional<double>& deviation) {
+  if (!deviation) return Cell("not seen");
+  Cell cell(*deviation);
+  cell.text = (*deviation > 0.0 ? "+" : "") + Cell(100.0 * *deviation).text + " %";
+  return cell;
+}
+
+Cell Seen(bool seen) { return seen ? "yes" : "no"; }
+
+/// Progress of a part of a study within the whole.
+std::function<void(double)> Stage(const StudyOptions& options, double from, double to) {
+  if (!options.progress) return {};
+  return [&options, from, to](double fraction) {
+    options.progress(from + (to - from) * fraction);
+  };
+}
+
+struct LinearRow {
+  Detection published;
+  std::optional<double> by_residual;
+  std::optional<double> by_spectrum;
+  std::optional<double> by_estimate;
+};
+
+}  // namespace
+
+std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& plant,
+                                             const StudyOptions& options) {
+  const Excitation motion = DefaultMotion(setup);
+  Detector detector{DesignFilters(setup, plant), {}};
+  NominalRuns nominal;
+  nominal.linear = true;
+  detector.design.limits = CalibrateLimits(detector.design, setup, plant, nominal);
+
+  const auto look = [&](const std::string& fault, double deviation,
+                        std::uint64_t seed) {
+    const double healthy = HealthyValue(setup, fault);
+    const std::vector<SizedFault> faults{{fault, healthy + deviation}};
+    const Record record =
+        SimulateLinear(setup, plant, motion, WithFaults(setup, plant, faults, seed));
+    return Look(detector, record, fault);
+  };
+
+  const auto& largest = setup.Study("largest").values;
+  const FaultSizes& published = setup.Study("table2");
+  std::vector<LinearRow> rows(largest.size());
+  ParallelFor(
+      static_cast<int>(largest.size()),
+      [&](int i) {
+        const auto& [fault, value] = largest[static_cast<std::size_t>(i)];
+        const double healthy = HealthyValue(setup, fault);
+        LinearRow& row = rows[static_cast<std::size_t>(i)];
+        if (const auto size = PublishedSize(published, fault)) {
+          row.published = look(fault, *size - healthy, options.seed);
+        }
+        const auto smallest = [&](const std::function<bool(const Detection&)>& seen) {
+          return SmallestDeviation(value - healthy, kResolution, [&](double deviation) {
+            return seen(look(fault, deviation, options.seed));
+          });
+        };
+        row.by_residual =
+            smallest([](const Detection& d) { return d.residual.has_value(); });
+        row.by_estimate = smallest([](const Detection& d) { return d.estimate; });
+        if (healthy == 0.0) {
+          row.by_spectrum = smallest([](const Detection& d) { return d.spectrum; });
+        }
+      },
+      Stage(options, 0.0, 0.5));
+
+  const InformationBound bound = FaultBound(setup, plant, motion);
+  StudyTable table{
+      "Smallest detectable faults, linear plant",
+      {"fault", "published", "seen at that size", "at time [s]", "smallest by residual",
+       "deviation", "smallest by estimate", "by spectrum", "bound (sd)"},
+      {},
+      {}};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string& fault = largest[i].first;
+    const double healthy = HealthyValue(setup, fault);
+    const auto size = PublishedSize(published, fault);
+    const LinearRow& row = rows[i];
+    const bool any = row.published.residual || row.published.spectrum;
+    table.rows.push_back(
+        {fault, size ? Cell(*size) : Cell("undetectable"), size ? Seen(any) : Cell("-"),
+         row.published.residual ? Cell(*row.published.residual) : Cell("-"),
+         SizeCell(row.by_residual, healthy), DeviationCell(row.by_residual),
+         DeviationCell(row.by_estimate),
+         healthy == 0.0 ? SizeCell(row.by_spectrum, 0.0) : Cell("-"),
+         Cell(bound.together[static_cast<Eigen::Index>(
+             BoundIndex(setup, plant, fault))])});
+  }
+  table.notes = {
+      "The faults are there from the start: the time is the delay of detection, most "
+      "of "
+      "which is the wait for the first move of that axis."};
+
+  std::vector<Detection> healthy_runs(static_cast<std::size_t>(options.runs));
+  std::vector<int> estimates(static_cast<std::size_t>(options.runs));
+  ParallelFor(
+      options.runs,
+      [&](int i) {
+        const Record record = SimulateLinear(
+            setup, plant, motion,
+            WithFaults(setup, plant, {},
+                       options.seed + 10000 + static_cast<std::uint64_t>(i)));
+        DiagnosisMonitor monitor(detector.design, record.samples());
+        Run(monitor, detector.design, record);
+        const DiagnosisResult result = Conclude(detector.design, monitor);
+        auto& run = healthy_runs[static_cast<std::size_t>(i)];
+        run.residual = result.first_detection;
+        run.spectrum = result.disturbance.disturbed;
+        estimates[static_cast<std::size_t>(i)] = static_cast<int>(
+            std::count_if(result.faults.begin(), result.faults.end(),
+                          [](const FaultVerdict& fault) { return fault.detected; }));
+      },
+      Stage(options, 0.5, 1.0));
+  const auto count = [&](auto&& predicate) {
+    return static_cast<double>(
+        std::count_if(healthy_runs.begin(), healthy_runs.end(), predicate));
+  };
+  StudyTable alarms{
+      "False alarms in healthy runs",
+      {"runs", "by residual", "by spectrum", "by estimates"},
+      {{Cell(static_cast<double>(options.runs)),
+        Cell(count([](const Detection& d) { return d.residual.has_value(); })),
+        Cell(count([](const Detection& d) { return d.spectrum; })),
+        Cell(static_cast<double>(
+            std::count_if(estimates.begin(), estimates.end(),
+                          [](int detected) { return detected > 0; })))}},
+      {}};
+  return {table, alarms};
+}
+
+std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
+                                                const mjModel& plant,
+                                                const std::string& study, bool baseline,
+                                                const StudyOptions& options) {
+  const Excitation motion = DefaultMotion(setup);
+  NominalRuns nominal;
+  nominal.runs = 8;
+  const auto finish = [&](DiagnosisDesign design) {
+    Detector detector{std::move(design), {}};
+    NominalRuns runs = nominal;
+    if (baseline) {
+      detector.baseline = ResidualBaseline(detector.design, setup, plant, motion, runs);
+      runs.seed += static_cast<std::uint64_t>(runs.runs);
+      detector.design.limits = CalibrateLimits(detector.design, setup, plant, motion,
+                                               detector.baseline, runs);
+    } else {
+      detector.design.limits = CalibrateLimits(detector.design, setup, plant, runs);
+    }
+    return detector;
+  };
+  const Detector common = finish(DesignFilters(setup, plant));
+
+  const auto& largest = setup.Study("largest").values;
+  const FaultSizes& published = setup.Study(study);
+  StudyTable table{
+      baseline ? "Smallest detectable faults, nonlinear plant, baseline "
+                 "subtracted"
+               : "Smallest detectable faults, nonlinear plant",
+      {"fault", "published", "seen by residual", "by robust row", "by estimate",
+       "smallest by residual", "by robust row", "by estimate"},
+      {},
+      {}};
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    const auto& [fault, value] = largest[i];
+    const double healthy = HealthyValue(setup, fault);
+    const Detector robust =
+        finish(DesignRobustFilters(setup, plant, fault, motion, baseline));
+    const auto record_at = [&, &name = fault](double deviation) {
+      return Simulate(
+          setup, plant, motion,
+          WithFaults(setup, plant, {{name, healthy + deviation}}, options.seed));
+    };
+    // Three ways to see it; an estimate may come from either row.
+    enum Way { kResidual, kRobust, kEstimate, kWays };
+    const auto sees = [&, &name = fault](Way way, const Record& record) {
+      switch (way) {
+        case kResidual: {
+          const Detection seen = Look(common, record, name);
+          return seen.residual.has_value() || (healthy == 0.0 && seen.spectrum);
+        }
+        case kRobust:
+          return Look(robust, record, name).residual.has_value();
+        default:
+          return Look(common, record, name).estimate ||
+                 Look(robust, record, name).estimate;
+      }
+    };
+    const auto size = PublishedSize(published, fault);
+    std::vector<Cell> row{fault, size ? Cell(*size) : Cell("undetectable")};
+    std::optional<Record> at_published;
+    if (size) at_published = record_at(*size - healthy);
+    for (int way = 0; way < kWays; ++way) {
+      row.push_back(at_published ? Seen(sees(static_cast<Way>(way), *at_published))
+                                 : Cell("-"));
+    }
+    std::vector<std::optional<double>> smallest(kWays);
+    ParallelFor(kWays, [&, &limit = value](int way) {
+      smallest[static_cast<std::size_t>(way)] =
+          SmallestDeviation(limit - healthy, kCoarseResolution, [&](double deviation) {
+            return sees(static_cast<Way>(way), record_at(deviation));
+          });
+    });
+    for (const auto& deviation : smallest) row.push_back(DeviationCell(deviation));
+    table.rows.push_back(std::move(row));
+    if (options.progress) {
+      options.progress(static_cast<double>(i + 1) /
+                       static_cast<double>(largest.size()));
+    }
+  }
+  table.notes = {
+      "The robust row is, of all rows of the robust degree, the one that nominal runs "
+      "excite least while the fault is seen; its limits come from nominal runs, too.",
+      "An estimate counts when it is outside what nominal runs of this motion gave."};
+  return {table};
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,120 @@
+#include "mjdiag/studies/disturbance_study.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/parallel.h"
+
+namespace mjdiag {
+namespace {
+
+struct Scenario {
+  std::string what;
+  std::vector<SizedFault> faults;
+  std::vector<double> frequencies;  ///< that are there [Hz]
+  double noise = 1.0;
+};
+
+std::vector<Scenario> Scenarios(const Setup& setup) {
+  std::vector<Scenario> scenarios{{"healthy", {}, {}, 1.0},
+                                  {"tenfold noise", {}, {}, 10.0}};
+  for (const MultisineSetup& source : setup.disturbances) {
+    for (const double magnitude : {0.01, 0.001}) {
+      scenarios.push_back({source.name + " = " + Cell(magnitude).text,
+                           {{source.name, magnitude}},
+                           source.frequencies,
+                           1.0});
+    }
+  }
+  return scenarios;
+}
+
+/// How many runs show a tone within a resolution cell of the frequency.
+int Found(const std::vector<DiagnosisResult>& results, double frequency, double cell) {
+  return static_cast<int>(
+      std::count_if(results.begin(), results.end(), [&](const DiagnosisResult& result) {
+        return std::any_of(result.disturbance.tones.begin(),
+                           result.disturbance.tones.end(),
+                           [&](const DisturbanceTone& tone) {
+                             return std::abs(tone.frequency - frequency) < cell;
+                           });
+      }));
+}
+
+}  // namespace
+
+std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plant,
+                                         const StudyOptions& options) {
+  const Excitation motion =
+      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  DiagnosisDesign design = DesignFilters(setup, plant);
+  NominalRuns nominal;
+  nominal.linear = true;
+  design.limits = CalibrateLimits(design, setup, plant, nominal);
+  const double cell = design.limits.disturbance.nominal.resolution();
+
+  StudyTable table{"Disturbances and noise, " + std::to_string(options.runs) +
+                       " runs each, linear plant",
+                   {"what", "tones found in", "other tones in", "noise raised in",
+                    "noise ratio", "magnitude", "sd claimed", "sd found"},
+                   {},
+                   {"A tone counts as found within one cell of the spectrum, " +
+                    Cell(cell).text + " Hz."}};
+  for (const Scenario& scenario : Scenarios(setup)) {
+    std::vector<DiagnosisResult> results(static_cast<std::size_t>(options.runs));
+    ParallelFor(
+        options.runs,
+        [&](int i) {
+          RunOptions run = WithFaults(setup, plant, scenario.faults,
+                                      options.seed + static_cast<std::uint64_t>(i));
+          run.noise_scale = scenario.noise;
+          const Record record = SimulateLinear(setup, plant, motion, run);
+          DiagnosisMonitor monitor(design, record.samples());
+          Run(monitor, design, record);
+          results[static_cast<std::size_t>(i)] = Conclude(design, monitor);
+        },
+        options.progress);
+    std::string found;
+    for (const double frequency : scenario.frequencies) {
+      found += (found.empty() ? "" : ", ") + Cell(frequency).text +
+               " Hz: " + std::to_string(Found(results, frequency, cell));
+    }
+    int others = 0;
+    int raised = 0;
+    double ratio = 0.0;
+    double mean = 0.0;
+    double square = 0.0;
+    double claimed = 0.0;
+    for (const DiagnosisResult& result : results) {
+      const auto& tones = result.disturbance.tones;
+      others +=
+          std::any_of(tones.begin(), tones.end(), [&](const DisturbanceTone& tone) {
+            return std::none_of(scenario.frequencies.begin(),
+                                scenario.frequencies.end(), [&](double frequency) {
+                                  return std::abs(tone.frequency - frequency) < cell;
+                                });
+          });
+      raised += result.disturbance.noise_raised ? 1 : 0;
+      const auto runs = static_cast<double>(options.runs);
+      ratio += result.disturbance.noise_ratio / runs;
+      const double truth =
+          scenario.faults.empty() ? 0.0 : scenario.faults.front().value;
+      for (const FaultVerdict& fault : result.faults) {
+        if (setup.disturbances.empty() ||
+            fault.name != setup.disturbances.front().name) {
+          continue;
+        }
+        mean += fault.value / runs;
+        square += (fault.value - truth) * (fault.value - truth) / runs;
+        claimed += fault.sd / runs;
+      }
+    }
+    table.rows.push_back(
+        {scenario.what, found.empty() ? "-" : found, Cell(static_cast<double>(others)),
+         Cell(static_cast<double>(raised)), ratio, mean, claimed, std::sqrt(square)});
+  }
+  return {table};
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,19 @@
+#pragma once
+// How well all faults are estimated when they are present at once: section 5.5 of the
+// seed, with intervals whose coverage is counted.
+
+#include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/study_table.h"
+
+namespace mjdiag {
+
+/// For the sizes under [studies.estimation_large] and [studies.estimation_small], all
+/// faults of a table present at once on the linear plant: mean estimate over
+/// `options.runs` runs, largest error as a share of the deviation, standard deviation
+/// claimed and found, how often the 95 % interval held the truth with the binomial 99 %
+/// band of that count, and the multiple of the information bound. Every knob and
+/// disturbance is estimated, refined where it lies (RefineEstimate).
+std::vector<StudyTable> EstimationStudy(const Setup& setup, const mjModel& plant,
+                                        const StudyOptions& options);
+
+}  // namespace mjdiag

@@ -1,0 +1,62 @@
+#pragma once
+// What all studies share: the machine, its design, runs with a fault, and what several
+// detectors say to a run.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/diagnosis_result.h"
+#include "mjdiag/plugin/simulation.h"
+
+namespace mjdiag {
+
+struct StudyOptions {
+  int runs = 200;          ///< Monte-Carlo runs where a study has any
+  std::uint64_t seed = 1;  ///< of the first run
+  std::function<void(double fraction)> progress;
+};
+
+/// A fault with a knob or disturbance value.
+struct SizedFault {
+  std::string name;
+  double value = 1.0;
+};
+
+/// Run options with these faults on; disturbances of the setup go where they belong.
+/// InputError on a name that neither the plant nor the setup has.
+RunOptions WithFaults(const Setup& setup, const mjModel& plant,
+                      const std::vector<SizedFault>& faults, std::uint64_t seed);
+
+/// 0 for a disturbance of the setup, else 1.
+double HealthyValue(const Setup& setup, const std::string& fault);
+
+/// One way to look at a record.
+struct Detector {
+  DiagnosisDesign design;
+  Eigen::MatrixXd baseline;  ///< or empty
+};
+
+/// What it sees.
+struct Detection {
+  std::optional<double> residual;  ///< when the residual left its limits [s]
+  bool spectrum = false;           ///< tones or raised noise
+  bool estimate = false;           ///< of the fault asked for
+  double value = 0.0;              ///< its estimate
+};
+
+Detection Look(const Detector& detector, const Record& record,
+               const std::string& fault);
+
+/// The smallest deviation from healthy, by bisection on its logarithm between `seen`
+/// and nothing, at which `detected` still holds; nullopt if it does not hold at `seen`.
+/// Accurate to a factor of `resolution`.
+std::optional<double> SmallestDeviation(double seen, double resolution,
+                                        const std::function<bool(double)>& detected);
+
+/// Binomial 99 % band of a rate: how many of `runs` may be counted if each counts with
+/// this probability, lower and upper end.
+std::pair<int, int> BinomialBand(int runs, double probability, double confidence);
+
+}  // namespace mjdiag

@@ -1,0 +1,330 @@
+#include "mjdiag/diagnosis/linear_program_row.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+SignalEntry None(const StateSpace& system) {
+  return {MatrixXd(system.states(), 0), MatrixXd(system.outputs(), 0)};
+}
+
+SignalEntry InStates(const StateSpace& system, const MatrixXd& columns) {
+  return {columns, MatrixXd::Zero(system.outputs(), columns.cols())};
+}
+
+/// Example 4 of the seed with k = c = m = 1: a force fault on a mass on a spring.
+DaeModel MassSpringDamper() {
+  StateSpace system;
+  system.A = (Eigen::Matrix2d() << 0.0, 1.0, -1.0, -1.0).finished();
+  system.B = Eigen::Vector2d(0.0, 1.0);
+  system.C = Eigen::RowVector2d(1.0, 0.0);
+  system.D = MatrixXd::Zero(1, 1);
+  return MakeDae(system, None(system), InStates(system, system.B));
+}
+
+constexpr Index kMasses = 5;
+
+/// Five masses in a row between 50 g and 7 kg, springs from 0.1 to 1000 N/mm, motors on
+/// the first and the third, a scale on each of `scales`. The unit of time is `unit`
+/// times that of the fastest mode. With scales on the outer two, rows exist from degree
+/// 4 on, with one, two, four and six independent ones.
+StateSpace Chain(const std::vector<Index>& scales = {0, 4}, double unit = 1.0) {
+  const VectorXd mass = (VectorXd(kMasses) << 2.0, 0.4, 7.0, 1.0, 0.05).finished();
+  const VectorXd spring = (VectorXd(kMasses) << 1e2, 1e4, 1e6, 3e5, 2e3).finished();
+  MechanicalModel model;
+  model.M = mass.asDiagonal();
+  model.K = MatrixXd::Zero(kMasses, kMasses);
+  for (Index i = 0; i < kMasses; ++i) {
+    model.K(i, i) += spring[i];
+    if (i == 0) continue;
+    model.K(i - 1, i - 1) += spring[i];
+    model.K(i, i - 1) = model.K(i - 1, i) = -spring[i];
+  }
+  model.D = 1e-4 * model.K + 0.1 * model.M;
+  model.Gamma = MatrixXd::Zero(kMasses, 2);
+  model.Gamma(0, 0) = model.Gamma(2, 1) = 1.0;
+  model.b = MatrixXd::Identity(kMasses, kMasses)(Eigen::all, scales);
+  return UnitMassStateSpace(model, unit * FastTimeUnit(model));
+}
+
+/// A force on mass `i` in the coordinates of Chain, in which a mass has a diagonal
+/// root.
+VectorXd ForceOn(Index i) { return VectorXd::Unit(2 * kMasses, kMasses + i); }
+
+/// Forces on the first, second and last mass as the faults.
+DaeModel ChainWithFaults(const StateSpace& system = Chain()) {
+  MatrixXd faults(2 * kMasses, 3);
+  faults << ForceOn(0), ForceOn(1), ForceOn(4);
+  return MakeDae(system, None(system), InStates(system, faults));
+}
+
+RowVectorXd Coefficients(const PolynomialMatrix& row) {
+  RowVectorXd all(row.cols() * (row.degree() + 1));
+  for (int i = 0; i <= row.degree(); ++i) {
+    all.segment(i * row.cols(), row.cols()) =
+        row.coefficients[static_cast<std::size_t>(i)];
+  }
+  return all;
+}
+
+/// Rows that span the left null space of Hbar, by a decomposition without scaling.
+MatrixXd NullSpaceRows(const DaeModel& dae, int degree) {
+  const MatrixXd hbar = BarMatrix(dae.H, degree);
+  const Eigen::JacobiSVD<MatrixXd> svd(hbar, Eigen::ComputeFullU);
+  const VectorXd& values = svd.singularValues();
+  const Index rank = (values.array() > 1e-12 * values[0]).count();
+  return svd.matrixU().rightCols(hbar.rows() - rank).transpose();
+}
+
+/// The columns of Fbar that some row of the null space sees.
+int SeenColumns(const DaeModel& dae, int degree) {
+  const MatrixXd seen = NullSpaceRows(dae, degree) * BarMatrix(dae.F, degree);
+  return static_cast<int>((seen.colwise().norm().array() > 1e-11).count());
+}
+
+double Size(const RowVectorXd& row, RowNorm norm) {
+  return norm == RowNorm::kOne ? row.lpNorm<1>() : row.lpNorm<Eigen::Infinity>();
+}
+
+/// The smallest row of a null space of two dimensions, by trying every vertex: there
+/// the 1-norm has one zero coefficient, and the infinity norm two of equal magnitude.
+double SmallestByEnumeration(const MatrixXd& basis, const MatrixXd& fbar,
+                             RowNorm norm) {
+  const MatrixXd seen = basis * fbar;
+  double smallest = std::numeric_limits<double>::infinity();
+  const auto attempt = [&](const Eigen::Vector2d& normal) {
+    const RowVectorXd weights = Eigen::RowVector2d(-normal[1], normal[0]);
+    const double size = Size(weights * basis, norm);
+    const double sight = (weights * seen).lpNorm<Eigen::Infinity>();
+    if (sight > 1e-11 * size) smallest = std::min(smallest, size / sight);
+  };
+  for (Index i = 0; i < basis.cols(); ++i) {
+    if (norm == RowNorm::kOne) attempt(basis.col(i));
+    for (Index k = 0; norm == RowNorm::kInfinity && k < i; ++k) {
+      attempt(basis.col(i) + basis.col(k));
+      attempt(basis.col(i) - basis.col(k));
+    }
+  }
+  return smallest;
+}
+
+TEST(SolveRowPrograms, FindTheRowOfExample4) {
+  const DaeModel dae = MassSpringDamper();
+  // N = [s + 1, 1, s^2 + s + 1]; the fault column sees N_2 = 1, so the scale is given.
+  const RowVectorXd published =
+      (RowVectorXd(9) << 1, 1, 1, 1, 0, 1, 0, 0, 1).finished();
+  for (const RowNorm norm : {RowNorm::kOne, RowNorm::kInfinity}) {
+    const std::optional<LinearProgramRow> row = SolveRowPrograms(dae, 2, {norm});
+    ASSERT_TRUE(row.has_value());
+    EXPECT_LT((Coefficients(row->N) - published).norm(), 1e-13);
+    EXPECT_EQ(row->column, 0);
+    EXPECT_NEAR(row->objective, Size(published, norm), 1e-13);
+    EXPECT_LT(row->defect, 1e-15);
+    EXPECT_EQ(row->programs, 3);
+    EXPECT_EQ(row->feasible, 1);
+  }
+}
+
+TEST(SolveRowPrograms, CountOneProgramForEachColumnOfFbar) {
+  // m = n_f (d_F + d_N + 1), with a fault that enters through its derivative too.
+  DaeModel dae = MassSpringDamper();
+  EXPECT_EQ(SolveRowPrograms(dae, 4)->programs, 5);
+  dae.F.coefficients.push_back(dae.F.coefficients[0]);
+  EXPECT_EQ(SolveRowPrograms(dae, 4)->programs, 6);
+  EXPECT_EQ(SolveRowPrograms(ChainWithFaults(), 5)->programs, 3 * 6);
+}
+
+TEST(SolveRowPrograms, AnnihilateTheUnknownsAndSeeTheFaultAtEveryDegree) {
+  const DaeModel dae = ChainWithFaults();
+  for (int degree = 4; degree <= 8; ++degree) {
+    for (const RowNorm norm : {RowNorm::kOne, RowNorm::kInfinity}) {
+      const std::optional<LinearProgramRow> row = SolveRowPrograms(dae, degree, {norm});
+      ASSERT_TRUE(row.has_value()) << degree;
+      ASSERT_EQ(row->N.degree(), degree);
+      const RowVectorXd nbar = Coefficients(row->N);
+      const MatrixXd hbar = BarMatrix(dae.H, degree);
+      const double defect = (nbar * hbar).norm() / (nbar.norm() * hbar.norm());
+      EXPECT_LT(defect, 1e-15);
+      EXPECT_NEAR(row->defect, defect, 1e-16);
+      const RowVectorXd seen = nbar * BarMatrix(dae.F, degree);
+      EXPECT_NEAR(seen[row->column], 1.0, 1e-13);
+      EXPECT_NEAR(seen.lpNorm<Eigen::Infinity>(), 1.0, 1e-9);
+      EXPECT_NEAR(row->objective, Size(nbar, norm), 1e-12 * row->objective);
+    }
+  }
+}
+
+TEST(SolveRowPrograms, LieInTheNullSpaceOfTheDecomposition) {
+  const DaeModel dae = ChainWithFaults();
+  for (int degree = 4; degree <= 7; ++degree) {
+    const MatrixXd basis = NullSpaceRows(dae, degree);
+    ASSERT_EQ(basis.rows(), degree == 4 ? 1 : 2 * degree - 8);
+    const RowVectorXd nbar = Coefficients(SolveRowPrograms(dae, degree)->N);
+    const RowVectorXd outside = nbar - (nbar * basis.transpose()) * basis;
+    EXPECT_LT(outside.norm(), 1e-10 * nbar.norm()) << degree;
+  }
+}
+
+TEST(SolveRowPrograms, SolveAsManyAsTheNullSpaceSees) {
+  const DaeModel dae = ChainWithFaults();
+  for (int degree = 4; degree <= 7; ++degree) {
+    const std::optional<LinearProgramRow> row = SolveRowPrograms(dae, degree);
+    EXPECT_EQ(row->feasible, SeenColumns(dae, degree)) << degree;
+    EXPECT_LT(row->feasible, row->programs) << degree;
+  }
+}
+
+TEST(SolveRowPrograms, ReachTheSmallestSizeThatEnumerationFinds) {
+  const DaeModel dae = ChainWithFaults(Chain({0, 2, 4}));
+  const MatrixXd basis = NullSpaceRows(dae, 3);
+  ASSERT_EQ(basis.rows(), 2);
+  const MatrixXd fbar = BarMatrix(dae.F, 3);
+  const LinearProgramRow one = *SolveRowPrograms(dae, 3);
+  const LinearProgramRow infinity = *SolveRowPrograms(dae, 3, {RowNorm::kInfinity});
+  EXPECT_NEAR(one.objective / SmallestByEnumeration(basis, fbar, RowNorm::kOne), 1.0,
+              1e-9);
+  EXPECT_NEAR(
+      infinity.objective / SmallestByEnumeration(basis, fbar, RowNorm::kInfinity), 1.0,
+      1e-9);
+  // The two norms ask for different rows.
+  EXPECT_GT(Size(Coefficients(infinity.N), RowNorm::kOne), 1.1 * one.objective);
+}
+
+TEST(SolveRowPrograms, AreNotTakenInByTheToleranceOfTheSolver) {
+  // In a unit of time a hundred times shorter than the fastest mode Clp meets the
+  // equations with a row, smaller by a fifth, that is not in the null space.
+  const StateSpace system = Chain({0, 4}, 0.01);
+  const DaeModel short_unit = ChainWithFaults(system);
+  const RowVectorXd least = Coefficients(LeftNullRow(system, 4, {{1, 4, 1.0}}));
+  MatrixXd basis = MatrixXd::Zero(2, least.size() / 5 * 6);  // N and p N
+  basis.row(0).head(least.size()) = least;
+  basis.row(1).tail(least.size()) = least;
+  const LinearProgramRow row = *SolveRowPrograms(short_unit, 5);
+  EXPECT_LT(row.defect, 1e-15);
+  EXPECT_NEAR(row.objective / SmallestByEnumeration(basis, BarMatrix(short_unit.F, 5),
+                                                    RowNorm::kOne),
+              1.0, 1e-5);
+  // In one a thousand times longer Clp finds rows where there are none.
+  const DaeModel long_unit = ChainWithFaults(Chain({0, 4}, 1e3));
+  EXPECT_EQ(SolveRowPrograms(long_unit, 3), std::nullopt);
+  EXPECT_EQ(SolveRowPrograms(long_unit, 3, {RowNorm::kInfinity}), std::nullopt);
+}
+
+TEST(SolveRowPrograms, GrowNoLargerWithTheDegree) {
+  // A row of a lower degree is one of a higher degree too.
+  const DaeModel dae = ChainWithFaults();
+  double last = std::numeric_limits<double>::infinity();
+  for (int degree = 4; degree <= 8; ++degree) {
+    const double size = SolveRowPrograms(dae, degree)->objective;
+    EXPECT_LE(size, last * (1.0 + 1e-7)) << degree;
+    last = size;
+  }
+}
+
+TEST(SolveRowPrograms, FindNothingBelowTheLeastDegree) {
+  EXPECT_EQ(SolveRowPrograms(MassSpringDamper(), 1), std::nullopt);
+  EXPECT_EQ(SolveRowPrograms(ChainWithFaults(), 3), std::nullopt);
+  EXPECT_NE(SolveRowPrograms(ChainWithFaults(), 4), std::nullopt);
+}
+
+TEST(SolveRowPrograms, FindNothingForAFaultThatActsAsTheUnknownsDo) {
+  // F in the range of H: rank [H F] = rank H.
+  DaeModel dae = ChainWithFaults();
+  const PolynomialMatrix combination{{VectorXd::LinSpaced(2 * kMasses, -1.0, 2.0)}};
+  dae.F = dae.H * combination;
+  for (const int degree : {4, 5, 7}) {
+    EXPECT_EQ(SolveRowPrograms(dae, degree), std::nullopt) << degree;
+    EXPECT_EQ(SolveRowPrograms(dae, degree, {RowNorm::kInfinity}), std::nullopt);
+  }
+}
+
+TEST(SolveRowPrograms, FindNothingForAFaultThatNoSensorSees) {
+  // A second oscillator without a sensor or a coupling, and the fault on it.
+  StateSpace system;
+  system.A = MatrixXd::Zero(4, 4);
+  system.A.topLeftCorner(2, 2) << 0.0, 1.0, -1.0, -1.0;
+  system.A.bottomRightCorner(2, 2) << 0.0, 1.0, -0.5, -0.2;
+  system.B = VectorXd::Unit(4, 1);
+  system.C = RowVectorXd::Unit(4, 0);
+  system.D = MatrixXd::Zero(1, 1);
+  const auto fault_at = [&](int state) {
+    return MakeDae(system, None(system), InStates(system, VectorXd::Unit(4, state)));
+  };
+  EXPECT_EQ(SolveRowPrograms(fault_at(3), 4), std::nullopt);
+  EXPECT_NE(SolveRowPrograms(fault_at(1), 4), std::nullopt);
+}
+
+TEST(SolveRowPrograms, AreBlindToUnknownInputs) {
+  // A force d on the fourth mass that the first scale picks up as well. With one output
+  // to spare there is no row blind to it below degree 10, the number of states.
+  const StateSpace system = Chain();
+  SignalEntry unknown = InStates(system, ForceOn(3));
+  unknown.D(0, 0) = 0.5;
+  const SignalEntry fault = InStates(system, ForceOn(0));
+  const DaeModel dae = MakeDae(system, unknown, fault);
+  PolynomialMatrix disturbance;
+  disturbance.coefficients = {dae.H.coefficients[0].rightCols(1)};
+  int found = 0;
+  for (int degree = 8; degree <= 12; ++degree) {
+    const std::optional<LinearProgramRow> row = SolveRowPrograms(dae, degree);
+    ASSERT_EQ(row.has_value(), SeenColumns(dae, degree) > 0) << degree;
+    if (!row) continue;
+    ++found;
+    EXPECT_LT(row->defect, 1e-15);
+    const RowVectorXd nbar = Coefficients(row->N);
+    EXPECT_LT((nbar * BarMatrix(disturbance, degree)).norm(), 1e-13 * nbar.norm());
+    // Without being told, the row of the same degree sees d.
+    const RowVectorXd untold =
+        Coefficients(SolveRowPrograms(MakeDae(system, None(system), fault), degree)->N);
+    EXPECT_GT((untold * BarMatrix(disturbance, degree)).norm(), 1e-4 * untold.norm());
+  }
+  EXPECT_EQ(found, 3);
+}
+
+TEST(SolveRowPrograms, ScaleWithTheUnitOfTheFault) {
+  // Eight decades in the unit of f are eight decades in the size of the row, no more.
+  DaeModel dae = ChainWithFaults();
+  const std::optional<LinearProgramRow> row = SolveRowPrograms(dae, 6);
+  dae.F.coefficients[0] *= 1e8;
+  const std::optional<LinearProgramRow> small = SolveRowPrograms(dae, 6);
+  EXPECT_EQ(small->column, row->column);
+  EXPECT_EQ(small->feasible, row->feasible);
+  EXPECT_LT((1e8 * Coefficients(small->N) - Coefficients(row->N)).norm(),
+            1e-10 * Coefficients(row->N).norm());
+}
+
+TEST(SolveRowPrograms, RefuseAModelInWhichRoundingHidesTheRank) {
+  const DaeModel long_unit = ChainWithFaults(Chain({0, 4}, 1e3));
+  EXPECT_THROW(SolveRowPrograms(long_unit, 4), NumericalError);
+}
+
+TEST(SolveRowPrograms, RefuseWhatIsNoProblem) {
+  const DaeModel dae = MassSpringDamper();
+  EXPECT_THROW(SolveRowPrograms(dae, -1), InputError);
+  DaeModel without_faults = dae;
+  without_faults.F = {{MatrixXd(3, 0)}};
+  EXPECT_THROW(SolveRowPrograms(without_faults, 2), InputError);
+  DaeModel mismatched = dae;
+  mismatched.F = {{MatrixXd::Ones(2, 1)}};
+  EXPECT_THROW(SolveRowPrograms(mismatched, 2), InputError);
+}
+
+}  // namespace
+}  // namespace mjdiag

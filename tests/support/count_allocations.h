@@ -1,0 +1,40 @@
+#pragma once
+// Counts calls of malloc: what runs inside a control callback may not allocate. Puts
+// its own malloc in front of glibc's, so only one source file of a test program may
+// include it.
+
+#include <atomic>
+#include <cstdlib>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define MJDIAG_COUNTS_ALLOCATIONS 0
+#else
+#define MJDIAG_COUNTS_ALLOCATIONS 1
+#endif
+
+namespace mjdiag::test {
+inline std::atomic<long> allocations{0};
+}
+
+#if MJDIAG_COUNTS_ALLOCATIONS
+// Eigen and operator new both end here.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++mjdiag::test::allocations;
+  return __libc_malloc(size);
+}
+#endif
+
+namespace mjdiag::test {
+
+/// False under a sanitizer, to which malloc belongs.
+inline constexpr bool kCountsAllocations = MJDIAG_COUNTS_ALLOCATIONS;
+
+template <typename Function>
+long CountAllocations(const Function& function) {
+  const long before = allocations;
+  function();
+  return allocations - before;
+}
+
+}  // namespace mjdiag::test
