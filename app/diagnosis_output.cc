@@ -102,10 +102,11 @@ std::string Describe(const DiagnosisResult& result) {
           Short(result.limits.max) + "; left them " + TimeText(result.first_detection) +
           ", lasting " + TimeText(result.lasting) + "\n";
   text += SpectrumText(result.disturbance) + "\n";
-  Table table({"fault", "value", "95 % from", "to", "detected"});
+  // A knob of 0.999998 reads as 1: what counts is how far it is from healthy.
+  Table table({"fault", "value", "from healthy", "sd", "detected"});
   for (const FaultVerdict& fault : result.faults) {
-    table.Add({fault.name, Short(fault.value), Short(fault.ci95.min),
-               Short(fault.ci95.max), fault.detected ? "yes" : "no"});
+    table.Add({fault.name, Short(fault.value), Short(fault.deviation), Short(fault.sd),
+               fault.detected ? "yes" : "no"});
   }
   return text + table.ToString();
 }

@@ -22,9 +22,11 @@ struct Multisine {
   Eigen::VectorXd amplitude;        ///< nu, of each command
 };
 
-/// R_dist with its high-pass filter (Eq. 33 and 34), one row.
+/// R_dist with its high-pass filter (Eq. 33 and 34), one row, and its prefilters, with
+/// which the part that is due to known faults is taken out.
 struct DisturbanceFilter {
-  FilterBank filter;
+  FilterBank filter;      ///< one output
+  FilterBank prefilters;  ///< one output a knob
   SecondOrderSections high_pass;
 };
 

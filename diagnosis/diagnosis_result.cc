@@ -31,11 +31,33 @@ std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
         !design.limits.estimates.empty() && design.limits.estimates[i].Holds(deviation);
     verdicts.push_back({names[i],
                         value,
+                        deviation,
                         sd,
                         {value - half * sd, value + half * sd},
                         std::abs(deviation) > reach * sd && !usual});
   }
   return verdicts;
+}
+
+bool AnyDetected(const std::vector<FaultVerdict>& faults) {
+  return std::any_of(faults.begin(), faults.end(),
+                     [](const FaultVerdict& fault) { return fault.detected; });
+}
+
+/// The disturbance residual less what the detected faults put into it: harmonics of the
+/// motion would pass for tones.
+Eigen::VectorXd WithoutFaults(const DiagnosisDesign& design, const MonitorLog& log,
+                              const std::vector<FaultVerdict>& faults) {
+  const Eigen::MatrixXd parts =
+      FilterSignals(design.disturbance.prefilters, log.signals);
+  Eigen::VectorXd due = Eigen::VectorXd::Zero(parts.cols());
+  for (Index i = 0; i < parts.rows(); ++i) {
+    const FaultVerdict& fault = faults[static_cast<std::size_t>(i)];
+    if (fault.detected) due += fault.deviation * parts.row(i).transpose();
+  }
+  SectionFilter high_pass(design.disturbance.high_pass);
+  for (double& sample : due) sample = high_pass.Update(sample);
+  return log.disturbance - due;
 }
 
 void RequireSeparableFaults(const DiagnosisDesign& design,
@@ -67,17 +89,20 @@ DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& 
   result.lasting = TimeOf(monitor.first_lasting(), result.sample_time);
   result.residual = {log.residual.minCoeff(), log.residual.maxCoeff()};
   result.limits = design.limits.residual.limits;
-  result.disturbance =
-      AnalyseDisturbance(log.disturbance, result.sample_time, design.limits.disturbance,
-                         design.options.disturbance);
+  const auto analyse = [&](const Eigen::VectorXd& disturbance) {
+    return AnalyseDisturbance(disturbance, result.sample_time,
+                              design.limits.disturbance, design.options.disturbance);
+  };
+  result.disturbance = analyse(log.disturbance);
   // Noisier sensors than the setup says make estimates less certain than it says.
   FaultEstimate honest = estimate;
   honest.covariance *= std::max(1.0, result.disturbance.noise_ratio);
   result.faults = Judge(design, honest);
-  result.detected =
-      result.first_detection.has_value() || result.disturbance.disturbed ||
-      std::any_of(result.faults.begin(), result.faults.end(),
-                  [](const FaultVerdict& fault) { return fault.detected; });
+  if (AnyDetected(result.faults)) {
+    result.disturbance = analyse(WithoutFaults(design, log, result.faults));
+  }
+  result.detected = result.first_detection.has_value() ||
+                    result.disturbance.disturbed || AnyDetected(result.faults);
   return result;
 }
 

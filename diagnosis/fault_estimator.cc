@@ -83,23 +83,31 @@ ResidualNoise MakeResidualNoise(const FilterBank& bank, Index residuals,
       state.block(i * order, j * order, order, order) = solution.reshaped(order, order);
     }
   }
-  MatrixXd power = MatrixXd::Identity(A.rows(), A.cols());  // A^(stride-1)
-  for (int i = 1; i < stride; ++i) power = (power * A).eval();
-  ResidualNoise noise;
-  noise.A = power * A;
-  noise.C = C;
-  noise.output = C * state * C.transpose() + D * D.transpose();
-  noise.ahead = noise.A * state * C.transpose() + power * B * D.transpose();
-  return noise;
+  MatrixXd power = MatrixXd::Identity(A.rows(), A.cols());
+  MatrixXd added = MatrixXd::Zero(A.rows(), A.cols());
+  MatrixXd last = power;  // A^(stride-1)
+  for (int i = 0; i < stride; ++i) {
+    added += power * drive * power.transpose();
+    last = power;
+    power = (power * A).eval();
+  }
+  return {power, C, state, added, D * D.transpose(), last * B * D.transpose()};
 }
 
-FaultEstimator::FaultEstimator(Index faults, ResidualNoise noise, double forgetting)
+FaultEstimator::FaultEstimator(Index faults, ResidualNoise noise, double forgetting,
+                               bool at_rest)
     : noise_(std::move(noise)),
       forgetting_(forgetting),
       information_(MatrixXd::Zero(faults, faults)),
       right_(VectorXd::Zero(faults)),
       spread_(MatrixXd::Zero(faults, faults)),
       memory_(MatrixXd::Zero(faults, noise_.A.rows())),
+      building_up_(at_rest),
+      state_(at_rest ? MatrixXd::Zero(noise_.A.rows(), noise_.A.cols()) : noise_.state),
+      output_(noise_.direct),
+      ahead_(noise_.carry),
+      state_C_(noise_.carry),
+      next_state_(noise_.state),
       next_memory_(memory_),
       from_memory_(MatrixXd::Zero(faults, noise_.C.rows())),
       weighted_(from_memory_),
@@ -110,6 +118,39 @@ FaultEstimator::FaultEstimator(Index faults, ResidualNoise noise, double forgett
     throw InputError("estimator", "forgetting factor " + std::to_string(forgetting),
                      "more than 0 and at most 1");
   }
+  UpdateNoise();
+}
+
+void FaultEstimator::AssumeStationary() noexcept {
+  building_up_ = false;
+  state_ = noise_.state;
+  UpdateNoise();
+}
+
+void FaultEstimator::UpdateNoise() noexcept {
+  state_C_.noalias() = state_ * noise_.C.transpose();
+  output_ = noise_.direct;
+  output_.noalias() += noise_.C * state_C_;
+  ahead_ = noise_.carry;
+  ahead_.noalias() += noise_.A * state_C_;
+}
+
+void FaultEstimator::BuildUp() noexcept {
+  next_state_.noalias() = noise_.A * state_;
+  state_ = noise_.drive;
+  state_.noalias() += next_state_ * noise_.A.transpose();
+  UpdateNoise();
+  constexpr double kBuiltUp = 1e-6;  // of the variance of the residual
+  building_up_ = std::abs(output_.trace() - Variance()) > kBuiltUp * Variance();
+}
+
+double FaultEstimator::Variance() const noexcept {
+  double variance = noise_.direct.trace();
+  const Index order = noise_.A.rows() / noise_.C.rows();
+  for (Index i = order - 1; i < noise_.A.rows(); i += order) {
+    variance += noise_.state(i, i);
+  }
+  return variance;
 }
 
 void FaultEstimator::Add(const Eigen::Ref<const VectorXd>& residuals,
@@ -122,12 +163,13 @@ void FaultEstimator::Add(const Eigen::Ref<const VectorXd>& residuals,
   // m has the weights of right_, so its covariance has their squares.
   from_memory_.noalias() = memory_.lazyProduct(noise_.C.transpose());
   from_memory_ *= lambda;
-  weighted_ = from_memory_ + regressors.lazyProduct(noise_.output);
+  weighted_ = from_memory_ + regressors.lazyProduct(output_);
   spread_ = lambda * lambda * spread_ + weighted_.lazyProduct(regressors.transpose()) +
             regressors.lazyProduct(from_memory_.transpose());
   next_memory_ = lambda * memory_.lazyProduct(noise_.A.transpose()) +
-                 regressors.lazyProduct(noise_.ahead.transpose());
+                 regressors.lazyProduct(ahead_.transpose());
   memory_.swap(next_memory_);
+  if (building_up_) BuildUp();
   ++samples_;
 }
 
@@ -165,7 +207,7 @@ std::vector<Index> FaultEstimator::Inseparable() const {
   for (Index i = 0; i < scale.size(); ++i) {
     if (scale[i] == 0.0) faults.push_back(i);
   }
-  if (!faults.empty()) return faults;
+  if (!faults.empty() || scale.size() == 0) return faults;
   const MatrixXd correlation = scale.asDiagonal() * information_ * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(correlation);
   if (eigen.eigenvalues()[0] > kRankTolerance) return {};

@@ -18,7 +18,9 @@
 // m+ = l m + g_t n_t for the forgetting factor l,
 //   M+ = l^2 M + l (Y g^T + g Y^T) + g N g^T,  Y = X C^T,  N = C S C^T + D Q D^T
 //   X+ = l X A^T + g E[n xi+^T]
-// where S is the stationary covariance of xi, M that of m, X = E[m xi^T].
+// where S is the covariance of xi, M that of m, X = E[m xi^T] and E[n xi+^T]^T =
+// A S C^T + B Q D^T. Filters that start at rest have S = 0 first, S+ = A S A^T + B Q
+// B^T: the noise of the residual has yet to build up.
 
 #include <Eigen/Core>
 #include <string>
@@ -33,9 +35,10 @@ namespace mjdiag {
 struct ResidualNoise {
   Eigen::MatrixXd A;       ///< over one stride, ns x ns
   Eigen::MatrixXd C;       ///< n x ns
-  Eigen::MatrixXd output;  ///< N, n x n
-  Eigen::MatrixXd
-      ahead;  ///< E[xi+ n^T] = A^stride S C^T + A^(stride-1) B Q D^T, ns x n
+  Eigen::MatrixXd state;   ///< stationary S, ns x ns
+  Eigen::MatrixXd drive;   ///< what a stride adds to S: sum_j A^j B Q B^T A^jT
+  Eigen::MatrixXd direct;  ///< D Q D^T, n x n
+  Eigen::MatrixXd carry;   ///< A^(stride-1) B Q D^T, ns x n
 };
 
 /// Of the first `residuals` outputs of a bank, every `stride`-th sample.
@@ -51,9 +54,15 @@ struct FaultEstimate {
 class FaultEstimator {
  public:
   /// @param faults      nf
+  /// @param at_rest     the filters start with the first sample; else they have run for
+  ///                    long and their noise is stationary
   /// @param forgetting  lambda: weight of a squared residual against the next one,
   ///                    0 < lambda <= 1
-  FaultEstimator(Eigen::Index faults, ResidualNoise noise, double forgetting);
+  FaultEstimator(Eigen::Index faults, ResidualNoise noise, double forgetting,
+                 bool at_rest = false);
+
+  /// The filters have run for long: their noise is stationary from here on.
+  void AssumeStationary() noexcept;
 
   /// One regressed sample. Does not allocate, lock or throw.
   /// @param residuals   n
@@ -76,6 +85,11 @@ class FaultEstimator {
   Eigen::Index samples() const { return samples_; }
 
  private:
+  void UpdateNoise() noexcept;
+  void BuildUp() noexcept;
+  /// Of all residuals together, when stationary.
+  double Variance() const noexcept;
+
   ResidualNoise noise_;
   double forgetting_;
   Eigen::Index samples_ = 0;
@@ -83,7 +97,13 @@ class FaultEstimator {
   Eigen::VectorXd right_;        // G^T r
   Eigen::MatrixXd spread_;       // M, nf x nf
   Eigen::MatrixXd memory_;       // X, nf x ns
+  bool building_up_;             // S is not stationary yet
+  Eigen::MatrixXd state_;        // S
+  Eigen::MatrixXd output_;       // N
+  Eigen::MatrixXd ahead_;        // E[xi+ n^T]
   // Work space, so that nothing allocates.
+  Eigen::MatrixXd state_C_;     // S C^T
+  Eigen::MatrixXd next_state_;  // A S
   Eigen::MatrixXd next_memory_;
   Eigen::MatrixXd from_memory_;  // Y, nf x n
   Eigen::MatrixXd weighted_;     // g N, nf x n

@@ -18,6 +18,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 void Check(const Denominator& denominator, double sample_time, Index degree) {
+  if (denominator.order < 1) {
+    throw InputError("denominator", "order " + std::to_string(denominator.order),
+                     "1 or more");
+  }
   if (denominator.order < degree) {
     throw InputError("denominator", "order " + std::to_string(denominator.order),
                      "at least the degree of the numerator, " + std::to_string(degree));
@@ -100,6 +104,17 @@ MatrixXd ChainMatrix(const FilterBank& bank) {
   chain.diagonal(-1).array() += bank.gain;
   chain.col(n - 1) -= bank.gain * bank.feedback;
   return chain;
+}
+
+FilterBank Outputs(const FilterBank& bank, Index first, Index count) {
+  const Index m = bank.outputs();
+  FilterBank part = bank;
+  part.D = bank.D.middleRows(first, count);
+  part.B.resize(count * bank.order(), bank.inputs());
+  for (Index k = 0; k < bank.order(); ++k) {
+    part.B.middleRows(k * count, count) = bank.B.middleRows(k * m + first, count);
+  }
+  return part;
 }
 
 MatrixXd OutputCovariance(const FilterBank& bank, const VectorXd& noise_sd) {

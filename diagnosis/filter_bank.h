@@ -42,6 +42,9 @@ struct FilterBank {
 FilterBank MakeFilterBank(const Numerators& numerators, const Denominator& denominator,
                           double sample_time);
 
+/// Some of the outputs as a bank of their own.
+FilterBank Outputs(const FilterBank& bank, Eigen::Index first, Eigen::Index count);
+
 /// Covariance of the outputs, m x m, under white noise on the signals.
 /// @param noise_sd  nz, standard deviation a sample of every signal
 Eigen::MatrixXd OutputCovariance(const FilterBank& bank,

@@ -68,7 +68,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, Index capacity
       estimator_(design.faults(),
                  MakeResidualNoise(design.bank.filters, design.bank.residuals,
                                    SignalNoise(design), design.stride),
-                 ForgettingFactor(design)),
+                 ForgettingFactor(design), true),
       settling_away_(SettlingSamples(design.bank.filters, kSettled)),
       z_(VectorXd::Zero(design.bank.filters.inputs())),
       residuals_(VectorXd::Zero(design.bank.residuals)),
@@ -81,6 +81,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, Index capacity
       rows_(design.bank.residuals, capacity),
       integral_(capacity),
       disturbance_(capacity),
+      signals_(z_.size(), capacity),
       estimates_(design.faults(), capacity / design.stride + 1) {
   if (baseline_.size() > 0 && baseline_.rows() != design.bank.residuals) {
     throw InputError("baseline", std::to_string(baseline_.rows()) + " residuals",
@@ -136,11 +137,13 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
   if (samples_ >= std::max(settling_, first_regressed_) &&
       samples_ % design_.stride == 0) {
     if (estimates_made_ == 0) first_estimate_ = samples_;
+    if (estimates_made_ == 0 && samples_ > 0) estimator_.AssumeStationary();
     Regress();
   }
   if (samples_ < rows_.cols()) {
     rows_.col(samples_) = residuals_;
     disturbance_[samples_] = disturbance;
+    signals_.col(samples_) = z_;
     logged_ = samples_ + 1;
   }
   ++samples_;
@@ -186,7 +189,10 @@ MonitorLog DiagnosisMonitor::Log() const {
                           static_cast<double>(std::max<Index>(0, estimates_made_ - 1)));
   const double tick = design_.sample_time();
   return {
-      rows_.row(0).head(logged_), integral_.head(logged_), disturbance_.head(logged_),
+      rows_.row(0).head(logged_),
+      integral_.head(logged_),
+      disturbance_.head(logged_),
+      signals_.leftCols(logged_),
       tick * (index.array() * design_.stride + static_cast<double>(first_estimate_)),
       estimates_.leftCols(estimates_made_)};
 }

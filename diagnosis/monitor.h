@@ -18,6 +18,7 @@ struct MonitorLog {
   Eigen::VectorXd residual;       ///< r, less the baseline if there is one
   Eigen::VectorXd integral;       ///< mean of |r| over the window
   Eigen::VectorXd disturbance;    ///< r_dist behind its high-pass filter
+  Eigen::MatrixXd signals;        ///< z as deviations from rest, nz x samples
   Eigen::VectorXd estimate_time;  ///< [s]
   Eigen::MatrixXd estimates;      ///< nf x regressed samples, deviations from healthy
 };
@@ -84,6 +85,7 @@ class DiagnosisMonitor {
   Eigen::MatrixXd rows_;         // n x capacity
   Eigen::VectorXd integral_;     // capacity
   Eigen::VectorXd disturbance_;  // capacity
+  Eigen::MatrixXd signals_;      // nz x capacity
   Eigen::MatrixXd estimates_;    // nf x capacity / stride
 };
 

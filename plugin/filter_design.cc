@@ -98,16 +98,18 @@ VectorXd RowForTones(const FilterBank& rows, const VectorXd& sensor_noise,
 }
 
 DisturbanceFilter DesignDisturbanceFilter(const MechanicalModel& healthy,
-                                          const Setup& setup,
-                                          SynthesisOptions options) {
+                                          const std::vector<TurnedModels>& turned,
+                                          const Setup& setup) {
   const DiagnosisOptions& wanted = setup.diagnosis;
+  SynthesisOptions options = SynthesisOf(setup, healthy);
   options.denominator = wanted.disturbance_denominator;
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const FilterBank all =
       MakeFilterBank(space.rows, options.denominator, options.timing.tick());
   const VectorXd row = RowForTones(all, options.sensor_noise, Multisines(setup));
-  return {MakeFilterBank(Combine(row.transpose(), space.rows), options.denominator,
-                         options.timing.tick()),
+  const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
+  return {Outputs(bank.filters, 0, 1),
+          Outputs(bank.filters, 1, static_cast<Index>(turned.size())),
           DigitalButterworth(FilterKind::kHighPass, wanted.high_pass_order,
                              wanted.high_pass_cutoff, options.timing.tick())};
 }
@@ -121,6 +123,23 @@ int Stride(const Setup& setup) {
                      "a multiple of the control tick");
   }
   return stride;
+}
+
+/// Rows of too high a degree under too low a cut-off lose their digits: they then leave
+/// a residual on the very machine they are made for.
+void RequireBlindness(const DiagnosisDesign& design, const MatrixXd& healthy_run) {
+  constexpr double kLeak = 0.3;  // of the noise of the residual
+  const MatrixXd residuals =
+      FilterSignals(design.bank.filters, healthy_run).topRows(design.bank.residuals);
+  const double leak = residuals.cwiseAbs().maxCoeff();
+  if (leak > kLeak) {
+    throw NumericalError("rows of degree " + std::to_string(design.options.degree) +
+                         " at " + std::to_string(design.options.denominator.cutoff) +
+                         " Hz lose their digits: a healthy run without noise leaves " +
+                         std::to_string(leak) +
+                         " times the noise; a lower degree or a higher cut-off "
+                         "helps");
+  }
 }
 
 /// What a nominal run leaves.
@@ -236,9 +255,13 @@ Record LinearRun(const Setup& setup, const mjModel& plant) {
   return SimulateLinear(setup, plant, DefaultExcitation(setup), options);
 }
 
-DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant) {
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
+                              const RowSettings& settings) {
   const MechanicalModel healthy = Linearize(plant, setup);
-  const SynthesisOptions options = SynthesisOf(setup, healthy);
+  const std::vector<TurnedModels> turned = TurnModels(plant, setup);
+  SynthesisOptions options = SynthesisOf(setup, healthy);
+  options.degree = settings.degree;
+  options.denominator = settings.denominator;
   DiagnosisDesign design;
   design.setup = setup.name;
   design.outputs = healthy.outputs;
@@ -246,22 +269,31 @@ DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant) {
   design.offset = SensorReadings(setup, plant, StaticEquilibrium(plant));
   design.sensor_noise = options.sensor_noise;
   design.options = setup.diagnosis;
+  design.options.degree = settings.degree;
+  design.options.denominator = settings.denominator;
+  design.options.estimation_rows = settings.rows;
   design.stride = Stride(setup);
   design.disturbances = Multisines(setup);
-  design.disturbance = DesignDisturbanceFilter(healthy, setup, options);
+  design.disturbance = DesignDisturbanceFilter(healthy, turned, setup);
 
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const Index size = space.rows.front().rows();
-  const std::vector<TurnedModels> turned = TurnModels(plant, setup);
   design.bank = SynthesiseBank(space, MatrixXd::Identity(size, size), turned, options);
-  std::vector<MatrixXd> energies =
-      FaultEnergies(design.bank, Signals(design, LinearRun(setup, plant)));
+  const MatrixXd signals = Signals(design, LinearRun(setup, plant));
+  RequireBlindness(design, signals);
+  std::vector<MatrixXd> energies = FaultEnergies(design.bank, signals);
   if (energies.empty()) {
     energies.push_back(CommandEnergy(design.bank.filters, healthy.b.cols()));
   }
-  design.bank = Mix(design.bank, CompleteBasis(MostSensitiveRow(energies),
-                                               setup.diagnosis.estimation_rows));
+  design.bank =
+      Mix(design.bank, CompleteBasis(MostSensitiveRow(energies), settings.rows));
   return design;
+}
+
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant) {
+  const DiagnosisOptions& wanted = setup.diagnosis;
+  return DesignFilters(setup, plant,
+                       {wanted.degree, wanted.denominator, wanted.estimation_rows});
 }
 
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,

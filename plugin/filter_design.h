@@ -25,8 +25,18 @@ Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);
 /// inputs where the setup has no controllers.
 Record LinearRun(const Setup& setup, const mjModel& plant);
 
+/// Which rows the residuals are made of.
+struct RowSettings {
+  int degree = 7;
+  Denominator denominator;
+  int rows = 1;  ///< how many; 0: all of the null space
+};
+
 /// Residual row, prefilters and disturbance filter of the healthy plant, without
 /// limits. The row is the one that sees all faults best on LinearRun.
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
+                              const RowSettings& settings);
+/// With the rows that the setup asks for.
 DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant);
 
 /// The runs from which limits and baselines come.

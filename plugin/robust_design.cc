@@ -92,11 +92,9 @@ MatrixXd Response(const DiagnosisDesign& design, const Setup& setup,
 DiagnosisDesign DesignRobustFilters(const Setup& setup, const mjModel& plant,
                                     const std::string& fault,
                                     const Excitation& excitation, bool baseline) {
-  Setup longer = setup;
-  longer.diagnosis.degree = setup.diagnosis.robust.degree;
-  longer.diagnosis.denominator = setup.diagnosis.robust.denominator;
-  longer.diagnosis.estimation_rows = 0;  // all of them, to choose from
-  DiagnosisDesign design = DesignFilters(longer, plant);
+  const RobustOptions& wanted = setup.diagnosis.robust;
+  DiagnosisDesign design =
+      DesignFilters(setup, plant, {wanted.degree, wanted.denominator, 0});
   const MatrixXd response = Response(design, setup, plant, fault);
   const MatrixXd nuisance =
       NuisanceEnergy(NominalResiduals(design, setup, plant, excitation), baseline);

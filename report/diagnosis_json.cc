@@ -12,6 +12,7 @@ nlohmann::json Faults(const std::vector<FaultVerdict>& verdicts) {
   for (const FaultVerdict& fault : verdicts) {
     faults.push_back({{"name", fault.name},
                       {"value", fault.value},
+                      {"deviation", fault.deviation},
                       {"sd", fault.sd},
                       {"ci95", {fault.ci95.min, fault.ci95.max}},
                       {"detected", fault.detected}});

@@ -75,11 +75,15 @@ json Json(const DisturbanceFilter& filter) {
   for (const SecondOrderSection& s : filter.high_pass) {
     sections.push_back({s.b0, s.b1, s.b2, s.a1, s.a2});
   }
-  return {{"filters", Json(filter.filter)}, {"high_pass", sections}};
+  return {{"filters", Json(filter.filter)},
+          {"prefilters", Json(filter.prefilters)},
+          {"high_pass", sections}};
 }
 
 DisturbanceFilter ToDisturbanceFilter(const json& object, double sample_time) {
-  DisturbanceFilter filter{Bank(object.at("filters"), sample_time), {}};
+  DisturbanceFilter filter{Bank(object.at("filters"), sample_time),
+                           Bank(object.at("prefilters"), sample_time),
+                           {}};
   for (const json& s : object.at("high_pass")) {
     const auto c = s.get<std::array<double, 5>>();
     filter.high_pass.push_back({c[0], c[1], c[2], c[3], c[4]});
@@ -204,7 +208,10 @@ void RequireShapes(const std::string& file, const DiagnosisDesign& design) {
                     bank.B.cols() == nz && design.offset.size() == ny &&
                     design.sensor_noise.size() == ny && other.D.cols() == nz &&
                     other.B.rows() == other.D.rows() * other.order() &&
-                    other.D.rows() == 1 && design.stride > 0 && bank.sample_time > 0.0;
+                    other.D.rows() == 1 &&
+                    design.disturbance.prefilters.D.rows() ==
+                        static_cast<Index>(design.bank.faults.size()) &&
+                    design.stride > 0 && bank.sample_time > 0.0;
   if (!fits) {
     throw InputError(file, "shapes of filters, channels and faults do not fit",
                      "a file that `mjdiag design` wrote");

@@ -33,9 +33,12 @@ struct Sample {
 std::vector<Case> DrawCases(const Setup& setup, int runs, std::uint64_t seed) {
   const auto& from = setup.Study("table4_from").values;
   const auto& to = setup.Study("table4_to").values;
-  if (from.size() != to.size()) {
-    throw InputError("studies.table4_to", std::to_string(to.size()) + " faults",
-                     "those of table4_from");
+  const auto same_name = [](const auto& a, const auto& b) {
+    return a.first == b.first;
+  };
+  if (!std::equal(from.begin(), from.end(), to.begin(), to.end(), same_name)) {
+    throw InputError("studies.table4_to", "other faults than table4_from",
+                     "the same in the same order");
   }
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> uniform;
@@ -60,15 +63,13 @@ std::vector<Case> DrawCases(const Setup& setup, int runs, std::uint64_t seed) {
 
 /// The fault that deviates most in its own standard deviations.
 int MostSignificant(const DiagnosisResult& result,
-                    const std::vector<std::pair<std::string, double>>& kinds,
-                    const Setup& setup) {
+                    const std::vector<std::pair<std::string, double>>& kinds) {
   int named = kHealthy;
   double most = 0.0;
   for (const FaultVerdict& fault : result.faults) {
     for (std::size_t i = 0; i < kinds.size(); ++i) {
       if (kinds[i].first != fault.name) continue;
-      const double significance =
-          std::abs(fault.value - HealthyValue(setup, fault.name)) / fault.sd;
+      const double significance = std::abs(fault.deviation) / fault.sd;
       if (significance > most) {
         most = significance;
         named = 1 + static_cast<int>(i);
@@ -106,7 +107,7 @@ std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
         samples[static_cast<std::size_t>(i)] = {
             Features(record, channels),
             result.first_detection.has_value() || result.disturbance.disturbed,
-            MostSignificant(result, kinds, setup)};
+            MostSignificant(result, kinds)};
       },
       options.progress);
   return samples;

@@ -54,8 +54,8 @@ MatrixXd Regressors(Index samples) {
 }
 
 FaultEstimator Regressed(const MatrixXd& regressors, const VectorXd& residuals,
-                         int stride, double forgetting) {
-  FaultEstimator estimator(regressors.cols(), Noise(stride), forgetting);
+                         int stride, double forgetting, bool at_rest = false) {
+  FaultEstimator estimator(regressors.cols(), Noise(stride), forgetting, at_rest);
   for (Index t = 0; t < residuals.size(); t += kResiduals) {
     estimator.Add(residuals.segment(t, kResiduals),
                   regressors.middleRows(t, kResiduals).transpose());
@@ -73,17 +73,21 @@ VectorXd RootWeights(Index rows, double forgetting) {
   return weights;
 }
 
-class Forgetting : public testing::TestWithParam<double> {};
+struct Weighting {
+  double forgetting;
+  bool at_rest;
+};
+class Weightings : public testing::TestWithParam<Weighting> {};
 
-TEST_P(Forgetting, EstimateIsWeightedLeastSquares) {
+TEST_P(Weightings, EstimateIsWeightedLeastSquares) {
   const MatrixXd regressors = Regressors(200);
   const VectorXd residuals =
       regressors * Vector3d(1.0, -2.0, 0.1) + test::WhiteNoise(400, 1, 1.0, 2);
-  const VectorXd weights = RootWeights(residuals.size(), GetParam());
+  const VectorXd weights = RootWeights(residuals.size(), GetParam().forgetting);
   const VectorXd expected = (weights.asDiagonal() * regressors)
                                 .colPivHouseholderQr()
                                 .solve(weights.cwiseProduct(residuals));
-  FaultEstimator estimator = Regressed(regressors, residuals, 1, GetParam());
+  FaultEstimator estimator = Regressed(regressors, residuals, 1, GetParam().forgetting);
   EXPECT_EQ(estimator.samples(), 200);
   EXPECT_TRUE(estimator.Estimate().value.isApprox(expected, 1e-10));
   VectorXd solved(kFaults);
@@ -91,7 +95,7 @@ TEST_P(Forgetting, EstimateIsWeightedLeastSquares) {
   EXPECT_TRUE(solved.isApprox(expected, 1e-10));
 }
 
-TEST_P(Forgetting, CovarianceIsThatOfRepeatedEstimates) {
+TEST_P(Weightings, CovarianceIsThatOfRepeatedEstimates) {
   // The noise is that of the filters, every fourth sample. With R draws a sample
   // variance scatters by sqrt(2 / R) of itself, a correlation by 1 / sqrt(R); five of
   // these are allowed. Of intervals of 95 % a binomial count lies within
@@ -102,7 +106,7 @@ TEST_P(Forgetting, CovarianceIsThatOfRepeatedEstimates) {
   const MatrixXd regressors = Regressors(kSamples);
   const FilterBank bank = NoiseBank();
   const Vector3d truth(1.0, -2.0, 0.1);
-  const Index settled = SettlingSamples(bank, 1e-4);
+  const Index settled = GetParam().at_rest ? 0 : SettlingSamples(bank, 1e-4);
   MatrixXd errors(kFaults, kDraws);
   MatrixXd covariance;
   Vector3d covered = Vector3d::Zero();
@@ -116,8 +120,9 @@ TEST_P(Forgetting, CovarianceIsThatOfRepeatedEstimates) {
       residuals.segment(t * kResiduals, kResiduals) +=
           coloured.col(settled + t * kStride);
     }
-    const FaultEstimate estimate =
-        Regressed(regressors, residuals, kStride, GetParam()).Estimate();
+    const FaultEstimate estimate = Regressed(regressors, residuals, kStride,
+                                             GetParam().forgetting, GetParam().at_rest)
+                                       .Estimate();
     covariance = estimate.covariance;
     errors.col(draw) = estimate.value - truth;
     const VectorXd reach = 1.96 * covariance.diagonal().cwiseSqrt();
@@ -136,7 +141,9 @@ TEST_P(Forgetting, CovarianceIsThatOfRepeatedEstimates) {
   RecordProperty("covered", Text(covered));
 }
 
-INSTANTIATE_TEST_SUITE_P(FaultEstimator, Forgetting, testing::Values(1.0, 0.97));
+INSTANTIATE_TEST_SUITE_P(FaultEstimator, Weightings,
+                         testing::Values(Weighting{1.0, false}, Weighting{0.97, false},
+                                         Weighting{1.0, true}));
 
 TEST(ResidualNoise, IsThatOfTheFilterAndItsStride) {
   // Autocovariance at lag L from the impulse response.
@@ -153,8 +160,12 @@ TEST(ResidualNoise, IsThatOfTheFilterAndItsStride) {
       later += response.rightCols(samples) * response.leftCols(samples).transpose();
     }
     const ResidualNoise noise = Noise(static_cast<int>(lag));
-    EXPECT_TRUE(noise.output.isApprox(now, 1e-9));
-    EXPECT_TRUE((noise.C * noise.ahead).isApprox(later, 1e-9)) << lag;
+    const MatrixXd with_state = noise.state * noise.C.transpose();
+    EXPECT_TRUE((noise.C * with_state + noise.direct).isApprox(now, 1e-9));
+    EXPECT_TRUE((noise.C * (noise.A * with_state + noise.carry)).isApprox(later, 1e-9))
+        << lag;
+    const MatrixXd next = noise.A * noise.state * noise.A.transpose() + noise.drive;
+    EXPECT_TRUE(next.isApprox(noise.state, 1e-9));
   }
 }
 
@@ -198,6 +209,25 @@ TEST(FaultEstimator, IntervalsCoverTheFaultsOfAMachine) {
     EXPECT_LT(sd[i], 0.2 * std::abs(fault[i]));
   }
   RecordProperty("covered", Text(covered));
+}
+
+TEST(FaultEstimator, IsMoreCertainWhileItsNoiseBuildsUp) {
+  const MatrixXd regressors = Regressors(10);
+  const VectorXd residuals = VectorXd::Ones(regressors.rows());
+  const auto spread = [&](bool at_rest) {
+    return Regressed(regressors, residuals, 1, 1.0, at_rest)
+        .Estimate()
+        .covariance.trace();
+  };
+  EXPECT_LT(spread(true), 0.5 * spread(false));
+  FaultEstimator estimator(kFaults, Noise(1), 1.0, true);
+  estimator.AssumeStationary();
+  for (Index t = 0; t < 10; ++t) {
+    estimator.Add(residuals.segment(t * kResiduals, kResiduals),
+                  regressors.middleRows(t * kResiduals, kResiduals).transpose());
+  }
+  EXPECT_NEAR(estimator.Estimate().covariance.trace(), spread(false),
+              1e-9 * spread(false));
 }
 
 TEST(Inseparable, NamesTwoCollinearFaults) {

@@ -169,6 +169,23 @@ TEST(RunningBank, HasNoTransientWhenSettled) {
   }
 }
 
+TEST(RunningBank, StepsEveryOutputAsIfItWereAlone) {
+  // 1 to 17 outputs: groups of every size.
+  const MatrixXd signals = test::WhiteNoise(3, 50, 1.0, 1);
+  for (Index count = 1; count <= 17; ++count) {
+    const Numerators numerators{test::WhiteNoise(count, 3, 1.0, 2),
+                                test::WhiteNoise(count, 3, 1.0, 3)};
+    const MatrixXd together =
+        FilterSignals(MakeFilterBank(numerators, {3, 200.0}, kSampleTime), signals);
+    for (Index i = 0; i < count; ++i) {
+      const Numerators one{numerators[0].row(i), numerators[1].row(i)};
+      const MatrixXd alone =
+          FilterSignals(MakeFilterBank(one, {3, 200.0}, kSampleTime), signals);
+      EXPECT_TRUE(together.row(i).isApprox(alone, 1e-12)) << i << " of " << count;
+    }
+  }
+}
+
 TEST(RunningBank, IsAtRestAfterReset) {
   const FilterBank bank =
       MakeFilterBank(Sample(3, {4, 200.0}), {4, 200.0}, kSampleTime);

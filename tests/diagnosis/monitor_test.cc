@@ -86,6 +86,7 @@ TEST(DiagnosisMonitor, LogsTheResidualsOfItsFilters) {
   EXPECT_LT((monitor.ResidualRows() - expected).cwiseAbs().maxCoeff(), 1e-6);
   const MonitorLog log = monitor.Log();
   EXPECT_EQ(log.residual, monitor.ResidualRows().row(0).transpose());
+  EXPECT_TRUE(log.signals.isApprox(signals, 1e-12));
   const Index window = 800;
   EXPECT_NEAR(log.integral[kSamples - 1],
               expected.row(0).tail(window).cwiseAbs().mean(), 1e-6);
@@ -193,6 +194,16 @@ TEST(DiagnosisMonitor, EstimatesFaultsAndDisturbanceWithinTheirErrors) {
   EXPECT_EQ(log.estimates.rightCols(1), monitor.estimate());
   EXPECT_DOUBLE_EQ(log.estimate_time[0], 0.0);
   EXPECT_NEAR(log.estimate_time[999], 999 * 4 / 8000.0, 1e-12);
+}
+
+TEST(DiagnosisMonitor, RegressesFromTheSampleThatItIsTold) {
+  const MatrixXd signals = test::Motion(test::Stage(), test::Drive(1000));
+  DiagnosisMonitor monitor(Design(), 1000);
+  monitor.RegressFrom(601);
+  mjdiag::Run(monitor, Design(), RecordOf(signals));
+  EXPECT_EQ(monitor.estimator().samples(), 99);
+  EXPECT_DOUBLE_EQ(monitor.Log().estimate_time[0], 604 / 8000.0);
+  EXPECT_EQ(monitor.Log().residual.size(), 1000);
 }
 
 TEST(DiagnosisMonitor, KeepsOnlyWhatItsLogHolds) {
