@@ -39,19 +39,15 @@ Eigen::Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
          static_cast<Eigen::Index>(horizon / record.sample_time() + 0.5);
 }
 
-DiagnosisResult DiagnoseRecord(const DiagnoseOptions& options, const Machine& machine,
-                               const ReadyDiagnosis& ready, const Record& record) {
-  const DiagnosisDesign& design = ready.design;
-  const Eigen::Index from = HorizonStart(design, record);
-  DiagnosisMonitor monitor(design, record.samples(), ready.baseline);
-  monitor.RegressFrom(from);
-  Run(monitor, design, record);
+DiagnosisResult ConcludeRecord(const DiagnoseOptions& options, const Machine& machine,
+                               const DiagnosisDesign& design,
+                               const DiagnosisMonitor& monitor, const Record& record) {
   if (!options.refine) return Conclude(design, monitor);
   const MechanicalModel healthy = Linearize(*machine.plant, machine.setup);
-  const RefinedEstimate refined =
-      RefineEstimate(design, SynthesisOf(machine.setup, healthy),
-                     FaultModels(*machine.plant, machine.setup),
-                     Magnitudes(*machine.plant, machine.setup), record, from);
+  const RefinedEstimate refined = RefineEstimate(
+      design, SynthesisOf(machine.setup, healthy),
+      FaultModels(*machine.plant, machine.setup),
+      Magnitudes(*machine.plant, machine.setup), record, HorizonStart(design, record));
   return Conclude(design, monitor, refined.estimate);
 }
 
@@ -68,11 +64,18 @@ void Diagnose(const DiagnoseOptions& options) {
   PrepareOutput(options.output);
   const ReadyDiagnosis ready =
       PrepareDiagnosis(options.source, machine, excitation, options.linear);
-  const DiagnosisResult result = DiagnoseRecord(options, machine, ready, record);
+  DiagnosisMonitor monitor(ready.design, record.samples(), ready.baseline);
+  monitor.RegressFrom(HorizonStart(ready.design, record));
+  Run(monitor, ready.design, record);
+  const DiagnosisResult result =
+      ConcludeRecord(options, machine, ready.design, monitor, record);
   nlohmann::json document = ToJson(result);
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
-  Publish(options.output, "diagnosis", document, Describe(result));
+  const std::string text =
+      Describe(result) + WriteDiagnosisPage(options.output, ready.design, monitor,
+                                            result, document["record"]);
+  Publish(options.output, "diagnosis", document, text);
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include "app/diagnosis_output.h"
 
+#include "app/command.h"
 #include "app/format.h"
 #include "app/progress.h"
 #include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/robust_design.h"
+#include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/filters_file.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -92,6 +95,18 @@ ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& ma
     ready.design.limits = CalibrateLimits(ready.design, setup, *machine.plant, runs);
   }
   return ready;
+}
+
+std::string WriteDiagnosisPage(const OutputOptions& output,
+                               const DiagnosisDesign& design,
+                               const DiagnosisMonitor& monitor,
+                               const DiagnosisResult& result,
+                               const std::string& record) {
+  if (output.folder.empty()) return "";
+  const RunDescription run{CommandLine(), record, {{"mjdiag", MJDIAG_VERSION}}};
+  const auto page = std::filesystem::path(output.folder) / "diagnosis.html";
+  WriteTextFile(page, DiagnosisPage(design, result, monitor.Log(), run));
+  return "\npage: " + page.string() + "\n";
 }
 
 std::string Describe(const DiagnosisResult& result) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/machine.h"
+#include "app/output.h"
 #include "mjdiag/diagnosis/diagnosis_result.h"
 
 namespace mjdiag::app {
@@ -29,6 +30,13 @@ struct ReadyDiagnosis {
 /// InputError if the file belongs to other channels or another rate than the setup.
 ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
                                 const Excitation& excitation, bool linear);
+
+/// Writes diagnosis.html into the output folder, if there is one, and says so.
+std::string WriteDiagnosisPage(const OutputOptions& output,
+                               const DiagnosisDesign& design,
+                               const DiagnosisMonitor& monitor,
+                               const DiagnosisResult& result,
+                               const std::string& record);
 
 /// The table for people.
 std::string Describe(const DiagnosisResult& result);

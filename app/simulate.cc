@@ -108,6 +108,8 @@ void Simulate(const SimulateOptions& options) {
     if (!options.output.folder.empty()) {
       WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
                     document["diagnosis"].dump(2) + "\n");
+      text += WriteDiagnosisPage(options.output, ready->design, *monitor, result,
+                                 "simulated: " + Describe(machine.options));
     }
   }
   Publish(options.output, "simulate", document, text);

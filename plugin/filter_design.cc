@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "mjdiag/diagnosis/f_distribution.h"
 #include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/diagnosis/row_choice.h"
 #include "mjdiag/plugin/fault_models.h"
@@ -178,6 +179,18 @@ std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Setup& setu
   return logs;
 }
 
+/// Where the next value of a normal distribution lies, but for this probability, of
+/// which these were drawn: mean -+ t s sqrt(1 + 1/n).
+Interval PredictionInterval(const VectorXd& values) {
+  constexpr double kOutside = 1e-3;
+  const auto n = static_cast<double>(values.size());
+  const double mean = values.mean();
+  const double variance = (values.array() - mean).square().sum() / (n - 1.0);
+  const double reach =
+      std::sqrt(FQuantile(kOutside, 1.0, n - 1.0) * variance * (1.0 + 1.0 / n));
+  return {mean - reach, mean + reach};
+}
+
 /// The limits that these runs, all healthy, call for. Estimates are judged from those
 /// of `repeated` only, which are all of one motion.
 DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
@@ -212,9 +225,7 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
     for (Index k = 0; k < values.size(); ++k) {
       values[k] = repeated[static_cast<std::size_t>(k)].estimate[i];
     }
-    const double middle = 0.5 * (values.maxCoeff() + values.minCoeff());
-    const double reach = options.margin * (values.maxCoeff() - middle);
-    limits.estimates.push_back({middle - reach, middle + reach});
+    limits.estimates.push_back(PredictionInterval(values));
   }
   limits.known = true;
   return limits;

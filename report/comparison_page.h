@@ -2,20 +2,11 @@
 // The page of `mjdiag compare`: what the simulation gets wrong on a measured record.
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "mjdiag/discovery/comparison.h"
+#include "mjdiag/report/run_description.h"
 
 namespace mjdiag {
-
-/// What it takes to do a run again.
-struct RunDescription {
-  std::string command;  ///< the exact command line
-  std::string record;   ///< name of the measured file
-  /// program -> version, for example {"mjdiag", "0.1.0"}
-  std::vector<std::pair<std::string, std::string>> versions;
-};
 
 /// The answer in one sentence, for example "The simulation misses q by 400 times its
 /// noise floor (1.1 µm rms)."

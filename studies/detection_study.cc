@@ -12,6 +12,7 @@ namespace mjdiag {
 namespace {
 
 constexpr double kResolution = 1.02;
+constexpr int kHealthyRuns = 20;
 constexpr double kCoarseResolution = 1.15;  // a nonlinear run takes longer
 
 Excitation DefaultMotion(const Setup& setup) {
@@ -195,6 +196,18 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
        "smallest by residual", "by robust row", "by estimate"},
       {},
       {}};
+  StudyTable alarms{"False alarms in " + std::to_string(kHealthyRuns) +
+                        " healthy runs of the nonlinear plant",
+                    {"fault", "by residual", "by robust row", "by estimate"},
+                    {},
+                    {}};
+  std::vector<Record> healthy_runs(kHealthyRuns);
+  ParallelFor(kHealthyRuns, [&](int i) {
+    healthy_runs[static_cast<std::size_t>(i)] =
+        Simulate(setup, plant, motion,
+                 WithFaults(setup, plant, {},
+                            options.seed + 20000 + static_cast<std::uint64_t>(i)));
+  });
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const auto& [fault, value] = largest[i];
     const double healthy = HealthyValue(setup, fault);
@@ -237,6 +250,14 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
     });
     for (const auto& deviation : smallest) row.push_back(DeviationCell(deviation));
     table.rows.push_back(std::move(row));
+    std::vector<Cell> false_alarms{fault};
+    for (int way = 0; way < kWays; ++way) {
+      const auto count = std::count_if(
+          healthy_runs.begin(), healthy_runs.end(),
+          [&](const Record& run) { return sees(static_cast<Way>(way), run); });
+      false_alarms.emplace_back(static_cast<double>(count));
+    }
+    alarms.rows.push_back(std::move(false_alarms));
     if (options.progress) {
       options.progress(static_cast<double>(i + 1) /
                        static_cast<double>(largest.size()));
@@ -246,7 +267,7 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
       "The robust row is, of all rows of the robust degree, the one that nominal runs "
       "excite least while the fault is seen; its limits come from nominal runs, too.",
       "An estimate counts when it is outside what nominal runs of this motion gave."};
-  return {table};
+  return {table, alarms};
 }
 
 }  // namespace mjdiag

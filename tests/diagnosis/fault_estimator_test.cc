@@ -211,23 +211,25 @@ TEST(FaultEstimator, IntervalsCoverTheFaultsOfAMachine) {
   RecordProperty("covered", Text(covered));
 }
 
-TEST(FaultEstimator, IsMoreCertainWhileItsNoiseBuildsUp) {
-  const MatrixXd regressors = Regressors(10);
-  const VectorXd residuals = VectorXd::Ones(regressors.rows());
-  const auto spread = [&](bool at_rest) {
-    return Regressed(regressors, residuals, 1, 1.0, at_rest)
-        .Estimate()
-        .covariance.trace();
+TEST(FaultEstimator, HasOnlyTheDirectNoiseAtTheFirstSampleAfterRest) {
+  const MatrixXd regressor = (MatrixXd(1, 2) << 1.0, 0.5).finished();
+  const ResidualNoise noise = Noise(1);
+  const MatrixXd stationary =
+      noise.direct + noise.C * noise.state * noise.C.transpose();
+  const auto variance = [&](const MatrixXd& covariance) {
+    const double power = regressor.squaredNorm();
+    return (regressor * covariance * regressor.transpose()).value() / (power * power);
   };
-  EXPECT_LT(spread(true), 0.5 * spread(false));
-  FaultEstimator estimator(kFaults, Noise(1), 1.0, true);
-  estimator.AssumeStationary();
-  for (Index t = 0; t < 10; ++t) {
-    estimator.Add(residuals.segment(t * kResiduals, kResiduals),
-                  regressors.middleRows(t * kResiduals, kResiduals).transpose());
-  }
-  EXPECT_NEAR(estimator.Estimate().covariance.trace(), spread(false),
-              1e-9 * spread(false));
+  FaultEstimator estimator(1, noise, 1.0, true);
+  estimator.Add(VectorXd::Ones(2), regressor);
+  EXPECT_NEAR(estimator.Estimate().covariance(0, 0), variance(noise.direct),
+              1e-9 * variance(noise.direct));
+  FaultEstimator assumed(1, noise, 1.0, true);
+  assumed.AssumeStationary();
+  assumed.Add(VectorXd::Ones(2), regressor);
+  EXPECT_NEAR(assumed.Estimate().covariance(0, 0), variance(stationary),
+              1e-9 * variance(stationary));
+  EXPECT_GT(variance(stationary), 1.2 * variance(noise.direct));
 }
 
 TEST(Inseparable, NamesTwoCollinearFaults) {

@@ -98,11 +98,14 @@ def evaluate(numerators, p, signals):
     return sum(numerators[:, k * signals:(k + 1) * signals] * p**k for k in range(count))
 
 
-def angle_between(first, second):
-    """Largest principal angle of two row spaces, columns scaled alike."""
-    size = np.abs(first).max(axis=0)
+def angle_between(first, second, signals, outputs):
+    """Largest principal angle of two row spaces. Powers of p count alike, and so do
+    outputs and inputs; single coefficients do not, for some of them are zero."""
+    size = np.abs(first).max(axis=0).reshape(-1, signals)
+    for part in (size[:, :outputs], size[:, outputs:]):
+        part[:] = part.max(axis=1, keepdims=True)
     size[size == 0.0] = 1.0
-    return linalg.subspace_angles((first / size).T, (second / size).T).max()
+    return linalg.subspace_angles((first / size.ravel()).T, (second / size.ravel()).T).max()
 
 
 def points(random, count):
@@ -185,7 +188,8 @@ def main():
     A, B, C = machine.delta(scale)
 
     show("nullity", [len(null_rows(A, B, C, d)) for d in range(degree + 1)])
-    show("angle", angle_between(given["space"], null_rows(A, B, C, degree)))
+    show("angle", angle_between(given["space"], null_rows(A, B, C, degree), signals,
+                                len(C)))
     for name in ("space", "disturbance"):
         show(f"{name}.misfit", misfit(machine, given[name], scale, zs))
     show("bank.misfit", misfit(machine, given["bank"][:1], scale, zs))

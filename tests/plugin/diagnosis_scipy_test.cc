@@ -124,7 +124,9 @@ MatrixXd AsRow(const Denominator& denominator) {
 struct Diagnosis {
   Diagnosis()
       : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
-                        {"trajectories.multi.duration=0.25"})),
+                        {"trajectories.multi.duration=0.25",
+                         "diagnosis.estimation.magnitudes.beta_x=1e-3",
+                         "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
         plant(LoadPlant(setup)),
         machine(Linearize(*plant, setup)),
         options(SynthesisOf(setup, machine)),
@@ -236,8 +238,10 @@ TEST_F(DiagnosisScipy, FindsTheSameRows) {
   EXPECT_EQ(nullity(0, 6), 1);
   EXPECT_EQ(nullity(0, 7), 4);
   EXPECT_EQ(Ours().space.rows.front().rows(), 4);
-  // Rounding times the condition of the coefficients, see below.
-  EXPECT_LT(Number("angle"), 1e-6);
+  // Rounding, times 1e4 for the spread of the singular values of the stack in the
+  // coordinates of the reference, times 1e4 for that of the coefficients within a
+  // power.
+  EXPECT_LT(Number("angle"), 1e-7);
 }
 
 TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
@@ -249,9 +253,10 @@ TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
 }
 
 TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheSlopesOfTheResidual) {
-  // Both sides are central differences over the same turn c of a knob, of different
-  // things: they agree up to their terms of c^2.
-  EXPECT_THAT(Value("slopes").reshaped(), Each(Lt(1e-4)));
+  // Both sides are central differences over a turn of c = 1e-3 of a knob, but of
+  // different things: they agree up to their terms of c^2, times how strongly the row
+  // bends, which is some tens for the guide dampers. A wrong slope is off by one.
+  EXPECT_THAT(Value("slopes").reshaped(), Each(Lt(1e-3)));
 }
 
 TEST_F(DiagnosisScipy, HasTheSameDenominators) {
@@ -274,7 +279,7 @@ TEST_F(DiagnosisScipy, ConfirmsThatRowsHaveUnitNoise) {
   EXPECT_NEAR(bank(0, 0), 1.0, 1e-6);
   // The noise of a prefiltered signal tells nothing about that of the residual.
   for (Index i = 1; i < bank.cols(); ++i) {
-    EXPECT_NEAR(bank(0, i) / std::sqrt(bank(i, i)), 0.0, 1e-4)
+    EXPECT_LE(std::abs(bank(0, i)), 1e-4 * std::sqrt(bank(i, i)))
         << Ours().design.bank.faults[static_cast<std::size_t>(i - 1)];
   }
   EXPECT_NEAR(Number("disturbance.covariance"), 1.0, 1e-6);

@@ -1,0 +1,20 @@
+#pragma once
+// The page of a diagnosis: the verdict, the residual between its thresholds, the mean
+// of its magnitude, the estimates over time, and the spectrum of the disturbance
+// residual over that of a healthy machine (Fig. 17 to 24 and 32 of the seed).
+
+#include <string>
+
+#include "mjdiag/diagnosis/diagnosis_result.h"
+#include "mjdiag/report/run_description.h"
+
+namespace mjdiag {
+
+/// The answer in one sentence.
+std::string DiagnosisVerdict(const DiagnosisResult& result);
+
+/// The whole page. InputError if the plot library is not installed.
+std::string DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
+                          const MonitorLog& log, const RunDescription& run);
+
+}  // namespace mjdiag

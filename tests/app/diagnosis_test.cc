@@ -1,0 +1,238 @@
+// The commands design, diagnose, simulate --diagnose and study, as users run them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command_line.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kLinear = "--setup mjcf/ab383 --linear ";
+
+json JsonOf(const std::string& arguments) {
+  const CommandResult result = RunCommand(arguments + " --json");
+  EXPECT_EQ(result.status, 0) << result.err;
+  return json::parse(result.out);
+}
+
+/// The one line on stderr of a command that is refused with status 2.
+std::string Refused(const std::string& arguments) {
+  const CommandResult result = RunCommand(arguments);
+  EXPECT_EQ(result.status, 2) << arguments << "\n" << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  return result.err;
+}
+
+/// Filters of the linear plant, made once for all tests of this process.
+class Diagnosis : public ::testing::Test {
+ protected:
+  std::string Path(const std::string& name) const {
+    return (folder_.path() / name).string();
+  }
+  std::string Filters() const {
+    const std::string out = Path("design");
+    if (!fs::exists(out)) {
+      EXPECT_EQ(RunCommand(std::string("design ") + kLinear + "--out " + out).status,
+                0);
+    }
+    return out + "/filters.json";
+  }
+  /// A copy of the bonder's setup with a piece of a file replaced.
+  std::string Changed(const std::string& file, const std::string& from,
+                      const std::string& to) const {
+    const fs::path copy = folder_.path() / "changed";
+    fs::create_directories(copy);
+    fs::copy(fs::path(MJDIAG_SOURCE_DIR) / "mjcf" / "ab383", copy,
+             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    std::string text = ReadAll(copy / file);
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    std::ofstream(copy / file) << text;
+    return copy.string();
+  }
+  const TemporaryFolder folder_;
+};
+
+double ValueOf(const json& diagnosis, const std::string& fault) {
+  for (const json& entry : diagnosis["faults"]) {
+    if (entry["name"] == fault) return entry["value"];
+  }
+  ADD_FAILURE() << "no " << fault;
+  return 0.0;
+}
+
+TEST_F(Diagnosis, OfARecordEqualsTheOneInsideTheCallbackToTheLastBit) {
+  const std::string filters = Filters();
+  const std::string out = Path("run");
+  for (const char* plant : {"--linear ", "--no-friction "}) {
+    ASSERT_EQ(RunCommand(std::string("simulate --setup mjcf/ab383 ") + plant +
+                         "--duration 0.5 --fault zeta_x=1.005 --fault eta_z=0.999 "
+                         "--diagnose --filters " +
+                         filters + " --out " + out)
+                  .status,
+              0);
+    const json inside = json::parse(ReadAll(out + "/diagnosis.json"));
+    json offline = JsonOf("diagnose --setup mjcf/ab383 --filters " + filters +
+                          " --record " + out + "/record.csv");
+    offline.erase("command");
+    offline.erase("record");
+    EXPECT_EQ(inside, offline);
+  }
+}
+
+TEST_F(Diagnosis, FindsTheFaultAndItsSize) {
+  const json document =
+      JsonOf(std::string("simulate ") + kLinear +
+             "--fault zeta_x=1.005 --fault eta_z=0.9999 --diagnose --filters " +
+             Filters())["diagnosis"];
+  EXPECT_EQ(document["schema"], "mjdiag.diagnosis/1");
+  EXPECT_TRUE(document["detected"]);
+  EXPECT_LT(document["first_detection"].get<double>(), 0.05);
+  EXPECT_FALSE(document["lasting_since"].is_null());
+  EXPECT_NEAR(ValueOf(document, "zeta_x"), 1.005, 5e-5);
+  EXPECT_NEAR(ValueOf(document, "eta_z"), 0.9999, 1e-6);
+  for (const json& fault : document["faults"]) {
+    EXPECT_EQ(fault["detected"], fault["name"] == "zeta_x" || fault["name"] == "eta_z")
+        << fault;
+  }
+}
+
+TEST_F(Diagnosis, SaysThatAHealthyMachineIsHealthy) {
+  const json document = JsonOf(std::string("simulate ") + kLinear +
+                               "--seed 11 --diagnose --filters " + Filters());
+  EXPECT_FALSE(document["diagnosis"]["detected"]);
+  EXPECT_TRUE(document["diagnosis"]["first_detection"].is_null());
+  EXPECT_TRUE(document["diagnosis"]["disturbance"]["peaks"].empty());
+}
+
+TEST_F(Diagnosis, CallsTenfoldNoiseNoiseAndNotATone) {
+  const json document =
+      JsonOf(std::string("simulate ") + kLinear + "--noise 10 --diagnose --filters " +
+             Filters())["diagnosis"];
+  EXPECT_TRUE(document["disturbance"]["noise_raised"]);
+  EXPECT_TRUE(document["disturbance"]["peaks"].empty());
+  EXPECT_NEAR(document["disturbance"]["noise_ratio"].get<double>(), 100.0, 15.0);
+}
+
+TEST_F(Diagnosis, FindsTheTonesOfADisturbance) {
+  const json document =
+      JsonOf(std::string("simulate ") + kLinear +
+             "--fault gamma=0.01 --diagnose --filters " + Filters())["diagnosis"];
+  std::vector<double> frequencies;
+  for (const json& peak : document["disturbance"]["peaks"]) {
+    frequencies.push_back(std::round(peak["frequency"].get<double>()));
+  }
+  EXPECT_THAT(frequencies, ::testing::ElementsAre(100.0, 300.0, 750.0));
+  EXPECT_NEAR(ValueOf(document, "gamma"), 0.01, 1.5e-4);
+}
+
+TEST_F(Diagnosis, RefinedIsExactForLargeFaults) {
+  const std::string filters = Filters();
+  const std::string out = Path("run");
+  ASSERT_EQ(RunCommand(std::string("simulate ") + kLinear +
+                       "--fault zeta_x=1.2 --fault eta_y=0.98 --out " + out)
+                .status,
+            0);
+  const json document = JsonOf("diagnose --setup mjcf/ab383 --refine --filters " +
+                               filters + " --record " + out + "/record.csv");
+  // Ten standard deviations.
+  EXPECT_NEAR(ValueOf(document, "zeta_x"), 1.2, 1.5e-5);
+  EXPECT_NEAR(ValueOf(document, "eta_y"), 0.98, 8e-7);
+}
+
+TEST_F(Diagnosis, RefusesADegreeWithoutRows) {
+  EXPECT_THAT(Refused("design --setup mjcf/ab383 --set diagnosis.degree=5"),
+              AllOf(HasSubstr("no row of degree 5"), HasSubstr("at least 6")));
+}
+
+TEST_F(Diagnosis, RefusesADenominatorBelowTheNumerator) {
+  EXPECT_THAT(Refused("design --setup mjcf/ab383 --set diagnosis.order=6"),
+              AllOf(HasSubstr("order 6"), HasSubstr("at least the degree")));
+}
+
+TEST_F(Diagnosis, RefusesAPlantWhoseSensorsSeeTooLittle) {
+  // With all three motor forces unknown no row is left.
+  EXPECT_THAT(Refused("design --setup mjcf/ab383 --set "
+                      "'diagnosis.unknown_forces=[\"X\",\"Y\",\"Z\"]'"),
+              HasSubstr("fewer unknown inputs"));
+}
+
+TEST_F(Diagnosis, RefusesAHorizonLongerThanTheRecord) {
+  const std::string filters = Filters();
+  const std::string out = Path("run");
+  RunCommand(std::string("simulate ") + kLinear + "--duration 0.2 --out " + out);
+  const std::string setup = "--set diagnosis.estimation.horizon=0.5 ";
+  const std::string made = Path("longer");
+  ASSERT_EQ(
+      RunCommand(std::string("design ") + kLinear + setup + "--out " + made).status, 0);
+  EXPECT_THAT(Refused("diagnose --setup mjcf/ab383 --filters " + made +
+                      "/filters.json --record " + out + "/record.csv"),
+              AllOf(HasSubstr("horizon"), HasSubstr("500 ms"), HasSubstr("200 ms")));
+}
+
+TEST_F(Diagnosis, NamesTheFaultsThatCannotBeToldApart) {
+  const std::string setup =
+      Changed("plant.xml", "<text name=\"fault.zeta_x\" data=\"damping X\"/>",
+              "<text name=\"fault.zeta_x\" data=\"damping X\"/>"
+              "<text name=\"fault.worn\" data=\"damping X\"/>");
+  EXPECT_THAT(
+      Refused("simulate --linear --duration 0.3 --diagnose --setup '" + setup + "'"),
+      AllOf(HasSubstr("tell these faults apart"), HasSubstr("zeta_x, worn")));
+}
+
+TEST_F(Diagnosis, RefusesARecordOfAnotherRate) {
+  const std::string record =
+      folder_.Write("slow.csv",
+                    "time [s],x [m],y [m],z [rad],u_x [N],u_y [N],u_z [N m]\n"
+                    "0,0,0,0,0,0,0\n0.001,0,0,0,0,0,0\n0.002,0,0,0,0,0,0\n");
+  EXPECT_THAT(Refused("diagnose --setup mjcf/ab383 --filters " + Filters() +
+                      " --record " + record),
+              AllOf(HasSubstr("every 1.000000 ms"), HasSubstr("0.125000 ms")));
+}
+
+TEST_F(Diagnosis, RefusesFiltersOfAnotherMachine) {
+  EXPECT_THAT(Refused("simulate --setup mjcf/emps --diagnose --filters " + Filters()),
+              AllOf(HasSubstr("filters.json"), HasSubstr("EMPS")));
+}
+
+TEST_F(Diagnosis, RefusesHalfAFileOfFilters) {
+  const std::string whole = ReadAll(Filters());
+  for (const double part : {0.0, 0.3, 0.999}) {
+    const std::string file = folder_.Write(
+        "half.json",
+        whole.substr(
+            0, static_cast<std::size_t>(part * static_cast<double>(whole.size() - 3))));
+    EXPECT_THAT(Refused("simulate --setup mjcf/ab383 --diagnose --filters " + file),
+                HasSubstr("half.json"));
+  }
+}
+
+TEST(Study, PrintsTheBoundAndWhatEstimatorsMakeOfIt) {
+  const json document = JsonOf("study --setup mjcf/ab383 --preset bound");
+  EXPECT_EQ(document["schema"], "mjdiag.study/1");
+  const json& rows = document["tables"][0]["rows"];
+  ASSERT_EQ(rows.size(), 8u);
+  for (const json& row : rows) {
+    EXPECT_LE(row[1].get<double>(), row[2].get<double>()) << row;
+    EXPECT_GT(row[4].get<double>(), 1.0) << row;  // no estimator beats the bound
+    EXPECT_LE(row[6].get<double>(), row[4].get<double>() * 1.01) << row;
+  }
+}
+
+TEST(Study, ListsThePresetsWhenOneIsUnknown) {
+  EXPECT_THAT(Refused("study --setup mjcf/ab383 --preset table9"),
+              AllOf(HasSubstr("table9"), HasSubstr("table2")));
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,103 @@
+#include "mjdiag/report/diagnosis_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/report/diagnosis_json.h"
+#include "mjdiag/report/filters_file.h"
+#include "mjdiag/signals/error.h"
+#include "support/message_of.h"
+#include "support/temporary_folder.h"
+
+namespace mjdiag {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A diagnosis of the bonder over 0.3 s of its linear plant.
+struct Example {
+  explicit Example(double zeta_x) {
+    setup.diagnosis.trajectories.clear();
+    for (Trajectory& trajectory : setup.trajectories) trajectory.duration = 0.3;
+    plant = LoadPlant(setup);
+    design = DesignFilters(setup, *plant);
+    NominalRuns nominal;
+    nominal.linear = true;
+    design.limits = CalibrateLimits(design, setup, *plant, nominal);
+    RunOptions options;
+    options.faults = {{"zeta_x", zeta_x}};
+    const Record record = SimulateLinear(
+        setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")), options);
+    monitor.emplace(design, record.samples());
+    Run(*monitor, design, record);
+    result = Conclude(design, *monitor);
+  }
+
+  mjdiag::Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
+  ModelPtr plant;
+  DiagnosisDesign design;
+  std::optional<DiagnosisMonitor> monitor;
+  DiagnosisResult result;
+};
+
+TEST(DiagnosisPage, SaysWhatIsWrongFirst) {
+  const Example faulty(1.01);
+  const std::string page = DiagnosisPage(faulty.design, faulty.result,
+                                         faulty.monitor->Log(), {"cmd", "r", {}});
+  EXPECT_THAT(page, HasSubstr("Detected: zeta_x = 1.01"));
+  EXPECT_LT(page.find("Detected: zeta_x"), page.find("<table"));
+  EXPECT_THAT(page, HasSubstr("threshold"));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+}
+
+TEST(DiagnosisPage, SaysThatNothingIsWrong) {
+  EXPECT_EQ(DiagnosisVerdict(Example(1.0).result),
+            "Nothing is wrong that this run shows.");
+}
+
+TEST(DiagnosisJson, HasTheFieldsThatOtherProgramsRead) {
+  const nlohmann::json document = ToJson(Example(1.01).result);
+  EXPECT_EQ(document["schema"], "mjdiag.diagnosis/1");
+  for (const char* key : {"setup", "samples", "sample_time", "detected",
+                          "first_detection", "residual", "faults", "disturbance"}) {
+    EXPECT_TRUE(document.contains(key)) << key;
+  }
+  for (const char* key : {"min", "max", "threshold_min", "threshold_max"}) {
+    EXPECT_TRUE(document["residual"].contains(key)) << key;
+  }
+  for (const char* key : {"name", "value", "sd", "ci95", "detected"}) {
+    EXPECT_TRUE(document["faults"][0].contains(key)) << key;
+  }
+  for (const char* key : {"peaks", "total", "total_threshold"}) {
+    EXPECT_TRUE(document["disturbance"].contains(key)) << key;
+  }
+}
+
+TEST(FiltersFile, GivesBackTheSameDiagnosis) {
+  const Example faulty(1.01);
+  const test::TemporaryFolder folder;
+  const std::string file = folder.Write("filters.json", ToJson(faulty.design).dump());
+  const DiagnosisDesign read = ReadFilters(file);
+  EXPECT_EQ(ToJson(read), ToJson(faulty.design));
+  EXPECT_EQ(read.bank.filters.B, faulty.design.bank.filters.B);
+  EXPECT_EQ(read.limits.disturbance.highest, faulty.design.limits.disturbance.highest);
+}
+
+TEST(FiltersFile, NamesWhatIsMissing) {
+  const Example faulty(1.0);
+  nlohmann::json document = ToJson(faulty.design);
+  document.erase("stride");
+  const test::TemporaryFolder folder;
+  const std::string file = folder.Write("filters.json", document.dump());
+  EXPECT_THAT(test::MessageOf<InputError>([&] { ReadFilters(file); }),
+              HasSubstr("stride"));
+  document["schema"] = "something/1";
+  EXPECT_THAT(test::MessageOf<InputError>(
+                  [&] { ReadFilters(folder.Write("other.json", document.dump())); }),
+              HasSubstr("schema"));
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,59 @@
+#include "mjdiag/studies/machine_study.h"
+
+#include <gtest/gtest.h>
+
+#include "mjdiag/studies/estimation_study.h"
+
+namespace mjdiag {
+namespace {
+
+TEST(SmallestDeviation, IsWhereDetectionBegins) {
+  for (const double sign : {1.0, -1.0}) {
+    const auto smallest = SmallestDeviation(sign * 0.5, 1.01, [&](double deviation) {
+      EXPECT_GT(deviation * sign, 0.0);
+      return std::abs(deviation) >= 3e-4;
+    });
+    ASSERT_TRUE(smallest);
+    EXPECT_GE(*smallest * sign, 3e-4);
+    EXPECT_LE(*smallest * sign, 3e-4 * 1.01);
+  }
+}
+
+TEST(SmallestDeviation, IsNoneWhereTheLargestIsNotSeen) {
+  EXPECT_FALSE(SmallestDeviation(0.5, 1.01, [](double) { return false; }));
+}
+
+TEST(BinomialBand, HoldsTheWantedShare) {
+  // Binomial distribution of 200 draws with 0.95: 0.5 % below 181, 0.5 % above 198.
+  const auto band = BinomialBand(200, 0.95, 0.99);
+  EXPECT_EQ(band.first, 181);
+  EXPECT_EQ(band.second, 197);
+}
+
+TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
+  const Cell cell(1.23456789e-7);
+  EXPECT_EQ(cell.text, "1.235e-07");
+  EXPECT_EQ(cell.number, 1.23456789e-7);
+  EXPECT_TRUE(cell.is_number);
+  EXPECT_FALSE(Cell("-").is_number);
+}
+
+// Section 5.5 of the seed in small: 6 runs of each size.
+TEST(EstimationStudy, FindsAllFaultsAtOnceWithinOnePerCent) {
+  const auto setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
+  const ModelPtr plant = LoadPlant(setup);
+  StudyOptions options;
+  options.runs = 6;
+  for (const StudyTable& table : EstimationStudy(setup, *plant, options)) {
+    int judged = 0;
+    for (const auto& row : table.rows) {
+      if (!row[3].is_number) continue;
+      EXPECT_LT(row[3].number, 1.0) << row[0].text;
+      ++judged;
+    }
+    EXPECT_EQ(judged, 5);
+  }
+}
+
+}  // namespace
+}  // namespace mjdiag
