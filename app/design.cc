@@ -24,14 +24,16 @@ struct DesignOptions {
   bool linear = false;
 };
 
+// Beyond it a plant without rows is one without redundancy.
+constexpr int kHighestDegree = 40;
+
 nlohmann::json RankJson(const Machine& machine) {
   const MechanicalModel model = Linearize(*machine.plant, machine.setup);
   const SynthesisOptions options = SynthesisOf(machine.setup, model);
   const StateSpace system = DeltaForm(model, options.timing);
   return {{"observability_ranks", ObservabilityRanks(system, options.degree)},
           {"states", system.states()},
-          {"minimal_degree",
-           MinimalDegree(system, NoSignal(system), machine.setup.diagnosis.degree)}};
+          {"minimal_degree", MinimalDegree(system, NoSignal(system), kHighestDegree)}};
 }
 
 std::string Summary(const DiagnosisDesign& design, const nlohmann::json& ranks) {

@@ -17,7 +17,7 @@ std::string DetectedFaults(const DiagnosisResult& result) {
   for (const FaultVerdict& fault : result.faults) {
     if (!fault.detected) continue;
     names +=
-        (names.empty() ? "" : ", ") + fault.name + " = " + FormatNumber(fault.value, 6);
+        (names.empty() ? "" : ", ") + fault.name + " = " + FormatNumber(fault.value, 5);
   }
   return names;
 }
@@ -31,7 +31,7 @@ void AddFaultTable(Page& page, const DiagnosisResult& result) {
                    {"Standard deviation", true},
                    {"Detected"}};
   for (const FaultVerdict& fault : result.faults) {
-    table.rows.push_back({fault.name, FormatNumber(fault.value, 6),
+    table.rows.push_back({fault.name, FormatNumber(fault.value, 5),
                           FormatNumber(fault.deviation), FormatNumber(fault.sd),
                           fault.detected ? "yes" : "no"});
   }

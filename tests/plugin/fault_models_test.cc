@@ -57,7 +57,7 @@ std::vector<std::string> Driven(const MechanicalModel& model,
                                 const std::string& input) {
   std::vector<std::string> entries;
   const Index column = Place(model.inputs, input);
-  const double rounding = 1e-12 * model.Gamma.col(column).cwiseAbs().maxCoeff();
+  const double rounding = 1e-9 * model.Gamma.col(column).cwiseAbs().maxCoeff();
   for (Index i = 0; i < model.Gamma.rows(); ++i) {
     if (std::abs(model.Gamma(i, column)) <= rounding) continue;
     entries.push_back("Gamma(" + model.coordinates[i] + "," + input + ")");
