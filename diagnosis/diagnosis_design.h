@@ -30,12 +30,16 @@ struct DisturbanceFilter {
   SecondOrderSections high_pass;
 };
 
+/// Probability with which the estimate of a healthy run lies outside its limits.
+inline constexpr double kOutsideLimits = 1e-3;
+
 /// Limits found on nominal runs.
 struct DiagnosisLimits {
   ThresholdDesign residual;
   double integral = 0.0;  ///< of the windowed mean of |r|
-  /// Of every estimate's deviation from healthy; empty: the interval of the estimate
-  /// alone decides.
+  /// Of every estimate's deviation from healthy: an estimate is judged, and reported,
+  /// relative to their middle, with their width in its standard deviation. Empty: the
+  /// interval of the estimate alone decides.
   std::vector<Interval> estimates;
   DisturbanceThresholds disturbance;
   bool known = false;

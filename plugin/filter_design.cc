@@ -182,12 +182,11 @@ std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Setup& setu
 /// Where the next value of a normal distribution lies, but for this probability, of
 /// which these were drawn: mean -+ t s sqrt(1 + 1/n).
 Interval PredictionInterval(const VectorXd& values) {
-  constexpr double kOutside = 1e-3;
   const auto n = static_cast<double>(values.size());
   const double mean = values.mean();
   const double variance = (values.array() - mean).square().sum() / (n - 1.0);
   const double reach =
-      std::sqrt(FQuantile(kOutside, 1.0, n - 1.0) * variance * (1.0 + 1.0 / n));
+      std::sqrt(FQuantile(kOutsideLimits, 1.0, n - 1.0) * variance * (1.0 + 1.0 / n));
   return {mean - reach, mean + reach};
 }
 

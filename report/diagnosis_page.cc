@@ -1,5 +1,8 @@
 #include "mjdiag/report/diagnosis_page.h"
 
+#include <array>
+#include <cstdio>
+
 #include "mjdiag/report/page.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -7,6 +10,13 @@ namespace mjdiag {
 namespace {
 
 using Eigen::Index;
+
+/// Of a knob, which is near 1 more often than not: 1.01, not 1.0100.
+std::string KnobText(double value) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.5g", value);
+  return digits.data();
+}
 
 std::string When(const std::optional<double>& time) {
   return time ? FormatQuantity(*time, "s") : "never";
@@ -16,8 +26,7 @@ std::string DetectedFaults(const DiagnosisResult& result) {
   std::string names;
   for (const FaultVerdict& fault : result.faults) {
     if (!fault.detected) continue;
-    names +=
-        (names.empty() ? "" : ", ") + fault.name + " = " + FormatNumber(fault.value, 5);
+    names += (names.empty() ? "" : ", ") + fault.name + " = " + KnobText(fault.value);
   }
   return names;
 }
@@ -31,7 +40,7 @@ void AddFaultTable(Page& page, const DiagnosisResult& result) {
                    {"Standard deviation", true},
                    {"Detected"}};
   for (const FaultVerdict& fault : result.faults) {
-    table.rows.push_back({fault.name, FormatNumber(fault.value, 5),
+    table.rows.push_back({fault.name, KnobText(fault.value),
                           FormatNumber(fault.deviation), FormatNumber(fault.sd),
                           fault.detected ? "yes" : "no"});
   }

@@ -246,10 +246,11 @@ TEST_F(DiagnosisScipy, FindsTheSameRows) {
 
 TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
   // N [G; I] at points of the complex plane, over the sum of the magnitudes of what
-  // cancels in it: rounding is left, times the condition of the resolvent.
-  EXPECT_LT(Number("space.misfit"), 1e-10);
-  EXPECT_LT(Number("bank.misfit"), 1e-10);
-  EXPECT_LT(Number("disturbance.misfit"), 1e-10);
+  // cancels in it: rounding is left, times the condition of the resolvent (1e5 and more
+  // near the poles of the guides).
+  EXPECT_LT(Number("space.misfit"), 1e-9);
+  EXPECT_LT(Number("bank.misfit"), 1e-9);
+  EXPECT_LT(Number("disturbance.misfit"), 1e-9);
 }
 
 TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheSlopesOfTheResidual) {
@@ -273,36 +274,45 @@ TEST_F(DiagnosisScipy, HasTheSameDenominators) {
 }
 
 TEST_F(DiagnosisScipy, ConfirmsThatRowsHaveUnitNoise) {
+  // Rounding, times 1e4 for the Lyapunov equation of poles that near to 1.
+  constexpr double kRounding = 1e-11;
   const MatrixXd& covariance = Value("space.covariance");
-  EXPECT_LT((covariance - MatrixXd::Identity(4, 4)).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((covariance - MatrixXd::Identity(4, 4)).cwiseAbs().maxCoeff(), kRounding);
   const MatrixXd& bank = Value("bank.covariance");
-  EXPECT_NEAR(bank(0, 0), 1.0, 1e-6);
-  // The noise of a prefiltered signal tells nothing about that of the residual.
+  EXPECT_NEAR(bank(0, 0), 1.0, kRounding);
+  // The noise of a prefiltered signal tells nothing about that of the residual, up to
+  // the terms of c^2 of its central difference.
   for (Index i = 1; i < bank.cols(); ++i) {
     EXPECT_LE(std::abs(bank(0, i)), 1e-4 * std::sqrt(bank(i, i)))
         << Ours().design.bank.faults[static_cast<std::size_t>(i - 1)];
   }
-  EXPECT_NEAR(Number("disturbance.covariance"), 1.0, 1e-6);
+  EXPECT_NEAR(Number("disturbance.covariance"), 1.0, kRounding);
 }
 
 TEST_F(DiagnosisScipy, RunsTheSameFiltersOverARecord) {
+  // Positions of 1e5 times their noise cancel to a residual of some hundred times its
+  // noise, in either form of the filters with its own rounding.
+  constexpr double kRounding = 1e-8;
   const MatrixXd& reference = Value("bank.output");
   const MatrixXd outputs = FilterSignals(Ours().design.bank.filters, Ours().signals);
   for (Index i = 0; i < outputs.rows(); ++i) {
-    EXPECT_LT(Difference(outputs.row(i), reference.row(i)), 1e-6) << i;
+    EXPECT_LT(Difference(outputs.row(i), reference.row(i)), kRounding) << i;
   }
-  EXPECT_LT(Difference(Ours().log.residual.transpose(), reference.row(0)), 1e-6);
+  EXPECT_LT(Difference(Ours().log.residual.transpose(), reference.row(0)), kRounding);
   // The worn guide is in it: many times the noise, which is one.
   EXPECT_GT(reference.row(0).cwiseAbs().maxCoeff(), 10.0);
 }
 
 TEST_F(DiagnosisScipy, HasTheSameDensityOfTheDisturbanceResidual) {
+  // As above, of a residual no larger than its noise.
+  constexpr double kRounding = 1e-7;
   const VectorXd& ours = Ours().log.disturbance;
-  EXPECT_LT(Difference(ours.transpose(), Value("high_passed")), 1e-6);
+  EXPECT_LT(Difference(ours.transpose(), Value("high_passed")), kRounding);
   const Spectrum spectrum =
       WelchDensity(ours, Ours().setup.sample_time(), Diagnosis::kSegment);
   EXPECT_LT(Difference(spectrum.frequency.transpose(), Value("density").row(0)), 1e-14);
-  EXPECT_LT(Difference(spectrum.density.transpose(), Value("density").row(1)), 1e-6);
+  EXPECT_LT(Difference(spectrum.density.transpose(), Value("density").row(1)),
+            kRounding);
 }
 
 }  // namespace
