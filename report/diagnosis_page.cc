@@ -76,17 +76,18 @@ TimePlot IntegralPlot(const DiagnosisDesign& design, const DiagnosisResult& resu
 /// has no data behind it and would set the scale.
 TimePlot EstimatePlot(const DiagnosisDesign& design, const FaultVerdict& fault,
                       const MonitorLog& log, Index index) {
+  constexpr double kPpm = 1e6;
   const Index count = log.estimates.cols();
   const Index first = count / 10;
   TimePlot plot;
   plot.caption = "Estimate of " + fault.name;
-  plot.quantity = "deviation";
+  plot.quantity = "from healthy, ppm";
   plot.unit = "1";
   plot.start_time = log.estimate_time[first];
   plot.sample_time = design.stride * design.sample_time();
-  plot.curves = {
-      {fault.name, CurveRole::kMeasured, log.estimates.row(index).tail(count - first)}};
-  plot.levels = {{fault.deviation, "final estimate"}};
+  plot.curves = {{fault.name, CurveRole::kMeasured,
+                  kPpm * log.estimates.row(index).tail(count - first)}};
+  plot.levels = {{kPpm * fault.deviation, "final estimate"}};
   plot.height = 160;
   return plot;
 }
