@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "mjdiag/diagnosis/equilibrate.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -16,31 +17,6 @@ using Eigen::VectorXd;
 
 /// Singular values below this part of the largest, after equilibration, are zero.
 constexpr double kRankTolerance = 1e-11;
-
-/// diag(rows) * original * diag(columns), with rows and columns of comparable norm.
-struct Equilibrated {
-  MatrixXd matrix;
-  VectorXd rows;
-  VectorXd columns;
-};
-
-double InverseRootNorm(double norm) { return norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0; }
-
-Equilibrated Equilibrate(const MatrixXd& matrix) {
-  Equilibrated result{matrix, VectorXd::Ones(matrix.rows()),
-                      VectorXd::Ones(matrix.cols())};
-  // Each sweep takes the square root of what is left of the imbalance.
-  constexpr int kSweeps = 12;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const VectorXd rows = result.matrix.rowwise().norm().unaryExpr(&InverseRootNorm);
-    const VectorXd columns =
-        result.matrix.colwise().norm().transpose().unaryExpr(&InverseRootNorm);
-    result.matrix = rows.asDiagonal() * result.matrix * columns.asDiagonal();
-    result.rows.array() *= rows.array();
-    result.columns.array() *= columns.array();
-  }
-  return result;
-}
 
 int RankOf(const VectorXd& singular_values) {
   return static_cast<int>(

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/diagnosis/equilibrate.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -27,28 +28,6 @@ constexpr double kSolverTolerance = 1e-9;
 
 /// A later row must be smaller by this part to count as smaller.
 constexpr double kTie = 1e-9;
-
-/// diag(rows) * original * diag(columns), rows and columns of comparable norm.
-struct Equilibrated {
-  MatrixXd matrix;
-  VectorXd rows;
-};
-
-double InverseRootNorm(double norm) { return norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0; }
-
-Equilibrated Equilibrate(const MatrixXd& matrix) {
-  Equilibrated result{matrix, VectorXd::Ones(matrix.rows())};
-  // Each sweep takes the square root of what is left of the imbalance.
-  constexpr int kSweeps = 12;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const VectorXd rows = result.matrix.rowwise().norm().unaryExpr(&InverseRootNorm);
-    const VectorXd columns =
-        result.matrix.colwise().norm().transpose().unaryExpr(&InverseRootNorm);
-    result.matrix = rows.asDiagonal() * result.matrix * columns.asDiagonal();
-    result.rows.array() *= rows.array();
-  }
-  return result;
-}
 
 /// Orthonormal columns that span all v with v^T matrix = 0.
 MatrixXd LeftNullSpace(const MatrixXd& matrix) {
