@@ -21,10 +21,10 @@ struct Slope {
 /// Relative to the springs of the machine.
 constexpr double kMoved = 1e-9;
 
-bool MovesTheEquilibrium(const mjModel& plant, const Fault& turned) {
+bool MovesTheEquilibrium(const mjModel& plant, const Eigen::VectorXd& healthy,
+                         const Fault& turned) {
   const ModelPtr copy = CopyModel(plant);
   ApplyFault(*copy, turned);
-  const Eigen::VectorXd healthy = StaticEquilibrium(plant);
   const Eigen::VectorXd moved = StaticEquilibrium(*copy);
   return (moved - healthy).norm() > kMoved * (1.0 + healthy.norm());
 }
@@ -73,11 +73,12 @@ ModelAt FaultModels(const mjModel& plant, const Setup& setup) {
     return LinearizeFaulty(plant, setup, faults);
   };
   const MechanicalModel base = Linearize(plant, setup);
+  const Eigen::VectorXd rest = StaticEquilibrium(plant);
   std::vector<Slope> slopes;
   for (std::size_t i = 0; i < healthy.size(); ++i) {
     // Half the value tells more than a small step: the models are affine.
     constexpr double kTurned = 0.5;
-    if (MovesTheEquilibrium(plant, {healthy[i].name, kTurned})) return full;
+    if (MovesTheEquilibrium(plant, rest, {healthy[i].name, kTurned})) return full;
     Eigen::VectorXd knobs =
         Eigen::VectorXd::Ones(static_cast<Eigen::Index>(healthy.size()));
     knobs[static_cast<Eigen::Index>(i)] = kTurned;

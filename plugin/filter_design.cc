@@ -42,8 +42,8 @@ MatrixXd UnknownForces(const Setup& setup, const MechanicalModel& model) {
   return forces;
 }
 
-/// Random steps of one per cent of what a unit of time constant needs: any input that
-/// excites all modes serves to compare rows.
+/// White noise of a unit on every actuator: any input that excites all modes serves to
+/// compare rows, and its size does not matter on the linear plant.
 Excitation RandomInputs(const Setup& setup) {
   Excitation excitation;
   excitation.inputs = Record(setup.sample_time());

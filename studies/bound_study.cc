@@ -79,8 +79,7 @@ std::ptrdiff_t BoundIndex(const Setup& setup, const mjModel& plant,
 
 std::vector<StudyTable> BoundStudy(const Setup& setup, const mjModel& plant,
                                    const StudyOptions& options) {
-  const Excitation motion =
-      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  const Excitation motion = DefaultMotion(setup);
   const InformationBound bound = FaultBound(setup, plant, motion);
   RunOptions run;
   run.seed = options.seed;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/studies/features.h"
@@ -82,12 +81,8 @@ int MostSignificant(const DiagnosisResult& result,
 std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
                              const std::vector<Case>& cases,
                              const StudyOptions& options) {
-  const Excitation motion =
-      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
-  DiagnosisDesign design = DesignFilters(setup, plant);
-  NominalRuns nominal;
-  nominal.linear = true;
-  design.limits = CalibrateLimits(design, setup, plant, nominal);
+  const Excitation motion = DefaultMotion(setup);
+  const DiagnosisDesign design = LinearDetector(setup, plant).design;
   std::vector<std::string> channels = design.outputs;
   channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
   const auto& kinds = setup.Study("table4_from").values;

@@ -15,10 +15,6 @@ constexpr double kResolution = 1.02;
 constexpr int kHealthyRuns = 20;
 constexpr double kCoarseResolution = 1.15;  // a nonlinear run takes longer
 
-Excitation DefaultMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
-}
-
 std::optional<double> PublishedSize(const FaultSizes& sizes, const std::string& fault) {
   for (const auto& [name, value] : sizes.values) {
     if (name == fault) return value;
@@ -60,10 +56,7 @@ struct LinearRow {
 std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& plant,
                                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(setup);
-  Detector detector{DesignFilters(setup, plant), {}};
-  NominalRuns nominal;
-  nominal.linear = true;
-  detector.design.limits = CalibrateLimits(detector.design, setup, plant, nominal);
+  const Detector detector = LinearDetector(setup, plant);
 
   const auto look = [&](const std::string& fault, double deviation,
                         std::uint64_t seed) {

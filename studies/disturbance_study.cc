@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/parallel.h"
 
 namespace mjdiag {
@@ -46,12 +45,8 @@ int Found(const std::vector<DiagnosisResult>& results, double frequency, double 
 
 std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plant,
                                          const StudyOptions& options) {
-  const Excitation motion =
-      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
-  DiagnosisDesign design = DesignFilters(setup, plant);
-  NominalRuns nominal;
-  nominal.linear = true;
-  design.limits = CalibrateLimits(design, setup, plant, nominal);
+  const Excitation motion = DefaultMotion(setup);
+  const DiagnosisDesign design = LinearDetector(setup, plant).design;
   const double cell = design.limits.disturbance.nominal.resolution();
 
   StudyTable table{"Disturbances and noise, " + std::to_string(options.runs) +

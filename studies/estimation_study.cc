@@ -31,8 +31,7 @@ VectorXd Truth(const Setup& setup, const DiagnosisDesign& design,
 StudyTable Repeat(const Setup& setup, const mjModel& plant,
                   const DiagnosisDesign& design, const FaultSizes& sizes,
                   const StudyOptions& options) {
-  const Excitation motion =
-      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  const Excitation motion = DefaultMotion(setup);
   const ModelAt model_at = FaultModels(plant, setup);
   const VectorXd magnitudes = Magnitudes(plant, setup);
   const SynthesisOptions synthesis =

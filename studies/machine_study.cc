@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/mujoco_model.h"
 
 namespace mjdiag {
@@ -33,6 +34,18 @@ RunOptions WithFaults(const Setup& setup, const mjModel& plant,
 
 double HealthyValue(const Setup& setup, const std::string& fault) {
   return IsDisturbance(setup, fault) ? 0.0 : 1.0;
+}
+
+Excitation DefaultMotion(const Setup& setup) {
+  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+}
+
+Detector LinearDetector(const Setup& setup, const mjModel& plant) {
+  Detector detector{DesignFilters(setup, plant), {}};
+  NominalRuns nominal;
+  nominal.linear = true;
+  detector.design.limits = CalibrateLimits(detector.design, setup, plant, nominal);
+  return detector;
 }
 
 Detection Look(const Detector& detector, const Record& record,

@@ -38,6 +38,12 @@ struct Detector {
   Eigen::MatrixXd baseline;  ///< or empty
 };
 
+/// The default trajectory of a setup.
+Excitation DefaultMotion(const Setup& setup);
+
+/// The setup's filters with limits from nominal runs of the linear plant.
+Detector LinearDetector(const Setup& setup, const mjModel& plant);
+
 /// What it sees.
 struct Detection {
   std::optional<double> residual;  ///< when the residual left its limits [s]
