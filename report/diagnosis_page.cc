@@ -80,8 +80,8 @@ TimePlot EstimatePlot(const DiagnosisDesign& design, const FaultVerdict& fault,
   const Index count = log.estimates.cols();
   const Index first = count / 10;
   TimePlot plot;
-  plot.caption = "Estimate of " + fault.name;
-  plot.quantity = "from healthy, ppm";
+  plot.caption = fault.name + ", estimate from healthy in ppm";
+  plot.quantity = "ppm";
   plot.unit = "1";
   plot.start_time = log.estimate_time[first];
   plot.sample_time = design.stride * design.sample_time();
