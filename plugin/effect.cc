@@ -1,6 +1,7 @@
 #include "mjdiag/plugin/effect.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -11,7 +12,6 @@
 namespace mjdiag {
 namespace {
 
-constexpr double kNoBound = std::numeric_limits<double>::infinity();
 constexpr std::string_view kPrefix = "effect.";
 
 [[noreturn]] void FailToParse(std::string_view text, const std::string& what) {
@@ -37,47 +37,66 @@ std::string Names(const std::vector<EffectParameter>& parameters) {
   return names;
 }
 
-// The solver's default friction constraint is far too soft for a precision stage: it
-// creeps. A time constant of two steps and an impedance near one make it behave as
-// exact dry friction.
-void ApplyCoulombFriction(mjModel& model, int joint, double force) {
-  const int dof = model.jnt_dofadr[joint];
-  model.dof_frictionloss[dof] += force;
-  mjtNum* solref = model.dof_solref + mjNREF * dof;
-  solref[0] = 2.0 * model.opt.timestep;
-  solref[1] = 1.0;
-  mjtNum* solimp = model.dof_solimp + mjNIMP * dof;
-  solimp[0] = 0.99;
-  solimp[1] = 0.999;
-  solimp[2] = 1e-4;
+const EffectParameter* FindParameter(const EffectType& type, std::string_view name) {
+  for (const EffectParameter& parameter : type.parameters) {
+    if (parameter.name == name) return &parameter;
+  }
+  return nullptr;
+}
+
+void CheckValue(const std::string& where, const EffectParameter& parameter,
+                double value) {
+  if (std::isfinite(value) && value >= parameter.minimum &&
+      value <= parameter.maximum) {
+    return;
+  }
+  // The smallest positive number stands for "> 0".
+  const bool open = parameter.minimum == std::numeric_limits<double>::min();
+  throw InputError(where, parameter.name + " = " + std::to_string(value),
+                   open ? "a value > 0 " + parameter.unit
+                        : "a value from " + std::to_string(parameter.minimum) + " to " +
+                              std::to_string(parameter.maximum) + " " + parameter.unit);
+}
+
+void CheckSite(const mjModel& model, const std::string& where, EffectSite site,
+               int id) {
+  if (site != EffectSite::kJoint && site != EffectSite::kHeldJoint) return;
+  const int type = model.jnt_type[id];
+  if (type != mjJNT_SLIDE && type != mjJNT_HINGE) {
+    throw InputError(where, "a joint of several degrees of freedom",
+                     "a slide or hinge");
+  }
+  if (site == EffectSite::kHeldJoint && model.jnt_stiffness[id] == 0.0) {
+    throw InputError(where, "the joint has no spring", "a joint with stiffness");
+  }
+}
+
+/// Of a hinge, for a unit of a slide.
+std::string HingeUnit(const std::string& unit) {
+  static const std::map<std::string, std::string> kUnits{
+      {"N", "N m"},           {"m", "rad"},
+      {"m/s", "rad/s"},       {"kg", "kg m^2"},
+      {"N/m", "N m/rad"},     {"N/m^3", "N m/rad^3"},
+      {"N s/m", "N m s/rad"}, {"N s^2/m^2", "N m s^2/rad^2"}};
+  const auto found = kUnits.find(unit);
+  return found == kUnits.end() ? unit : found->second;
 }
 
 }  // namespace
 
-const std::vector<EffectType>& EffectCatalogue() {
-  static const std::vector<EffectType> catalogue = {
-      {"coulomb_friction",
-       mjOBJ_JOINT,
-       true,
-       {{"force", "N", 0.0, kNoBound}},
-       "dry friction: -force * sign(velocity), sticking at rest"},
-      {"force_offset",
-       mjOBJ_JOINT,
-       false,
-       {{"force", "N", -kNoBound, kNoBound}},
-       "a constant force on the joint"},
-  };
-  return catalogue;
+double EffectSpec::Value(std::string_view parameter) const {
+  const auto given = parameters.find(std::string(parameter));
+  if (given != parameters.end()) return given->second;
+  return FindParameter(FindEffect(effect), parameter)->fallback.value();
 }
 
-const EffectType& FindEffect(std::string_view name) {
-  std::string known;
-  for (const EffectType& type : EffectCatalogue()) {
-    if (type.name == name) return type;
-    known += (known.empty() ? "" : ", ") + type.name;
-  }
-  throw InputError("effect", "unknown effect '" + std::string(name) + "'",
-                   "one of " + known);
+std::string SiteUnit(const mjModel& model, const EffectSpec& effect,
+                     std::string_view parameter) {
+  const EffectType& type = FindEffect(effect.effect);
+  const std::string& unit = FindParameter(type, parameter)->unit;
+  const int id = FindElement(model, type.element(), effect.site);
+  const bool hinge = type.element() == mjOBJ_JOINT && model.jnt_type[id] == mjJNT_HINGE;
+  return hinge ? HingeUnit(unit) : unit;
 }
 
 EffectSpec ParseEffect(std::string_view text) {
@@ -101,6 +120,19 @@ EffectSpec ParseEffect(std::string_view text) {
     rest.remove_prefix(std::min(rest.size(), item.size() + 1));
   }
   return spec;
+}
+
+std::string FormatEffect(const EffectSpec& effect) {
+  std::string text = effect.effect + "@" + effect.site;
+  char separator = ':';
+  for (const EffectParameter& parameter : FindEffect(effect.effect).parameters) {
+    std::array<char, 32> digits{};
+    std::to_chars(digits.data(), digits.data() + digits.size(),
+                  effect.Value(parameter.name));
+    text += separator + parameter.name + "=" + digits.data();
+    separator = ',';
+  }
+  return text;
 }
 
 std::vector<EffectSpec> EffectsOf(const mjModel& model) {
@@ -135,34 +167,22 @@ int CheckEffect(const mjModel& model, const EffectSpec& effect) {
   const EffectType& type = FindEffect(effect.effect);
   const std::string where = "effect " + effect.effect + "@" + effect.site;
   for (const auto& [name, value] : effect.parameters) {
-    const auto parameter =
-        std::find_if(type.parameters.begin(), type.parameters.end(),
-                     [&n = name](const EffectParameter& p) { return p.name == n; });
-    if (parameter == type.parameters.end()) {
+    const EffectParameter* parameter = FindParameter(type, name);
+    if (parameter == nullptr) {
       throw InputError(where, "unknown parameter '" + name + "'",
                        Names(type.parameters));
     }
-    if (!std::isfinite(value) || value < parameter->minimum ||
-        value > parameter->maximum) {
-      throw InputError(where, name + " = " + std::to_string(value),
-                       "a value from " + std::to_string(parameter->minimum) + " to " +
-                           std::to_string(parameter->maximum) + " " + parameter->unit);
-    }
+    CheckValue(where, *parameter, value);
   }
   for (const EffectParameter& parameter : type.parameters) {
-    if (!effect.parameters.contains(parameter.name)) {
+    if (!parameter.fallback && !effect.parameters.contains(parameter.name)) {
       throw InputError(where, "'" + parameter.name + "' is missing",
                        Names(type.parameters));
     }
   }
-  return FindElement(model, type.site, effect.site);
-}
-
-void ApplyNativeEffect(mjModel& model, const EffectSpec& effect) {
-  const int site = CheckEffect(model, effect);
-  if (effect.effect == "coulomb_friction") {
-    ApplyCoulombFriction(model, site, effect.parameters.at("force"));
-  }
+  const int site = FindElement(model, type.element(), effect.site);
+  CheckSite(model, where, type.site, site);
+  return site;
 }
 
 }  // namespace mjdiag

@@ -49,8 +49,9 @@ void InstallControlCallback() {
 
 Instance::Instance(const Setup& setup, const mjModel& model,
                    const Excitation& excitation, const RunOptions& options)
-    : loop_(setup, excitation, options),
-      forces_(model, options.effects),
+    : loop_(WithEncoderNoise(setup, model, options.effects), excitation, options),
+      effects_(setup, model, options.effects),
+      sample_time_(setup.sample_time()),
       substeps_(setup.substeps),
       sensor_address_(SensorAddresses(setup, model)),
       actuator_address_(ActuatorAddresses(setup, model)),
@@ -65,18 +66,20 @@ void Instance::OnStep(const mjModel& model, mjData& data) noexcept {
       outputs_[i] = data.sensordata[sensor_address_[i]];
     }
     LogJoints(model, data);
+    const double time = static_cast<double>(loop_.ticks_done()) * sample_time_;
+    effects_.Distort(outputs_, time);
     loop_.Tick(outputs_, inputs_);
-    for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      data.ctrl[actuator_address_[i]] = inputs_[i];
-    }
   }
   if (++substep_ == substeps_) substep_ = 0;
-  forces_.Apply(model, data);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    data.ctrl[actuator_address_[i]] = inputs_[i];
+  }
+  effects_.Act(model, data);
 }
 
 void Instance::Release(mjData& data) noexcept {
   for (const int address : actuator_address_) data.ctrl[address] = 0.0;
-  forces_.Release(data);
+  effects_.Release(data);
 }
 
 void Instance::LogJoints(const mjModel& model, const mjData& data) noexcept {

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/plugin/force_effect.h"
+#include "mjdiag/plugin/active_effect.h"
 #include "mjdiag/plugin/simulation.h"
 #include "mjdiag/plugin/tick_loop.h"
 
@@ -21,8 +21,8 @@ class Instance {
            const RunOptions& options);
 
   /// Called by the control callback once a physics step: at the first step of a tick it
-  /// reads the sensors and sets the controls, which hold for the tick; the forces of
-  /// effects are set in every step.
+  /// reads the sensors and computes the commands, which hold for the tick; effects act
+  /// in every step.
   void OnStep(const mjModel& model, mjData& data) noexcept;
 
   /// Sets the actuators and the forces of effects to zero.
@@ -36,7 +36,8 @@ class Instance {
   void LogJoints(const mjModel& model, const mjData& data) noexcept;
 
   TickLoop loop_;
-  ForceEffects forces_;
+  ActiveEffects effects_;
+  double sample_time_;
   int substeps_;
   int substep_ = 0;
   std::vector<int> sensor_address_;

@@ -6,6 +6,7 @@
 #include "mjdiag/plugin/channels.h"
 #include "mjdiag/plugin/instance.h"
 #include "mjdiag/plugin/linearize.h"
+#include "mjdiag/plugin/native_effect.h"
 #include "mjdiag/plugin/scenery.h"
 #include "mjdiag/plugin/start_state.h"
 #include "mjdiag/signals/error.h"

@@ -5,8 +5,9 @@
 
 #include <cstring>
 
-#include "mjdiag/plugin/force_effect.h"
+#include "mjdiag/plugin/active_effect.h"
 #include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/native_effect.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 
@@ -83,10 +84,10 @@ TEST(Effect, CoulombFrictionHoldsAgainstASmallerForce) {
 TEST(Effect, ForceOffsetAddsItsForceEachStepOnce) {
   const ModelPtr model = Emps();
   const DataPtr data = MakeData(*model);
-  ForceEffects forces(*model, {ParseEffect("force_offset@load:force=-3"),
-                               ParseEffect("force_offset@load:force=1")});
-  forces.Apply(*model, *data);
-  forces.Apply(*model, *data);
+  ActiveEffects effects({}, *model, {ParseEffect("force_offset@load:force=-3"),
+                                     ParseEffect("force_offset@load:force=1")});
+  effects.Act(*model, *data);
+  effects.Act(*model, *data);
   EXPECT_DOUBLE_EQ(data->qfrc_applied[0], -2.0);
 }
 
