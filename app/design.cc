@@ -7,10 +7,13 @@
 #include "app/diagnosis_output.h"
 #include "app/format.h"
 #include "app/output.h"
+#include "app/row_programs.h"
 #include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/plugin/fault_models.h"
 #include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/linearize.h"
+#include "mjdiag/report/design_page.h"
 #include "mjdiag/report/filters_file.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -22,24 +25,56 @@ struct DesignOptions {
   OutputOptions output;
   DiagnosisSource source;
   bool linear = false;
+  std::string method = "svd";
 };
 
 // Beyond it a plant without rows is one without redundancy.
 constexpr int kHighestDegree = 40;
 
-nlohmann::json RankJson(const Machine& machine) {
-  const MechanicalModel model = Linearize(*machine.plant, machine.setup);
-  const SynthesisOptions options = SynthesisOf(machine.setup, model);
-  const StateSpace system = DeltaForm(model, options.timing);
-  return {{"observability_ranks", ObservabilityRanks(system, options.degree)},
-          {"states", system.states()},
-          {"minimal_degree", MinimalDegree(system, NoSignal(system), kHighestDegree)}};
+// What is left of a spring in the plot of what lost stiffness changes (Fig. 30 of the
+// seed).
+constexpr double kLostStiffness = 0.01;
+
+std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
+  std::vector<ChangedMachine> changed;
+  for (const FaultKnob& knob : FaultKnobs(*machine.plant)) {
+    if (knob.kind != KnobKind::kStiffness) continue;
+    changed.push_back({knob.name + " = " + Short(kLostStiffness),
+                       LinearizeFaulty(*machine.plant, machine.setup,
+                                       {{knob.name, kLostStiffness}})});
+  }
+  return changed;
 }
 
-std::string Summary(const DiagnosisDesign& design, const nlohmann::json& ranks) {
+DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
+  DesignFacts facts;
+  facts.healthy = Linearize(*machine.plant, machine.setup);
+  const SynthesisOptions options = SynthesisOf(machine.setup, facts.healthy);
+  const StateSpace system = DeltaForm(facts.healthy, options.timing);
+  facts.observability_ranks = ObservabilityRanks(system, options.degree);
+  facts.states = system.states();
+  facts.minimal_degree =
+      MinimalDegree(system, UnknownForces(facts.healthy, options), kHighestDegree);
+  if (linear_programs) facts.linear_program = SolveRowPrograms(machine, facts.healthy);
+  return facts;
+}
+
+nlohmann::json ToJson(const RowProgramFacts& facts) {
+  const bool found = facts.feasible > 0;
+  return {{"degree", facts.degree},
+          {"norm", facts.norm},
+          {"fault_inputs", facts.fault_inputs},
+          {"programs", facts.programs},
+          {"feasible", facts.feasible},
+          {"objective", found ? nlohmann::json(facts.objective) : nlohmann::json()},
+          {"defect", found ? nlohmann::json(facts.defect) : nlohmann::json()},
+          {"angle", found ? nlohmann::json(facts.angle) : nlohmann::json()}};
+}
+
+std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
   const ThresholdDesign& residual = design.limits.residual;
   std::string text = design.setup + ": residual rows exist from degree " +
-                     std::to_string(ranks["minimal_degree"].get<int>()) + " on; " +
+                     std::to_string(facts.minimal_degree) + " on; " +
                      std::to_string(design.bank.residuals) + " of degree " +
                      std::to_string(design.options.degree) +
                      " over a Butterworth low-pass of order " +
@@ -55,25 +90,39 @@ std::string Summary(const DiagnosisDesign& design, const nlohmann::json& ranks) 
           Short(residual.alpha) + ", normal fit " + Short(residual.fit.mean) + " +- " +
           Short(residual.fit.sd) + ". Faults estimated:";
   for (const std::string& name : design.FaultNames()) text += " " + name;
-  return text + "\n";
+  text += "\n";
+  if (facts.linear_program) text += DescribeRowPrograms(*facts.linear_program) + "\n";
+  return text;
+}
+
+/// Writes design.html and says which files there are; nothing without a folder.
+std::string WriteDesignPage(const OutputOptions& output, const Machine& machine,
+                            const DiagnosisDesign& design, DesignFacts facts) {
+  if (output.folder.empty()) return "";
+  facts.changed = WithoutStiffness(machine);
+  const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
+  const std::filesystem::path folder(output.folder);
+  WriteTextFile(folder / "design.html", DesignPage(design, facts, run));
+  return "filters: " + (folder / "filters.json").string() +
+         "\npage: " + (folder / "design.html").string() + "\n";
 }
 
 void Design(const DesignOptions& options) {
   const Machine machine = LoadMachine(options.machine);
   PrepareOutput(options.output);
-  const nlohmann::json ranks = RankJson(machine);
   const Excitation excitation = MakeExcitation(machine.setup, {});
   const ReadyDiagnosis ready =
       PrepareDiagnosis(options.source, machine, excitation, options.linear);
-  nlohmann::json document = ToJson(ready.design);
+  const DesignFacts facts = FactsOf(machine, options.method == "lp");
+  nlohmann::json document = mjdiag::ToJson(ready.design);
   document["command"] = CommandLine();
-  document.update(ranks);
-  std::string text = Summary(ready.design, ranks);
-  if (!options.output.folder.empty()) {
-    text += "filters: " +
-            (std::filesystem::path(options.output.folder) / "filters.json").string() +
-            "\n";
-  }
+  document["observability_ranks"] = facts.observability_ranks;
+  document["states"] = facts.states;
+  document["minimal_degree"] = facts.minimal_degree;
+  if (facts.linear_program) document["linear_program"] = ToJson(*facts.linear_program);
+  const std::string text =
+      Summary(ready.design, facts) +
+      WriteDesignPage(options.output, machine, ready.design, facts);
   Publish(options.output, "filters", document, text);
 }
 
@@ -88,6 +137,12 @@ void AddDesign(CLI::App& app) {
   AddDiagnosisOptions(*command, options->source);
   command->add_flag("--linear", options->linear,
                     "Thresholds from runs of the linearised plant");
+  command
+      ->add_option("--method", options->method,
+                   "lp: also solve the linear programs for a residual row and report "
+                   "them; the filters come from the singular value decomposition in "
+                   "both cases")
+      ->check(CLI::IsMember({"svd", "lp"}));
   command->callback([options] { Design(*options); });
 }
 

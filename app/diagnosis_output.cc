@@ -6,6 +6,7 @@
 #include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/robust_design.h"
 #include "mjdiag/report/diagnosis_page.h"
+#include "mjdiag/report/diagnosis_verdict.h"
 #include "mjdiag/report/filters_file.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -110,8 +111,7 @@ std::string WriteDiagnosisPage(const OutputOptions& output,
 }
 
 std::string Describe(const DiagnosisResult& result) {
-  std::string text = result.detected ? "A fault or disturbance is there.\n\n"
-                                     : "Nothing is wrong that this run shows.\n\n";
+  std::string text = DiagnosisVerdict(result) + "\n\n";
   text += "residual     " + Short(result.residual.min) + " to " +
           Short(result.residual.max) + ", limits " + Short(result.limits.min) + " to " +
           Short(result.limits.max) + "; left them " + TimeText(result.first_detection) +
@@ -119,7 +119,7 @@ std::string Describe(const DiagnosisResult& result) {
   text += SpectrumText(result.disturbance) + "\n";
   // A knob of 0.999998 reads as 1: what counts is how far it is from healthy.
   Table table({"fault", "value", "from healthy", "sd", "detected"});
-  for (const FaultVerdict& fault : result.faults) {
+  for (const FaultVerdict& fault : RankedFaults(result)) {
     table.Add({fault.name, Short(fault.value), Short(fault.deviation), Short(fault.sd),
                fault.detected ? "yes" : "no"});
   }

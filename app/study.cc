@@ -1,6 +1,7 @@
 // mjdiag study: sweeps and Monte-Carlo studies with their tables.
 
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,6 +11,8 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "app/progress.h"
+#include "mjdiag/report/study_page.h"
+#include "mjdiag/signals/text_file.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
@@ -79,6 +82,17 @@ std::string ToText(const StudyTable& table) {
   return result + (table.notes.empty() ? "\n" : "\n\n");
 }
 
+/// Writes study.html into the output folder, if there is one, and says so.
+std::string WriteStudyPage(const StudyCommand& command, const std::string& setup,
+                           const std::vector<StudyTable>& tables) {
+  if (command.output.folder.empty()) return "";
+  const StudyFacts facts{setup, command.preset, command.runs, command.seed};
+  const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
+  const auto page = std::filesystem::path(command.output.folder) / "study.html";
+  WriteTextFile(page, StudyPage(facts, tables, run));
+  return "page: " + page.string() + "\n";
+}
+
 void RunStudy(const StudyCommand& command) {
   const Machine machine = LoadMachine(command.machine);
   PrepareOutput(command.output);
@@ -91,15 +105,17 @@ void RunStudy(const StudyCommand& command) {
                           {"command", CommandLine()},
                           {"tables", nlohmann::json::array()}};
   std::string text;
+  std::vector<StudyTable> tables;
   {
     ProgressBar bar("study " + command.preset);
     options.progress = [&bar](double fraction) { bar.Show(fraction); };
-    for (const StudyTable& table :
-         Studies().at(command.preset)(machine.setup, *machine.plant, options)) {
-      document["tables"].push_back(ToJson(table));
-      text += ToText(table);
-    }
+    tables = Studies().at(command.preset)(machine.setup, *machine.plant, options);
   }
+  for (const StudyTable& table : tables) {
+    document["tables"].push_back(ToJson(table));
+    text += ToText(table);
+  }
+  text += WriteStudyPage(command, machine.setup.name, tables);
   Publish(command.output, "study", document, text);
 }
 

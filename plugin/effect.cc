@@ -145,20 +145,24 @@ std::vector<EffectSpec> EffectsOf(const mjModel& model) {
       throw InputError("custom numeric '" + std::string(name) + "'", "names no site",
                        "effect.<name>.<site>");
     }
-    EffectSpec spec{std::string(name.substr(kPrefix.size(), dot - kPrefix.size())),
-                    std::string(name.substr(dot + 1)),
-                    {}};
-    const std::vector<EffectParameter>& parameters = FindEffect(spec.effect).parameters;
-    if (model.numeric_size[i] != static_cast<int>(parameters.size())) {
-      throw InputError("custom numeric '" + std::string(name) + "'",
-                       std::to_string(model.numeric_size[i]) + " values",
-                       std::to_string(parameters.size()) + ": " + Names(parameters));
+    const std::string effect(name.substr(kPrefix.size(), dot - kPrefix.size()));
+    const std::vector<EffectParameter>& parameters = FindEffect(effect).parameters;
+    const int count = static_cast<int>(parameters.size());
+    const int size = model.numeric_size[i];
+    if (size % count != 0) {
+      throw InputError(
+          "custom numeric '" + std::string(name) + "'",
+          std::to_string(size) + " values",
+          std::to_string(count) + " or several times that: " + Names(parameters));
     }
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      spec.parameters[parameters[p].name] =
-          model.numeric_data[model.numeric_adr[i] + static_cast<int>(p)];
+    const mjtNum* value = model.numeric_data + model.numeric_adr[i];
+    for (int first = 0; first < size; first += count) {
+      EffectSpec spec{effect, std::string(name.substr(dot + 1)), {}};
+      for (const EffectParameter& parameter : parameters) {
+        spec.parameters[parameter.name] = *value++;
+      }
+      effects.push_back(std::move(spec));
     }
-    effects.push_back(std::move(spec));
   }
   return effects;
 }

@@ -2,7 +2,7 @@
 // Effects: physics that a plant lacks, put in at a site (a joint, actuator or sensor,
 // by its MJCF name). On the command line:   coulomb_friction@load:force=20.4 In an MJCF
 // file:  <custom><numeric name="effect.force_offset.load" data="3.2"/></custom> with
-// the parameters in the order of the catalogue.
+// the parameters in the order of the catalogue, once for each such effect at the site.
 //
 // What MuJoCo has natively is put into the mjModel (native_effect.h); the rest acts in
 // every physics step (active_effect.h).

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "mjdiag/report/diagnosis_verdict.h"
 #include "mjdiag/report/page.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -22,15 +23,6 @@ std::string When(const std::optional<double>& time) {
   return time ? FormatQuantity(*time, "s") : "never";
 }
 
-std::string DetectedFaults(const DiagnosisResult& result) {
-  std::string names;
-  for (const FaultVerdict& fault : result.faults) {
-    if (!fault.detected) continue;
-    names += (names.empty() ? "" : ", ") + fault.name + " = " + KnobText(fault.value);
-  }
-  return names;
-}
-
 void AddFaultTable(Page& page, const DiagnosisResult& result) {
   page.AddHeading("Faults");
   Table table;
@@ -39,7 +31,7 @@ void AddFaultTable(Page& page, const DiagnosisResult& result) {
                    {"From healthy", true},
                    {"Standard deviation", true},
                    {"Detected"}};
-  for (const FaultVerdict& fault : result.faults) {
+  for (const FaultVerdict& fault : RankedFaults(result)) {
     table.rows.push_back({fault.name, KnobText(fault.value),
                           FormatNumber(fault.deviation), FormatNumber(fault.sd),
                           fault.detected ? "yes" : "no"});
@@ -121,15 +113,6 @@ void AddTones(Page& page, const DisturbanceReport& report) {
 }
 
 }  // namespace
-
-std::string DiagnosisVerdict(const DiagnosisResult& result) {
-  if (!result.detected) return "Nothing is wrong that this run shows.";
-  const std::string faults = DetectedFaults(result);
-  if (!faults.empty()) return "Detected: " + faults + ".";
-  if (!result.disturbance.tones.empty()) return "A periodic disturbance is there.";
-  if (result.disturbance.noise_raised) return "The sensors are noisier than usual.";
-  return "The residual has left its thresholds.";
-}
 
 std::string DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
                           const MonitorLog& log, const RunDescription& run) {

@@ -10,9 +10,6 @@
 
 namespace mjdiag {
 
-/// The answer in one sentence.
-std::string DiagnosisVerdict(const DiagnosisResult& result);
-
 /// The whole page. InputError if the plot library is not installed.
 std::string DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
                           const MonitorLog& log, const RunDescription& run);

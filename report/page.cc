@@ -136,6 +136,18 @@ void Page::AddPlot(const SpectrumPlot& plot) {
   AddPlotElement(plot.caption, plot.height, DescribePlot(plot));
 }
 
+void Page::AddPlot(const XyPlot& plot) {
+  AddPlotElement(plot.caption, plot.height, DescribePlot(plot));
+}
+
+void Page::AddPlot(const HistogramPlot& plot) {
+  AddPlotElement(plot.caption, plot.height, DescribePlot(plot));
+}
+
+void Page::AddPlot(const BodePlot& plot) {
+  AddPlotElement(plot.caption, plot.height, DescribePlot(plot));
+}
+
 void Page::AddPlotElement(const std::string& caption, int height,
                           const std::string& description) {
   if (!has_plots_) {

@@ -43,6 +43,9 @@ class Page {
   /// All time plots of a page zoom and show their cursor together.
   void AddPlot(const TimePlot& plot);
   void AddPlot(const SpectrumPlot& plot);
+  void AddPlot(const XyPlot& plot);
+  void AddPlot(const HistogramPlot& plot);
+  void AddPlot(const BodePlot& plot);
 
   /// The page. InputError if the plot library is not installed.
   std::string Html() const;

@@ -6,22 +6,54 @@
     return new Float32Array(bytes.buffer);
   }
 
-  function rows(plot) {
-    const curves = plot.curves.map((curve) => decode(curve.samples));
+  const logarithmicX = (plot) => plot.kind === 'spectrum' || plot.kind === 'bode';
+  // Points, bars and free lines: dygraphs gives them their axes, drawShapes the rest.
+  const hasShapes = (plot) => plot.kind === 'xy' || plot.kind === 'histogram';
+
+  function decodeAll(plot) {
+    for (const series of (plot.points || []).concat(plot.curves || [])) {
+      for (const name of ['samples', 'x', 'y']) {
+        if (series[name] !== undefined) series[name] = decode(series[name]);
+      }
+    }
+    if (plot.frequency) plot.frequency = decode(plot.frequency);
+    if (plot.bars) {
+      plot.bars.edges = decode(plot.bars.edges);
+      plot.bars.counts = decode(plot.bars.counts);
+    }
+    return plot;
+  }
+
+  function sampledRows(plot) {
     const spectrum = plot.kind === 'spectrum';
-    const frequency = spectrum ? decode(plot.frequency) : null;
     const table = [];
-    for (let k = 0; k < curves[0].length; ++k) {
-      const x = spectrum ? frequency[k] : plot.start + k * plot.step;
-      if (spectrum && !(x > 0)) continue;
+    if (plot.curves.length === 0) return table;
+    for (let k = 0; k < plot.curves[0].samples.length; ++k) {
+      const x = plot.frequency ? plot.frequency[k] : plot.start + k * plot.step;
+      if (logarithmicX(plot) && !(x > 0)) continue;
       const row = [x];
-      for (const curve of curves) {
-        const y = curve[k];
+      for (const curve of plot.curves) {
+        const y = curve.samples[k];
         row.push(!Number.isFinite(y) || (spectrum && !(y > 0)) ? null : y);
       }
       table.push(row);
     }
     return table;
+  }
+
+  // All that the axes have to hold, in the order of x.
+  function shapeRows(plot) {
+    const table = [];
+    for (const series of (plot.points || []).concat(plot.curves)) {
+      series.x.forEach((x, k) => table.push([x, series.y[k]]));
+    }
+    if (plot.bars) {
+      plot.bars.counts.forEach((count, k) => {
+        table.push([plot.bars.edges[k], count], [plot.bars.edges[k + 1], count]);
+      });
+    }
+    for (const mark of plot.marks || []) table.push([mark.value, 0]);
+    return table.filter((row) => row.every(Number.isFinite)).sort((a, b) => a[0] - b[0]);
   }
 
   function number(value) {
@@ -58,28 +90,108 @@
     return getComputedStyle(scheme).getPropertyValue('--' + name).trim();
   }
 
-  function drawMarks(plot, scheme) {
+  function drawBands(canvas, area, graph, plot, scheme) {
+    canvas.fillStyle = color('band', scheme);
+    for (const band of plot.bands || []) {
+      const left = graph.toDomXCoord(band.from);
+      const width = Math.max(2, graph.toDomXCoord(band.to) - left);
+      canvas.fillRect(left, area.y, width, area.h);
+    }
+  }
+
+  // Levels across and marks down the plot.
+  function drawDashes(canvas, area, graph, plot, scheme) {
+    const line = (x0, y0, x1, y1) => {
+      canvas.beginPath();
+      canvas.moveTo(x0, y0);
+      canvas.lineTo(x1, y1);
+      canvas.stroke();
+    };
+    canvas.strokeStyle = color('noise', scheme);
+    canvas.lineWidth = 1.5;
+    canvas.setLineDash([6, 4]);
+    for (const level of plot.levels || []) {
+      const y = graph.toDomYCoord(level.value);
+      line(area.x, y, area.x + area.w, y);
+    }
+    canvas.strokeStyle = color('quiet', scheme);
+    for (const mark of plot.marks || []) {
+      // toDomXCoord takes every axis for a linear one.
+      const x = area.x + graph.toPercentXCoord(mark.value) * area.w;
+      line(x, area.y, x, area.y + area.h);
+    }
+  }
+
+  function drawUnderlay(plot, scheme) {
     return function (canvas, area, graph) {
       canvas.save();
       canvas.beginPath();
       canvas.rect(area.x, area.y, area.w, area.h);
       canvas.clip();
-      canvas.fillStyle = color('band', scheme());
-      for (const band of plot.bands) {
-        const left = graph.toDomXCoord(band.from);
-        const width = Math.max(2, graph.toDomXCoord(band.to) - left);
-        canvas.fillRect(left, area.y, width, area.h);
+      drawBands(canvas, area, graph, plot, scheme());
+      // Bars would hide them.
+      if (!hasShapes(plot)) drawDashes(canvas, area, graph, plot, scheme());
+      canvas.restore();
+    };
+  }
+
+  function drawBars(canvas, graph, bars, tint) {
+    const floor = graph.toDomYCoord(0);
+    canvas.fillStyle = tint;
+    bars.counts.forEach((count, k) => {
+      const left = graph.toDomXCoord(bars.edges[k]);
+      const right = graph.toDomXCoord(bars.edges[k + 1]);
+      const top = graph.toDomYCoord(count);
+      // A gap where there is room for one; bars of few counts stay visible.
+      const width = right - left > 4 ? right - left - 1 : right - left;
+      if (count > 0) canvas.fillRect(left, Math.min(top, floor - 1), width,
+          Math.max(1, floor - top));
+    });
+  }
+
+  function drawPoints(canvas, graph, points, tint) {
+    // Many points overlap: where they are dense they look dense.
+    const many = points.x.length > 500;
+    const size = many ? 2 : 5;
+    canvas.fillStyle = tint;
+    canvas.globalAlpha = many ? 0.5 : 0.85;
+    points.x.forEach((x, k) => {
+      canvas.fillRect(graph.toDomXCoord(x) - size / 2,
+          graph.toDomYCoord(points.y[k]) - size / 2, size, size);
+    });
+    canvas.globalAlpha = 1;
+  }
+
+  function drawLine(canvas, graph, curve, tint) {
+    canvas.strokeStyle = tint;
+    canvas.lineWidth = 2;
+    canvas.beginPath();
+    let open = false;
+    curve.x.forEach((x, k) => {
+      const finite = Number.isFinite(x) && Number.isFinite(curve.y[k]);
+      if (finite) {
+        const place = [graph.toDomXCoord(x), graph.toDomYCoord(curve.y[k])];
+        if (open) canvas.lineTo(...place);
+        else canvas.moveTo(...place);
       }
-      canvas.strokeStyle = color('noise', scheme());
-      canvas.lineWidth = 1.5;
-      canvas.setLineDash([6, 4]);
-      for (const level of plot.levels) {
-        const y = graph.toDomYCoord(level.value);
-        canvas.beginPath();
-        canvas.moveTo(area.x, y);
-        canvas.lineTo(area.x + area.w, y);
-        canvas.stroke();
+      open = finite;
+    });
+    canvas.stroke();
+  }
+
+  function drawShapes(plot, scheme) {
+    return function (event) {
+      const canvas = event.drawingContext;
+      const tint = (series) => color(series.role, scheme());
+      canvas.save();
+      if (plot.bars) drawBars(canvas, event.dygraph, plot.bars, color('bars', scheme()));
+      for (const points of plot.points || []) {
+        drawPoints(canvas, event.dygraph, points, tint(points));
       }
+      for (const curve of plot.curves) {
+        drawLine(canvas, event.dygraph, curve, tint(curve));
+      }
+      drawDashes(canvas, event.plotArea, event.dygraph, plot, scheme());
       canvas.restore();
     };
   }
@@ -88,7 +200,7 @@
     const span = document.createElement('span');
     const line = document.createElement('i');
     line.className = kind;
-    if (kind !== 'band') line.style.borderColor = tint;
+    if (tint) line.style.color = tint;
     span.append(line, label);
     if (value !== undefined) {
       const bold = document.createElement('b');
@@ -98,26 +210,45 @@
     return span;
   }
 
+  function addShapes(box, plot, scheme) {
+    if (plot.bars) box.append(entry('bars', color('bars', scheme), plot.bars.label));
+    for (const points of plot.points || []) {
+      box.append(entry('points', color(points.role, scheme), points.label));
+    }
+    for (const curve of plot.curves) {
+      box.append(entry('curve', color(curve.role, scheme), curve.label));
+    }
+  }
+
+  // Levels and marks with a label, each label once.
+  function addDashes(box, lines, tint) {
+    const labels = new Set(lines.map((line) => line.label));
+    labels.forEach((label) => {
+      if (label) box.append(entry('level', tint, label));
+    });
+  }
+
   function legend(plot, scheme) {
     const unit = plot.unit ? ' ' + plot.unit : '';
     return function (data) {
       const box = document.createElement('div');
-      for (const series of data.series) {
-        const shown = data.x !== undefined && Number.isFinite(series.y);
-        const value = shown ? number(series.y) + unit : undefined;
-        box.append(entry('curve', series.color, series.label, value));
+      if (hasShapes(plot)) {
+        addShapes(box, plot, scheme());
+      } else {
+        for (const series of data.series) {
+          const shown = data.x !== undefined && Number.isFinite(series.y);
+          const value = shown ? number(series.y) + unit : undefined;
+          box.append(entry('curve', series.color, series.label, value));
+        }
       }
-      const labels = new Set(plot.levels.map((level) => level.label));
-      labels.forEach((label) => {
-        if (label) box.append(entry('level', color('noise', scheme()), label));
-      });
-      for (const band of plot.bands) {
+      addDashes(box, plot.levels || [], color('noise', scheme()));
+      addDashes(box, plot.marks || [], color('quiet', scheme()));
+      for (const band of plot.bands || []) {
         if (band.label) box.append(entry('band', '', band.label));
       }
-      if (data.x !== undefined) {
+      if (data.x !== undefined && !hasShapes(plot)) {
         const at = document.createElement('span');
-        at.textContent = 'at ' + number(data.x) +
-            (plot.kind === 'spectrum' ? ' Hz' : ' s');
+        at.textContent = 'at ' + number(data.x) + (logarithmicX(plot) ? ' Hz' : ' s');
         box.append(at);
       }
       return box.innerHTML;
@@ -137,46 +268,68 @@
 
   function colors(plot, scheme) {
     return {
-      colors: plot.curves.map((curve) => color(curve.role, scheme)),
+      colors: hasShapes(plot) ? [color('ink', scheme)] :
+          plot.curves.map((curve) => color(curve.role, scheme)),
       axisLineColor: color('quiet', scheme),
       gridLineColor: color('rule', scheme),
     };
   }
 
-  function draw(figure, scheme) {
-    const plot = JSON.parse(figure.querySelector('script').textContent);
-    const spectrum = plot.kind === 'spectrum';
-    const axis = {
-      axisLabelFormatter: number,
-      ticker: spectrum ? logarithmicTicks : Dygraph.numericLinearTicks,
-    };
+  // What sampled curves and shapes each ask of dygraphs.
+  function sampledOptions(plot) {
     const series = {};
     for (const curve of plot.curves) {
       // The simulated curve lies thin on the measured one, so that both stay visible.
-      series[curve.label] = { strokeWidth: curve.role === 'measured' ? 2.5 : 1.2 };
+      const wide = curve.role === 'measured' ? 2.5 : 1.2;
+      series[curve.label] = { strokeWidth: plot.kind === 'bode' ? 2 : wide };
     }
-    const graph = new Dygraph(figure.querySelector('.chart'), rows(plot), Object.assign({
+    return {
       labels: ['x'].concat(plot.curves.map((curve) => curve.label)),
+      series: series,
+      yRangePad: 8,
+      highlightCircleSize: 3,
+    };
+  }
+
+  function shapeOptions(plot, scheme) {
+    const pads = plot.kind === 'xy' ? { yRangePad: 8 } : { includeZero: true };
+    return Object.assign({
+      labels: ['x', 'y'],
+      plotter: drawShapes(plot, scheme),
+      xRangePad: 8,
+      highlightCircleSize: 0,
+    }, pads);
+  }
+
+  function draw(figure, scheme) {
+    const plot = decodeAll(JSON.parse(figure.querySelector('script').textContent));
+    const shapes = hasShapes(plot);
+    const axis = (logarithmic) => ({
+      axisLabelFormatter: number,
+      ticker: logarithmic ? logarithmicTicks : Dygraph.numericLinearTicks,
+    });
+    const logX = logarithmicX(plot);
+    const logY = plot.kind === 'spectrum';
+    const rows = shapes ? shapeRows(plot) : sampledRows(plot);
+    if (rows.length === 0) return null;
+    const graph = new Dygraph(figure.querySelector('.chart'), rows, Object.assign({
       labelsDiv: figure.querySelector('.legend'),
       legend: 'always',
       legendFormatter: legend(plot, scheme),
-      series: series,
       xlabel: plot.x_label,
       ylabel: plot.y_label,
-      logscale: spectrum,
+      logscale: logY,
       axes: {
-        x: Object.assign({ logscale: spectrum, pixelsPerLabel: 70 }, axis),
-        y: Object.assign({ axisLabelWidth: 58, pixelsPerLabel: 26 }, axis),
+        x: Object.assign({ logscale: logX, pixelsPerLabel: 70 }, axis(logX)),
+        y: Object.assign({ axisLabelWidth: 58, pixelsPerLabel: 26 }, axis(logY)),
       },
       axisLabelFontSize: 12,
       xLabelHeight: 20,
       yLabelWidth: 20,
-      yRangePad: 8,
       rightGap: 12,
-      highlightCircleSize: 3,
       interactionModel: touchFriendly(),
-      underlayCallback: drawMarks(plot, scheme),
-    }, colors(plot, scheme())));
+      underlayCallback: drawUnderlay(plot, scheme),
+    }, shapes ? shapeOptions(plot, scheme) : sampledOptions(plot), colors(plot, scheme())));
     return { plot: plot, graph: graph };
   }
 
@@ -184,7 +337,7 @@
   const paper = document.getElementById('paper');
   let scheme = screen;
   const charts = Array.from(document.querySelectorAll('figure.plot'),
-      (figure) => draw(figure, () => scheme));
+      (figure) => draw(figure, () => scheme)).filter((chart) => chart !== null);
 
   function recolor() {
     for (const chart of charts) chart.graph.updateOptions(colors(chart.plot, scheme));

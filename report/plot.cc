@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -56,15 +57,28 @@ const char* RoleName(CurveRole role) {
   return "";
 }
 
-/// The largest finite magnitude that the curves show.
+/// The largest finite magnitude; 0 if there is none.
+double Magnitude(const Eigen::VectorXd& values) {
+  double largest = 0.0;
+  for (const double value : values) {
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  }
+  return largest;
+}
+
 double Magnitude(const std::vector<Curve>& curves) {
   double largest = 0.0;
   for (const Curve& curve : curves) {
-    for (const double value : curve.values) {
-      if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
-    }
+    largest = std::max(largest, Magnitude(curve.values));
   }
   return largest;
+}
+
+void RequireSize(const std::string& caption, const std::string& what,
+                 Eigen::Index found, Eigen::Index expected) {
+  if (found == expected) return;
+  throw InputError("plot '" + caption + "'", what + ": " + std::to_string(found),
+                   std::to_string(expected));
 }
 
 std::string AxisLabel(const std::string& quantity, const std::string& unit) {
@@ -86,6 +100,34 @@ nlohmann::json CurvesAndLevels(const std::vector<Curve>& curves,
   }
   return plot;
 }
+
+/// Points or curves of (x, y), each in the unit in which it is shown.
+template <typename Series>
+nlohmann::json SeriesJson(const std::string& caption,
+                          const std::vector<Series>& all_series, double x_factor,
+                          double y_factor) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Series& series : all_series) {
+    RequireSize(caption, "values of y of '" + series.label + "'", series.y.size(),
+                series.x.size());
+    list.push_back({{"label", series.label},
+                    {"role", RoleName(series.role)},
+                    {"x", EncodeSamples(x_factor * series.x)},
+                    {"y", EncodeSamples(y_factor * series.y)}});
+  }
+  return list;
+}
+
+nlohmann::json MarksJson(const std::vector<Mark>& marks, double factor) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Mark& mark : marks) {
+    list.push_back({{"value", factor * mark.value}, {"label", mark.label}});
+  }
+  return list;
+}
+
+/// The colours of the page's palette; curves beyond them begin again.
+constexpr std::size_t kPaletteSize = 6;
 
 }  // namespace
 
@@ -119,6 +161,71 @@ std::string DescribePlot(const SpectrumPlot& plot) {
   json["height"] = plot.height;
   json["bands"] = nlohmann::json::array();
   return json.dump();
+}
+
+std::string DescribePlot(const XyPlot& plot) {
+  double x_magnitude = 0.0;
+  double y_magnitude = 0.0;
+  const auto include = [&](const auto& all_series) {
+    for (const auto& series : all_series) {
+      x_magnitude = std::max(x_magnitude, Magnitude(series.x));
+      y_magnitude = std::max(y_magnitude, Magnitude(series.y));
+    }
+  };
+  include(plot.points);
+  include(plot.curves);
+  const DisplayUnit x = ChooseDisplayUnit(x_magnitude, plot.x_unit);
+  const DisplayUnit y = ChooseDisplayUnit(y_magnitude, plot.y_unit);
+  return nlohmann::json{
+      {"kind", "xy"},
+      {"x_label", AxisLabel(plot.x_quantity, x.name)},
+      {"y_label", AxisLabel(plot.y_quantity, y.name)},
+      {"height", plot.height},
+      {"points", SeriesJson(plot.caption, plot.points, x.factor, y.factor)},
+      {"curves", SeriesJson(plot.caption, plot.curves, x.factor, y.factor)}}
+      .dump();
+}
+
+std::string DescribePlot(const HistogramPlot& plot) {
+  RequireSize(plot.caption, "edges", plot.edges.size(), plot.counts.size() + 1);
+  const DisplayUnit unit = ChooseDisplayUnit(Magnitude(plot.edges), plot.unit);
+  return nlohmann::json{
+      {"kind", "histogram"},
+      {"x_label", AxisLabel(plot.quantity, unit.name)},
+      {"y_label", plot.counted},
+      {"height", plot.height},
+      {"bars",
+       {{"label", plot.label},
+        {"edges", EncodeSamples(unit.factor * plot.edges)},
+        {"counts", EncodeSamples(plot.counts)}}},
+      {"curves", SeriesJson(plot.caption, plot.curves, unit.factor, 1.0)},
+      {"marks", MarksJson(plot.marks, unit.factor)}}
+      .dump();
+}
+
+std::string DescribePlot(const BodePlot& plot) {
+  nlohmann::json curves = nlohmann::json::array();
+  for (std::size_t i = 0; i < plot.curves.size(); ++i) {
+    const BodeCurve& curve = plot.curves[i];
+    RequireSize(plot.caption, "magnitudes of '" + curve.label + "'",
+                curve.magnitude.size(), plot.frequency.size());
+    // What is not positive becomes NaN or minus infinity, which the page leaves out.
+    const Eigen::VectorXd decibels = 20.0 * curve.magnitude.array().log10();
+    curves.push_back({{"label", curve.label},
+                      {"role", "palette" + std::to_string(i % kPaletteSize)},
+                      {"samples", EncodeSamples(decibels)}});
+  }
+  return nlohmann::json{
+      {"kind", "bode"},
+      {"x_label", "frequency [Hz]"},
+      {"y_label",
+       plot.quantity + (plot.unit.empty() ? " [dB]" : " [dB re " + plot.unit + "]")},
+      {"unit", "dB"},
+      {"frequency", EncodeSamples(plot.frequency)},
+      {"height", plot.height},
+      {"curves", curves},
+      {"marks", MarksJson(plot.marks, 1.0)}}
+      .dump();
 }
 
 }  // namespace mjdiag

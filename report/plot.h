@@ -56,8 +56,80 @@ struct SpectrumPlot {
   int height = 240;  ///< CSS pixels
 };
 
-/// The plot as a JSON object for the page's script.
+/// Measured pairs, drawn as dots.
+struct XyPoints {
+  std::string label;
+  CurveRole role = CurveRole::kMeasured;
+  Eigen::VectorXd x;  ///< unit of the x axis
+  Eigen::VectorXd y;  ///< as many, unit of the y axis
+};
+
+/// A line through (x, y) in their order, which need not be that of x: loops are drawn
+/// as loops. It breaks where a value is not finite.
+struct XyCurve {
+  std::string label;
+  CurveRole role = CurveRole::kSimulated;
+  Eigen::VectorXd x;  ///< unit of the x axis
+  Eigen::VectorXd y;  ///< as many, unit of the y axis
+};
+
+/// One quantity over another, for example a force over a velocity: points, and lines
+/// over them.
+struct XyPlot {
+  std::string caption;
+  std::string x_quantity;
+  std::string x_unit;  ///< SI unit of x
+  std::string y_quantity;
+  std::string y_unit;  ///< SI unit of y
+  std::vector<XyPoints> points;
+  std::vector<XyCurve> curves;
+  int height = 320;  ///< CSS pixels
+};
+
+/// A value of the x axis that is marked by a dashed line.
+struct Mark {
+  double value = 0.0;  ///< unit of the x axis
+  std::string label;
+};
+
+/// Counts of a quantity in bins, lines over them (a fitted distribution in counts), and
+/// marks (thresholds).
+struct HistogramPlot {
+  std::string caption;
+  std::string quantity;
+  std::string unit;        ///< SI unit of the quantity
+  std::string counted;     ///< at the y axis, for example "samples"
+  std::string label;       ///< of the bars
+  Eigen::VectorXd edges;   ///< bins + 1, increasing, unit of the quantity
+  Eigen::VectorXd counts;  ///< bins
+  std::vector<XyCurve> curves;
+  std::vector<Mark> marks;
+  int height = 280;  ///< CSS pixels
+};
+
+struct BodeCurve {
+  std::string label;
+  Eigen::VectorXd magnitude;  ///< |H|, one for each frequency
+};
+
+/// Magnitudes in dB, 20 log10 |H|, over logarithmic frequency. Curves take the colours
+/// of the palette in their order. Magnitudes that are not positive are left out.
+struct BodePlot {
+  std::string caption;
+  std::string quantity;
+  std::string unit;           ///< of the magnitude, 0 dB is one of it; empty: a number
+  Eigen::VectorXd frequency;  ///< [Hz], increasing
+  std::vector<BodeCurve> curves;
+  std::vector<Mark> marks;  ///< [Hz], for example cut-offs
+  int height = 280;         ///< CSS pixels
+};
+
+/// The plot as a JSON object for the page's script. InputError if x and y, edges and
+/// counts, or frequencies and magnitudes do not go together.
 std::string DescribePlot(const TimePlot& plot);
 std::string DescribePlot(const SpectrumPlot& plot);
+std::string DescribePlot(const XyPlot& plot);
+std::string DescribePlot(const HistogramPlot& plot);
+std::string DescribePlot(const BodePlot& plot);
 
 }  // namespace mjdiag

@@ -150,6 +150,57 @@ TEST_F(Diagnosis, RefinedIsExactForLargeFaults) {
   EXPECT_NEAR(ValueOf(document, "eta_y"), 0.98, 8e-7);
 }
 
+TEST_F(Diagnosis, NamesALargeFaultWithoutWhatLeaksIntoTheOthers) {
+  const CommandResult result = RunCommand(std::string("simulate ") + kLinear +
+                                          "--fault zeta_x=1.2 --diagnose --filters " +
+                                          Filters() + " --out " + Path("run"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  // Its estimate is off by the square of the deviation; see --refine.
+  EXPECT_THAT(result.out,
+              ::testing::ContainsRegex("Detected: zeta_x = 1\\.199[0-9]*\\.\n"));
+  EXPECT_THAT(ReadAll(Path("run") + "/diagnosis.html"),
+              ::testing::ContainsRegex("Detected: zeta_x = 1\\.199[0-9]*\\.<"));
+}
+
+TEST_F(Diagnosis, WritesThePageOfADesignBesideItsFilters) {
+  const std::string page = ReadAll(fs::path(Filters()).parent_path() / "design.html");
+  EXPECT_THAT(page,
+              AllOf(HasSubstr("Residual of healthy runs"),
+                    HasSubstr("half power at 50.0 Hz"), HasSubstr("beta_x = 0.01")));
+  EXPECT_FALSE(json::parse(ReadAll(Filters())).contains("linear_program"));
+}
+
+TEST_F(Diagnosis, FindsByLinearProgramsARowOfTheSameNullSpace) {
+  const std::string out = Path("lp");
+  const CommandResult result =
+      RunCommand(std::string("design ") + kLinear + "--method lp --out " + out);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Linear programs: "));
+  json document = json::parse(ReadAll(out + "/filters.json"));
+  const json programs = document["linear_program"];
+  EXPECT_EQ(programs["degree"], 7);
+  EXPECT_EQ(programs["norm"], "one");
+  // m = n_f (d_F + d_N + 1) with d_F = 0.
+  EXPECT_EQ(programs["programs"], 8 * programs["fault_inputs"].get<int>());
+  EXPECT_GT(programs["feasible"], 0);
+  EXPECT_LT(programs["feasible"], programs["programs"]);
+  EXPECT_LT(programs["defect"], 1e-15);
+  EXPECT_LT(programs["angle"], 1e-9);
+  // The filters stay those of the singular value decomposition.
+  json other = json::parse(ReadAll(Filters()));
+  for (json* file : {&document, &other}) {
+    file->erase("linear_program");
+    file->erase("command");
+  }
+  EXPECT_EQ(document, other);
+  EXPECT_THAT(ReadAll(out + "/design.html"), HasSubstr("Linear programs: "));
+}
+
+TEST_F(Diagnosis, RefusesAMethodThatItDoesNotKnow) {
+  EXPECT_THAT(Refused("design --setup mjcf/ab383 --method simplex"),
+              HasSubstr("simplex"));
+}
+
 TEST_F(Diagnosis, RefusesADegreeWithoutRows) {
   EXPECT_THAT(Refused("design --setup mjcf/ab383 --set diagnosis.degree=5"),
               AllOf(HasSubstr("no row of degree 5"), HasSubstr("at least 6")));
@@ -227,6 +278,18 @@ TEST(Study, PrintsTheBoundAndWhatEstimatorsMakeOfIt) {
     EXPECT_GT(row[4].get<double>(), 1.0) << row;  // no estimator beats the bound
     EXPECT_LE(row[6].get<double>(), row[4].get<double>() * 1.01) << row;
   }
+}
+
+TEST(Study, WritesAPageWithItsTables) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "bound").string();
+  const CommandResult result =
+      RunCommand("study --setup mjcf/ab383 --preset bound --out " + out);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("study.html"));
+  EXPECT_THAT(ReadAll(out + "/study.html"),
+              AllOf(HasSubstr("Study bound of AB383"), HasSubstr("<td>zeta_x</td>"),
+                    HasSubstr("Standard deviations of the knob")));
 }
 
 TEST(Study, ListsThePresetsWhenOneIsUnknown) {

@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/report/diagnosis_json.h"
+#include "mjdiag/report/diagnosis_verdict.h"
 #include "mjdiag/report/filters_file.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"

@@ -83,6 +83,28 @@ TEST(Page, CarriesThePlotLibraryOnlyIfItHasPlots) {
   EXPECT_EQ(Count(html, "id=\"reset-zoom\""), 1);
 }
 
+TEST(Page, HoldsEveryKindOfPlotInItsPlace) {
+  Page page("x");
+  page.AddPlot(XyPlot{"force over velocity", "v", "m/s", "F", "N", {}, {}, 321});
+  HistogramPlot histogram;
+  histogram.caption = "residual";
+  histogram.edges = Eigen::Vector2d(0.0, 1.0);
+  histogram.counts = Eigen::VectorXd::Ones(1);
+  page.AddPlot(histogram);
+  BodePlot bode;
+  bode.caption = "low-pass";
+  page.AddPlot(bode);
+  const std::string html = page.Html();
+  EXPECT_THAT(html, HasSubstr("<figcaption>force over velocity</figcaption>"));
+  EXPECT_THAT(html, HasSubstr("height:321px"));
+  const auto xy = html.find("\"kind\":\"xy\"");
+  const auto bars = html.find("\"kind\":\"histogram\"");
+  const auto magnitude = html.find("\"kind\":\"bode\"");
+  EXPECT_LT(xy, bars);
+  EXPECT_LT(bars, magnitude);
+  EXPECT_NE(magnitude, std::string::npos);
+}
+
 TEST(Page, AlignsNumbersOfATable) {
   Page page("x");
   page.AddTable({{{"name"}, {"rms", true}}, {{"q", "1"}}});

@@ -1,0 +1,128 @@
+#include "app/row_programs.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/diagnosis/linear_program_row.h"
+#include "mjdiag/plugin/fault_models.h"
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag::app {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Orthonormal columns that span those of `matrix`.
+MatrixXd ColumnSpace(const MatrixXd& matrix) {
+  // Above the rounding of differences of linearised models.
+  constexpr double kNonzero = 1e-6;
+  const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeThinU);
+  const VectorXd& values = svd.singularValues();
+  const Index rank = (values.array() > kNonzero * values[0]).count();
+  return svd.matrixU().leftCols(values[0] > 0.0 ? rank : 0);
+}
+
+/// Generalised forces that a turned knob makes, whatever the motion: damping, stiffness
+/// and motor forces change by dD q', dK q and dGamma u. Each change is taken relative
+/// to its matrix and in coordinates of unit mass, so that a change of one matrix is not
+/// confused with the rounding of another.
+MatrixXd ForcesOf(const TurnedModels& knob, const MechanicalModel& healthy) {
+  const Eigen::LLT<MatrixXd> mass(healthy.M);
+  const Index n = healthy.M.rows();
+  const auto relative = [&](const MatrixXd& change, const MatrixXd& whole) {
+    const double size = mass.matrixL().solve(whole).norm();
+    return MatrixXd(mass.matrixL().solve(change) / (size > 0.0 ? size : 1.0));
+  };
+  // Columns act on motion in coordinates of unit mass, too.
+  const auto square = [&](const MatrixXd& change, const MatrixXd& whole) {
+    const auto columns = [&](const MatrixXd& matrix) {
+      return MatrixXd(mass.matrixL().solve(matrix.transpose()).transpose());
+    };
+    return relative(columns(change), columns(whole));
+  };
+  MatrixXd changes(n, 2 * n + healthy.Gamma.cols());
+  changes << square(knob.plus.D - knob.minus.D, healthy.D),
+      square(knob.plus.K - knob.minus.K, healthy.K),
+      relative(knob.plus.Gamma - knob.minus.Gamma, healthy.Gamma);
+  return mass.matrixL() * ColumnSpace(changes);
+}
+
+SignalEntry FaultEntry(const Machine& machine, const MechanicalModel& healthy,
+                       const TickTiming& timing) {
+  const std::vector<TurnedModels> knobs = TurnModels(*machine.plant, machine.setup);
+  if (knobs.empty()) {
+    throw InputError("--method lp", "the plant has no fault knobs",
+                     "at least one, for the rows have to see a fault");
+  }
+  MatrixXd forces(healthy.M.rows(), 0);
+  for (const TurnedModels& knob : knobs) {
+    const MatrixXd more = ForcesOf(knob, healthy);
+    MatrixXd all(forces.rows(), forces.cols() + more.cols());
+    all << forces, more;
+    forces = all;
+  }
+  SignalEntry entry = HeldForces(healthy, timing, forces);
+  for (Index j = 0; j < entry.B.cols(); ++j) {
+    const double size = std::hypot(entry.B.col(j).norm(), entry.D.col(j).norm());
+    entry.B.col(j) /= size;
+    entry.D.col(j) /= size;
+  }
+  return entry;
+}
+
+/// [N_y,0 .. N_y,degree] of a row N = [N_x, N_y].
+VectorXd OutputPart(const PolynomialMatrix& row, Index outputs) {
+  VectorXd part(outputs * (row.degree() + 1));
+  for (int k = 0; k <= row.degree(); ++k) {
+    part.segment(k * outputs, outputs) =
+        row.coefficients[static_cast<std::size_t>(k)].row(0).tail(outputs);
+  }
+  return part;
+}
+
+/// Between a vector and the span of some rows [rad].
+double Angle(const VectorXd& vector, const MatrixXd& rows) {
+  const MatrixXd basis = ColumnSpace(rows.transpose());
+  const VectorXd inside = basis * (basis.transpose() * vector);
+  return std::atan2((vector - inside).norm(), inside.norm());
+}
+
+}  // namespace
+
+SignalEntry UnknownForces(const MechanicalModel& healthy,
+                          const SynthesisOptions& options) {
+  const MatrixXd& forces = options.unknown_inputs.forces;
+  if (forces.cols() == 0) return NoSignal(DeltaForm(healthy, options.timing));
+  return HeldForces(healthy, options.timing, forces);
+}
+
+RowProgramFacts SolveRowPrograms(const Machine& machine,
+                                 const MechanicalModel& healthy) {
+  const SynthesisOptions options = SynthesisOf(machine.setup, healthy);
+  const StateSpace system = DeltaForm(healthy, options.timing);
+  const SignalEntry unknown = UnknownForces(healthy, options);
+  const SignalEntry faults = FaultEntry(machine, healthy, options.timing);
+  const DaeModel dae = MakeDae(system, unknown, faults);
+  RowProgramFacts facts;
+  facts.degree = options.degree;
+  facts.norm = "one";
+  facts.fault_inputs = static_cast<int>(dae.F.cols());
+  const std::optional<LinearProgramRow> row =
+      mjdiag::SolveRowPrograms(dae, options.degree, RowProgramOptions{RowNorm::kOne});
+  facts.programs = facts.fault_inputs * (dae.F.degree() + options.degree + 1);
+  if (!row) return facts;
+  facts.programs = row->programs;
+  facts.feasible = row->feasible;
+  facts.objective = row->objective;
+  facts.defect = row->defect;
+  const NullSpace null_space = LeftNullSpace(system, unknown, options.degree);
+  facts.angle = Angle(OutputPart(row->N, system.outputs()), null_space.rows);
+  return facts;
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,262 @@
+#include "mjdiag/discovery/cause_fit.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// All parameters in one vector and back.
+VectorXd Flatten(const std::vector<FittedCause>& causes) {
+  Index size = 0;
+  for (const FittedCause& cause : causes) size += cause.value.size();
+  VectorXd all(size);
+  Index next = 0;
+  for (const FittedCause& cause : causes) {
+    all.segment(next, cause.value.size()) = cause.value;
+    next += cause.value.size();
+  }
+  return all;
+}
+
+std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
+                                    const VectorXd& all) {
+  Index next = 0;
+  for (FittedCause& cause : causes) {
+    cause.value = all.segment(next, cause.value.size());
+    next += cause.value.size();
+  }
+  return causes;
+}
+
+/// Step of a forward difference: small beside what the parameter does, large beside
+/// the rounding of a run.
+double StepOf(const FitParameter& parameter, double value, double duration) {
+  constexpr double kRelative = 1e-4;
+  if (parameter.name == "phase") return kRelative;
+  if (parameter.name == "frequency")
+    return kRelative * std::min(value, 10.0 / duration);
+  // Around 1: what counts is how far it is from there.
+  if (parameter.name == "factor" || parameter.name == "value") {
+    return kRelative * std::max(std::abs(value - 1.0), 1e-3);
+  }
+  return kRelative * std::max(std::abs(value), 1e-12);
+}
+
+/// The innovations as a function of theta, with the last run kept: Ceres asks for the
+/// value and then, at the same place, for the derivatives.
+class Simulator {
+ public:
+  Simulator(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+            const std::vector<FittedCause>& causes)
+      : problem_(problem), candidates_(candidates), causes_(causes) {
+    for (const FittedCause& cause : causes) {
+      const auto& list = candidates[cause.candidate].parameters;
+      parameters_.insert(parameters_.end(), list.begin(), list.end());
+    }
+  }
+  const std::vector<FitParameter>& parameters() const { return parameters_; }
+
+  const VectorXd& Residual(const VectorXd& theta) {
+    if (theta != theta_ || residual_.size() == 0) {
+      residual_ = RunAt(theta);
+      theta_ = theta;
+    }
+    return residual_;
+  }
+
+  /// J at theta, all samples.
+  MatrixXd Sensitivities(const VectorXd& theta) {
+    const VectorXd base = Residual(theta);
+    const double duration =
+        static_cast<double>(problem_.run.samples()) * problem_.run.sample_time;
+    MatrixXd J(base.size(), theta.size());
+    ParallelFor(static_cast<int>(theta.size()), [&](int i) {
+      const FitParameter& parameter = parameters_[static_cast<std::size_t>(i)];
+      double step = StepOf(parameter, theta[i], duration);
+      if (theta[i] + step > parameter.upper) step = -step;
+      VectorXd moved = theta;
+      moved[i] += step;
+      J.col(i) = (RunAt(moved) - base) / step;
+    });
+    return J;
+  }
+
+ private:
+  VectorXd RunAt(const VectorXd& theta) const {
+    return problem_.Residual(ChangesOf(candidates_, WithValues(causes_, theta)));
+  }
+
+  const DiscoveryProblem& problem_;
+  const std::vector<Candidate>& candidates_;
+  const std::vector<FittedCause>& causes_;
+  std::vector<FitParameter> parameters_;
+  VectorXd theta_;
+  VectorXd residual_;
+};
+
+class InnovationCost final : public ceres::CostFunction {
+ public:
+  InnovationCost(Simulator& simulator, Index first, Index count, Index parameters)
+      : simulator_(simulator), first_(first), count_(count) {
+    set_num_residuals(static_cast<int>(count));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
+  }
+  bool Evaluate(const double* const* blocks, double* residuals,
+                double** jacobians) const override {
+    const Index size = parameter_block_sizes()[0];
+    const VectorXd theta = Eigen::Map<const VectorXd>(blocks[0], size);
+    try {
+      Eigen::Map<VectorXd>(residuals, count_) =
+          simulator_.Residual(theta).segment(first_, count_);
+      if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+      using RowMajor =
+          Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      MatrixXd J = simulator_.Sensitivities(theta).middleRows(first_, count_);
+      if (!J.allFinite()) return false;
+      if (size == 1) {
+        Eigen::Map<VectorXd>(jacobians[0], count_) = J.col(0);
+      } else {
+        Eigen::Map<RowMajor>(jacobians[0], count_, size) = J;
+      }
+      return true;
+    } catch (const NumericalError&) {
+      return false;  // diverged: a step that far is refused
+    } catch (const InputError&) {
+      return false;  // takes away more than there is
+    }
+  }
+
+ private:
+  Simulator& simulator_;
+  Index first_;
+  Index count_;
+};
+
+void SetBounds(ceres::Problem& problem, double* theta,
+               const std::vector<FitParameter>& parameters) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const int index = static_cast<int>(i);
+    if (std::isfinite(parameters[i].lower)) {
+      problem.SetParameterLowerBound(theta, index, parameters[i].lower);
+    }
+    if (std::isfinite(parameters[i].upper)) {
+      problem.SetParameterUpperBound(theta, index, parameters[i].upper);
+    }
+  }
+}
+
+}  // namespace
+
+Changes ChangesOf(const std::vector<Candidate>& candidates,
+                  const std::vector<FittedCause>& causes) {
+  std::vector<Cause> list;
+  for (const FittedCause& fitted : causes) {
+    const Candidate& candidate = candidates[fitted.candidate];
+    Cause cause = candidate.cause;
+    for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+      cause.spec.parameters[candidate.parameters[i].name] =
+          fitted.value[static_cast<Index>(i)];
+    }
+    list.push_back(std::move(cause));
+  }
+  return ChangesOf(list);
+}
+
+CauseFit FitCauses(const DiscoveryProblem& problem,
+                   const std::vector<Candidate>& candidates,
+                   const std::vector<FittedCause>& start, const FitOptions& options) {
+  const Index channels = problem.run.outputs.rows();
+  const Index first = channels * problem.skip;
+  const Index count = channels * (problem.train - problem.skip);
+  CauseFit fit;
+  fit.causes = start;
+  Simulator simulator(problem, candidates, start);
+  VectorXd theta = Flatten(start);
+  if (theta.size() > 0) {
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    InnovationCost cost(simulator, first, count, theta.size());
+    ceres::Problem least_squares(ownership);
+    least_squares.AddResidualBlock(&cost, nullptr, theta.data());
+    SetBounds(least_squares, theta.data(), simulator.parameters());
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.max_num_iterations = options.iterations;
+    // Of the sum of squares: a change of a hundredth of one parameter's noise.
+    solver.function_tolerance = 1e-7;
+    solver.parameter_tolerance = 1e-9;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &least_squares, &summary);
+    if (!summary.IsSolutionUsable()) {
+      throw NumericalError("fit: the run with the first values diverges");
+    }
+    fit.converged = summary.termination_type == ceres::CONVERGENCE;
+    fit.causes = WithValues(start, theta);
+  }
+  fit.residual = simulator.Residual(theta);
+  if (options.sensitivities && theta.size() > 0) {
+    fit.sensitivities = simulator.Sensitivities(theta);
+  }
+  const Index samples = problem.run.samples();
+  fit.train = MeanSquare(fit.residual, channels, problem.skip, problem.train);
+  fit.held_out = MeanSquare(fit.residual, channels, problem.train, samples);
+  return fit;
+}
+
+MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
+  const Index channels = problem.run.outputs.rows();
+  const Index parameters = fit.sensitivities.cols();
+  const Index n = problem.train - problem.skip;
+  const MatrixXd J =
+      fit.sensitivities.middleRows(channels * problem.skip, channels * n);
+  const VectorXd e = fit.residual.segment(channels * problem.skip, channels * n);
+  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd scaled = J * scale.asDiagonal();
+  MatrixXd scores(n, parameters);
+  for (Index k = 0; k < n; ++k) {
+    scores.row(k) = e.segment(channels * k, channels).transpose() *
+                    scaled.middleRows(channels * k, channels);
+  }
+  // The colour of the innovations reaches over the memory of the observer; more than a
+  // twentieth of the record would be noise itself.
+  const auto lags = static_cast<Index>(std::min(
+      0.05 * static_cast<double>(n), 50.0 + std::sqrt(static_cast<double>(n))));
+  MatrixXd B = scores.transpose() * scores;
+  for (Index lag = 1; lag <= lags; ++lag) {
+    const MatrixXd product =
+        scores.topRows(n - lag).transpose() * scores.bottomRows(n - lag);
+    const double weight =
+        1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
+    B += weight * (product + product.transpose());
+  }
+  const Eigen::FullPivLU<MatrixXd> information(scaled.transpose() * scaled);
+  if (!information.isInvertible()) {
+    return MatrixXd::Identity(parameters, parameters) *
+           std::numeric_limits<double>::infinity();
+  }
+  const MatrixXd inverse = information.inverse();
+  return scale.asDiagonal() * (inverse * B * inverse) * scale.asDiagonal();
+}
+
+DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
+  DiscoveryProblem cut = problem;
+  cut.run.outputs = problem.run.outputs.leftCols(samples);
+  cut.run.inputs = problem.run.inputs.leftCols(samples);
+  cut.train = samples;
+  return cut;
+}
+
+}  // namespace mjdiag

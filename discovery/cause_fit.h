@@ -1,0 +1,63 @@
+#pragma once
+// Parameters of causes by full simulation: the innovations of the nonlinear plant with
+// the causes in it are made as small as they get,
+//
+//   min over theta of  sum over train samples of |e_k(theta)|^2,   bounds on theta
+//
+// by Levenberg and Marquardt (Ceres), with e scaled to unit variance under sensor noise
+// alone. Derivatives are forward differences of whole runs, side by side.
+//
+// The covariance of theta holds for innovations of any colour (the "sandwich" of Huber
+// and White with the lags of Newey and West):
+//
+//   cov = (J^T J)^-1 B (J^T J)^-1,  B = sum over lags l of w_l sum_k s_k s_(k+l)^T,
+//   s_k = J_k^T e_k,   w_l = 1 - |l| / (m + 1)
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/problem.h"
+
+namespace mjdiag {
+
+/// A candidate with values.
+struct FittedCause {
+  std::size_t candidate = 0;  ///< in the list of candidates
+  Eigen::VectorXd value;      ///< in the order of candidate.parameters
+};
+
+struct CauseFit {
+  std::vector<FittedCause> causes;
+  Eigen::VectorXd residual;       ///< scaled innovations of all samples
+  Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of all samples
+  double train = 0.0;             ///< mean square of the train part
+  double held_out = 0.0;          ///< of the rest; 0 without
+  bool converged = false;
+};
+
+struct FitOptions {
+  int iterations = 12;
+  bool sensitivities = true;  ///< compute J at the solution
+};
+
+/// Changes to the plant that the causes are.
+Changes ChangesOf(const std::vector<Candidate>& candidates,
+                  const std::vector<FittedCause>& causes);
+
+/// @param start  causes with values to start from, within their bounds
+/// @param run    of the problem, or the beginning of it: `problem.run` is what counts
+/// NumericalError if the run with the start diverges.
+CauseFit FitCauses(const DiscoveryProblem& problem,
+                   const std::vector<Candidate>& candidates,
+                   const std::vector<FittedCause>& start, const FitOptions& options);
+
+/// Covariance of all parameters of the fit, in order of the causes; infinite variance
+/// where the data say nothing.
+Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
+                                    const CauseFit& fit);
+
+/// The problem cut to the first `samples` samples, all of them for the fit.
+DiscoveryProblem Beginning(const DiscoveryProblem& problem, Eigen::Index samples);
+
+}  // namespace mjdiag

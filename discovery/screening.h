@@ -1,0 +1,50 @@
+#pragma once
+// Which candidates could explain what is left: every trial (trial.h) is passed through
+// the error dynamics and regressed on the innovations, and is worth the square of them
+// that it takes away,
+//
+//   gain = b^T G^-1 b,   G = Phi^T Phi,   b = Phi^T e
+//
+// with Phi its response, orthogonal to the sensitivities J of what has been found
+// already, for those are fitted again together with it. With noise alone a gain is
+// chi-squared distributed with as many degrees of freedom as the trial has amplitudes.
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/error_dynamics.h"
+#include "mjdiag/discovery/problem.h"
+#include "mjdiag/discovery/trial.h"
+
+namespace mjdiag {
+
+/// A candidate with values to start a fit from.
+struct Start {
+  std::size_t candidate = 0;
+  std::map<std::string, double> parameters;
+  double gain = 0.0;  ///< of the squared scaled innovations
+  int freedom = 1;    ///< amplitudes
+};
+
+struct Screening {
+  /// The best starts of every candidate that is excited, best first.
+  std::vector<Start> starts;
+  int trials = 0;  ///< how many were looked at, for the chance of the best
+  /// Candidates that the motion does not excite.
+  std::vector<std::size_t> not_excited;
+};
+
+/// @param residual       scaled innovations, only the train part is used
+/// @param sensitivities  J of what has been found, (ny samples) x parameters; may be
+///                       empty
+/// @param starts_each    how many starts of one candidate to keep at most
+Screening Screen(const DiscoveryProblem& problem,
+                 const std::vector<Candidate>& candidates, const ObservedMotion& motion,
+                 const Eigen::VectorXd& residual, const Eigen::MatrixXd& sensitivities,
+                 int starts_each);
+
+}  // namespace mjdiag

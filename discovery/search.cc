@@ -1,0 +1,330 @@
+#include "mjdiag/discovery/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "mjdiag/discovery/mismatch.h"
+#include "mjdiag/discovery/noise_floor.h"
+#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+int ParameterCount(const std::vector<FittedCause>& causes) {
+  int count = 0;
+  for (const FittedCause& cause : causes) count += static_cast<int>(cause.value.size());
+  return count;
+}
+
+FittedCause ToFitted(const Candidate& candidate, const Start& start) {
+  FittedCause cause;
+  cause.candidate = start.candidate;
+  cause.value.resize(static_cast<Index>(candidate.parameters.size()));
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    const FitParameter& parameter = candidate.parameters[i];
+    cause.value[static_cast<Index>(i)] = std::clamp(start.parameters.at(parameter.name),
+                                                    parameter.lower, parameter.upper);
+  }
+  return cause;
+}
+
+/// A search under way.
+class Search {
+ public:
+  Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+         const SearchOptions& options)
+      : problem_(problem),
+        candidates_(candidates),
+        options_(options),
+        beginning_(Beginning(problem, BeginningLength(problem))) {}
+
+  SearchResult Run();
+
+ private:
+  static Index BeginningLength(const DiscoveryProblem& problem) {
+    constexpr Index kShortest = 4000;
+    return std::min(problem.train,
+                    problem.skip + std::max(kShortest, problem.train / 4));
+  }
+
+  void Report(const std::string& what, double fraction) const {
+    if (options_.progress) options_.progress(what, fraction);
+  }
+  Screening ScreenRest() const;
+  bool IsSignificant(const Start& start, const Screening& screening) const;
+  std::vector<Start> Shortlist(const Screening& screening) const;
+  double Criterion(const DiscoveryProblem& problem, const CauseFit& fit) const;
+  std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
+                                 const std::vector<FittedCause>& causes,
+                                 const FitOptions& options) const;
+  Rung Round(const std::vector<Start>& shortlist) const;
+  bool Improves(const CauseFit& after) const;
+  void Keep(const Rung& rung);
+  bool Prune();
+
+  const DiscoveryProblem& problem_;
+  const std::vector<Candidate>& candidates_;
+  const SearchOptions& options_;
+  DiscoveryProblem beginning_;
+  SearchResult result_;
+  VectorXd independent_;
+};
+
+Screening Search::ScreenRest() const {
+  const Changes changes = ChangesOf(candidates_, result_.fit.causes);
+  const Track track = FollowRun(*problem_.setup, *problem_.plant, changes, problem_.run,
+                                problem_.observer, true);
+  const ObservedMotion motion =
+      ObserveMotion(*problem_.plant, problem_.run, track, problem_.StillSpeed());
+  return Screen(problem_, candidates_, motion, result_.fit.residual,
+                result_.fit.sensitivities, 2);
+}
+
+bool Search::IsSignificant(const Start& start, const Screening& screening) const {
+  // What is left may be more than sensor noise, and coloured; both make chance gains
+  // larger.
+  const double inflation =
+      std::max(1.0, result_.fit.train) / std::min(1.0, independent_.minCoeff());
+  return start.gain / inflation >
+         GainByChance(options_.false_alarm, screening.trials, start.freedom);
+}
+
+std::vector<Start> Search::Shortlist(const Screening& screening) const {
+  std::vector<Start> list;
+  for (const Start& start : screening.starts) {
+    if (static_cast<int>(list.size()) >= options_.shortlist) break;
+    const bool taken = std::ranges::any_of(
+        result_.fit.causes,
+        [&](const FittedCause& cause) { return cause.candidate == start.candidate; });
+    if (!taken && IsSignificant(start, screening)) list.push_back(start);
+  }
+  return list;
+}
+
+double Search::Criterion(const DiscoveryProblem& problem, const CauseFit& fit) const {
+  const double samples = static_cast<double>(problem.train - problem.skip);
+  const double n = std::max(2.0, samples * independent_.sum());
+  return Deviance(fit.residual, independent_, problem.skip, problem.train) +
+         ParameterCount(fit.causes) * std::log(n);
+}
+
+std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
+                                       const std::vector<FittedCause>& causes,
+                                       const FitOptions& options) const {
+  try {
+    return FitCauses(problem, candidates_, causes, options);
+  } catch (const NumericalError&) {
+    return std::nullopt;  // diverges with these values
+  } catch (const InputError&) {
+    return std::nullopt;  // takes away more than there is
+  }
+}
+
+/// Fits the shortlist on the beginning, the best of it on the whole train part.
+Rung Search::Round(const std::vector<Start>& shortlist) const {
+  struct Entry {
+    std::optional<CauseFit> fit;
+    double criterion = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Entry> early(shortlist.size());
+  ParallelFor(static_cast<int>(shortlist.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    std::vector<FittedCause> causes = result_.fit.causes;
+    causes.push_back(ToFitted(candidates_[shortlist[i].candidate], shortlist[i]));
+    early[i].fit = TryFit(beginning_, causes, {8, false});
+    if (early[i].fit) early[i].criterion = Criterion(beginning_, *early[i].fit);
+  });
+  std::ranges::stable_sort(early, std::less<>(), &Entry::criterion);
+
+  Rung rung;
+  // On more data a difference grows in proportion.
+  const double growth = static_cast<double>(problem_.train - problem_.skip) /
+                        static_cast<double>(beginning_.train - beginning_.skip);
+  constexpr double kHopeless = 60.0;  // exp(-30)
+  constexpr int kFinalists = 4;
+  double best_early = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity();
+  int finalists = 0;
+  for (Entry& entry : early) {
+    if (!entry.fit) continue;
+    best_early = std::min(best_early, entry.criterion);
+    const double behind = entry.criterion - best_early;
+    const FittedCause cause = entry.fit->causes.back();
+    const bool seen = std::ranges::any_of(rung.contenders, [&](const Contender& c) {
+      return c.cause.candidate == cause.candidate;
+    });
+    if (seen && behind > kHopeless) continue;
+    if (finalists >= kFinalists || behind > kHopeless) {
+      rung.contenders.push_back({cause, best + growth * behind, 0.0});
+      continue;
+    }
+    ++finalists;
+    Report("fit of " + Describe(candidates_[cause.candidate]), 0.5);
+    auto fit = TryFit(problem_, entry.fit->causes, {10, false});
+    if (!fit) continue;
+    const double criterion = Criterion(problem_, *fit);
+    rung.contenders.push_back({fit->causes.back(), criterion, 0.0});
+    if (criterion < best) {
+      best = criterion;
+      rung.fit = std::move(*fit);
+    }
+  }
+  std::ranges::stable_sort(rung.contenders, std::less<>(), &Contender::criterion);
+  return rung;
+}
+
+void SetProbabilities(std::vector<Contender>& contenders) {
+  double sum = 0.0;
+  for (Contender& c : contenders) {
+    c.probability = std::exp(-0.5 * (c.criterion - contenders.front().criterion));
+    sum += c.probability;
+  }
+  for (Contender& c : contenders) c.probability /= sum;
+}
+
+/// Of several starts of one candidate the best.
+void KeepOneEach(std::vector<Contender>& contenders) {
+  std::vector<Contender> kept;
+  for (const Contender& c : contenders) {
+    const bool seen = std::ranges::any_of(kept, [&](const Contender& k) {
+      return k.cause.candidate == c.cause.candidate;
+    });
+    if (!seen) kept.push_back(c);
+  }
+  contenders = std::move(kept);
+}
+
+bool Search::Improves(const CauseFit& after) const {
+  const Index samples = problem_.run.samples();
+  const bool held_out = problem_.train < samples;
+  const auto unseen = [&](const CauseFit& fit) {
+    return held_out ? Deviance(fit.residual, independent_, problem_.train, samples)
+                    : 0.0;
+  };
+  return Criterion(problem_, after) < Criterion(problem_, result_.fit) &&
+         (!held_out || unseen(after) < unseen(result_.fit));
+}
+
+void Search::Keep(const Rung& rung) {
+  result_.fit = rung.fit;
+  result_.contenders.push_back(rung.contenders);
+}
+
+/// Drops the cause whose loss the criterion likes best; true if there was one.
+bool Search::Prune() {
+  if (result_.fit.causes.size() < 2) return false;
+  std::optional<CauseFit> best;
+  std::size_t dropped = 0;
+  double criterion = Criterion(problem_, result_.fit);
+  for (std::size_t i = 0; i < result_.fit.causes.size(); ++i) {
+    std::vector<FittedCause> causes = result_.fit.causes;
+    causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
+    // If it is far from superfluous the beginning says so.
+    const auto early = TryFit(beginning_, causes, {6, false});
+    if (!early) continue;
+    const double now =
+        Deviance(early->residual, independent_, problem_.skip, beginning_.train);
+    const double before =
+        Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
+    if (now - before > 60.0) continue;
+    auto fit = TryFit(problem_, causes, {10, false});
+    if (!fit || Criterion(problem_, *fit) >= criterion) continue;
+    criterion = Criterion(problem_, *fit);
+    best = std::move(fit);
+    dropped = i;
+  }
+  if (!best) return false;
+  result_.fit = std::move(*best);
+  result_.contenders.erase(result_.contenders.begin() +
+                           static_cast<std::ptrdiff_t>(dropped));
+  return true;
+}
+
+SearchResult Search::Run() {
+  result_.fit = FitCauses(problem_, candidates_, {}, {});
+  independent_ = VectorXd::Ones(problem_.run.outputs.rows());
+  for (int round = 0;; ++round) {
+    Report("screening", 0.0);
+    result_.left = ScreenRest();
+    const std::vector<Start> shortlist = Shortlist(result_.left);
+    result_.significant_rest = !shortlist.empty();
+    if (shortlist.empty() || round >= options_.most_causes) break;
+    Rung rung = Round(shortlist);
+    if (rung.contenders.empty() || rung.fit.residual.size() == 0) break;
+    KeepOneEach(rung.contenders);
+    SetProbabilities(rung.contenders);
+    independent_ = IndependentShare(problem_, rung.fit.residual);
+    rung.train = rung.fit.train;
+    rung.held_out = rung.fit.held_out;
+    rung.kept = Improves(rung.fit);
+    result_.ladder.push_back(rung);
+    if (!rung.kept) break;
+    Keep(rung);
+    while (Prune()) {
+    }
+    // The sensitivities of what is kept, for the next screening and the intervals.
+    result_.fit = FitCauses(problem_, candidates_, result_.fit.causes, {4, true});
+  }
+  return std::move(result_);
+}
+
+}  // namespace
+
+double Deviance(const VectorXd& residual, const VectorXd& independent, Index first,
+                Index last) {
+  const Index channels = independent.size();
+  const Eigen::Map<const MatrixXd> e(residual.data(), channels,
+                                     residual.size() / channels);
+  double deviance = 0.0;
+  for (Index c = 0; c < channels; ++c) {
+    const double n = independent[c] * static_cast<double>(last - first);
+    const double square = e.row(c).segment(first, last - first).squaredNorm() /
+                          static_cast<double>(last - first);
+    const double scale = std::max(1.0, square);
+    deviance += n * (std::log(scale) + square / scale);
+  }
+  return deviance;
+}
+
+VectorXd IndependentShare(const DiscoveryProblem& problem, const VectorXd& residual) {
+  const Index channels = problem.run.outputs.rows();
+  const Index n = problem.train - problem.skip;
+  const Eigen::Map<const MatrixXd> e(residual.data(), channels,
+                                     residual.size() / channels);
+  VectorXd share(channels);
+  for (Index c = 0; c < channels; ++c) {
+    const VectorXd signal = e.row(c).segment(problem.skip, n);
+    const Spectrum spectrum = PowerSpectrum(signal, problem.run.sample_time);
+    share[c] = std::min(1.0, IndependentSamples(spectrum, n) / static_cast<double>(n));
+  }
+  return share;
+}
+
+// Upper tail of chi-squared with 1 to 3 degrees of freedom by exp(-x/2) (x/2)^(f/2 - 1)
+// / gamma(f / 2), exact for 2; solved for x by iteration.
+double GainByChance(double probability, int trials, int freedom) {
+  const double target =
+      std::log(static_cast<double>(std::max(trials, 1)) / probability);
+  const double power = 0.5 * freedom - 1.0;
+  double half = target;
+  for (int i = 0; i < 20; ++i) {
+    half = target + power * std::log(half) - std::lgamma(0.5 * freedom);
+  }
+  return 2.0 * half;
+}
+
+SearchResult SearchCauses(const DiscoveryProblem& problem,
+                          const std::vector<Candidate>& candidates,
+                          const SearchOptions& options) {
+  return Search(problem, candidates, options).Run();
+}
+
+}  // namespace mjdiag

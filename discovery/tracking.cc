@@ -1,0 +1,118 @@
+#include "mjdiag/discovery/tracking.h"
+
+#include <algorithm>
+
+#include "mjdiag/plugin/active_effect.h"
+#include "mjdiag/plugin/channels.h"
+#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/native_effect.h"
+#include "mjdiag/plugin/scenery.h"
+#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/plugin/start_state.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+Eigen::RowVectorXd Samples(const Record& measured, const std::string& name,
+                           const std::string& unit) {
+  const Channel& channel = measured.At(name);
+  if (channel.unit != unit) {
+    throw InputError("record", "channel '" + name + "' is in '" + channel.unit + "'",
+                     unit + "; a column under [record.channels] may give the unit");
+  }
+  return channel.samples.transpose();
+}
+
+ModelPtr ChangedPlant(const mjModel& plant, const Changes& changes) {
+  ModelPtr model = CopyModel(plant);
+  for (const Fault& fault : changes.faults) ApplyFault(*model, fault);
+  for (const EffectSpec& effect : changes.effects) ApplyNativeEffect(*model, effect);
+  return model;
+}
+
+bool HasDiverged(const mjData& data) {
+  return data.warning[mjWARN_BADQPOS].number > 0 ||
+         data.warning[mjWARN_BADQVEL].number > 0 ||
+         data.warning[mjWARN_BADQACC].number > 0;
+}
+
+}  // namespace
+
+MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
+  MeasuredRun run;
+  run.sample_time = setup.sample_time();
+  run.start = Replay(setup, measured).start;
+  run.outputs.resize(static_cast<Index>(setup.sensors.size()), measured.samples());
+  run.inputs.resize(static_cast<Index>(setup.actuators.size()), measured.samples());
+  for (Index i = 0; i < run.outputs.rows(); ++i) {
+    const SensorSetup& sensor = setup.sensors[static_cast<std::size_t>(i)];
+    run.outputs.row(i) = Samples(measured, sensor.channel, sensor.unit);
+  }
+  for (Index i = 0; i < run.inputs.rows(); ++i) {
+    const ActuatorSetup& actuator = setup.actuators[static_cast<std::size_t>(i)];
+    run.inputs.row(i) = Samples(measured, actuator.channel, actuator.unit);
+  }
+  return run;
+}
+
+Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+                const MeasuredRun& run, const Observer& observer, bool states) {
+  const ModelPtr model = ChangedPlant(plant, changes);
+  const VectorXd start = StartPosition(setup, *model, run.start);
+  DropScenery(*model);
+  const DataPtr data = MakeData(*model);
+  std::copy(start.begin(), start.end(), data->qpos);
+  ActiveEffects effects(setup, *model, changes.effects);
+  const std::vector<int> sensors = SensorAddresses(setup, *model);
+  const std::vector<int> actuators = ActuatorAddresses(setup, *model);
+
+  const Index n = run.samples();
+  const Index nv = model->nv;
+  Track track;
+  track.innovations.resize(run.outputs.rows(), n);
+  if (states) {
+    track.position.resize(nv, n);
+    track.velocity.resize(nv, n);
+  }
+  Eigen::Map<VectorXd> q(data->qpos, nv);
+  Eigen::Map<VectorXd> v(data->qvel, nv);
+  VectorXd reading(run.outputs.rows());
+  VectorXd correction(2 * nv);
+  for (Index k = 0; k < n; ++k) {
+    for (int substep = 0; substep < setup.substeps; ++substep) {
+      mj_step1(model.get(), data.get());
+      if (substep == 0) {
+        for (std::size_t i = 0; i < sensors.size(); ++i) {
+          reading[static_cast<Index>(i)] = data->sensordata[sensors[i]];
+        }
+        effects.Distort({reading.data(), sensors.size()},
+                        static_cast<double>(k) * run.sample_time);
+        track.innovations.col(k) = run.outputs.col(k) - reading;
+        if (states) {
+          track.position.col(k) = q;
+          track.velocity.col(k) = v;
+        }
+      }
+      for (std::size_t i = 0; i < actuators.size(); ++i) {
+        data->ctrl[actuators[i]] = run.inputs(static_cast<Index>(i), k);
+      }
+      effects.Act(*model, *data);
+      mj_step2(model.get(), data.get());
+    }
+    if (HasDiverged(*data)) {
+      throw NumericalError("replay: diverged at " +
+                           std::to_string(static_cast<double>(k) * run.sample_time) +
+                           " s");
+    }
+    correction.noalias() = observer.L * track.innovations.col(k);
+    q += correction.head(nv);
+    v += correction.tail(nv);
+  }
+  return track;
+}
+
+}  // namespace mjdiag

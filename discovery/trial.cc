@@ -1,0 +1,363 @@
+#include "mjdiag/discovery/trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mjdiag/discovery/trial_signals.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// What a generator of trials has in hand.
+class TrialMaker {
+ public:
+  TrialMaker(const mjModel& plant, const MechanicalModel& model,
+             const Candidate& candidate, const ObservedMotion& motion)
+      : plant_(plant), model_(model), candidate_(candidate), motion_(motion) {}
+
+  std::vector<Trial> Make();
+
+ private:
+  using Shape = std::map<std::string, double>;
+
+  VectorXd q() const { return motion_.position.row(candidate_.joint); }
+  VectorXd v() const { return motion_.velocity.row(candidate_.joint); }
+  VectorXd u() const { return motion_.inputs.row(candidate_.channel); }
+  VectorXd y() const { return motion_.outputs.row(candidate_.channel); }
+  MatrixXd JointEntry(Index columns) const {
+    return VectorXd::Unit(model_.M.rows(), candidate_.joint).replicate(1, columns);
+  }
+  MatrixXd MotorEntry(Index columns) const {
+    return model_.Gamma.col(candidate_.channel).replicate(1, columns);
+  }
+
+  /// One amplitude for each named parameter, no shape.
+  void AddLinear(const MatrixXd& signals, const MatrixXd& entry,
+                 std::vector<std::string> names, double offset = 0.0,
+                 bool not_negative = false);
+  void AddReading(const VectorXd& signal, const std::string& name, double offset);
+
+  void MakeFriction();
+  void MakeSprings();
+  void MakePeriodic();
+  void MakeDrives();
+  void MakeStructure();
+  void MakeEncoder();
+  void MakeKnob();
+
+  const mjModel& plant_;
+  const MechanicalModel& model_;
+  const Candidate& candidate_;
+  const ObservedMotion& motion_;
+  std::vector<Trial> trials_;
+};
+
+void TrialMaker::AddLinear(const MatrixXd& signals, const MatrixXd& entry,
+                           std::vector<std::string> names, double offset,
+                           bool not_negative) {
+  trials_.push_back({signals, entry,
+                     [names, offset, not_negative](const Amplitudes& a) -> Parameters {
+                       Shape values;
+                       for (std::size_t i = 0; i < names.size(); ++i) {
+                         const double value = offset + a[static_cast<Index>(i)];
+                         if (not_negative && value < 0.0) return std::nullopt;
+                         values[names[i]] = value;
+                       }
+                       return values;
+                     }});
+}
+
+void TrialMaker::AddReading(const VectorXd& signal, const std::string& name,
+                            double offset) {
+  AddLinear(signal, MatrixXd(), {name}, offset);
+}
+
+void TrialMaker::MakeFriction() {
+  const std::string& effect = candidate_.cause.spec.effect;
+  const VectorXd s = Direction(v());
+  const double top = v().cwiseAbs().maxCoeff();
+  if (effect == "coulomb_friction") {
+    AddLinear(-s, JointEntry(1), {"force"}, 0.0, true);
+  } else if (effect == "viscous_friction") {
+    AddLinear(-v(), JointEntry(1), {"coefficient"});
+  } else if (effect == "asymmetric_viscous_friction") {
+    MatrixXd sides(v().size(), 2);
+    sides << -v().cwiseMax(0.0), -v().cwiseMin(0.0);
+    AddLinear(sides, JointEntry(2), {"positive", "negative"});
+  } else if (effect == "quadratic_drag") {
+    AddLinear(-v().cwiseProduct(v().cwiseAbs()), JointEntry(1), {"coefficient"});
+  } else if (effect == "stribeck_friction") {
+    for (const double velocity : LogGrid(0.003 * top, 0.6 * top, 7)) {
+      MatrixXd parts(v().size(), 2);
+      parts.col(0) = -s;
+      parts.col(1) = -s.array() * (-(v().array() / velocity).square()).exp();
+      trials_.push_back(
+          {parts, JointEntry(2), [velocity](const Amplitudes& a) -> Parameters {
+             if (a[1] <= 0.0 || a[0] < -0.1 * a[1]) return std::nullopt;
+             return Shape{{"coulomb", std::max(a[0], 0.0)},
+                          {"breakaway", a[1]},
+                          {"velocity", velocity}};
+           }});
+    }
+  } else if (effect == "presliding_hysteresis") {
+    for (const double length : LogGrid(1e-4 * Range(q()), 0.5 * Range(q()), 8)) {
+      trials_.push_back({-Follow(q(), length) / length, JointEntry(1),
+                         [length](const Amplitudes& a) -> Parameters {
+                           if (a[0] <= 0.0) return std::nullopt;
+                           return Shape{{"force", a[0]}, {"stiffness", a[0] / length}};
+                         }});
+    }
+  } else if (effect == "hysteretic_stiffness") {
+    for (const double length : LogGrid(3e-3 * Range(q()), 2.0 * Range(q()), 8)) {
+      MatrixXd parts(q().size(), 2);
+      parts << -q(), -Follow(q(), length);
+      trials_.push_back(
+          {parts, JointEntry(2), [length](const Amplitudes& a) -> Parameters {
+             if (a[0] <= 0.0 || a[1] <= 0.0) return std::nullopt;
+             return Shape{
+                 {"stiffness", a[0]}, {"loss", a[1] / a[0]}, {"length", length}};
+           }});
+    }
+  }
+}
+
+void TrialMaker::MakeSprings() {
+  const std::string& effect = candidate_.cause.spec.effect;
+  if (effect == "linear_stiffness") {
+    AddLinear(-q(), JointEntry(1), {"stiffness"});
+  } else if (effect == "cubic_stiffness") {
+    AddLinear(-q().array().cube().matrix(), JointEntry(1), {"coefficient"});
+  } else if (effect == "structural_stiffness" || effect == "backlash") {
+    const int joint = plant_.dof_jntid[candidate_.joint];
+    const int address = plant_.jnt_qposadr[joint];
+    const double rest = plant_.qpos_spring[address] - plant_.qpos0[address];
+    const double stiffness = plant_.jnt_stiffness[joint];
+    const VectorXd strain = q().array() - rest;
+    if (effect == "structural_stiffness") {
+      AddLinear(-stiffness * strain, JointEntry(1), {"factor"}, 1.0, true);
+      return;
+    }
+    // The force within a gap is proportional to it as long as it is small.
+    for (const double half : LogGrid(0.01 * strain.cwiseAbs().maxCoeff(),
+                                     strain.cwiseAbs().maxCoeff(), 8)) {
+      const VectorXd given = stiffness * strain.cwiseMax(-half).cwiseMin(half);
+      trials_.push_back(
+          {given, JointEntry(1), [half](const Amplitudes& a) -> Parameters {
+             if (a[0] <= 0.0) return std::nullopt;
+             return Shape{{"gap", 2.0 * half * std::min(a[0], 3.0)}};
+           }});
+    }
+  }
+}
+
+void TrialMaker::MakePeriodic() {
+  const bool encoder = candidate_.cause.spec.effect == "encoder_periodic_error";
+  const VectorXd x = encoder ? y() : q();
+  const double range = Range(x);
+  // Half a period over the stroke is the least that shows as a period; steps of a
+  // quarter of a period over the stroke miss no maximum.
+  const int finest = encoder ? 1600 : 240;
+  for (int m = 2; m <= finest; m += 1 + m / 80) {
+    const double period = 4.0 * range / m;
+    MatrixXd waves(x.size(), 2);
+    waves << (kTurn / period * x).array().sin(), (kTurn / period * x).array().cos();
+    trials_.push_back(
+        {waves, encoder ? MatrixXd() : JointEntry(2),
+         [period](const Amplitudes& a) -> Parameters {
+           const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
+           return Shape{{"amplitude", amplitude}, {"period", period}, {"phase", phase}};
+         }});
+  }
+}
+
+void TrialMaker::MakeDrives() {
+  const std::string& effect = candidate_.cause.spec.effect;
+  const double tick = motion_.sample_time;
+  if (effect == "force_offset") {
+    AddLinear(VectorXd::Ones(motion_.samples()), JointEntry(1), {"force"});
+  } else if (effect == "motor_constant") {
+    AddLinear(u(), MotorEntry(1), {"factor"}, 1.0, true);
+  } else if (effect == "position_dependent_motor_constant") {
+    MatrixXd parts(q().size(), 2);
+    parts << q().cwiseProduct(u()), q().cwiseAbs2().cwiseProduct(u());
+    AddLinear(parts, MotorEntry(2), {"slope", "curvature"});
+  } else if (effect == "force_saturation") {
+    const double top = u().cwiseAbs().maxCoeff();
+    for (const double share : {0.3, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98}) {
+      const double limit = share * top;
+      trials_.push_back({u().cwiseMax(-limit).cwiseMin(limit) - u(), MotorEntry(1),
+                         [limit](const Amplitudes& a) -> Parameters {
+                           if (a[0] <= 0.0) return std::nullopt;
+                           return Shape{{"limit", limit}};
+                         }});
+    }
+  } else if (effect == "input_delay") {
+    trials_.push_back(
+        {Delayed(u()) - u(), MotorEntry(1), [tick](const Amplitudes& a) -> Parameters {
+           if (a[0] <= 0.0) return std::nullopt;
+           return Shape{{"delay", std::min(a[0] * tick, 0.1)}};
+         }});
+  } else if (effect == "amplifier_lag") {
+    for (const double ticks : {0.5, 4.0, 30.0}) {
+      trials_.push_back({Lagged(u(), ticks) - u(), MotorEntry(1),
+                         [ticks, tick](const Amplitudes& a) -> Parameters {
+                           if (a[0] <= 0.0) return std::nullopt;
+                           return Shape{{"time_constant", ticks * tick * a[0]}};
+                         }});
+    }
+  }
+}
+
+void TrialMaker::MakeStructure() {
+  const std::string& effect = candidate_.cause.spec.effect;
+  if (effect == "added_mass") {
+    AddLinear(-motion_.acceleration.row(candidate_.joint).transpose(), JointEntry(1),
+              {"mass"});
+  } else if (effect == "flexible_mode") {
+    const double highest = 0.2 / motion_.sample_time;
+    for (const double frequency : LogGrid(2e-3 * highest, highest, 20)) {
+      for (const double ratio : {0.01, 0.05, 0.2}) {
+        trials_.push_back(
+            {AppendagePull(q(), frequency, ratio, motion_.sample_time), JointEntry(1),
+             [frequency, ratio](const Amplitudes& a) -> Parameters {
+               if (a[0] <= 0.0) return std::nullopt;
+               return Shape{
+                   {"mass", a[0]}, {"frequency", frequency}, {"damping_ratio", ratio}};
+             }});
+      }
+    }
+  } else if (effect == "end_stop") {
+    for (const double share : {0.3, 0.6, 0.8, 0.9, 0.95, 0.99}) {
+      for (const double side : {q().maxCoeff(), q().minCoeff()}) {
+        const double position = share * side;
+        if (std::abs(position) < 0.05 * Range(q())) continue;
+        VectorXd beyond = q().array() - position;
+        if (position > 0.0) {
+          beyond = beyond.cwiseMax(0.0).eval();
+        } else {
+          beyond = beyond.cwiseMin(0.0).eval();
+        }
+        trials_.push_back(
+            {-beyond, JointEntry(1), [position](const Amplitudes& a) -> Parameters {
+               if (a[0] <= 0.0) return std::nullopt;
+               return Shape{{"position", position}, {"stiffness", a[0]}};
+             }});
+      }
+    }
+  }
+}
+
+void TrialMaker::MakeEncoder() {
+  const std::string& effect = candidate_.cause.spec.effect;
+  if (effect == "encoder_scale") AddReading(y(), "factor", 1.0);
+  if (effect == "encoder_drift") {
+    AddReading(VectorXd::LinSpaced(
+                   motion_.samples(), 0.0,
+                   static_cast<double>(motion_.samples() - 1) * motion_.sample_time),
+               "rate", 0.0);
+  }
+}
+
+void TrialMaker::MakeKnob() {
+  for (const FaultKnob& knob : FaultKnobs(plant_)) {
+    if (knob.name != candidate_.cause.spec.effect) continue;
+    if (knob.kind == KnobKind::kGear) {
+      AddLinear(u(), MotorEntry(1), {"value"}, 1.0, true);
+      return;
+    }
+    const Index joints = static_cast<Index>(knob.elements.size());
+    MatrixXd signals(motion_.samples(), joints);
+    MatrixXd entry = MatrixXd::Zero(model_.M.rows(), joints);
+    for (Index i = 0; i < joints; ++i) {
+      const int joint = knob.elements[static_cast<std::size_t>(i)];
+      const int dof = plant_.jnt_dofadr[joint];
+      const int address = plant_.jnt_qposadr[joint];
+      entry(dof, i) = 1.0;
+      if (knob.kind == KnobKind::kDamping) {
+        signals.col(i) = -plant_.dof_damping[dof] * motion_.velocity.row(dof);
+      } else {
+        const double rest = plant_.qpos_spring[address] - plant_.qpos0[address];
+        signals.col(i) = -plant_.jnt_stiffness[joint] *
+                         (motion_.position.row(dof).array() - rest).matrix();
+      }
+    }
+    AddLinear(signals, entry, {"value"}, 1.0, true);
+    trials_.back().summed = true;
+    return;
+  }
+}
+
+std::vector<Trial> TrialMaker::Make() {
+  if (candidate_.cause.fault) {
+    MakeKnob();
+  } else if (candidate_.cause.spec.effect == "force_ripple" ||
+             candidate_.cause.spec.effect == "encoder_periodic_error") {
+    MakePeriodic();
+  } else {
+    MakeFriction();
+    MakeSprings();
+    MakeDrives();
+    MakeStructure();
+    MakeEncoder();
+  }
+  // What does not move does not show.
+  std::erase_if(trials_, [](const Trial& trial) {
+    return !trial.signals.allFinite() || trial.signals.cwiseAbs().maxCoeff() == 0.0;
+  });
+  return std::move(trials_);
+}
+
+}  // namespace
+
+ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
+                             const Track& track, const VectorXd& still) {
+  ObservedMotion motion;
+  motion.sample_time = run.sample_time;
+  const Eigen::Map<const VectorXd> rest(plant.qpos0, plant.nv);
+  motion.position = track.position.colwise() - rest;
+  motion.velocity = track.velocity;
+  motion.acceleration = CentralDifferences(track.velocity, run.sample_time);
+  motion.inputs = run.inputs;
+  motion.outputs = run.outputs;
+  motion.sticking = Sticking::Zero(plant.nv, motion.samples());
+  for (Index j = 0; j < plant.nv; ++j) {
+    if (plant.dof_frictionloss[j] <= 0.0) continue;
+    motion.sticking.row(j) =
+        (track.velocity.row(j).array().abs() < still[j]).cast<unsigned char>();
+  }
+  return motion;
+}
+
+std::vector<Trial> MakeTrials(const mjModel& plant, const MechanicalModel& model,
+                              const Candidate& candidate,
+                              const ObservedMotion& motion) {
+  return TrialMaker(plant, model, candidate, motion).Make();
+}
+
+Trial SineTrial(const MechanicalModel& model, const Candidate& candidate,
+                const ObservedMotion& motion, double frequency) {
+  const Index n = motion.samples();
+  const VectorXd angle = kTurn * frequency * motion.sample_time *
+                         VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  MatrixXd waves(n, 2);
+  waves << angle.array().sin(), angle.array().cos();
+  const VectorXd entry = VectorXd::Unit(model.M.rows(), candidate.joint);
+  return {waves, entry.replicate(1, 2), [frequency](const Amplitudes& a) -> Parameters {
+            const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
+            return std::map<std::string, double>{
+                {"amplitude", amplitude}, {"frequency", frequency}, {"phase", phase}};
+          }};
+}
+
+std::pair<double, double> AmplitudeAndPhase(double a, double b) {
+  return {std::hypot(a, b), std::atan2(b, a)};
+}
+
+}  // namespace mjdiag

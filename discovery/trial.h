@@ -1,0 +1,64 @@
+#pragma once
+// How a candidate cause would show, to first order: the force (or the error of a
+// reading) that it makes along the observed motion, with its shape parameters (a
+// period, a frequency, a length) on a grid and its amplitudes free. Every grid point is
+// a trial, and linear least squares on the innovations judges it (screening.h).
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/error_dynamics.h"
+#include "mjdiag/discovery/tracking.h"
+
+namespace mjdiag {
+
+/// The motion as the observer has it.
+struct ObservedMotion {
+  double sample_time = 0.0;      ///< [s]
+  Eigen::MatrixXd position;      ///< nv x samples, from qpos0
+  Eigen::MatrixXd velocity;      ///< nv x samples
+  Eigen::MatrixXd acceleration;  ///< nv x samples
+  Eigen::MatrixXd inputs;        ///< actuators x samples
+  Eigen::MatrixXd outputs;       ///< sensors x samples
+  Sticking sticking;             ///< nv x samples, by the plant's own dry friction
+  Eigen::Index samples() const { return position.cols(); }
+};
+/// @param still  speed of every joint [m/s, rad/s] below which dry friction holds it
+ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
+                             const Track& track, const Eigen::VectorXd& still);
+
+using Amplitudes = Eigen::VectorXd;
+/// Values of the cause's parameters for amplitudes; none: not physical.
+using Parameters = std::optional<std::map<std::string, double>>;
+
+struct Trial {
+  Eigen::MatrixXd signals;  ///< samples x amplitudes: force or error of the reading
+  Eigen::MatrixXd entry;    ///< nq x amplitudes, of forces; empty: errors of a reading
+  std::function<Parameters(const Amplitudes&)> parameters;
+  /// An error of readings that is far too fast for the observer to follow: it shows in
+  /// the innovations as it is.
+  bool fast = false;
+  bool summed = false;  ///< all signals have one amplitude: a knob of several joints
+};
+
+/// All trials of a candidate. Empty if the motion does not excite it, or if it has no
+/// grid (floor_vibration: its frequency comes from the spectrum, see screening.h).
+std::vector<Trial> MakeTrials(const mjModel& plant, const MechanicalModel& model,
+                              const Candidate& candidate, const ObservedMotion& motion);
+
+/// The two columns of a sine of that frequency [Hz] at a joint.
+Trial SineTrial(const MechanicalModel& model, const Candidate& candidate,
+                const ObservedMotion& motion, double frequency);
+
+/// Phase and amplitude >= 0 of a sin(x) + b cos(x).
+std::pair<double, double> AmplitudeAndPhase(double a, double b);
+
+}  // namespace mjdiag

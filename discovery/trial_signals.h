@@ -1,0 +1,35 @@
+#pragma once
+// Signals that trials are made of (trial.h), along an observed motion.
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace mjdiag {
+
+/// max - min
+double Range(const Eigen::VectorXd& x);
+
+/// `count` values from `least` to `most`, evenly spaced by ratio.
+std::vector<double> LogGrid(double least, double most, int count);
+
+/// tanh(v / v0) with v0 a two-hundredth of the largest speed: the sign of v where the
+/// joint moves, and nothing where it rests.
+Eigen::VectorXd Direction(const Eigen::VectorXd& velocity);
+
+/// z that follows q with a memory of `length`, dz = dq - |dq| z / length (Dahl).
+Eigen::VectorXd Follow(const Eigen::VectorXd& q, double length);
+
+/// u one sample later; the first is held.
+Eigen::VectorXd Delayed(const Eigen::VectorXd& u);
+
+/// u behind a first-order low-pass with that time constant [samples].
+Eigen::VectorXd Lagged(const Eigen::VectorXd& u, double time_constant);
+
+/// Force of a mass of 1 that hangs on q by a spring and a damper.
+Eigen::VectorXd AppendagePull(const Eigen::VectorXd& q, double frequency,
+                              double damping_ratio, double sample_time);
+
+/// (x[k+1] - x[k-1]) / 2 T along rows, one-sided at the ends.
+Eigen::MatrixXd CentralDifferences(const Eigen::MatrixXd& x, double sample_time);
+
+}  // namespace mjdiag

@@ -1,0 +1,49 @@
+#pragma once
+// The page of `mjdiag design`: from which degree on the machine has residual rows, what
+// healthy runs leave in the residual and where its thresholds lie (Fig. 15 and 16 of
+// the seed), and what the filters let through (Fig. 28 to 30).
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/diagnosis_design.h"
+#include "mjdiag/report/filter_plots.h"
+#include "mjdiag/report/run_description.h"
+
+namespace mjdiag {
+
+/// What the linear programs of Eq. 18 give for the same machine and degree.
+struct RowProgramFacts {
+  int degree = 0;
+  std::string norm;  ///< that was minimised: "one" or "infinity"
+  int fault_inputs = 0;
+  int programs = 0;
+  int feasible = 0;
+  double objective = 0.0;  ///< the norm of the row; these three only if one is feasible
+  double defect = 0.0;     ///< LinearProgramRow::defect
+  double angle = 0.0;      ///< between row and null space of the decomposition [rad]
+};
+
+/// What a design starts from.
+struct DesignFacts {
+  int minimal_degree = 0;  ///< of a residual row
+  std::vector<int> observability_ranks;
+  Eigen::Index states = 0;
+  MechanicalModel healthy;
+  std::vector<ChangedMachine> changed;  ///< for ChangePlot; may be empty
+  std::optional<RowProgramFacts> linear_program;
+};
+
+/// One sentence on the linear programs.
+std::string DescribeRowPrograms(const RowProgramFacts& facts);
+
+/// Bars, fitted normal distribution and thresholds of the nominal residuals.
+HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds);
+
+/// The whole page; plots of the residual only where its limits are known. InputError if
+/// the plot library is not installed.
+std::string DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
+                       const RunDescription& run);
+
+}  // namespace mjdiag

@@ -1,0 +1,74 @@
+#include "mjdiag/report/diagnosis_verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+namespace {
+
+double Significance(const FaultVerdict& fault) {
+  return fault.deviation == 0.0 ? 0.0 : std::abs(fault.deviation) / fault.sd;
+}
+
+/// Of a knob, which is near 1 more often than not: 1.01, not 1.0100.
+std::string KnobText(double value) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.5g", value);
+  return digits.data();
+}
+
+std::string HealthyText(const FaultVerdict& fault) {
+  return KnobText(fault.value - fault.deviation);
+}
+
+bool ReadsAsHealthy(const FaultVerdict& fault) {
+  return KnobText(fault.value) == HealthyText(fault);
+}
+
+std::string WithDeviation(const FaultVerdict& fault) {
+  return fault.name + " = " + HealthyText(fault) +
+         (fault.deviation < 0.0 ? " - " : " + ") +
+         FormatNumber(std::abs(fault.deviation));
+}
+
+/// "zeta_x = 1.2, eta_y = 0.98"; empty without a detected fault.
+std::string NamedFaults(const std::vector<FaultVerdict>& ranked) {
+  if (ranked.empty() || !ranked.front().detected) return "";
+  const double least = kNamedSignificance * Significance(ranked.front());
+  std::string names;
+  for (const FaultVerdict& fault : ranked) {
+    if (!fault.detected || Significance(fault) < least) break;
+    if (ReadsAsHealthy(fault)) continue;
+    names += (names.empty() ? "" : ", ") + fault.name + " = " + KnobText(fault.value);
+  }
+  return names.empty() ? WithDeviation(ranked.front()) : names;
+}
+
+}  // namespace
+
+std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result) {
+  std::vector<FaultVerdict> faults = result.faults;
+  const auto end_of_detected =
+      std::stable_partition(faults.begin(), faults.end(),
+                            [](const FaultVerdict& fault) { return fault.detected; });
+  std::stable_sort(faults.begin(), end_of_detected,
+                   [](const FaultVerdict& a, const FaultVerdict& b) {
+                     return Significance(a) > Significance(b);
+                   });
+  return faults;
+}
+
+std::string DiagnosisVerdict(const DiagnosisResult& result) {
+  if (!result.detected) return "Nothing is wrong that this run shows.";
+  const std::string faults = NamedFaults(RankedFaults(result));
+  if (!faults.empty()) return "Detected: " + faults + ".";
+  if (!result.disturbance.tones.empty()) return "A periodic disturbance is there.";
+  if (result.disturbance.noise_raised) return "The sensors are noisier than usual.";
+  return "The residual has left its thresholds.";
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,25 @@
+#pragma once
+// The page of `mjdiag study`: its tables with their notes.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mjdiag/report/run_description.h"
+#include "mjdiag/studies/study_table.h"
+
+namespace mjdiag {
+
+/// What was studied.
+struct StudyFacts {
+  std::string setup;
+  std::string preset;
+  int runs = 0;
+  std::uint64_t seed = 0;
+};
+
+/// The whole page. Columns that hold a number are aligned to the right.
+std::string StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
+                      const RunDescription& run);
+
+}  // namespace mjdiag
