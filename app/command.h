@@ -10,6 +10,7 @@ void AddLinearize(CLI::App& app);
 void AddDesign(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddCompare(CLI::App& app);
+void AddDiscover(CLI::App& app);
 void AddRender(CLI::App& app);
 void AddStudy(CLI::App& app);
 

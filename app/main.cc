@@ -63,6 +63,7 @@ int Main(int argc, char** argv) {
   AddDesign(app);
   AddDiagnose(app);
   AddCompare(app);
+  AddDiscover(app);
   AddRender(app);
   AddStudy(app);
   try {

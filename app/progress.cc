@@ -14,6 +14,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kQuiet = milliseconds(2000);
 constexpr auto kBetweenDraws = milliseconds(100);
 constexpr int kWidth = 32;
+constexpr std::size_t kLongestLabel = 40;
 
 }  // namespace
 
@@ -36,7 +37,13 @@ void ProgressBar::Show(double fraction) {
   const int full = static_cast<int>(part * kWidth);
   const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                           std::string(static_cast<std::size_t>(kWidth - full), '.');
-  std::fprintf(stderr, "\r%s [%s] %3.0f %%", label_.c_str(), bar.c_str(), 100.0 * part);
+  std::fprintf(stderr, "\r\033[K%s [%s] %3.0f %%", label_.c_str(), bar.c_str(),
+               100.0 * part);
+}
+
+void ProgressBar::Show(const std::string& label, double fraction) {
+  label_ = label.substr(0, kLongestLabel);
+  Show(fraction);
 }
 
 }  // namespace mjdiag::app

@@ -14,6 +14,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   void Show(double fraction);
+  /// Says what is being done now, cut to 40 characters.
+  void Show(const std::string& label, double fraction);
 
  private:
   std::string label_;

@@ -85,4 +85,32 @@ bool Indistinguishable(const mjModel& model, const Cause& a, const Cause& b) {
   return a.fault ? IsTwin(model, a, b) : IsTwin(model, b, a);
 }
 
+std::vector<Cause> Twins(const mjModel& model, const Cause& cause) {
+  std::vector<Cause> twins;
+  for (const FaultKnob& knob : FaultKnobs(model)) {
+    if (knob.elements.size() != 1) continue;
+    Cause fault = KnobCause(model, knob);
+    Cause effect;
+    effect.spec = {EffectOf(knob.kind), fault.spec.site, {}};
+    const int joint = knob.elements.front();
+    // Damping is added in N s/m, everything else scaled.
+    const double damping = knob.kind == KnobKind::kDamping
+                               ? model.dof_damping[model.jnt_dofadr[joint]]
+                               : 0.0;
+    const bool added = knob.kind == KnobKind::kDamping;
+    const char* parameter = added ? "coefficient" : "factor";
+    if (SameKind(cause, fault)) {
+      const double value = cause.spec.parameters.at("value");
+      effect.spec.parameters[parameter] = added ? (value - 1.0) * damping : value;
+      twins.push_back(effect);
+    } else if (SameKind(cause, effect)) {
+      if (added && damping == 0.0) continue;
+      const double value = cause.spec.parameters.at(parameter);
+      fault.spec.parameters["value"] = added ? 1.0 + value / damping : value;
+      twins.push_back(fault);
+    }
+  }
+  return twins;
+}
+
 }  // namespace mjdiag

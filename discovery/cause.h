@@ -41,4 +41,8 @@ bool SameKind(const Cause& a, const Cause& b);
 /// and structural_stiffness.
 bool Indistinguishable(const mjModel& model, const Cause& a, const Cause& b);
 
+/// The causes that are indistinguishable from this one: of a knob of one element the
+/// effect, of the effect the knob.
+std::vector<Cause> Twins(const mjModel& model, const Cause& cause);
+
 }  // namespace mjdiag

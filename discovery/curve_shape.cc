@@ -40,12 +40,13 @@ class Chooser {
   void Try(const std::vector<ArrayXd>& columns, int parameters, CurveShape shape) {
     const auto n = static_cast<double>(x_.size());
     const double linear = 1.0 + static_cast<double>(columns.size());
-    if (linear + parameters + 1.0 >= n && !columns.empty()) return;
+    if (linear + parameters >= n && !columns.empty()) return;
     const double misfit = Misfit(columns);
     const double score =
         n * std::log(std::max({misfit / n, 1.0, 0.01 * constant_ / n})) +
         (linear + parameters) * std::log(n);
-    if (score < score_) {
+    // Of forms that are equally good by that, the closest.
+    if (score < score_ || (score == score_ && misfit < best_misfit_)) {
       score_ = score;
       best_misfit_ = misfit;
       best_ = std::move(shape);

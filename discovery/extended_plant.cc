@@ -233,11 +233,12 @@ void MjcfEditor::WriteNumerics(const std::vector<EffectSpec>& carried,
     }
     return name;
   };
+  int removed = -1;
   for (const EffectSpec& effect : carried) {
-    const std::string name = append(effect);
-    const int element = Find("custom", name, "numeric");
-    // Those are in the attributes by now.
-    if (FindEffect(effect.effect).native && element >= 0) xml_.Remove(element);
+    const int element = Find("custom", append(effect), "numeric");
+    // Native ones are in the attributes by now. A numeric may hold several effects.
+    if (!FindEffect(effect.effect).native || element == removed) continue;
+    xml_.Remove(removed = element);
   }
   for (const EffectSpec& effect : added) {
     if (!GoesIntoNumeric(effect)) continue;
@@ -253,8 +254,9 @@ void MjcfEditor::WriteNumerics(const std::vector<EffectSpec>& carried,
     if (const int element = Find("custom", name, "numeric"); element >= 0) {
       Set(element, {{"size", size}, {"data", values}});
     } else {
-      lines.push_back("<numeric name=\"" + XmlEscape(name) + "\" size=\"" + size +
-                      "\" data=\"" + values + "\"/>");
+      std::string line = "<numeric name=\"" + XmlEscape(name);
+      line.append("\" size=\"").append(size).append("\" data=\"").append(values);
+      lines.push_back(line.append("\"/>"));
     }
   }
   if (lines.empty()) return;

@@ -16,7 +16,8 @@
 // are alike, and a signal that merely is smooth would predict itself. What is left over
 // says how alike: of n samples with autocorrelation rho, n / (1 + 2 sum rho) count as
 // independent. Of these many an F test asks whether g is more than chance, with the
-// number of variables, factors and periods tried taken into account.
+// number of variables, factors and periods tried taken into account. A signal that is
+// less than twice its noise may be all noise: it is judged by its own autocorrelation.
 //
 // Time is different: every signal is a function of it, so g in bins of time is believed
 // only if no other variable predicts half as much, and is judged against the noise.
@@ -52,8 +53,10 @@ struct Signature {
   /// The next best variable, and what it explains alone.
   std::string runner_up;
   double runner_up_share = 0.0;
-  Eigen::VectorXd x, y, y_sd;  ///< g over x and its standard deviation
-  std::string text;            ///< one sentence
+  /// g over x and its standard deviation; of a sine that was found by its periodogram
+  /// over one period, 0 <= x < period.
+  Eigen::VectorXd x, y, y_sd;
+  std::string text;  ///< one sentence
 };
 
 /// @param site       of the signal, for the text

@@ -100,7 +100,7 @@ void AddSmoother(const MatrixXd& C, Filter& filter) {
 }
 
 /// @param grid  i of every input, b = slowest 2^i
-Filter DesignFilter(const Augmented& system, const std::vector<Index>& grid) {
+Filter DesignFilter(const Augmented& system, const VectorXd& grid) {
   const Index n = system.A.rows();
   const Index inputs = system.inputs();
   // Inputs in units of the error of their prediction, s / sqrt(b): entries of P are
@@ -108,8 +108,7 @@ Filter DesignFilter(const Augmented& system, const std::vector<Index>& grid) {
   VectorXd unit = VectorXd::Ones(n);
   MatrixXd Q = system.Q;
   for (Index j = 0; j < inputs; ++j) {
-    const double b = system.slowest *
-                     std::exp2(static_cast<double>(grid[static_cast<std::size_t>(j)]));
+    const double b = system.slowest * std::exp2(grid[j]);
     unit[n - inputs + j] = std::pow(b, system.power - 0.5);
     Q(n - inputs + j, n - inputs + j) = b;
   }
@@ -203,34 +202,37 @@ class BandwidthSearch {
   BandwidthSearch(const Augmented& system, const MatrixXd& e)
       : system_(system), e_(e) {}
 
-  std::vector<Index> Run() {
-    const auto inputs = static_cast<std::size_t>(system_.inputs());
-    std::vector<Index> grid(inputs, 0);
+  VectorXd Run() {
+    const Index inputs = system_.inputs();
     for (Index i = 0; i <= system_.fastest; i += 2) {
-      Try(std::vector<Index>(inputs, i));
+      Try(VectorXd::Constant(inputs, static_cast<double>(i)));
     }
-    for (std::size_t j = 0; j < inputs && inputs > 1; ++j) {
-      grid = best_;
+    for (Index j = 0; j < inputs && inputs > 1; ++j) {
+      const VectorXd before = best_;
       for (Index i = 0; i <= system_.fastest; i += 2) {
-        if (i == grid[j]) continue;
-        std::vector<Index> moved = grid;
-        moved[j] = i;
-        Try(moved);
+        Try(Moved(before, j, static_cast<double>(i)));
       }
     }
-    for (std::size_t j = 0; j < inputs; ++j) {
-      grid = best_;
-      for (const Index move : {-1, 1}) {
-        std::vector<Index> moved = grid;
-        moved[j] = std::clamp<Index>(grid[j] + move, 0, system_.fastest);
-        if (moved[j] != grid[j]) Try(moved);
+    for (Index j = 0; j < inputs; ++j) {
+      for (const double step : {1.0, 0.5, 0.25}) {
+        const double middle = best_[j];
+        for (const double to : {middle - step, middle + step}) {
+          if (to >= 0.0 && to <= static_cast<double>(system_.fastest)) {
+            Try(Moved(best_, j, to));
+          }
+        }
       }
     }
     return best_;
   }
 
  private:
-  void Try(const std::vector<Index>& grid) {
+  static VectorXd Moved(VectorXd grid, Index j, double to) {
+    grid[j] = to;
+    return grid;
+  }
+
+  void Try(const VectorXd& grid) {
     const double found =
         EstimateStart(system_, DesignFilter(system_, grid), e_).log_likelihood;
     if (found > likelihood_) {
@@ -241,7 +243,7 @@ class BandwidthSearch {
 
   const Augmented& system_;
   const MatrixXd& e_;
-  std::vector<Index> best_;
+  VectorXd best_;
   double likelihood_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -346,7 +348,7 @@ std::vector<UnknownSignal> Estimate(const Augmented& system, const Observer& obs
                                     const std::vector<std::string>& sites,
                                     const std::vector<std::string>& units) {
   const MatrixXd e = observer.noise_sd.cwiseInverse().asDiagonal() * innovations;
-  const std::vector<Index> grid = BandwidthSearch(system, e).Run();
+  const VectorXd grid = BandwidthSearch(system, e).Run();
   const Filter filter = DesignFilter(system, grid);
   const VectorXd start = EstimateStart(system, filter, e).state;
   MatrixXd value(system.inputs(), e.cols());
@@ -361,7 +363,7 @@ std::vector<UnknownSignal> Estimate(const Augmented& system, const Observer& obs
     signal.value = system.unit[row] * value.row(row).transpose();
     signal.sd = system.unit[row] * filter.sd[row];
     signal.edge = std::min(filter.edge[j], e.cols());
-    signal.bandwidth = system.slowest * std::exp2(static_cast<double>(grid[j])) /
+    signal.bandwidth = system.slowest * std::exp2(grid[row]) /
                        (2.0 * std::numbers::pi * observer.tick.sample_time);
   }
   return signals;

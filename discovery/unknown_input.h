@@ -24,13 +24,12 @@
 //
 // How fast an input may change decides how much noise is left in its estimate and how
 // much of it is smoothed away. s follows the data: it is the s of the largest
-// likelihood of the innovations over a grid of factor 2 in bandwidth, all inputs alike
-// first, then one after the other. The bandwidth b [rad a tick] stands for s = z0 b^p,
-// where z0 is the force that moves a reading by its noise in a tick and p = 3, or the
-// noise of the sensor and p = 1: there a random walk through the inertia of an axis and
-// the noise balance. The slowest is three cycles over the record. The likelihood is
-// invariant to forces that are not there: with noise alone all inputs come out at the
-// slowest bandwidth.
+// likelihood of the innovations over a grid in bandwidth, all inputs alike first, then
+// one after the other, down to steps of a quarter octave. The bandwidth b [rad a tick]
+// stands for s = z0 b^p, where z0 is the force that moves a reading by its noise in a
+// tick and p = 3, or the noise of the sensor and p = 1: there a random walk through the
+// inertia of an axis and the noise balance. The slowest is three cycles over the
+// record; it is what noise alone mostly gives.
 //
 // So that motions which nothing holds have a stationary P, the actuators have a white
 // force noise of the slowest bandwidth (observer.h says what that is).
@@ -71,7 +70,8 @@ struct UnknownSignal {
 /// @param joints       names among model.coordinates, at least one and at most ny
 /// @param units        of the forces, "N" or "N m"; none: units are left empty
 /// InputError on a joint that the model lacks and on shapes that do not fit;
-/// NumericalError if the covariance does not converge.
+/// NumericalError if the covariance does not converge, as with two joints whose slow
+/// forces move all sensors alike.
 std::vector<UnknownSignal> UnexplainedForces(
     const MechanicalModel& model, const Observer& observer, double step, int substeps,
     const Eigen::MatrixXd& innovations, const std::vector<std::string>& joints,

@@ -250,7 +250,7 @@ TEST(ExtendedPlant, TakesNativeEffectsOfTheNominalPlantIntoItsAttributes) {
   const test::TemporaryFolder folder;
   std::string mjcf = ReadTextFile(Folder("emps") / "plant.xml");
   mjcf.insert(mjcf.find("  </custom>"),
-              "    <numeric name=\"effect.coulomb_friction.load\" data=\"17.5\"/>\n");
+              "    <numeric name=\"effect.coulomb_friction.load\" data=\"17 0.5\"/>\n");
   folder.Write("plant.xml", mjcf);
   folder.Write("setup.toml", ReadTextFile(Folder("emps") / "setup.toml"));
   const Extension extension(folder.path());

@@ -1,0 +1,123 @@
+// mjdiag discover: the cause of what the simulation gets wrong, the extended plant and
+// what it gains.
+
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/discovery_output.h"
+#include "app/exit_status.h"
+#include "app/machine.h"
+#include "app/output.h"
+#include "app/progress.h"
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/report/discovery_json.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/record_file.h"
+
+namespace mjdiag::app {
+namespace {
+
+constexpr double kLeastShare = 0.1;
+constexpr double kMostShare = 0.95;
+constexpr int kMostCauses = 20;
+
+struct DiscoverCommand {
+  MachineOptions machine;
+  OutputOptions output;
+  std::string record;
+  std::string validation;
+  DiscoverOptions search;
+};
+
+// What was found is written over the plant as its file has it, so that changes to it
+// can only come from that file.
+void RequirePlantOfItsFile(const MachineOptions& options) {
+  if (options.faults.empty() && options.effects.empty()) return;
+  throw InputError("--fault, --effect", "the plant is not as its file has it",
+                   "what is known beforehand in the MJCF file itself");
+}
+
+Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
+                       const Record& measured, const std::optional<Record>& unseen) {
+  ProgressBar bar("discovering");
+  DiscoverOptions options = command.search;
+  options.progress = [&bar](const std::string& what, double fraction) {
+    bar.Show(what, fraction);
+  };
+  return Discover(machine.setup, *machine.plant, measured, unseen ? &*unseen : nullptr,
+                  options);
+}
+
+// A plant that cannot be written must not cost the answer, which took its time.
+std::string Extend(const DiscoverCommand& command, const Machine& machine,
+                   Discovery& discovery) {
+  try {
+    return WriteExtendedPlant(command.output.folder, command.machine.setup, machine,
+                              discovery);
+  } catch (const InputError& error) {
+    discovery.notes.push_back(std::string("The extended plant was not written. ") +
+                              error.what());
+    return "";
+  }
+}
+
+void Discover(const DiscoverCommand& command) {
+  RequirePlantOfItsFile(command.machine);
+  const Machine machine = LoadMachine(command.machine);
+  const Record measured = ReadRecord(command.record, machine.setup.record);
+  std::optional<Record> unseen;
+  if (!command.validation.empty()) {
+    unseen = ReadRecord(command.validation, machine.setup.record);
+  }
+  PrepareOutput(command.output);
+  Discovery discovery = RunDiscovery(machine, command, measured, unseen);
+
+  const std::string& folder = command.output.folder;
+  const DiscoveryRun run{{CommandLine(), command.record, {{"mjdiag", MJDIAG_VERSION}}},
+                         command.validation,
+                         Extend(command, machine, discovery)};
+  nlohmann::json document = ToJson(discovery, run.extended_plant);
+  document["record"] = command.record;
+  document["validation"] = command.validation.empty()
+                               ? nlohmann::json()
+                               : nlohmann::json(command.validation);
+  document["seed"] = command.search.seed;
+  document["command"] = CommandLine();
+  std::string text = Describe(discovery);
+  if (!run.extended_plant.empty()) {
+    text += "\nextended plant: " + run.extended_plant + "\n";
+  }
+  text += "\npage: " + WriteDiscoveryPage(folder, discovery, run) + "\n";
+  Publish(command.output, "discovery", document, text);
+  if (discovery.verdict == DiscoveryVerdict::kUnexplained) throw NegativeAnswer{};
+}
+
+}  // namespace
+
+void AddDiscover(CLI::App& app) {
+  auto options = std::make_shared<DiscoverCommand>();
+  CLI::App* command = app.add_subcommand(
+      "discover", "Find what the plant lacks on a measured record, and put it in");
+  AddMachineOptions(*command, options->machine);
+  command->add_option("--record", options->record, "Measured record, CSV or MAT")
+      ->required();
+  command->add_option("--validation", options->validation,
+                      "Record of another motion, to which nothing is fitted");
+  command
+      ->add_option("--train-share", options->search.train_share,
+                   "Share of the record, from its start, that fits see")
+      ->check(Within(kLeastShare, kMostShare));
+  command
+      ->add_option("--bandwidth", options->search.bandwidth,
+                   "Bandwidth of the observer [Hz]; 0: from the record")
+      ->check(Within(0.0, 1e6));
+  command
+      ->add_option("--causes", options->search.most_causes, "Most causes to look for")
+      ->check(CLI::Range(1, kMostCauses));
+  command->add_option("--seed", options->search.seed, "Seed of the noise floor");
+  AddOutputOptions(*command, options->output, true);
+  command->callback([options] { Discover(*options); });
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,72 @@
+#include "app/discovery_output.h"
+
+#include <filesystem>
+
+#include "app/format.h"
+#include "mjdiag/discovery/extended_plant.h"
+#include "mjdiag/report/discovery_text.h"
+#include "mjdiag/signals/text_file.h"
+
+namespace mjdiag::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A table of the page under its heading; nothing without rows.
+std::string Section(const std::string& heading, const mjdiag::Table& content) {
+  if (content.rows.empty()) return "";
+  std::vector<std::string> header;
+  for (const auto& column : content.columns) header.push_back(column.title);
+  Table table(header);
+  for (const std::vector<std::string>& row : content.rows) table.Add(row);
+  return "\n" + heading + "\n\n" + table.ToString();
+}
+
+std::string NotesText(const std::vector<std::string>& notes) {
+  if (notes.empty()) return "";
+  std::string text = "\nNotes\n\n";
+  for (const std::string& note : notes) text += "- " + note + "\n";
+  return text;
+}
+
+/// The file that `--setup` names, which may be its folder.
+fs::path SetupFile(const fs::path& setup) {
+  return fs::is_directory(setup) ? setup / "setup.toml" : setup;
+}
+
+}  // namespace
+
+std::string Describe(const Discovery& discovery) {
+  return DiscoveryAnswer(discovery) + "\n" + Section("Causes", CauseTable(discovery)) +
+         Section("After each cause", LadderTable(discovery)) +
+         Section("After each cause, on the validation record",
+                 ValidationLadderTable(discovery)) +
+         Section("Mismatch, rms", MismatchTable(discovery)) +
+         Section("Smallest faults that are seen", FaultLimitTable(discovery)) +
+         NotesText(discovery.notes);
+}
+
+std::string WriteExtendedPlant(const std::string& folder, const std::string& setup,
+                               const Machine& machine, const Discovery& discovery) {
+  if (discovery.causes.empty()) return "";
+  const fs::path extended = fs::path(folder) / "extended";
+  MakeOutputFolder(extended);
+  const Changes changes = ChangesOf(discovery);
+  // Both texts first: neither file is written if one of them cannot be made.
+  const std::string plant = ExtendMjcf(machine.setup.plant, *machine.plant,
+                                       changes.faults, changes.effects, extended);
+  const std::string text =
+      ExtendSetup(SetupFile(setup), machine.setup, changes.effects, extended);
+  WriteTextFile(extended / "plant.xml", plant);
+  WriteTextFile(extended / "setup.toml", text);
+  return (extended / "plant.xml").string();
+}
+
+std::string WriteDiscoveryPage(const std::string& folder, const Discovery& discovery,
+                               const DiscoveryRun& run) {
+  const fs::path page = fs::path(folder) / "discovery.html";
+  WriteTextFile(page, DiscoveryPage(discovery, run));
+  return page.string();
+}
+
+}  // namespace mjdiag::app

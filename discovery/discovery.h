@@ -1,0 +1,147 @@
+#pragma once
+// From a measured record to causes: what the simulation gets wrong, where it acts, why,
+// and what is gained by putting it in. The whole job, from the record to the figures
+// that tables, JSON and pages are made of.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/discovery/cause.h"
+#include "mjdiag/discovery/comparison.h"
+#include "mjdiag/discovery/signature.h"
+#include "mjdiag/discovery/unknown_input.h"
+#include "mjdiag/plugin/setup.h"
+#include "mjdiag/signals/record.h"
+
+namespace mjdiag {
+
+enum class DiscoveryVerdict {
+  kNoDiscrepancy,    ///< noise explains the record
+  kExplained,        ///< causes were found, noise explains the rest
+  kPartlyExplained,  ///< causes were found, something is left
+  kUnexplained       ///< something is there, and no candidate is its cause
+};
+
+struct CauseParameter {
+  std::string name;
+  std::string unit;  ///< SI
+  double value = 0.0;
+  double sd = 0.0;
+  double low = 0.0;  ///< 95 % interval
+  double high = 0.0;
+};
+
+struct Alternative {
+  Cause cause;
+  double probability = 0.0;
+  bool indistinguishable = false;  ///< no measurement tells them apart
+};
+
+struct FoundCause {
+  Cause cause;
+  std::vector<CauseParameter> parameters;
+  double probability = 0.0;               ///< among all candidates for its place
+  std::vector<Alternative> alternatives;  ///< of 1 % or more, likeliest first
+};
+
+/// After each cause that was added; the first step is the plant as it was given.
+struct LadderStep {
+  std::string added;  ///< "nothing", "coulomb_friction@load", "zeta_x"
+  /// Innovations over sensor noise, root mean square; 1: noise is all there is.
+  double train = 0.0;
+  double held_out = 0.0;
+  /// Closed-loop or input replay: relative error of channels and derived signals [%].
+  std::map<std::string, double> error_percent;
+  std::map<std::string, double> validation_percent;  ///< empty without such a record
+};
+
+/// A found law over what it depends on: the unexplained signal of the plant as it was
+/// given, as points, and the law as a curve.
+struct LawPlot {
+  std::string cause;
+  std::string site;
+  std::string x_name;  ///< for example "velocity"
+  std::string x_unit;
+  std::string y_unit;
+  Eigen::VectorXd x, y;          ///< points
+  Eigen::VectorXd law_x, law_y;  ///< curve, x increasing
+};
+
+/// The smallest size of a fault that the mismatch of the healthy machine does not
+/// hide, as a change of the knob.
+struct FaultLimit {
+  std::string fault;
+  double before = 0.0;  ///< with the plant as it was given
+  double after = 0.0;   ///< with the extended plant
+};
+
+struct Discovery {
+  std::string setup;  ///< its name
+  DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
+  std::vector<FoundCause> causes;
+  std::optional<Signature> unexplained;  ///< of what is left, if anything is
+  std::string unexplained_site;
+  /// What cannot be judged, what cannot be told apart and which motion would tell,
+  /// what looks odd in the record.
+  std::vector<std::string> notes;
+
+  double train_share = 0.0;                     ///< of the record that fits saw
+  Comparison before;                            ///< of the record, plant as given
+  Comparison after;                             ///< extended plant
+  std::optional<Comparison> validation_before;  ///< of the validation record
+  std::optional<Comparison> validation_after;
+  /// rms of the mismatch per channel: on the part of the record that fits saw, and on
+  /// what they did not see (the validation record if there is one, else the rest).
+  struct Figures {
+    std::map<std::string, double> train;
+    std::map<std::string, double> validation;
+  };
+  Figures mismatch_before;
+  Figures mismatch_after;
+  std::map<std::string, double> noise_floor;
+  std::map<std::string, std::string> unit;  ///< of the channels
+  /// 1 - after / before of the root mean square of mismatch over noise floor of all
+  /// channels.
+  double gain_train = 0.0;
+  double gain_validation = 0.0;
+  /// Share of the innovations' power that is not white, before and after: 0 white.
+  double colour_before = 0.0;
+  double colour_after = 0.0;
+
+  std::vector<LadderStep> ladder;
+  std::vector<UnknownSignal> forces_before;  ///< unexplained, at the driven joints
+  std::vector<UnknownSignal> forces_after;
+  std::vector<LawPlot> laws;
+  std::vector<FaultLimit> fault_limits;
+  double sample_time = 0.0;
+};
+
+struct DiscoverOptions {
+  double train_share = 0.7;
+  double bandwidth = 0.0;  ///< of the observer [Hz]; 0: from the record
+  int most_causes = 8;
+  bool figures = true;  ///< comparisons, ladder, laws and limits, not only causes
+  std::uint64_t seed = 1;
+  std::function<void(const std::string& what, double fraction)> progress;
+};
+
+/// @param plant       as LoadPlant gives it
+/// @param validation  a record of another motion that nothing is fitted to, or null
+/// InputError if the record lacks what the replay needs or cannot be judged (see
+/// data_check.h).
+Discovery Discover(const Setup& setup, const mjModel& plant, const Record& measured,
+                   const Record* validation, const DiscoverOptions& options);
+
+/// "no_discrepancy", "explained", "partly_explained", "unexplained".
+std::string VerdictName(DiscoveryVerdict verdict);
+
+/// The causes as changes to a plant, for Simulate and ExtendMjcf.
+Changes ChangesOf(const Discovery& discovery);
+
+}  // namespace mjdiag

@@ -1,0 +1,56 @@
+#include "mjdiag/discovery/fault_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/discovery/error_dynamics.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kParts = 10;
+
+double Limit(const VectorXd& phi, const VectorXd& e) {
+  const double all = phi.squaredNorm();
+  const double theta = phi.dot(e) / all;
+  // Every part's share of theta: what the record would say with that part doubled.
+  const Index length = phi.size() / kParts;
+  double variance = 0.0;
+  for (Index p = 0; p < kParts; ++p) {
+    const auto part = phi.segment(p * length, length);
+    const double share =
+        (part.dot(e.segment(p * length, length)) - theta * part.squaredNorm()) / all;
+    variance += share * share;
+  }
+  constexpr double kSigmas = 3.0;
+  return std::abs(theta) +
+         kSigmas * std::sqrt(variance * kParts / static_cast<double>(kParts - 1));
+}
+
+}  // namespace
+
+std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
+                                          const std::vector<Candidate>& candidates,
+                                          const ObservedMotion& motion,
+                                          const VectorXd& residual) {
+  const ErrorDynamics dynamics(problem.model, problem.observer, problem.step(),
+                               problem.setup->substeps, motion.sticking, 1);
+  const Index skipped = problem.run.outputs.rows() * problem.skip;
+  std::map<std::string, double> limits;
+  for (const Candidate& candidate : candidates) {
+    if (!candidate.cause.fault) continue;
+    for (const Trial& trial :
+         MakeTrials(*problem.plant, problem.model, candidate, motion)) {
+      const VectorXd phi =
+          dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
+      const Index used = phi.size() - skipped;
+      limits[candidate.cause.spec.effect] = Limit(phi.tail(used), residual.tail(used));
+    }
+  }
+  return limits;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,28 @@
+#pragma once
+// What a better model is for: how small a fault can be seen on the measured machine.
+// The response phi of the innovations to a knob is known to first order (trial.h). A
+// healthy machine whose model is wrong already looks like a fault of size
+//
+//   theta = phi^T e / phi^T phi,
+//
+// and differently so from one part of the record to the next. A fault that is smaller
+// than |theta| + 3 sd(theta), sd from the parts, is hidden by that.
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/problem.h"
+#include "mjdiag/discovery/trial.h"
+
+namespace mjdiag {
+
+/// Knob -> limit, as a change of the knob. @param residual  scaled innovations
+std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
+                                          const std::vector<Candidate>& candidates,
+                                          const ObservedMotion& motion,
+                                          const Eigen::VectorXd& residual);
+
+}  // namespace mjdiag

@@ -1,0 +1,143 @@
+#include "mjdiag/report/discovery_json.h"
+
+#include <cmath>
+
+namespace mjdiag {
+namespace {
+
+using nlohmann::json;
+
+json Finite(double value) { return std::isfinite(value) ? json(value) : json(); }
+
+json TextOrNull(const std::string& text) { return text.empty() ? json() : json(text); }
+
+json Finite(const std::map<std::string, double>& values) {
+  json object = json::object();
+  for (const auto& [name, value] : values) object[name] = Finite(value);
+  return object;
+}
+
+json ParametersOf(const FoundCause& found) {
+  json parameters = json::object();
+  for (const CauseParameter& parameter : found.parameters) {
+    parameters[parameter.name] = {
+        {"value", Finite(parameter.value)},
+        {"unit", parameter.unit},
+        {"sd", Finite(parameter.sd)},
+        {"ci95", {Finite(parameter.low), Finite(parameter.high)}}};
+  }
+  return parameters;
+}
+
+json AlternativesOf(const FoundCause& found) {
+  json alternatives = json::array();
+  for (const Alternative& alternative : found.alternatives) {
+    alternatives.push_back({{"effect", alternative.cause.spec.effect},
+                            {"site", alternative.cause.spec.site},
+                            {"fault", alternative.cause.fault},
+                            {"probability", Finite(alternative.probability)},
+                            {"indistinguishable", alternative.indistinguishable}});
+  }
+  return alternatives;
+}
+
+json CausesOf(const Discovery& discovery) {
+  json causes = json::array();
+  for (const FoundCause& found : discovery.causes) {
+    causes.push_back({{"effect", found.cause.spec.effect},
+                      {"site", found.cause.spec.site},
+                      {"fault", found.cause.fault},
+                      {"parameters", ParametersOf(found)},
+                      {"probability", Finite(found.probability)},
+                      {"alternatives", AlternativesOf(found)}});
+  }
+  return causes;
+}
+
+json FiguresOf(const Discovery::Figures& figures) {
+  return {{"train", Finite(figures.train)}, {"validation", Finite(figures.validation)}};
+}
+
+json DerivedOf(const Comparison& comparison) {
+  json derived = json::object();
+  for (const DerivedMismatch& signal : comparison.derived) {
+    derived[signal.name] = Finite(signal.relative_error_percent);
+  }
+  return derived;
+}
+
+json DerivedOf(const Comparison& record, const std::optional<Comparison>& validation) {
+  return {{"record", DerivedOf(record)},
+          {"validation", validation ? DerivedOf(*validation) : json()}};
+}
+
+json UnexplainedOf(const Discovery& discovery) {
+  if (!discovery.unexplained) return {{"signature", nullptr}};
+  const Signature& signature = *discovery.unexplained;
+  return {{"signature", TextOrNull(signature.text)},
+          {"site", TextOrNull(discovery.unexplained_site)},
+          {"variable", TextOrNull(signature.variable)},
+          {"unit", TextOrNull(signature.unit)},
+          {"factor", TextOrNull(signature.factor)},
+          {"shape", TextOrNull(signature.shape)},
+          {"explained_share", Finite(signature.explained_share)},
+          {"period", Finite(signature.period)},
+          {"exponent", Finite(signature.exponent)},
+          {"runner_up", TextOrNull(signature.runner_up)},
+          {"runner_up_share", Finite(signature.runner_up_share)}};
+}
+
+json LadderOf(const Discovery& discovery) {
+  json ladder = json::array();
+  for (const LadderStep& step : discovery.ladder) {
+    ladder.push_back({{"added", step.added},
+                      {"train", Finite(step.train)},
+                      {"held_out", Finite(step.held_out)},
+                      {"error_percent", Finite(step.error_percent)},
+                      {"validation_percent", Finite(step.validation_percent)}});
+  }
+  return ladder;
+}
+
+json FaultLimitsOf(const Discovery& discovery) {
+  json limits = json::array();
+  for (const FaultLimit& limit : discovery.fault_limits) {
+    limits.push_back({{"fault", limit.fault},
+                      {"before", Finite(limit.before)},
+                      {"after", Finite(limit.after)}});
+  }
+  return limits;
+}
+
+}  // namespace
+
+json ToJson(const Discovery& discovery, const std::string& extended_plant) {
+  return {{"schema", "mjdiag.discovery/1"},
+          {"setup", discovery.setup},
+          {"verdict", VerdictName(discovery.verdict)},
+          {"causes", CausesOf(discovery)},
+          {"mismatch",
+           {{"before", FiguresOf(discovery.mismatch_before)},
+            {"after", FiguresOf(discovery.mismatch_after)}}},
+          {"noise_floor", Finite(discovery.noise_floor)},
+          {"units", discovery.unit},
+          {"gain",
+           {{"train", Finite(discovery.gain_train)},
+            {"validation", Finite(discovery.gain_validation)}}},
+          {"whiteness",
+           {{"before", Finite(1.0 - discovery.colour_before)},
+            {"after", Finite(1.0 - discovery.colour_after)}}},
+          {"extended_plant", TextOrNull(extended_plant)},
+          {"unexplained", UnexplainedOf(discovery)},
+          {"train_share", Finite(discovery.train_share)},
+          {"sample_time", Finite(discovery.sample_time)},
+          {"samples", discovery.before.measured.samples()},
+          {"derived",
+           {{"before", DerivedOf(discovery.before, discovery.validation_before)},
+            {"after", DerivedOf(discovery.after, discovery.validation_after)}}},
+          {"ladder", LadderOf(discovery)},
+          {"fault_limits", FaultLimitsOf(discovery)},
+          {"notes", discovery.notes}};
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,196 @@
+#include "mjdiag/report/discovery_page.h"
+
+#include <cmath>
+
+#include "mjdiag/report/discovery_plots.h"
+#include "mjdiag/report/discovery_text.h"
+#include "mjdiag/report/page.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr std::size_t kMostChannels = 3;
+
+std::string Percent(double share) { return FormatNumber(100.0 * share) + " %"; }
+
+Tone ToneOf(DiscoveryVerdict verdict) {
+  switch (verdict) {
+    case DiscoveryVerdict::kNoDiscrepancy:
+    case DiscoveryVerdict::kExplained:
+      return Tone::kGood;
+    case DiscoveryVerdict::kPartlyExplained:
+      return Tone::kNeutral;
+    case DiscoveryVerdict::kUnexplained:
+      return Tone::kBad;
+  }
+  return Tone::kNeutral;
+}
+
+void AddFacts(Page& page, const Discovery& discovery, const DiscoveryRun& run) {
+  const Record& record = discovery.before.measured;
+  std::vector<std::pair<std::string, std::string>> facts = {{"Setup", discovery.setup},
+                                                            {"Record", run.run.record}};
+  if (!run.validation.empty()) facts.emplace_back("Validation", run.validation);
+  if (record.samples() > 0) {
+    facts.emplace_back("Length", std::to_string(record.samples()) + " samples at " +
+                                     FormatQuantity(1.0 / record.sample_time(), "Hz") +
+                                     ", " + FormatQuantity(record.duration(), "s"));
+    facts.emplace_back("Replayed", discovery.before.closed_loop
+                                       ? "measured reference, in closed loop"
+                                       : "measured input, in open loop");
+  }
+  if (discovery.train_share > 0.0) {
+    facts.emplace_back(
+        "Fitted to", "the first " + Percent(discovery.train_share) + " of the record");
+  }
+  if (!run.extended_plant.empty()) {
+    facts.emplace_back("Extended plant", run.extended_plant);
+  }
+  page.AddFacts(facts);
+}
+
+constexpr const char* kHowToReadCauses =
+    "Intervals hold the true value in 95 of 100 such records. The probability is that "
+    "of the cause among all candidates that could take its place; candidates below 1 % "
+    "are not listed.";
+
+void AddCauses(Page& page, const Discovery& discovery) {
+  if (discovery.causes.empty()) return;
+  page.AddHeading("Causes");
+  page.AddTable(CauseTable(discovery));
+  page.AddHeading("Candidates");
+  page.AddTable(CandidateTable(discovery));
+  page.AddParagraph(kHowToReadCauses);
+}
+
+void AddNotes(Page& page, const Discovery& discovery) {
+  if (discovery.notes.empty()) return;
+  page.AddHeading("Notes");
+  for (const std::string& note : discovery.notes) page.AddParagraph(note);
+}
+
+constexpr const char* kHowToReadLadder =
+    "Rest over noise: what an observer beside the plant fails to predict, over the "
+    "noise of the sensors, root mean square; 1 says that noise is all there is. The "
+    "errors are those of a replay of the whole record, relative to the measured "
+    "signal.";
+
+void AddLadder(Page& page, const Discovery& discovery) {
+  if (discovery.ladder.empty()) return;
+  page.AddHeading("After each cause");
+  page.AddTable(LadderTable(discovery));
+  page.AddParagraph(kHowToReadLadder);
+  const Table validation = ValidationLadderTable(discovery);
+  if (validation.rows.empty()) return;
+  page.AddHeading("After each cause, on the validation record");
+  page.AddTable(validation);
+}
+
+constexpr const char* kHowToReadMismatch =
+    "Mismatch is measured minus simulated, root mean square. Fitted: the part of the "
+    "record that fits saw. Unseen: the validation record if there is one, else the "
+    "rest of the record. The noise floor is what the sensor noise found in the record "
+    "explains.";
+
+std::string GainText(const Discovery& discovery) {
+  return "Over all channels the mismatch fell by " + Percent(discovery.gain_train) +
+         " on what was fitted and by " + Percent(discovery.gain_validation) +
+         " on unseen data. Of the power that an observer beside the plant fails to "
+         "predict, " +
+         Percent(1.0 - discovery.colour_before) + " was white noise before and " +
+         Percent(1.0 - discovery.colour_after) + " is now.";
+}
+
+template <typename Plot>
+void AddPlots(Page& page, const std::vector<Plot>& plots) {
+  for (const Plot& plot : plots) page.AddPlot(plot);
+}
+
+void AddMismatch(Page& page, const Discovery& discovery) {
+  const Table table = MismatchTable(discovery);
+  if (table.rows.empty()) return;
+  const bool changed = !discovery.causes.empty();
+  page.AddHeading(changed ? "Mismatch before and after" : "Mismatch");
+  page.AddTable(table);
+  page.AddParagraph(kHowToReadMismatch);
+  if (changed) page.AddParagraph(GainText(discovery));
+  AddPlots(page, MismatchPlots(discovery.before, changed ? &discovery.after : nullptr,
+                               discovery.train_share, kMostChannels));
+  if (!discovery.validation_before) return;
+  const bool validated = changed && discovery.validation_after.has_value();
+  page.AddHeading("The validation record");
+  AddPlots(page, MismatchPlots(*discovery.validation_before,
+                               validated ? &*discovery.validation_after : nullptr, 0.0,
+                               kMostChannels));
+}
+
+void AddUnexplained(Page& page, const Discovery& discovery) {
+  const std::vector<TimePlot> plots = UnexplainedPlots(discovery);
+  if (plots.empty()) return;
+  page.AddHeading("Where: the force that the model lacks");
+  page.AddParagraph(
+      "Estimated from the record at every joint that an actuator drives. Between the "
+      "dashed lines it may be an error of the estimate.");
+  AddPlots(page, plots);
+}
+
+void AddLaws(Page& page, const Discovery& discovery) {
+  if (discovery.laws.empty()) return;
+  page.AddHeading("Why: the laws that were found");
+  page.AddParagraph(
+      "Dots: the unexplained signal of the plant as it was given, over what the cause "
+      "depends on. Line: the law with the fitted parameters.");
+  for (const LawPlot& law : discovery.laws) page.AddPlot(PlotOf(law));
+}
+
+void AddSignature(Page& page, const Discovery& discovery) {
+  if (!discovery.unexplained) return;
+  const Signature& signature = *discovery.unexplained;
+  page.AddHeading("What is left");
+  page.AddParagraph(signature.text);
+  if (!signature.significant) return;
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"Depends on",
+       signature.variable +
+           (signature.factor.empty() ? "" : " times " + signature.factor)},
+      {"Shape", signature.shape},
+      {"Explains", Percent(signature.explained_share) + " of unseen parts"}};
+  if (!signature.runner_up.empty()) {
+    facts.emplace_back("Next best",
+                       signature.runner_up + ", " + Percent(signature.runner_up_share));
+  }
+  page.AddFacts(facts);
+  if (signature.x.size() > 1) page.AddPlot(SignaturePlot(signature));
+}
+
+void AddFaultLimits(Page& page, const Discovery& discovery) {
+  if (discovery.fault_limits.empty()) return;
+  page.AddHeading("What it is for: how small a fault is seen");
+  page.AddTable(FaultLimitTable(discovery));
+  page.AddParagraph(
+      "The smallest change of a fault knob that the mismatch of this machine does not "
+      "hide.");
+}
+
+}  // namespace
+
+std::string DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
+  Page page("What the simulation gets wrong: " + discovery.setup);
+  page.AddVerdict(ToneOf(discovery.verdict), DiscoveryAnswer(discovery));
+  AddFacts(page, discovery, run);
+  AddCauses(page, discovery);
+  AddNotes(page, discovery);
+  AddLadder(page, discovery);
+  AddMismatch(page, discovery);
+  AddLaws(page, discovery);
+  AddSignature(page, discovery);
+  AddUnexplained(page, discovery);
+  AddFaultLimits(page, discovery);
+  page.AddHeading("To do it again");
+  page.AddCode(run.run.command);
+  page.AddFacts(run.run.versions);
+  return page.Html();
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,321 @@
+#include "mjdiag/report/discovery_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr const char* kNone = "-";
+
+std::string Percent(double percent) { return FormatNumber(percent) + " %"; }
+
+/// How a parameter and its interval are written: one unit, one number of decimals.
+struct Notation {
+  DisplayUnit unit;
+  int decimals = 0;
+  bool exponent = false;  ///< no prefix brings the value near 1
+
+  std::string Number(double value) const {
+    if (!std::isfinite(value)) return FormatNumber(value);
+    std::array<char, 352> text{};
+    std::snprintf(text.data(), text.size(), exponent ? "%.*e" : "%.*f", decimals,
+                  value * unit.factor);
+    return text.data();
+  }
+  std::string WithUnit(const std::string& number) const {
+    return unit.name.empty() ? number : number + " " + unit.name;
+  }
+};
+
+int Magnitude(double value) { return static_cast<int>(std::floor(std::log10(value))); }
+
+Notation NotationOf(const CauseParameter& parameter) {
+  constexpr int kMostDecimals = 9;
+  const double size = std::max(std::abs(parameter.value), std::abs(parameter.high));
+  Notation notation{ChooseDisplayUnit(size, parameter.unit)};
+  const double shown = size * notation.unit.factor;
+  const double half = (parameter.high - parameter.low) / 2.0 * notation.unit.factor;
+  if (!std::isfinite(shown) || shown == 0.0) return notation;
+  // Without a width four digits of the value.
+  const int last =
+      std::isfinite(half) && half > 0.0 ? Magnitude(half) - 1 : Magnitude(shown) - 3;
+  notation.exponent = shown < 1e-4 || shown >= 1e6;
+  const int decimals = notation.exponent ? Magnitude(shown) - last : -last;
+  notation.decimals = std::clamp(decimals, 0, kMostDecimals);
+  return notation;
+}
+
+std::string Join(const std::vector<std::string>& items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const bool last = i + 1 == items.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + items[i];
+  }
+  return text;
+}
+
+/// "coulomb_friction at load (force 20.39 N)", "zeta_x = 1.2000".
+std::string WithValues(const FoundCause& found) {
+  std::string values;
+  for (const CauseParameter& parameter : found.parameters) {
+    if (found.cause.fault) return CauseName(found.cause) + " = " + ValueText(parameter);
+    values +=
+        (values.empty() ? "" : ", ") + parameter.name + " " + ValueText(parameter);
+  }
+  return CauseName(found.cause) + (values.empty() ? "" : " (" + values + ")");
+}
+
+std::string FoundText(const Discovery& discovery) {
+  std::vector<std::string> causes;
+  for (const FoundCause& found : discovery.causes) causes.push_back(WithValues(found));
+  return "Found: " + Join(causes) + ".";
+}
+
+std::string GainText(const Discovery& discovery) {
+  const double percent = 100.0 * discovery.gain_validation;
+  if (discovery.mismatch_after.validation.empty() || !std::isfinite(percent)) return "";
+  std::string text = " On unseen data the mismatch ";
+  text += (percent < 0.0 ? "rises by " : "falls by ") + Percent(std::abs(percent));
+  const std::optional<double> times =
+      TimesFloor(discovery.mismatch_after.validation, discovery.noise_floor);
+  if (times) text += ", to " + FormatNumber(*times) + " times the noise floor";
+  return text + ".";
+}
+
+std::string SignatureText(const Discovery& discovery) {
+  if (!discovery.unexplained || discovery.unexplained->text.empty()) return "";
+  return " " + discovery.unexplained->text;
+}
+
+std::string BestAlternative(const FoundCause& found) {
+  if (found.alternatives.empty()) return kNone;
+  const Alternative& best = found.alternatives.front();
+  if (best.indistinguishable) {
+    return CauseName(best.cause) + ", cannot be told apart";
+  }
+  return CauseName(best.cause) + ", " + Percent(100.0 * best.probability);
+}
+
+/// Ten blocks for a probability of 1.
+std::string Bar(double probability) {
+  constexpr int kBlocks = 10;
+  const double part = std::isfinite(probability) ? probability : 0.0;
+  const int full = static_cast<int>(std::lround(kBlocks * std::clamp(part, 0.0, 1.0)));
+  std::string bar;
+  for (int i = 0; i < kBlocks; ++i) bar += i < full ? "█" : "░";
+  return bar;
+}
+
+using Errors = std::map<std::string, double>;
+
+std::string At(const Errors& values, const std::string& name,
+               const std::function<std::string(double)>& format) {
+  const auto found = values.find(name);
+  return found == values.end() ? kNone : format(found->second);
+}
+
+/// A column for every signal that any step has, one row a step.
+void AddErrors(Table& table, const std::vector<LadderStep>& ladder,
+               Errors LadderStep::*errors) {
+  std::set<std::string> names;
+  for (const LadderStep& step : ladder) {
+    for (const auto& [name, percent] : step.*errors) names.insert(name);
+  }
+  for (const std::string& name : names) {
+    table.columns.push_back({name, true});
+    for (std::size_t i = 0; i < ladder.size(); ++i) {
+      table.rows[i].push_back(At(ladder[i].*errors, name, Percent));
+    }
+  }
+}
+
+/// Channels in the order of the comparison, then those that only have figures.
+std::vector<std::string> ChannelsOf(const Discovery& discovery) {
+  std::vector<std::string> names;
+  for (const ChannelMismatch& channel : discovery.before.channels) {
+    names.push_back(channel.name);
+  }
+  for (const auto& [name, floor] : discovery.noise_floor) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::string FactorText(const FaultLimit& limit) {
+  const double factor = limit.before / limit.after;
+  return std::isfinite(factor) ? FormatNumber(factor) : kNone;
+}
+
+}  // namespace
+
+std::string CauseName(const Cause& cause) {
+  return cause.fault ? cause.spec.effect : cause.spec.effect + " at " + cause.spec.site;
+}
+
+std::string ValueText(const CauseParameter& parameter) {
+  const Notation notation = NotationOf(parameter);
+  return notation.WithUnit(notation.Number(parameter.value));
+}
+
+std::string IntervalText(const CauseParameter& parameter) {
+  const Notation notation = NotationOf(parameter);
+  return notation.WithUnit(notation.Number(parameter.low) + " to " +
+                           notation.Number(parameter.high));
+}
+
+std::optional<double> TimesFloor(const Errors& rms, const Errors& floor) {
+  double sum = 0.0;
+  int channels = 0;
+  for (const auto& [name, value] : rms) {
+    const auto found = floor.find(name);
+    if (found == floor.end() || !(found->second > 0.0)) continue;
+    sum += value * value / (found->second * found->second);
+    ++channels;
+  }
+  if (channels == 0) return std::nullopt;
+  return std::sqrt(sum / channels);
+}
+
+std::string DiscoveryAnswer(const Discovery& discovery) {
+  switch (discovery.verdict) {
+    case DiscoveryVerdict::kNoDiscrepancy:
+      return "Nothing is wrong that this record shows: noise explains the mismatch.";
+    case DiscoveryVerdict::kExplained:
+      return FoundText(discovery) + " Noise explains the rest." + GainText(discovery);
+    case DiscoveryVerdict::kPartlyExplained:
+      return FoundText(discovery) + GainText(discovery) + " Something is left." +
+             SignatureText(discovery);
+    case DiscoveryVerdict::kUnexplained:
+      return "Something is there that no known cause explains." +
+             SignatureText(discovery);
+  }
+  return "";
+}
+
+Table CauseTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Cause"},
+                   {"Site"},
+                   {"Parameter"},
+                   {"Value", true},
+                   {"95 % interval", true},
+                   {"Probability", true},
+                   {"Best alternative"}};
+  for (const FoundCause& found : discovery.causes) {
+    bool first = true;
+    for (const CauseParameter& parameter : found.parameters) {
+      std::vector<std::string> row(table.columns.size());
+      if (first) {
+        row = {found.cause.spec.effect,
+               found.cause.spec.site,
+               "",
+               "",
+               "",
+               Percent(100.0 * found.probability),
+               BestAlternative(found)};
+      }
+      first = false;
+      row[2] = parameter.name;
+      row[3] = ValueText(parameter);
+      row[4] = IntervalText(parameter);
+      table.rows.push_back(row);
+    }
+  }
+  return table;
+}
+
+Table CandidateTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Cause"}, {"Candidate"}, {""}, {"Probability", true}, {"Remark"}};
+  for (const FoundCause& found : discovery.causes) {
+    const std::string name = CauseName(found.cause);
+    table.rows.push_back({name, name, Bar(found.probability),
+                          Percent(100.0 * found.probability), "found"});
+    for (const Alternative& alternative : found.alternatives) {
+      table.rows.push_back(
+          {"", CauseName(alternative.cause), Bar(alternative.probability),
+           Percent(100.0 * alternative.probability),
+           alternative.indistinguishable ? "no measurement tells them apart" : ""});
+    }
+  }
+  return table;
+}
+
+Table LadderTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {
+      {"Added"}, {"Rest over noise, fitted", true}, {"Rest over noise, unseen", true}};
+  for (const LadderStep& step : discovery.ladder) {
+    table.rows.push_back(
+        {step.added, FormatNumber(step.train), FormatNumber(step.held_out)});
+  }
+  AddErrors(table, discovery.ladder, &LadderStep::error_percent);
+  return table;
+}
+
+Table ValidationLadderTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Added"}};
+  const auto& ladder = discovery.ladder;
+  if (std::all_of(ladder.begin(), ladder.end(), [](const LadderStep& step) {
+        return step.validation_percent.empty();
+      })) {
+    return table;
+  }
+  for (const LadderStep& step : ladder) table.rows.push_back({step.added});
+  AddErrors(table, ladder, &LadderStep::validation_percent);
+  return table;
+}
+
+Table MismatchTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Channel"},
+                   {"Noise floor", true},
+                   {"Fitted, before", true},
+                   {"after", true},
+                   {"Unseen, before", true},
+                   {"after", true},
+                   {"Times the floor", true}};
+  const Discovery::Figures& before = discovery.mismatch_before;
+  const Discovery::Figures& after = discovery.mismatch_after;
+  for (const std::string& name : ChannelsOf(discovery)) {
+    const auto found = discovery.unit.find(name);
+    const std::string unit = found == discovery.unit.end() ? "" : found->second;
+    const auto quantity = [&unit](double rms) { return FormatQuantity(rms, unit); };
+    const auto times = [&](double rms) {
+      const auto floor = discovery.noise_floor.find(name);
+      if (floor == discovery.noise_floor.end() || !(floor->second > 0.0))
+        return std::string(kNone);
+      return FormatNumber(rms / floor->second);
+    };
+    table.rows.push_back(
+        {name, At(discovery.noise_floor, name, quantity),
+         At(before.train, name, quantity), At(after.train, name, quantity),
+         At(before.validation, name, quantity), At(after.validation, name, quantity),
+         At(after.validation, name, times)});
+  }
+  return table;
+}
+
+Table FaultLimitTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Fault"},
+                   {"Smallest seen, plant as given", true},
+                   {"extended plant", true},
+                   {"Times smaller", true}};
+  for (const FaultLimit& limit : discovery.fault_limits) {
+    table.rows.push_back({limit.fault, Percent(100.0 * limit.before),
+                          Percent(100.0 * limit.after), FactorText(limit)});
+  }
+  return table;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,42 @@
+#pragma once
+// What a discovery says in words and tables, the same in a terminal and on a page.
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/report/page.h"
+
+namespace mjdiag {
+
+/// The answer in a sentence or two: what was found, and what it gained on data that
+/// nothing was fitted to.
+std::string DiscoveryAnswer(const Discovery& discovery);
+
+/// "coulomb_friction at load", or the name of a knob.
+std::string CauseName(const Cause& cause);
+
+/// The value with its unit, to two digits of half the interval's width: "20.39 N".
+std::string ValueText(const CauseParameter& parameter);
+/// The 95 % interval in the same unit and digits: "20.21 to 20.58 N".
+std::string IntervalText(const CauseParameter& parameter);
+
+/// sqrt(mean (rms / floor)^2) of all channels with a floor above 0; none without them.
+std::optional<double> TimesFloor(const std::map<std::string, double>& rms,
+                                 const std::map<std::string, double>& floor);
+
+/// A row for every parameter of every cause.
+Table CauseTable(const Discovery& discovery);
+/// Every cause and who else could have been in its place.
+Table CandidateTable(const Discovery& discovery);
+/// Errors of the record after each cause that was added.
+Table LadderTable(const Discovery& discovery);
+/// The same of the validation record; no rows without one.
+Table ValidationLadderTable(const Discovery& discovery);
+/// rms of the mismatch of every channel before and after.
+Table MismatchTable(const Discovery& discovery);
+/// The smallest fault that is seen, with either plant.
+Table FaultLimitTable(const Discovery& discovery);
+
+}  // namespace mjdiag
