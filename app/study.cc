@@ -13,6 +13,7 @@
 #include "app/progress.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/text_file.h"
+#include "mjdiag/discovery/hidden_table.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
@@ -33,6 +34,12 @@ struct StudyCommand {
 using Study = std::function<std::vector<StudyTable>(const Setup&, const mjModel&,
                                                     const StudyOptions&)>;
 
+template <int causes>
+std::vector<StudyTable> HiddenEffects(const Setup& setup, const mjModel& plant,
+                                      const StudyOptions& options) {
+  return HiddenStudy(setup, plant, causes, options);
+}
+
 /// Preset -> study, and what it is for.
 const std::map<std::string, Study>& Studies() {
   static const std::map<std::string, Study> studies{
@@ -48,7 +55,10 @@ const std::map<std::string, Study>& Studies() {
        }},
       {"estimation", EstimationStudy},
       {"disturbance", DisturbanceStudy},
-      {"bound", BoundStudy}};
+      {"bound", BoundStudy},
+      {"hidden", HiddenEffects<1>},
+      {"hidden_none", HiddenEffects<0>},
+      {"hidden_two", HiddenEffects<2>}};
   return studies;
 }
 

@@ -144,16 +144,12 @@ std::vector<Index> SeenJoints(const MechanicalModel& model) {
   return MostMoved(model, model.b);
 }
 
-std::vector<Candidate> ListCandidates(const Setup& setup, const mjModel& plant,
-                                      const MechanicalModel& model) {
+std::vector<Candidate> AllSites(const Setup& setup, const mjModel& plant,
+                                const MechanicalModel& model) {
   std::vector<Candidate> candidates = KnobCandidates(setup, plant, model);
-  const std::size_t knobs = candidates.size();
   const std::vector<Index> driven = DrivenJoints(model);
   const std::vector<Index> seen = SeenJoints(model);
   const auto add = [&](Candidate candidate) {
-    for (std::size_t k = 0; k < knobs; ++k) {
-      if (Indistinguishable(plant, candidates[k].cause, candidate.cause)) return;
-    }
     candidates.push_back(std::move(candidate));
   };
   for (const EffectType& type : EffectCatalogue()) {
@@ -176,6 +172,20 @@ std::vector<Candidate> ListCandidates(const Setup& setup, const mjModel& plant,
       }
     }
   }
+  return candidates;
+}
+
+std::vector<Candidate> ListCandidates(const Setup& setup, const mjModel& plant,
+                                      const MechanicalModel& model) {
+  std::vector<Candidate> candidates = AllSites(setup, plant, model);
+  const std::vector<Candidate> all = candidates;
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    return !candidate.cause.fault &&
+           std::ranges::any_of(all, [&](const Candidate& knob) {
+             return knob.cause.fault &&
+                    Indistinguishable(plant, knob.cause, candidate.cause);
+           });
+  });
   return candidates;
 }
 

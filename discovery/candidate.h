@@ -50,4 +50,8 @@ std::vector<Eigen::Index> SeenJoints(const MechanicalModel& model);
 std::vector<Candidate> ListCandidates(const Setup& setup, const mjModel& plant,
                                       const MechanicalModel& model);
 
+/// The same with those effects that a knob stands for.
+std::vector<Candidate> AllSites(const Setup& setup, const mjModel& plant,
+                                const MechanicalModel& model);
+
 }  // namespace mjdiag

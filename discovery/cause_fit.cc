@@ -194,8 +194,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = options.iterations;
-    // Of the sum of squares: a change of a hundredth of one parameter's noise.
-    solver.function_tolerance = 1e-7;
+    solver.function_tolerance = options.tolerance;
     solver.parameter_tolerance = 1e-9;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

@@ -38,6 +38,8 @@ struct CauseFit {
 
 struct FitOptions {
   int iterations = 12;
+  /// Of the sum of squares, relative: when to stop.
+  double tolerance = 1e-6;
   bool sensitivities = true;  ///< compute J at the solution
 };
 

@@ -25,6 +25,8 @@ using Eigen::VectorXd;
 // Below this share of the excess over noise that causes take away they are not an
 // explanation but the best of the wrong ones.
 constexpr double kNamedShare = 0.9;
+// Bandwidth of the fast observer, of the control rate.
+constexpr double kFastShare = 0.02;
 constexpr double kLeastProbability = 0.01;
 constexpr double kNormal95 = 1.959964;
 constexpr Index kLawPoints = 3000;
@@ -56,6 +58,7 @@ class Discoverer {
   ObservedMotion MotionOf(const Track& track) const {
     return ObserveMotion(plant_, problem_.run, track, problem_.StillSpeed());
   }
+  bool IsColoured() const;
   void NameCauses();
   std::vector<CauseParameter> ParametersOf(const FittedCause& fitted,
                                            const MatrixXd& covariance,
@@ -122,6 +125,15 @@ std::vector<Alternative> Discoverer::AlternativesOf(
     alternatives.push_back({CauseOf(other.cause), other.probability, false});
   }
   return alternatives;
+}
+
+// What a real machine does beside all models is no white noise: behind a slow observer
+// it piles up, and few of its values are independent of each other. A fast observer
+// takes it away as it comes, and smaller causes show.
+bool Discoverer::IsColoured() const {
+  constexpr double kMuch = 4.0;  // times the noise power of the sensors
+  return search_.fit.train > kMuch &&
+         IndependentShare(problem_, search_.fit.residual).minCoeff() < 0.5;
 }
 
 void Discoverer::NameCauses() {
@@ -237,7 +249,10 @@ void Discoverer::NoteTwins(std::size_t cause,
     }
     const auto motion = FindTellingMotion(noisy, plant_, ChangesOf({found.cause}),
                                           ChangesOf({CauseOf(other.cause)}));
-    if (motion) {
+    constexpr double kTells = 4.0;
+    if (!motion || motion->separation < kTells) {
+      note += "; no trajectory of the setup would, a larger or faster motion may";
+    } else {
       note += "; trajectory '" + motion->trajectory + "'";
       if (motion->slower > 1.0) {
         note +=
@@ -478,6 +493,11 @@ Discovery Discoverer::Run() {
   search.most_causes = options_.most_causes;
   search.progress = options_.progress;
   search_ = SearchCauses(problem_, candidates_, search);
+  if (options_.bandwidth == 0.0 && IsColoured()) {
+    problem_ = PoseProblem(setup_, plant_, measured_, options_.train_share,
+                           kFastShare * setup_.control_rate);
+    search_ = SearchCauses(problem_, candidates_, search, &search_);
+  }
   NameCauses();
   const Track found = FollowWith(ChangesOf(candidates_, search_.fit.causes));
   if (!search_.significant_rest) AddNoiseCauses(found.innovations);

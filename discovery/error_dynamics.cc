@@ -71,6 +71,11 @@ ErrorDynamics::ErrorDynamics(const MechanicalModel& model, const Observer& obser
   }
 }
 
+// The mean over a block is that of its ends, x and next, whose sum it is applied to.
+MatrixXd ErrorDynamics::SeenMean() const {
+  return block_ == 1 ? C_ : MatrixXd(0.5 * std::sqrt(static_cast<double>(block_)) * C_);
+}
+
 MatrixXd ErrorDynamics::OfForces(const MatrixXd& entry, const MatrixXd& forces) const {
   std::vector<MatrixXd> drive;
   for (const Mode& mode : modes_) drive.push_back(mode.B * entry);
@@ -80,12 +85,12 @@ MatrixXd ErrorDynamics::OfForces(const MatrixXd& entry, const MatrixXd& forces) 
   MatrixXd x = MatrixXd::Zero(C_.cols(), mean.rows());
   MatrixXd next(x.rows(), x.cols());
   MatrixXd response(ny * mean.cols(), x.cols());
-  const MatrixXd half = 0.5 * std::sqrt(static_cast<double>(block_)) * C_;
+  const MatrixXd seen = SeenMean();
   for (Index k = 0; k < mean.cols(); ++k) {
     next.noalias() = At(k).F * x;
     next += drive[mode_of_[static_cast<std::size_t>(k)]] * mean.col(k).asDiagonal();
-    response.middleRows(ny * k, ny).noalias() =
-        block_ == 1 ? C_ * x : MatrixXd(half * (x + next));
+    if (block_ > 1) x += next;
+    response.middleRows(ny * k, ny).noalias() = seen * x;
     x.swap(next);
   }
   return response;
@@ -98,15 +103,41 @@ MatrixXd ErrorDynamics::OfReadings(Index sensor, const MatrixXd& errors) const {
   MatrixXd x = MatrixXd::Zero(C_.cols(), mean.rows());
   MatrixXd next(x.rows(), x.cols());
   MatrixXd response(ny * mean.cols(), x.cols());
+  const MatrixXd seen = SeenMean();
   for (Index k = 0; k < mean.cols(); ++k) {
     next.noalias() = At(k).F * x;
     next.noalias() -= At(k).L.col(sensor) * mean.col(k).transpose();
     auto now = response.middleRows(ny * k, ny);
-    now = block_ == 1 ? MatrixXd(C_ * x) : MatrixXd(0.5 * root * C_ * (x + next));
+    if (block_ > 1) x += next;
+    now.noalias() = seen * x;
     now.row(sensor) += root * weight_[sensor] * mean.col(k).transpose();
     x.swap(next);
   }
   return response;
+}
+
+// Backwards in time. With a block's response S (x[k] + x[k+1]) (S x[k] for blocks of
+// one) the multiplier of x[k+1] is l[k] = F^T l[k+1] + S^T (e[k] + e[k+1]).
+ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) const {
+  const Index ny = C_.rows();
+  const Index blocks = innovations.size() / ny;
+  const Eigen::Map<const MatrixXd> e(innovations.data(), ny, blocks);
+  const double root = std::sqrt(static_cast<double>(block_));
+  const MatrixXd seen = SeenMean();
+  Adjoint adjoint{MatrixXd(blocks, C_.cols() / 2), MatrixXd(blocks, ny)};
+  VectorXd multiplier = VectorXd::Zero(C_.cols());
+  VectorXd later = VectorXd::Zero(ny);
+  for (Index k = blocks - 1; k >= 0; --k) {
+    // Of x[k+1]: through the next block's dynamics and both responses it is in.
+    if (k + 1 < blocks) multiplier = At(k + 1).F.transpose() * multiplier;
+    multiplier += seen.transpose() * (block_ > 1 ? VectorXd(e.col(k) + later) : later);
+    adjoint.forces.row(k) = (At(k).B.transpose() * multiplier).transpose();
+    adjoint.readings.row(k) =
+        (root * weight_.cwiseProduct(e.col(k)) - At(k).L.transpose() * multiplier)
+            .transpose();
+    later = e.col(k);
+  }
+  return adjoint;
 }
 
 MatrixXd Averaged(const MatrixXd& stacked, Index channels, Index block) {

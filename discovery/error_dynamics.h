@@ -42,6 +42,14 @@ class ErrorDynamics {
                            const Eigen::MatrixXd& forces) const;
   /// The same of errors of one sensor. @param errors  samples x signals
   Eigen::MatrixXd OfReadings(Eigen::Index sensor, const Eigen::MatrixXd& errors) const;
+  /// The adjoint: what a force at every joint, or an error of every reading, would
+  /// have in common with scaled innovations. With H f = OfForces, H^T e.
+  struct Adjoint {
+    Eigen::MatrixXd forces;    ///< blocks x nq
+    Eigen::MatrixXd readings;  ///< blocks x ny
+  };
+  Adjoint AdjointOf(const Eigen::VectorXd& innovations) const;
+  Eigen::Index block() const { return block_; }
   /// 1 / innovation_sd
   const Eigen::VectorXd& weight() const { return weight_; }
 
@@ -55,6 +63,8 @@ class ErrorDynamics {
   const Mode& At(Eigen::Index block) const {
     return modes_[mode_of_[static_cast<std::size_t>(block)]];
   }
+
+  Eigen::MatrixXd SeenMean() const;
 
   std::vector<Mode> modes_;
   std::vector<std::size_t> mode_of_;  // of every block

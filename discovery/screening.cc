@@ -48,20 +48,28 @@ class Screener {
     }
     residual_ = Averaged(full_, channels_, block_);
     if (found_.cols() > 0) residual_ -= found_ * (found_.transpose() * residual_);
+    VectorXd padded = VectorXd::Zero(channels_ * (skip_ + blocks_));
+    padded.tail(residual_.size()) = residual_;
+    adjoint_ = dynamics_.AdjointOf(padded);
   }
 
   /// The starts that trials of one candidate give; those that are not physical or do
   /// not show give none.
   std::vector<Start> Judge(const std::vector<Trial>& trials,
                            const Candidate& candidate) const;
+  /// The trials of a sweep that promise most, and neighbours of them. What a wave has
+  /// in common with the residual comes from the adjoint, one product each; its size is
+  /// smooth over the sweep and comes from a few of them.
+  std::vector<Trial> BestOf(const Sweep& sweep, const Candidate& candidate) const;
 
  private:
-  /// Blocks of half a millisecond hold what forces do; about 2 kHz.
+  /// Some thousand blocks hold what forces do to a machine with inertia.
   static Index BlockOf(const DiscoveryProblem& problem) {
-    constexpr double kSeconds = 5e-4;
-    return std::max<Index>(1, std::lround(kSeconds / problem.run.sample_time));
+    constexpr Index kBlocks = 5000;
+    return std::max<Index>(1, problem.train / kBlocks);
   }
   MatrixXd Fast(const Trial& trial, const Candidate& candidate) const;
+  VectorXd Common(const Trial& trial, const Candidate& candidate) const;
   MatrixXd Responses(const std::vector<Trial>& trials, std::size_t first,
                      std::size_t last, const Candidate& candidate) const;
   std::optional<Start> Regress(const Trial& trial, const MatrixXd& response,
@@ -70,12 +78,13 @@ class Screener {
   const DiscoveryProblem& problem_;
   ErrorDynamics dynamics_;
   Index channels_;
-  Index block_;        // samples
-  Index skip_;         // blocks
-  Index blocks_;       // after them
-  VectorXd full_;      // residual of every sample
-  VectorXd residual_;  // of every block
-  MatrixXd found_;     // orthonormal, of every block
+  Index block_;                     // samples
+  Index skip_;                      // blocks
+  Index blocks_;                    // after them
+  VectorXd full_;                   // residual of every sample
+  VectorXd residual_;               // of every block
+  MatrixXd found_;                  // orthonormal, of every block
+  ErrorDynamics::Adjoint adjoint_;  // of residual_, blocks from the start on
 };
 
 /// Columns of trials first .. last - 1 side by side.
@@ -163,15 +172,64 @@ std::vector<Start> Screener::Judge(const std::vector<Trial>& trials,
   return starts;
 }
 
-/// Sines of `count` frequencies from `lowest` on.
-std::vector<Trial> Sines(const DiscoveryProblem& problem, const Candidate& candidate,
-                         const ObservedMotion& motion, double lowest, double spacing,
-                         int count) {
+VectorXd Screener::Common(const Trial& trial, const Candidate& candidate) const {
+  if (trial.fast) {
+    const Eigen::Map<const MatrixXd> channels(full_.data(), channels_,
+                                              block_ * blocks_);
+    return Fast(trial, candidate).transpose() *
+           channels.row(candidate.channel).transpose();
+  }
+  const MatrixXd mean = Averaged(trial.signals.topRows(problem_.train), 1, block_)
+                            .topRows(skip_ + blocks_) /
+                        std::sqrt(static_cast<double>(block_));
+  const VectorXd adjoint = trial.entry.size() > 0
+                               ? VectorXd(adjoint_.forces * trial.entry.col(0))
+                               : VectorXd(adjoint_.readings.col(candidate.channel));
+  return mean.transpose() * adjoint;
+}
+
+std::vector<Trial> Screener::BestOf(const Sweep& sweep,
+                                    const Candidate& candidate) const {
+  constexpr std::size_t kEvery = 16;
+  constexpr int kKept = 3;
+  const std::size_t count = sweep.values.size();
+  std::vector<double> known_size;  // log, of every kEvery-th
+  for (std::size_t i = 0; i < count; i += kEvery) {
+    const Trial trial = sweep.make(sweep.values[i]);
+    const MatrixXd response =
+        trial.fast ? Fast(trial, candidate) : Responses({trial}, 0, 1, candidate);
+    known_size.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
+  }
+  std::vector<std::pair<double, std::size_t>> worth;
+  for (std::size_t i = 0; i < count; ++i) {
+    const VectorXd common = Common(sweep.make(sweep.values[i]), candidate);
+    const std::size_t before = i / kEvery;
+    const std::size_t after = std::min(before + 1, known_size.size() - 1);
+    const double part = static_cast<double>(i % kEvery) / kEvery;
+    const double size = (1.0 - part) * known_size[before] + part * known_size[after];
+    worth.emplace_back(common.squaredNorm() / std::exp(size), i);
+  }
+  std::ranges::sort(worth, std::greater<>());
+  std::vector<std::size_t> kept;
+  for (const auto& [gain, i] : worth) {
+    const bool near = std::ranges::any_of(
+        kept, [i = i](std::size_t k) { return std::max(i, k) - std::min(i, k) < 3; });
+    if (near) continue;
+    kept.push_back(i);
+    if (static_cast<int>(kept.size()) == kKept) break;
+  }
   std::vector<Trial> trials;
-  for (int i = 0; i < count; ++i) {
-    const double frequency = lowest + spacing * i;
-    if (frequency <= 0.0) continue;
-    trials.push_back(SineTrial(problem.model, candidate, motion, frequency));
+  for (const std::size_t i : kept) {
+    // Periods are evenly spaced by their inverse, frequencies as they are; between
+    // neighbours both are close enough to even.
+    const double here = sweep.values[i];
+    const double below = sweep.values[i > 0 ? i - 1 : i];
+    const double above = sweep.values[std::min(i + 1, count - 1)];
+    for (const double part : {0.25, 0.5}) {
+      trials.push_back(sweep.make(here + part * (below - here)));
+      trials.push_back(sweep.make(here + part * (above - here)));
+    }
+    trials.push_back(sweep.make(here));
   }
   return trials;
 }
@@ -182,66 +240,6 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
   if (starts.size() > count) starts.resize(count);
 }
 
-/// What a vibration is looked for on: the beginning of the record on a coarse grid of
-/// frequencies, the whole of it about the best of them.
-class VibrationSearch {
- public:
-  VibrationSearch(const DiscoveryProblem& problem, const ObservedMotion& motion,
-                  const VectorXd& residual, const MatrixXd& sensitivities)
-      : problem_(problem),
-        motion_(motion),
-        beginning_(Shortened(problem)),
-        coarse_(beginning_, motion, residual, sensitivities),
-        fine_(problem, motion, residual, sensitivities) {}
-
-  std::vector<Start> Search(const Candidate& candidate) const {
-    const double resolution = 1.0 / Duration(beginning_);
-    const double highest = std::min(0.1 / problem_.run.sample_time, 400.0);
-    constexpr double kSpacing = 0.7;  // of the resolution
-    const int count = static_cast<int>(highest / (kSpacing * resolution));
-    std::vector<Start> coarse;
-    // One batch after the other, for memory.
-    for (int first = 1; first <= count; first += kBatch / 2) {
-      const int size = std::min<int>(kBatch / 2, count + 1 - first);
-      const auto some = coarse_.Judge(
-          Sines(beginning_, candidate, motion_, kSpacing * resolution * first,
-                kSpacing * resolution, size),
-          candidate);
-      coarse.insert(coarse.end(), some.begin(), some.end());
-    }
-    KeepBest(coarse, 3);
-    std::vector<Start> found;
-    const double step = 0.35 / Duration(problem_);
-    const int reach = static_cast<int>(0.5 * resolution / step) + 1;
-    for (const Start& start : coarse) {
-      const double about = start.parameters.at("frequency");
-      auto some = fine_.Judge(Sines(problem_, candidate, motion_, about - reach * step,
-                                    step, 2 * reach + 1),
-                              candidate);
-      KeepBest(some, 1);
-      found.insert(found.end(), some.begin(), some.end());
-    }
-    return found;
-  }
-
- private:
-  static DiscoveryProblem Shortened(const DiscoveryProblem& problem) {
-    constexpr Index kSamples = 8000;
-    DiscoveryProblem shortened = problem;
-    shortened.train = std::min(problem.train, problem.skip + kSamples);
-    return shortened;
-  }
-  static double Duration(const DiscoveryProblem& problem) {
-    return static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
-  }
-
-  const DiscoveryProblem& problem_;
-  const ObservedMotion& motion_;
-  DiscoveryProblem beginning_;
-  Screener coarse_;
-  Screener fine_;
-};
-
 }  // namespace
 
 Screening Screen(const DiscoveryProblem& problem,
@@ -249,15 +247,16 @@ Screening Screen(const DiscoveryProblem& problem,
                  const VectorXd& residual, const MatrixXd& sensitivities,
                  int starts_each) {
   const Screener screener(problem, motion, residual, sensitivities);
-  const VibrationSearch vibration(problem, motion, residual, sensitivities);
   std::vector<std::vector<Start>> found(candidates.size());
   std::vector<int> tried(candidates.size());
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
     const auto c = static_cast<std::size_t>(number);
     const Candidate& candidate = candidates[c];
-    if (candidate.cause.spec.effect == "floor_vibration") {
-      found[c] = vibration.Search(candidate);
-      tried[c] = static_cast<int>(0.1 * static_cast<double>(problem.train));
+    const double duration =
+        static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+    if (const auto sweep = MakeSweep(problem.model, candidate, motion, duration)) {
+      tried[c] = static_cast<int>(sweep->values.size());
+      found[c] = screener.Judge(screener.BestOf(*sweep, candidate), candidate);
     } else {
       const auto trials = MakeTrials(*problem.plant, problem.model, candidate, motion);
       tried[c] = static_cast<int>(trials.size());

@@ -40,11 +40,16 @@ FittedCause ToFitted(const Candidate& candidate, const Start& start) {
 class Search {
  public:
   Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
-         const SearchOptions& options)
+         const SearchOptions& options, const SearchResult* before)
       : problem_(problem),
         candidates_(candidates),
         options_(options),
-        beginning_(Beginning(problem, BeginningLength(problem))) {}
+        beginning_(Beginning(problem, BeginningLength(problem))) {
+    if (before == nullptr) return;
+    result_.fit.causes = before->fit.causes;
+    result_.contenders = before->contenders;
+    result_.ladder = before->ladder;
+  }
 
   SearchResult Run();
 
@@ -139,7 +144,7 @@ Rung Search::Round(const std::vector<Start>& shortlist) const {
     const auto i = static_cast<std::size_t>(number);
     std::vector<FittedCause> causes = result_.fit.causes;
     causes.push_back(ToFitted(candidates_[shortlist[i].candidate], shortlist[i]));
-    early[i].fit = TryFit(beginning_, causes, {8, false});
+    early[i].fit = TryFit(beginning_, causes, {6, 1e-3, false});
     if (early[i].fit) early[i].criterion = Criterion(beginning_, *early[i].fit);
   });
   std::ranges::stable_sort(early, std::less<>(), &Entry::criterion);
@@ -149,7 +154,7 @@ Rung Search::Round(const std::vector<Start>& shortlist) const {
   const double growth = static_cast<double>(problem_.train - problem_.skip) /
                         static_cast<double>(beginning_.train - beginning_.skip);
   constexpr double kHopeless = 60.0;  // exp(-30)
-  constexpr int kFinalists = 4;
+  constexpr int kFinalists = 3;
   double best_early = std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
   int finalists = 0;
@@ -161,14 +166,14 @@ Rung Search::Round(const std::vector<Start>& shortlist) const {
     const bool seen = std::ranges::any_of(rung.contenders, [&](const Contender& c) {
       return c.cause.candidate == cause.candidate;
     });
-    if (seen && behind > kHopeless) continue;
+    if (seen) continue;
     if (finalists >= kFinalists || behind > kHopeless) {
       rung.contenders.push_back({cause, best + growth * behind, 0.0});
       continue;
     }
     ++finalists;
     Report("fit of " + Describe(candidates_[cause.candidate]), 0.5);
-    auto fit = TryFit(problem_, entry.fit->causes, {10, false});
+    auto fit = TryFit(problem_, entry.fit->causes, {10, 1e-5, false});
     if (!fit) continue;
     const double criterion = Criterion(problem_, *fit);
     rung.contenders.push_back({fit->causes.back(), criterion, 0.0});
@@ -228,14 +233,14 @@ bool Search::Prune() {
     std::vector<FittedCause> causes = result_.fit.causes;
     causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
     // If it is far from superfluous the beginning says so.
-    const auto early = TryFit(beginning_, causes, {6, false});
+    const auto early = TryFit(beginning_, causes, {4, 1e-3, false});
     if (!early) continue;
     const double now =
         Deviance(early->residual, independent_, problem_.skip, beginning_.train);
     const double before =
         Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
     if (now - before > 60.0) continue;
-    auto fit = TryFit(problem_, causes, {10, false});
+    auto fit = TryFit(problem_, causes, {6, 1e-5, false});
     if (!fit || Criterion(problem_, *fit) >= criterion) continue;
     criterion = Criterion(problem_, *fit);
     best = std::move(fit);
@@ -249,8 +254,13 @@ bool Search::Prune() {
 }
 
 SearchResult Search::Run() {
-  result_.fit = FitCauses(problem_, candidates_, {}, {});
+  result_.fit = FitCauses(problem_, candidates_, result_.fit.causes, {10, 1e-5, true});
+  // Before anything is found all of the mismatch may be one cause, which has any
+  // colour.
   independent_ = VectorXd::Ones(problem_.run.outputs.rows());
+  if (!result_.fit.causes.empty()) {
+    independent_ = IndependentShare(problem_, result_.fit.residual);
+  }
   for (int round = 0;; ++round) {
     Report("screening", 0.0);
     result_.left = ScreenRest();
@@ -271,7 +281,8 @@ SearchResult Search::Run() {
     while (Prune()) {
     }
     // The sensitivities of what is kept, for the next screening and the intervals.
-    result_.fit = FitCauses(problem_, candidates_, result_.fit.causes, {4, true});
+    result_.fit =
+        FitCauses(problem_, candidates_, result_.fit.causes, {12, 1e-8, true});
   }
   return std::move(result_);
 }
@@ -323,8 +334,8 @@ double GainByChance(double probability, int trials, int freedom) {
 
 SearchResult SearchCauses(const DiscoveryProblem& problem,
                           const std::vector<Candidate>& candidates,
-                          const SearchOptions& options) {
-  return Search(problem, candidates, options).Run();
+                          const SearchOptions& options, const SearchResult* before) {
+  return Search(problem, candidates, options, before).Run();
 }
 
 }  // namespace mjdiag

@@ -74,8 +74,11 @@ Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
 /// is noise only, of a trial with that many degrees of freedom.
 double GainByChance(double probability, int trials, int freedom);
 
+/// @param before  a search of the same record with another observer to go on from, or
+///                null
 SearchResult SearchCauses(const DiscoveryProblem& problem,
                           const std::vector<Candidate>& candidates,
-                          const SearchOptions& options);
+                          const SearchOptions& options,
+                          const SearchResult* before = nullptr);
 
 }  // namespace mjdiag

@@ -46,7 +46,6 @@ class TrialMaker {
 
   void MakeFriction();
   void MakeSprings();
-  void MakePeriodic();
   void MakeDrives();
   void MakeStructure();
   void MakeEncoder();
@@ -154,26 +153,6 @@ void TrialMaker::MakeSprings() {
              return Shape{{"gap", 2.0 * half * std::min(a[0], 3.0)}};
            }});
     }
-  }
-}
-
-void TrialMaker::MakePeriodic() {
-  const bool encoder = candidate_.cause.spec.effect == "encoder_periodic_error";
-  const VectorXd x = encoder ? y() : q();
-  const double range = Range(x);
-  // Half a period over the stroke is the least that shows as a period; steps of a
-  // quarter of a period over the stroke miss no maximum.
-  const int finest = encoder ? 1600 : 240;
-  for (int m = 2; m <= finest; m += 1 + m / 80) {
-    const double period = 4.0 * range / m;
-    MatrixXd waves(x.size(), 2);
-    waves << (kTurn / period * x).array().sin(), (kTurn / period * x).array().cos();
-    trials_.push_back(
-        {waves, encoder ? MatrixXd() : JointEntry(2),
-         [period](const Amplitudes& a) -> Parameters {
-           const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
-           return Shape{{"amplitude", amplitude}, {"period", period}, {"phase", phase}};
-         }});
   }
 }
 
@@ -297,9 +276,6 @@ void TrialMaker::MakeKnob() {
 std::vector<Trial> TrialMaker::Make() {
   if (candidate_.cause.fault) {
     MakeKnob();
-  } else if (candidate_.cause.spec.effect == "force_ripple" ||
-             candidate_.cause.spec.effect == "encoder_periodic_error") {
-    MakePeriodic();
   } else {
     MakeFriction();
     MakeSprings();
@@ -341,19 +317,73 @@ std::vector<Trial> MakeTrials(const mjModel& plant, const MechanicalModel& model
   return TrialMaker(plant, model, candidate, motion).Make();
 }
 
-Trial SineTrial(const MechanicalModel& model, const Candidate& candidate,
-                const ObservedMotion& motion, double frequency) {
+/// Sine and cosine of an angle, of which `name` is the parameter.
+Trial WaveTrial(const MechanicalModel& model, const Candidate& candidate,
+                const VectorXd& angle, const std::string& name, double value) {
+  Trial trial;
+  trial.signals.resize(angle.size(), 2);
+  trial.signals << angle.array().sin(), angle.array().cos();
+  if (FindEffect(candidate.cause.spec.effect).element() == mjOBJ_JOINT) {
+    const VectorXd entry = VectorXd::Unit(model.M.rows(), candidate.joint);
+    trial.entry = entry.replicate(1, 2);
+  }
+  trial.parameters = [name, value](const Amplitudes& a) -> Parameters {
+    const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
+    return std::map<std::string, double>{
+        {"amplitude", amplitude}, {name, value}, {"phase", phase}};
+  };
+  return trial;
+}
+
+Sweep PeriodSweep(const MechanicalModel& model, const Candidate& candidate,
+                  const VectorXd& x, bool encoder) {
+  const double range = Range(x);
+  Sweep sweep;
+  // From half a period over the stroke on; a quarter or half of a period over the
+  // stroke from one to the next misses no maximum. A scale may have far finer errors
+  // than a motor has poles.
+  const int finest = encoder ? 1600 : 240;
+  for (int m = 2; m <= finest; m += encoder ? 2 : 1) {
+    sweep.values.push_back(4.0 * range / m);
+  }
+  // What goes by faster than the observer follows by far.
+  const double slow = range / 6.0;
+  sweep.make = [&model, &candidate, x, encoder, slow](double period) {
+    Trial trial = WaveTrial(model, candidate, kTurn / period * x, "period", period);
+    trial.fast = encoder && period < slow;
+    return trial;
+  };
+  return sweep;
+}
+
+Sweep FrequencySweep(const MechanicalModel& model, const Candidate& candidate,
+                     const ObservedMotion& motion, double duration) {
+  const double highest = std::min(0.1 / motion.sample_time, 250.0);
+  const double spacing = 0.7 / duration;
+  Sweep sweep;
+  for (double f = 2.0 * spacing; f < highest; f += spacing) sweep.values.push_back(f);
   const Index n = motion.samples();
-  const VectorXd angle = kTurn * frequency * motion.sample_time *
-                         VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
-  MatrixXd waves(n, 2);
-  waves << angle.array().sin(), angle.array().cos();
-  const VectorXd entry = VectorXd::Unit(model.M.rows(), candidate.joint);
-  return {waves, entry.replicate(1, 2), [frequency](const Amplitudes& a) -> Parameters {
-            const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
-            return std::map<std::string, double>{
-                {"amplitude", amplitude}, {"frequency", frequency}, {"phase", phase}};
-          }};
+  const VectorXd time =
+      motion.sample_time * VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  sweep.make = [&model, &candidate, time](double frequency) {
+    return WaveTrial(model, candidate, kTurn * frequency * time, "frequency",
+                     frequency);
+  };
+  return sweep;
+}
+
+std::optional<Sweep> MakeSweep(const MechanicalModel& model, const Candidate& candidate,
+                               const ObservedMotion& motion, double duration) {
+  const std::string& effect = candidate.cause.spec.effect;
+  if (effect == "floor_vibration") {
+    return FrequencySweep(model, candidate, motion, duration);
+  }
+  const bool encoder = effect == "encoder_periodic_error";
+  if (!encoder && effect != "force_ripple") return std::nullopt;
+  const VectorXd x = encoder ? motion.outputs.row(candidate.channel).transpose()
+                             : motion.position.row(candidate.joint).transpose();
+  if (Range(x) == 0.0) return std::nullopt;
+  return PeriodSweep(model, candidate, x, encoder);
 }
 
 std::pair<double, double> AmplitudeAndPhase(double a, double b) {

@@ -49,14 +49,21 @@ struct Trial {
   bool summed = false;  ///< all signals have one amplitude: a knob of several joints
 };
 
-/// All trials of a candidate. Empty if the motion does not excite it, or if it has no
-/// grid (floor_vibration: its frequency comes from the spectrum, see screening.h).
+/// All trials of a candidate on a small grid. Empty if the motion does not excite it,
+/// or if it has a sweep instead.
 std::vector<Trial> MakeTrials(const mjModel& plant, const MechanicalModel& model,
                               const Candidate& candidate, const ObservedMotion& motion);
 
-/// The two columns of a sine of that frequency [Hz] at a joint.
-Trial SineTrial(const MechanicalModel& model, const Candidate& candidate,
-                const ObservedMotion& motion, double frequency);
+/// Trials over one parameter that has to be met closely: a period or a frequency. Each
+/// is a sine and a cosine.
+struct Sweep {
+  std::vector<double> values;  ///< in order, close enough to miss no maximum
+  std::function<Trial(double)> make;
+};
+
+/// @param duration  of what is fitted [s], for the resolution of frequencies
+std::optional<Sweep> MakeSweep(const MechanicalModel& model, const Candidate& candidate,
+                               const ObservedMotion& motion, double duration);
 
 /// Phase and amplitude >= 0 of a sin(x) + b cos(x).
 std::pair<double, double> AmplitudeAndPhase(double a, double b);
