@@ -70,6 +70,11 @@ class Search {
   std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                  const std::vector<FittedCause>& causes,
                                  const FitOptions& options) const;
+  struct Entry {
+    std::vector<FittedCause> causes;
+    double criterion = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Entry> Preview(const std::vector<Start>& shortlist) const;
   Rung Round(const std::vector<Start>& shortlist) const;
   bool Improves(const CauseFit& after) const;
   void Keep(const Rung& rung);
@@ -133,47 +138,54 @@ std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
   }
 }
 
-/// Fits the shortlist on the beginning, the best of it on the whole train part.
-Rung Search::Round(const std::vector<Start>& shortlist) const {
-  struct Entry {
-    std::optional<CauseFit> fit;
-    double criterion = std::numeric_limits<double>::infinity();
-  };
-  std::vector<Entry> early(shortlist.size());
+/// How promising every start of the shortlist is: small effects by their gain, which is
+/// exact enough for them and holds for the whole train part; large ones, for which the
+/// first order is not, by a fit on the beginning of the record.
+std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) const {
+  constexpr double kSmall = 1.5;  // times the power of the noise
+  const bool small = result_.fit.train < kSmall;
+  std::vector<Entry> entries(shortlist.size());
   ParallelFor(static_cast<int>(shortlist.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    std::vector<FittedCause> causes = result_.fit.causes;
-    causes.push_back(ToFitted(candidates_[shortlist[i].candidate], shortlist[i]));
-    early[i].fit = TryFit(beginning_, causes, {6, 1e-3, false});
-    if (early[i].fit) early[i].criterion = Criterion(beginning_, *early[i].fit);
+    const Start& start = shortlist[static_cast<std::size_t>(number)];
+    Entry& entry = entries[static_cast<std::size_t>(number)];
+    entry.causes = result_.fit.causes;
+    entry.causes.push_back(ToFitted(candidates_[start.candidate], start));
+    if (small) {
+      const double n = static_cast<double>(problem_.train) * independent_.sum();
+      entry.criterion =
+          -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
+      return;
+    }
+    const auto fit = TryFit(beginning_, entry.causes, {6, 1e-3, false});
+    if (!fit) return;
+    entry.causes = fit->causes;
+    // On more data a difference grows in proportion.
+    const double growth = static_cast<double>(problem_.train - problem_.skip) /
+                          static_cast<double>(beginning_.train - beginning_.skip);
+    entry.criterion = growth * Criterion(beginning_, *fit);
   });
-  std::ranges::stable_sort(early, std::less<>(), &Entry::criterion);
+  std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
+  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
+  return entries;
+}
 
+/// Fits the most promising of the shortlist on the whole train part.
+Rung Search::Round(const std::vector<Start>& shortlist) const {
+  const std::vector<Entry> entries = Preview(shortlist);
+  constexpr double kHopeless = 200.0;
+  constexpr int kFinalists = 4;
   Rung rung;
-  // On more data a difference grows in proportion.
-  const double growth = static_cast<double>(problem_.train - problem_.skip) /
-                        static_cast<double>(beginning_.train - beginning_.skip);
-  constexpr double kHopeless = 60.0;  // exp(-30)
-  constexpr int kFinalists = 3;
-  double best_early = std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
   int finalists = 0;
-  for (Entry& entry : early) {
-    if (!entry.fit) continue;
-    best_early = std::min(best_early, entry.criterion);
-    const double behind = entry.criterion - best_early;
-    const FittedCause cause = entry.fit->causes.back();
-    const bool seen = std::ranges::any_of(rung.contenders, [&](const Contender& c) {
-      return c.cause.candidate == cause.candidate;
-    });
-    if (seen) continue;
+  for (const Entry& entry : entries) {
+    const double behind = entry.criterion - entries.front().criterion;
     if (finalists >= kFinalists || behind > kHopeless) {
-      rung.contenders.push_back({cause, best + growth * behind, 0.0});
+      rung.contenders.push_back({entry.causes.back(), best + behind, 0.0});
       continue;
     }
     ++finalists;
-    Report("fit of " + Describe(candidates_[cause.candidate]), 0.5);
-    auto fit = TryFit(problem_, entry.fit->causes, {10, 1e-5, false});
+    Report("fit of " + Describe(candidates_[entry.causes.back().candidate]), 0.5);
+    auto fit = TryFit(problem_, entry.causes, {10, 1e-5, false});
     if (!fit) continue;
     const double criterion = Criterion(problem_, *fit);
     rung.contenders.push_back({fit->causes.back(), criterion, 0.0});

@@ -93,9 +93,13 @@ constexpr const char* kHowToReadMismatch =
     "rest of the record. The noise floor is what the sensor noise found in the record "
     "explains.";
 
+std::string Fell(double gain) {
+  return (gain < 0.0 ? "rose by " : "fell by ") + Percent(std::abs(gain));
+}
+
 std::string GainText(const Discovery& discovery) {
-  return "Over all channels the mismatch fell by " + Percent(discovery.gain_train) +
-         " on what was fitted and by " + Percent(discovery.gain_validation) +
+  return "Over all channels the mismatch " + Fell(discovery.gain_train) +
+         " on what was fitted and " + Fell(discovery.gain_validation) +
          " on unseen data. Of the power that an observer beside the plant fails to "
          "predict, " +
          Percent(1.0 - discovery.colour_before) + " was white noise before and " +
@@ -144,6 +148,14 @@ void AddLaws(Page& page, const Discovery& discovery) {
   for (const LawPlot& law : discovery.laws) page.AddPlot(PlotOf(law));
 }
 
+/// Unit of what is left at the site of the signature.
+std::string UnitOfRest(const Discovery& discovery) {
+  for (const UnknownSignal& force : discovery.forces_after) {
+    if (force.site == discovery.unexplained_site) return force.unit;
+  }
+  return "";
+}
+
 void AddSignature(Page& page, const Discovery& discovery) {
   if (!discovery.unexplained) return;
   const Signature& signature = *discovery.unexplained;
@@ -161,7 +173,8 @@ void AddSignature(Page& page, const Discovery& discovery) {
                        signature.runner_up + ", " + Percent(signature.runner_up_share));
   }
   page.AddFacts(facts);
-  if (signature.x.size() > 1) page.AddPlot(SignaturePlot(signature));
+  if (signature.x.size() > 1)
+    page.AddPlot(SignaturePlot(signature, UnitOfRest(discovery)));
 }
 
 void AddFaultLimits(Page& page, const Discovery& discovery) {

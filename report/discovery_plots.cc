@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mjdiag/signals/quantity.h"
+
 namespace mjdiag {
 namespace {
 
@@ -79,7 +81,8 @@ TimePlot UnexplainedPlot(const UnknownSignal& signal, const std::string& plant,
   }
   plot.curves = {{"unexplained", CurveRole::kMismatch, value}};
   const double limit = 2.0 * signal.sd;
-  plot.levels = {{limit, "±2 sd of its error"}, {-limit, "±2 sd of its error"}};
+  const std::string label = "±2 sd of its error: " + FormatQuantity(limit, signal.unit);
+  plot.levels = {{limit, label}, {-limit, label}};
   plot.height = 180;
   return plot;
 }
@@ -138,12 +141,13 @@ XyPlot PlotOf(const LawPlot& law) {
   return plot;
 }
 
-XyPlot SignaturePlot(const Signature& signature) {
+XyPlot SignaturePlot(const Signature& signature, const std::string& unit) {
   XyPlot plot;
   plot.caption = "What is left at " + signature.site + ", over " + signature.variable;
   plot.x_quantity = signature.variable;
   plot.x_unit = signature.unit;
   plot.y_quantity = "left";
+  plot.y_unit = unit;
   plot.curves = {{"what is left", CurveRole::kSimulated, signature.x, signature.y}};
   if (signature.y_sd.size() == signature.y.size()) {
     plot.curves.push_back(

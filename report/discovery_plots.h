@@ -3,6 +3,7 @@
 // lacks, and that force over what it depends on.
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "mjdiag/discovery/discovery.h"
@@ -25,6 +26,7 @@ std::vector<TimePlot> UnexplainedPlots(const Discovery& discovery);
 XyPlot PlotOf(const LawPlot& law);
 
 /// How what is left depends on its variable, between +-2 sd.
-XyPlot SignaturePlot(const Signature& signature);
+/// @param unit  of what is left; empty: not known
+XyPlot SignaturePlot(const Signature& signature, const std::string& unit);
 
 }  // namespace mjdiag

@@ -97,7 +97,7 @@ std::string BestAlternative(const FoundCause& found) {
   if (found.alternatives.empty()) return kNone;
   const Alternative& best = found.alternatives.front();
   if (best.indistinguishable) {
-    return CauseName(best.cause) + ", cannot be told apart";
+    return CauseName(best.cause) + ", alike";
   }
   return CauseName(best.cause) + ", " + Percent(100.0 * best.probability);
 }

@@ -115,7 +115,8 @@ TEST(LawPlots, KeepAPageLight) {
 }
 
 TEST(SignaturePlot, ShowsTheCurveBetweenTwoStandardDeviations) {
-  const XyPlot plot = SignaturePlot(*SampleUnexplained().unexplained);
+  const XyPlot plot = SignaturePlot(*SampleUnexplained().unexplained, "N");
+  EXPECT_EQ(plot.y_unit, "N");
   ASSERT_EQ(plot.curves.size(), 3u);
   EXPECT_NEAR(plot.curves[1].y[0] - plot.curves[0].y[0], 1.0, 1e-12);
   EXPECT_NEAR(plot.curves[2].y[0] - plot.curves[0].y[0], -1.0, 1e-12);

@@ -80,7 +80,7 @@ TEST(DiscoveryTables, HaveARowForEveryParameter) {
               "96.3 %", "stribeck_friction at load, 3.10 %"},
           Row{"", "", "velocity", "100 mm/s", "80 to 120 mm/s", "", ""},
           Row{"eta", "drive", "value", "1.034200", "1.034160 to 1.034240", "100 %",
-              "motor_constant at drive, cannot be told apart"}));
+              "motor_constant at drive, alike"}));
 }
 
 TEST(DiscoveryTables, ListEveryCandidateOfAPlace) {

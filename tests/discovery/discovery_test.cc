@@ -1,0 +1,165 @@
+#include "mjdiag/discovery/discovery.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "discovery/stage_under_test.h"
+#include "mjdiag/discovery/hidden_study.h"
+#include "mjdiag/plugin/simulation.h"
+
+namespace mjdiag {
+namespace {
+
+DiscoverOptions CausesOnly() {
+  DiscoverOptions options;
+  options.figures = false;
+  return options;
+}
+
+std::string Named(const Discovery& discovery) {
+  std::string names;
+  for (const FoundCause& found : discovery.causes) {
+    names += (names.empty() ? "" : ", ") + found.cause.spec.effect + "@" +
+             found.cause.spec.site;
+  }
+  return names;
+}
+
+const CauseParameter& Parameter(const Discovery& discovery, const std::string& name) {
+  for (const CauseParameter& parameter : discovery.causes.at(0).parameters) {
+    if (parameter.name == name) return parameter;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(Discovery, SaysNothingOfNoise) {
+  const test::Stage stage;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Discovery answer = Discover(
+        stage.setup, *stage.plant, stage.Measure({}, {}, seed), nullptr, CausesOnly());
+    EXPECT_EQ(answer.verdict, DiscoveryVerdict::kNoDiscrepancy);
+    EXPECT_EQ(Named(answer), "");
+  }
+}
+
+TEST(Discovery, NamesDryFrictionAndItsForce) {
+  const test::Stage stage;
+  const Discovery answer = Discover(stage.setup, *stage.plant,
+                                    stage.Measure({"coulomb_friction@load:force=18"}),
+                                    nullptr, CausesOnly());
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kExplained);
+  EXPECT_EQ(Named(answer), "coulomb_friction@load");
+  // Four standard deviations: 6e-5 of the draws are further off.
+  const CauseParameter& force = Parameter(answer, "force");
+  EXPECT_NEAR(force.value, 18.0, 4.0 * force.sd);
+  EXPECT_EQ(force.unit, "N");
+}
+
+TEST(Discovery, NamesATurnedKnobAsTheFault) {
+  const test::Stage stage;
+  const Discovery answer =
+      Discover(stage.setup, *stage.plant, stage.Measure({}, {{"zeta", 1.02}}), nullptr,
+               CausesOnly());
+  ASSERT_EQ(Named(answer), "zeta@load");
+  EXPECT_TRUE(answer.causes[0].cause.fault);
+  // The same change of the model by another name is said to be one.
+  ASSERT_FALSE(answer.causes[0].alternatives.empty());
+  EXPECT_TRUE(answer.causes[0].alternatives[0].indistinguishable);
+  EXPECT_EQ(answer.causes[0].alternatives[0].cause.spec.effect, "viscous_friction");
+}
+
+TEST(Discovery, FindsTwoCausesAtOnce) {
+  const test::Stage stage;
+  const Discovery answer =
+      Discover(stage.setup, *stage.plant,
+               stage.Measure({"coulomb_friction@load:force=18",
+                              "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}),
+               nullptr, CausesOnly());
+  EXPECT_EQ(answer.causes.size(), 2u) << Named(answer);
+  for (const std::string name : {"coulomb_friction@load", "force_ripple@load"}) {
+    EXPECT_NE(Named(answer).find(name), std::string::npos) << Named(answer);
+  }
+}
+
+TEST(Discovery, NamesRaisedEncoderNoise) {
+  const test::Stage stage;
+  const Discovery answer = Discover(
+      stage.setup, *stage.plant,
+      stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}), nullptr, CausesOnly());
+  ASSERT_EQ(Named(answer), "encoder_noise@load_encoder");
+  const CauseParameter& sd = Parameter(answer, "sd");
+  EXPECT_NEAR(sd.value, 1.5e-8, 4.0 * sd.sd);
+}
+
+/// A measurement with a force that no entry of the catalogue makes, as a function of
+/// the reference's position and velocity and of time. It goes in through the known
+/// disturbance of the drive, of which the record then says nothing.
+Record WithForce(const test::Stage& stage,
+                 const std::function<double(double q, double v, double t)>& force) {
+  Excitation motion =
+      FollowTrajectory(stage.setup, stage.setup.FindTrajectory("default"));
+  const AxisReference& reference = motion.reference.axes[0];
+  Channel hidden{"pulse", "V", Eigen::VectorXd(motion.samples())};
+  for (Eigen::Index k = 0; k < motion.samples(); ++k) {
+    hidden.samples[k] = force(reference.position[k], reference.velocity[k],
+                              static_cast<double>(k) * stage.setup.sample_time()) /
+                        stage.plant->actuator_gear[0];
+  }
+  motion.inputs = Record(stage.setup.sample_time());
+  motion.inputs.Add(hidden);
+  const Record run = Simulate(stage.setup, *stage.plant, motion, {});
+  Record shown(run.sample_time());
+  for (Channel channel : run.channels()) {
+    if (channel.name == "pulse") continue;
+    if (channel.name == "u") channel.samples -= hidden.samples;
+    shown.Add(std::move(channel));
+  }
+  return shown;
+}
+
+TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
+  const test::Stage stage;
+  const Record record = WithForce(stage, [](double q, double v, double) {
+    return -150.0 * std::sin(60.0 * q) * v;
+  });
+  const Discovery answer =
+      Discover(stage.setup, *stage.plant, record, nullptr, CausesOnly());
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
+  ASSERT_TRUE(answer.unexplained.has_value());
+  EXPECT_NE(answer.unexplained->text.find("position"), std::string::npos)
+      << answer.unexplained->text;
+}
+
+TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
+  const test::Stage stage;
+  const Record record = WithForce(
+      stage, [](double, double, double t) { return t > 1.2 && t < 1.9 ? 4.0 : 0.0; });
+  const Discovery answer =
+      Discover(stage.setup, *stage.plant, record, nullptr, CausesOnly());
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
+  ASSERT_TRUE(answer.unexplained.has_value());
+  EXPECT_NE(answer.unexplained->text.find("time"), std::string::npos)
+      << answer.unexplained->text;
+}
+
+// A fixed handful of the benchmark `mjdiag study --preset hidden`.
+class HiddenInTheBonder : public ::testing::TestWithParam<int> {};
+
+TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
+  const mjdiag::Setup setup =
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383", {"trajectories.multi.duration=0.75"});
+  const ModelPtr plant = LoadPlant(setup);
+  const int run = GetParam();
+  const HiddenOutcome outcome =
+      RunHidden(setup, *plant, TypesOfRun(run, 1), static_cast<std::uint64_t>(run + 1));
+  EXPECT_TRUE(outcome.right) << "hidden: " << Describe(outcome.hidden.truth[0])
+                             << ", found: " << Named(outcome.answer);
+  EXPECT_LT(outcome.unseen_ratio, 1.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 7, 12, 22));
+
+}  // namespace
+}  // namespace mjdiag
