@@ -59,8 +59,8 @@ double StepOf(const FitParameter& parameter, double value, double duration) {
 class Simulator {
  public:
   Simulator(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
-            const std::vector<FittedCause>& causes)
-      : problem_(problem), candidates_(candidates), causes_(causes) {
+            const std::vector<FittedCause>& causes, const MatrixXd* known)
+      : problem_(problem), candidates_(candidates), causes_(causes), known_(known) {
     for (const FittedCause& cause : causes) {
       const auto& list = candidates[cause.candidate].parameters;
       parameters_.insert(parameters_.end(), list.begin(), list.end());
@@ -82,7 +82,10 @@ class Simulator {
     const double duration =
         static_cast<double>(problem_.run.samples()) * problem_.run.sample_time;
     MatrixXd J(base.size(), theta.size());
-    ParallelFor(static_cast<int>(theta.size()), [&](int i) {
+    const Index kept = known_ != nullptr ? known_->cols() : 0;
+    if (kept > 0) J.leftCols(kept) = known_->topRows(base.size());
+    ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
+      const Index i = kept + number;
       const FitParameter& parameter = parameters_[static_cast<std::size_t>(i)];
       double step = StepOf(parameter, theta[i], duration);
       if (theta[i] + step > parameter.upper) step = -step;
@@ -101,6 +104,7 @@ class Simulator {
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const std::vector<FittedCause>& causes_;
+  const MatrixXd* known_;
   std::vector<FitParameter> parameters_;
   VectorXd theta_;
   VectorXd residual_;
@@ -182,7 +186,9 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   const Index count = channels * (problem.train - problem.skip);
   CauseFit fit;
   fit.causes = start;
-  Simulator simulator(problem, candidates, start);
+  // What is held out need not be run while the fit goes on.
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  Simulator simulator(seen, candidates, start, options.known);
   VectorXd theta = Flatten(start);
   if (theta.size() > 0) {
     ceres::Problem::Options ownership;
@@ -205,10 +211,10 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.converged = summary.termination_type == ceres::CONVERGENCE;
     fit.causes = WithValues(start, theta);
   }
-  fit.residual = simulator.Residual(theta);
   if (options.sensitivities && theta.size() > 0) {
     fit.sensitivities = simulator.Sensitivities(theta);
   }
+  fit.residual = problem.Residual(ChangesOf(candidates, fit.causes));
   const Index samples = problem.run.samples();
   fit.train = MeanSquare(fit.residual, channels, problem.skip, problem.train);
   fit.held_out = MeanSquare(fit.residual, channels, problem.train, samples);

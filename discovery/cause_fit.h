@@ -30,7 +30,7 @@ struct FittedCause {
 struct CauseFit {
   std::vector<FittedCause> causes;
   Eigen::VectorXd residual;       ///< scaled innovations of all samples
-  Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of all samples
+  Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of the train part
   double train = 0.0;             ///< mean square of the train part
   double held_out = 0.0;          ///< of the rest; 0 without
   bool converged = false;
@@ -41,6 +41,9 @@ struct FitOptions {
   /// Of the sum of squares, relative: when to stop.
   double tolerance = 1e-6;
   bool sensitivities = true;  ///< compute J at the solution
+  /// J of the first parameters, kept as it is instead of being computed at every step:
+  /// those of causes that have been fitted before and hardly move. Not owned.
+  const Eigen::MatrixXd* known = nullptr;
 };
 
 /// Changes to the plant that the causes are.

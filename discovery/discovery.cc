@@ -6,6 +6,7 @@
 
 #include "mjdiag/discovery/candidate.h"
 #include "mjdiag/discovery/cause_fit.h"
+#include "mjdiag/discovery/data_check.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
 #include "mjdiag/discovery/problem.h"
@@ -534,7 +535,15 @@ Discovery Discoverer::Run() {
 
 Discovery Discover(const Setup& setup, const mjModel& plant, const Record& measured,
                    const Record* validation, const DiscoverOptions& options) {
-  return Discoverer(setup, plant, measured, validation, options).Run();
+  std::vector<std::string> notes = CheckRecord(setup, plant, measured);
+  if (validation != nullptr) {
+    for (std::string& note : CheckRecord(setup, plant, *validation)) {
+      notes.push_back("validation record: " + note);
+    }
+  }
+  Discovery discovery = Discoverer(setup, plant, measured, validation, options).Run();
+  discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
+  return discovery;
 }
 
 std::string VerdictName(DiscoveryVerdict verdict) {

@@ -191,7 +191,7 @@ VectorXd Screener::Common(const Trial& trial, const Candidate& candidate) const 
 std::vector<Trial> Screener::BestOf(const Sweep& sweep,
                                     const Candidate& candidate) const {
   constexpr std::size_t kEvery = 16;
-  constexpr int kKept = 3;
+  constexpr int kKept = 5;
   const std::size_t count = sweep.values.size();
   std::vector<double> known_size;  // log, of every kEvery-th
   for (std::size_t i = 0; i < count; i += kEvery) {

@@ -76,6 +76,10 @@ class Search {
   };
   std::vector<Entry> Preview(const std::vector<Start>& shortlist) const;
   Rung Round(const std::vector<Start>& shortlist) const;
+  /// Sensitivities of what has been found, if anything has.
+  const MatrixXd* Known() const {
+    return result_.fit.sensitivities.cols() > 0 ? &result_.fit.sensitivities : nullptr;
+  }
   bool Improves(const CauseFit& after) const;
   void Keep(const Rung& rung);
   bool Prune();
@@ -95,7 +99,7 @@ Screening Search::ScreenRest() const {
   const ObservedMotion motion =
       ObserveMotion(*problem_.plant, problem_.run, track, problem_.StillSpeed());
   return Screen(problem_, candidates_, motion, result_.fit.residual,
-                result_.fit.sensitivities, 2);
+                result_.fit.sensitivities, 3);
 }
 
 bool Search::IsSignificant(const Start& start, const Screening& screening) const {
@@ -156,7 +160,7 @@ std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) 
           -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
       return;
     }
-    const auto fit = TryFit(beginning_, entry.causes, {6, 1e-3, false});
+    const auto fit = TryFit(beginning_, entry.causes, {5, 1e-3, false, Known()});
     if (!fit) return;
     entry.causes = fit->causes;
     // On more data a difference grows in proportion.
@@ -173,7 +177,7 @@ std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) 
 Rung Search::Round(const std::vector<Start>& shortlist) const {
   const std::vector<Entry> entries = Preview(shortlist);
   constexpr double kHopeless = 200.0;
-  constexpr int kFinalists = 4;
+  constexpr int kFinalists = 3;
   Rung rung;
   double best = std::numeric_limits<double>::infinity();
   int finalists = 0;
@@ -185,7 +189,7 @@ Rung Search::Round(const std::vector<Start>& shortlist) const {
     }
     ++finalists;
     Report("fit of " + Describe(candidates_[entry.causes.back().candidate]), 0.5);
-    auto fit = TryFit(problem_, entry.causes, {10, 1e-5, false});
+    auto fit = TryFit(problem_, entry.causes, {6, 1e-4, false, Known()});
     if (!fit) continue;
     const double criterion = Criterion(problem_, *fit);
     rung.contenders.push_back({fit->causes.back(), criterion, 0.0});
@@ -245,14 +249,14 @@ bool Search::Prune() {
     std::vector<FittedCause> causes = result_.fit.causes;
     causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
     // If it is far from superfluous the beginning says so.
-    const auto early = TryFit(beginning_, causes, {4, 1e-3, false});
+    const auto early = TryFit(beginning_, causes, {4, 1e-3, false, nullptr});
     if (!early) continue;
     const double now =
         Deviance(early->residual, independent_, problem_.skip, beginning_.train);
     const double before =
         Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
     if (now - before > 60.0) continue;
-    auto fit = TryFit(problem_, causes, {6, 1e-5, false});
+    auto fit = TryFit(problem_, causes, {6, 1e-5, false, nullptr});
     if (!fit || Criterion(problem_, *fit) >= criterion) continue;
     criterion = Criterion(problem_, *fit);
     best = std::move(fit);
@@ -266,7 +270,8 @@ bool Search::Prune() {
 }
 
 SearchResult Search::Run() {
-  result_.fit = FitCauses(problem_, candidates_, result_.fit.causes, {10, 1e-5, true});
+  result_.fit =
+      FitCauses(problem_, candidates_, result_.fit.causes, {10, 1e-5, true, nullptr});
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
   independent_ = VectorXd::Ones(problem_.run.outputs.rows());
@@ -294,7 +299,11 @@ SearchResult Search::Run() {
     }
     // The sensitivities of what is kept, for the next screening and the intervals.
     result_.fit =
-        FitCauses(problem_, candidates_, result_.fit.causes, {12, 1e-8, true});
+        FitCauses(problem_, candidates_, result_.fit.causes, {4, 1e-5, true, nullptr});
+  }
+  if (!result_.fit.causes.empty()) {
+    result_.fit =
+        FitCauses(problem_, candidates_, result_.fit.causes, {12, 1e-8, true, nullptr});
   }
   return std::move(result_);
 }

@@ -29,7 +29,7 @@ namespace mjdiag {
 
 struct SearchOptions {
   int most_causes = 6;
-  int shortlist = 10;  ///< candidates a round that are fitted
+  int shortlist = 8;  ///< candidates a round that are fitted
   /// Chance to claim a cause where there is noise only, per round.
   double false_alarm = 1e-4;
   std::function<void(const std::string& what, double fraction)> progress;

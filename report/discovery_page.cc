@@ -1,7 +1,5 @@
 #include "mjdiag/report/discovery_page.h"
 
-#include <cmath>
-
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/page.h"
@@ -94,10 +92,10 @@ constexpr const char* kHowToReadMismatch =
     "explains.";
 
 std::string Fell(double gain) {
-  return (gain < 0.0 ? "rose by " : "fell by ") + Percent(std::abs(gain));
+  return gain < 0.0 ? "rose by " + GainText(-gain) : "fell by " + GainText(gain);
 }
 
-std::string GainText(const Discovery& discovery) {
+std::string GainParagraph(const Discovery& discovery) {
   return "Over all channels the mismatch " + Fell(discovery.gain_train) +
          " on what was fitted and " + Fell(discovery.gain_validation) +
          " on unseen data. Of the power that an observer beside the plant fails to "
@@ -118,7 +116,7 @@ void AddMismatch(Page& page, const Discovery& discovery) {
   page.AddHeading(changed ? "Mismatch before and after" : "Mismatch");
   page.AddTable(table);
   page.AddParagraph(kHowToReadMismatch);
-  if (changed) page.AddParagraph(GainText(discovery));
+  if (changed) page.AddParagraph(GainParagraph(discovery));
   AddPlots(page, MismatchPlots(discovery.before, changed ? &discovery.after : nullptr,
                                discovery.train_share, kMostChannels));
   if (!discovery.validation_before) return;

@@ -66,6 +66,21 @@ TimePlot MismatchPlot(const Comparison& before, const Comparison* after,
   return plot;
 }
 
+/// Levels do not widen the axis; where all of the signal lies within, curves do.
+void AddLimits(TimePlot& plot, double limit, const std::string& name) {
+  const std::string label = name + FormatQuantity(limit, plot.unit);
+  const VectorXd& value = plot.curves.front().values;
+  const bool beyond = (value.array().abs() > limit).any();
+  if (beyond) {
+    plot.levels = {{limit, label}, {-limit, label}};
+    return;
+  }
+  const VectorXd level = VectorXd::Constant(value.size(), limit);
+  plot.curves.push_back({label, CurveRole::kNoise, level});
+  plot.curves.push_back(
+      {"-" + FormatQuantity(limit, plot.unit), CurveRole::kNoise, -level});
+}
+
 TimePlot UnexplainedPlot(const UnknownSignal& signal, const std::string& plant,
                          double start_time, double sample_time) {
   TimePlot plot;
@@ -80,9 +95,7 @@ TimePlot UnexplainedPlot(const UnknownSignal& signal, const std::string& plant,
     value.tail(signal.edge).setConstant(kNothing);
   }
   plot.curves = {{"unexplained", CurveRole::kMismatch, value}};
-  const double limit = 2.0 * signal.sd;
-  const std::string label = "±2 sd of its error: " + FormatQuantity(limit, signal.unit);
-  plot.levels = {{limit, label}, {-limit, label}};
+  AddLimits(plot, 2.0 * signal.sd, "±2 sd of its error: ");
   plot.height = 180;
   return plot;
 }

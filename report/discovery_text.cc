@@ -77,11 +77,11 @@ std::string FoundText(const Discovery& discovery) {
   return "Found: " + Join(causes) + ".";
 }
 
-std::string GainText(const Discovery& discovery) {
-  const double percent = 100.0 * discovery.gain_validation;
-  if (discovery.mismatch_after.validation.empty() || !std::isfinite(percent)) return "";
+std::string UnseenText(const Discovery& discovery) {
+  const double gain = discovery.gain_validation;
+  if (discovery.mismatch_after.validation.empty() || !std::isfinite(gain)) return "";
   std::string text = " On unseen data the mismatch ";
-  text += (percent < 0.0 ? "rises by " : "falls by ") + Percent(std::abs(percent));
+  text += gain < 0.0 ? "rises by " + GainText(-gain) : "falls by " + GainText(gain);
   const std::optional<double> times =
       TimesFloor(discovery.mismatch_after.validation, discovery.noise_floor);
   if (times) text += ", to " + FormatNumber(*times) + " times the noise floor";
@@ -160,6 +160,16 @@ std::string CauseName(const Cause& cause) {
   return cause.fault ? cause.spec.effect : cause.spec.effect + " at " + cause.spec.site;
 }
 
+std::string GainText(double gain) {
+  const double left = 100.0 * std::abs(1.0 - gain);
+  const int last = std::isfinite(left) && left > 0.0 ? Magnitude(left) - 1 : 0;
+  constexpr int kMostDecimals = 6;
+  std::array<char, 352> text{};
+  std::snprintf(text.data(), text.size(), "%.*f %%",
+                std::clamp(-last, 0, kMostDecimals), 100.0 * gain);
+  return text.data();
+}
+
 std::string ValueText(const CauseParameter& parameter) {
   const Notation notation = NotationOf(parameter);
   return notation.WithUnit(notation.Number(parameter.value));
@@ -189,9 +199,9 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
     case DiscoveryVerdict::kNoDiscrepancy:
       return "Nothing is wrong that this record shows: noise explains the mismatch.";
     case DiscoveryVerdict::kExplained:
-      return FoundText(discovery) + " Noise explains the rest." + GainText(discovery);
+      return FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
-      return FoundText(discovery) + GainText(discovery) + " Something is left." +
+      return FoundText(discovery) + UnseenText(discovery) + " Something is left." +
              SignatureText(discovery);
     case DiscoveryVerdict::kUnexplained:
       return "Something is there that no known cause explains." +

@@ -22,8 +22,8 @@ json JsonOf(const std::string& arguments, int status = 0) {
 
 TEST(Command, HasHelpForEverySubcommand) {
   EXPECT_THAT(RunCommand("--help").out, HasSubstr("simulate"));
-  for (const char* name :
-       {"simulate", "linearize", "design", "diagnose", "compare", "render", "study"}) {
+  for (const char* name : {"simulate", "linearize", "design", "diagnose", "compare",
+                           "discover", "render", "study"}) {
     const CommandResult result = RunCommand(std::string(name) + " --help");
     EXPECT_EQ(result.status, 0);
     EXPECT_THAT(result.out, HasSubstr("--setup"));

@@ -42,7 +42,7 @@ TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
   const std::size_t place = Place(candidates, "stribeck_friction@load");
   const CauseFit fit =
       FitCauses(problem, candidates, {{place, Eigen::Vector3d(8.0, 4.0, 0.02)}},
-                {30, 1e-8, true});
+                {30, 1e-8, true, nullptr});
   EXPECT_NEAR(fit.causes[0].value[0], 12.0, 0.05);
   EXPECT_NEAR(fit.causes[0].value[1], 8.0, 0.1);
   EXPECT_NEAR(fit.causes[0].value[2], 0.01, 3e-4);

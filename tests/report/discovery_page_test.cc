@@ -66,7 +66,11 @@ TEST(DiscoveryPage, ShowsTheSignatureOfWhatNoCauseExplains) {
 TEST(DiscoveryPage, HoldsADiscoveryWithoutFigures) {
   Discovery discovery;
   discovery.setup = "empty";
-  EXPECT_THAT(DiscoveryPage(discovery, kRun), HasSubstr("noise explains the mismatch"));
+  const std::string html = DiscoveryPage(discovery, kRun);
+  EXPECT_THAT(html, HasSubstr("noise explains the mismatch"));
+  EXPECT_THAT(html, Not(HasSubstr("<figure")));
+  EXPECT_THAT(html, Not(HasSubstr("<dt>Length")));
+  EXPECT_THAT(html, Not(HasSubstr("<dt>Fitted to")));
 }
 
 TEST(MismatchPlots, ShowTheWorstChannelsFirst) {
@@ -102,6 +106,14 @@ TEST(UnexplainedPlots, LeaveOutTheEnds) {
   EXPECT_TRUE(std::isnan(value[1960]));
   EXPECT_NEAR(value[125], 20.0, 1e-9);
   EXPECT_DOUBLE_EQ(plots[0].levels.at(0).value, 1.6);
+}
+
+TEST(UnexplainedPlots, ShowTheLimitsOfASignalThatStaysWithin) {
+  const TimePlot after = UnexplainedPlots(SampleDiscovery()).at(1);
+  EXPECT_TRUE(after.levels.empty());
+  ASSERT_EQ(after.curves.size(), 3u);
+  EXPECT_DOUBLE_EQ(after.curves[1].values[0], 0.8);
+  EXPECT_DOUBLE_EQ(after.curves[2].values[0], -0.8);
 }
 
 TEST(LawPlots, KeepAPageLight) {

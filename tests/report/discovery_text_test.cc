@@ -62,6 +62,13 @@ TEST(ValueText, HasFourDigitsWithoutAnInterval) {
   EXPECT_EQ(ValueText({"force", "N", 3.16482, 0.0, 3.16482, 3.16482}), "3.165 N");
 }
 
+TEST(GainText, ShowsTwoDigitsOfWhatIsLeft) {
+  EXPECT_EQ(GainText(0.99975), "99.975 %");
+  EXPECT_EQ(GainText(0.9725), "97.2 %");
+  EXPECT_EQ(GainText(0.3), "30 %");
+  EXPECT_EQ(GainText(1.0), "100 %");
+}
+
 TEST(TimesFloor, LeavesOutChannelsWithoutNoise) {
   EXPECT_DOUBLE_EQ(*TimesFloor({{"a", 3.0}, {"b", 4.0}, {"c", 9.0}},
                                {{"a", 1.0}, {"b", 1.0}, {"c", 0.0}}),
