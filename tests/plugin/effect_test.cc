@@ -84,8 +84,9 @@ TEST(Effect, CoulombFrictionHoldsAgainstASmallerForce) {
 TEST(Effect, ForceOffsetAddsItsForceEachStepOnce) {
   const ModelPtr model = Emps();
   const DataPtr data = MakeData(*model);
-  ActiveEffects effects({}, *model, {ParseEffect("force_offset@load:force=-3"),
-                                     ParseEffect("force_offset@load:force=1")});
+  ActiveEffects effects({}, *model,
+                        {ParseEffect("force_offset@load:force=-3"),
+                         ParseEffect("force_offset@load:force=1")});
   effects.Act(*model, *data);
   effects.Act(*model, *data);
   EXPECT_DOUBLE_EQ(data->qfrc_applied[0], -2.0);

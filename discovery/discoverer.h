@@ -1,0 +1,74 @@
+#pragma once
+// The parts of a discovery (discovery.h) while it is under way: causes in discovery.cc,
+// figures in discovery_figures.cc.
+
+#include <string>
+#include <vector>
+
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/cause_fit.h"
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/discovery/problem.h"
+#include "mjdiag/discovery/search.h"
+#include "mjdiag/discovery/trial.h"
+
+namespace mjdiag {
+
+/// A discovery under way.
+class Discoverer {
+ public:
+  Discoverer(const Setup& setup, const mjModel& plant, const Record& measured,
+             const Record* validation, const DiscoverOptions& options)
+      : setup_(setup),
+        plant_(plant),
+        measured_(measured),
+        validation_(validation),
+        options_(options),
+        problem_(PoseProblem(setup, plant, measured, options.train_share,
+                             options.bandwidth)),
+        candidates_(ListCandidates(setup, plant, problem_.model)) {}
+
+  Discovery Run();
+
+ private:
+  void Report(const std::string& what, double fraction) const {
+    if (options_.progress) options_.progress(what, fraction);
+  }
+  Cause CauseOf(const FittedCause& fitted) const;
+  Track FollowWith(const Changes& changes) const {
+    return FollowRun(setup_, plant_, changes, problem_.run, problem_.observer, true);
+  }
+  ObservedMotion MotionOf(const Track& track) const {
+    return ObserveMotion(plant_, problem_.run, track, problem_.StillSpeed());
+  }
+  bool IsColoured() const;
+  void NameCauses();
+  std::vector<CauseParameter> ParametersOf(const FittedCause& fitted,
+                                           const Eigen::MatrixXd& covariance,
+                                           Eigen::Index first) const;
+  std::vector<Alternative> AlternativesOf(
+      const FittedCause& fitted, const std::vector<Contender>& contenders) const;
+  void AddNoiseCauses(const Eigen::MatrixXd& innovations);
+  void Judge();
+  void NoteQuietAxes(const ObservedMotion& motion);
+  void NoteTwins(std::size_t cause, const std::vector<Contender>& contenders);
+  void FindWhere(const Track& nominal, const Track& final);
+  void SignRest(const ObservedMotion& motion);
+  void AddLaws(const ObservedMotion& motion);
+  void AddLadder();
+  void AddComparisons();
+  void AddLimits(const Track& nominal, const Track& final);
+
+  const Setup& setup_;
+  const mjModel& plant_;
+  const Record& measured_;
+  const Record* validation_;
+  const DiscoverOptions& options_;
+  DiscoveryProblem problem_;
+  std::vector<Candidate> candidates_;
+  SearchResult search_;
+  Changes changes_;
+  Discovery discovery_;
+};
+
+}  // namespace mjdiag

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/fault_limits.h"
+#include "mjdiag/discovery/law.h"
+#include "mjdiag/discovery/replay_error.h"
+#include "mjdiag/plugin/mujoco_model.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kLawPoints = 3000;
+
+std::vector<std::string> DrivenNames(const MechanicalModel& model) {
+  std::vector<std::string> names;
+  std::set<Index> seen;
+  for (const Index joint : DrivenJoints(model)) {
+    if (!seen.insert(joint).second) continue;
+    names.push_back(model.coordinates[static_cast<std::size_t>(joint)]);
+  }
+  return names;
+}
+
+/// rms of measured minus simulated, samples first .. last - 1.
+std::map<std::string, double> MismatchRms(const Comparison& comparison, Index first,
+                                          Index last) {
+  std::map<std::string, double> rms;
+  for (const ChannelMismatch& channel : comparison.channels) {
+    const VectorXd difference = comparison.measured.At(channel.name).samples -
+                                comparison.simulated.At(channel.name).samples;
+    rms[channel.name] = Rms(difference.segment(first, last - first));
+  }
+  return rms;
+}
+
+double Gain(const std::map<std::string, double>& before,
+            const std::map<std::string, double>& after,
+            const std::map<std::string, double>& floor) {
+  double was = 0.0;
+  double is = 0.0;
+  for (const auto& [channel, rms] : before) {
+    const double scale = std::max(floor.at(channel), 1e-300);
+    was += std::pow(rms / scale, 2);
+    is += std::pow(after.at(channel) / scale, 2);
+  }
+  return was > 0.0 ? 1.0 - std::sqrt(is / was) : 0.0;
+}
+
+}  // namespace
+
+void Discoverer::FindWhere(const Track& nominal, const Track& final) {
+  std::vector<std::string> joints = DrivenNames(problem_.model);
+  joints.resize(std::min<std::size_t>(
+      joints.size(), static_cast<std::size_t>(problem_.run.outputs.rows())));
+  std::vector<std::string> units;
+  for (const std::string& joint : joints) {
+    const int id = FindElement(plant_, mjOBJ_JOINT, joint);
+    units.push_back(plant_.jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
+  }
+  const auto estimate = [&](const Track& track) {
+    return UnexplainedForces(problem_.model, problem_.observer, problem_.step(),
+                             setup_.substeps, track.innovations, joints, units);
+  };
+  discovery_.forces_before = estimate(nominal);
+  discovery_.forces_after =
+      discovery_.causes.empty() ? discovery_.forces_before : estimate(final);
+}
+
+void Discoverer::SignRest(const ObservedMotion& motion) {
+  if (discovery_.verdict != DiscoveryVerdict::kUnexplained &&
+      discovery_.verdict != DiscoveryVerdict::kPartlyExplained) {
+    return;
+  }
+  const auto strength = [](const UnknownSignal& s) {
+    return s.value.norm() / std::max(s.sd, 1e-300);
+  };
+  const auto worst =
+      std::ranges::max_element(discovery_.forces_after, std::less<>(),
+                               [&](const UnknownSignal& s) { return strength(s); });
+  const auto joint = std::ranges::find(problem_.model.coordinates, worst->site) -
+                     problem_.model.coordinates.begin();
+  std::vector<Variable> variables;
+  const VectorXd own = motion.velocity.row(joint);
+  for (const std::string& name : DrivenNames(problem_.model)) {
+    const auto j = std::ranges::find(problem_.model.coordinates, name) -
+                   problem_.model.coordinates.begin();
+    const bool hinge = plant_.jnt_type[plant_.dof_jntid[j]] == mjJNT_HINGE;
+    const std::string unit = hinge ? "rad" : "m";
+    variables.push_back({name + " position", unit, motion.position.row(j), false});
+    variables.push_back(
+        {name + " velocity", unit + "/s", motion.velocity.row(j), j == joint});
+    variables.push_back(
+        {name + " acceleration", unit + "/s^2", motion.acceleration.row(j), false});
+  }
+  VectorXd direction = own;
+  const double still = problem_.StillSpeed()[joint];
+  direction = own.unaryExpr([still](double v) {
+    return std::abs(v) < still ? 0.0 : v > 0.0 ? 1.0 : -1.0;
+  });
+  variables.push_back({"direction", "1", direction, true});
+  for (std::size_t u = 0; u < setup_.actuators.size(); ++u) {
+    variables.push_back({setup_.actuators[u].channel, setup_.actuators[u].unit,
+                         motion.inputs.row(static_cast<Index>(u)), false});
+  }
+  const Index n = motion.samples();
+  variables.push_back(
+      {"time", "s",
+       VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1) * motion.sample_time),
+       false});
+  discovery_.unexplained = FindSignature(worst->site, worst->value, worst->unit,
+                                         std::max(worst->sd, 1e-300), variables);
+  discovery_.unexplained_site = worst->site;
+}
+
+void Discoverer::AddLaws(const ObservedMotion& motion) {
+  for (std::size_t i = 0; i < search_.fit.causes.size() && i < discovery_.causes.size();
+       ++i) {
+    const Candidate& candidate = candidates_[search_.fit.causes[i].candidate];
+    const std::string& joint =
+        problem_.model.coordinates[static_cast<std::size_t>(candidate.joint)];
+    const auto before =
+        std::ranges::find(discovery_.forces_before, joint, &UnknownSignal::site);
+    const auto after =
+        std::ranges::find(discovery_.forces_after, joint, &UnknownSignal::site);
+    if (before == discovery_.forces_before.end()) continue;
+    const bool hinge =
+        plant_.jnt_type[plant_.dof_jntid[candidate.joint]] == mjJNT_HINGE;
+    const std::string input_unit =
+        setup_
+            .actuators[static_cast<std::size_t>(std::clamp<Index>(
+                candidate.channel, 0, problem_.run.inputs.rows() - 1))]
+            .unit;
+    const LawAxis axis = AxisOf(VariableOf(discovery_.causes[i].cause), candidate,
+                                motion, hinge, input_unit);
+    LawPlot plot;
+    plot.cause = Describe(candidate);
+    plot.site = joint;
+    plot.x_name = axis.name;
+    plot.x_unit = axis.unit;
+    plot.y_unit = before->unit;
+    const Index stride = std::max<Index>(1, axis.x.size() / kLawPoints);
+    const Index count = axis.x.size() / stride;
+    plot.x.resize(count);
+    plot.y.resize(count);
+    for (Index k = 0; k < count; ++k) {
+      plot.x[k] = axis.x[k * stride];
+      plot.y[k] = before->value[k * stride];
+    }
+    const Eigen::MatrixX2d curve =
+        LawCurve(discovery_.causes[i].cause, axis.x, before->value - after->value);
+    plot.law_x = curve.col(0);
+    plot.law_y = curve.col(1);
+    discovery_.laws.push_back(std::move(plot));
+  }
+}
+
+void Discoverer::AddLadder() {
+  const Index channels = problem_.run.outputs.rows();
+  const auto step = [&](const std::string& added, const CauseFit& fit) {
+    LadderStep entry;
+    entry.added = added;
+    entry.train = std::sqrt(fit.train);
+    entry.held_out = std::sqrt(fit.held_out);
+    if (options_.figures) {
+      const Changes changes = ChangesOf(candidates_, fit.causes);
+      entry.error_percent = ReplayErrors(setup_, plant_, changes, measured_);
+      if (validation_ != nullptr) {
+        entry.validation_percent = ReplayErrors(setup_, plant_, changes, *validation_);
+      }
+    }
+    discovery_.ladder.push_back(std::move(entry));
+  };
+  CauseFit nominal;
+  nominal.residual = problem_.Residual({});
+  nominal.train = MeanSquare(nominal.residual, channels, problem_.skip, problem_.train);
+  nominal.held_out =
+      MeanSquare(nominal.residual, channels, problem_.train, problem_.run.samples());
+  step("nothing", nominal);
+  for (const Rung& rung : search_.ladder) {
+    if (!rung.kept) continue;
+    step(Describe(candidates_[rung.fit.causes.back().candidate]), rung.fit);
+  }
+}
+
+void Discoverer::AddComparisons() {
+  RunOptions nominal;
+  nominal.seed = options_.seed;
+  RunOptions extended = nominal;
+  extended.faults = changes_.faults;
+  extended.effects = changes_.effects;
+  discovery_.before = Compare(setup_, plant_, measured_, nominal);
+  discovery_.after = Compare(setup_, plant_, measured_, extended);
+  const Index skip = problem_.skip;
+  discovery_.mismatch_before.train =
+      MismatchRms(discovery_.before, skip, problem_.train);
+  discovery_.mismatch_after.train = MismatchRms(discovery_.after, skip, problem_.train);
+  if (validation_ != nullptr) {
+    discovery_.validation_before = Compare(setup_, plant_, *validation_, nominal);
+    discovery_.validation_after = Compare(setup_, plant_, *validation_, extended);
+    const Index n = validation_->samples();
+    discovery_.mismatch_before.validation =
+        MismatchRms(*discovery_.validation_before, skip, n);
+    discovery_.mismatch_after.validation =
+        MismatchRms(*discovery_.validation_after, skip, n);
+  } else {
+    const Index n = measured_.samples();
+    discovery_.mismatch_before.validation =
+        MismatchRms(discovery_.before, problem_.train, n);
+    discovery_.mismatch_after.validation =
+        MismatchRms(discovery_.after, problem_.train, n);
+  }
+  for (const ChannelMismatch& channel : discovery_.after.channels) {
+    discovery_.noise_floor[channel.name] = channel.noise_floor.rms;
+    discovery_.unit[channel.name] = channel.unit;
+  }
+  discovery_.gain_train = Gain(discovery_.mismatch_before.train,
+                               discovery_.mismatch_after.train, discovery_.noise_floor);
+  discovery_.gain_validation =
+      Gain(discovery_.mismatch_before.validation, discovery_.mismatch_after.validation,
+           discovery_.noise_floor);
+}
+
+void Discoverer::AddLimits(const Track& nominal, const Track& final) {
+  const auto limits = [&](const Track& track) {
+    return FaultLimits(problem_, candidates_, MotionOf(track), problem_.Scaled(track));
+  };
+  const auto before = limits(nominal);
+  const auto after = limits(final);
+  for (const auto& [fault, limit] : before) {
+    const auto now = after.find(fault);
+    if (now == after.end()) continue;
+    discovery_.fault_limits.push_back({fault, limit, now->second});
+  }
+}
+
+}  // namespace mjdiag
