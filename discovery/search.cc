@@ -111,15 +111,25 @@ bool Search::IsSignificant(const Start& start, const Screening& screening) const
          GainByChance(options_.false_alarm, screening.trials, start.freedom);
 }
 
+/// The best start of every candidate first, then second ones, so that a flexible law
+/// with many starts does not crowd out a simple one.
 std::vector<Start> Search::Shortlist(const Screening& screening) const {
   std::vector<Start> list;
+  std::vector<Start> more;
   for (const Start& start : screening.starts) {
-    if (static_cast<int>(list.size()) >= options_.shortlist) break;
-    const bool taken = std::ranges::any_of(
-        result_.fit.causes,
-        [&](const FittedCause& cause) { return cause.candidate == start.candidate; });
-    if (!taken && IsSignificant(start, screening)) list.push_back(start);
+    const auto same = [&](const auto& other) {
+      return other.candidate == start.candidate;
+    };
+    if (std::ranges::any_of(result_.fit.causes, same)) continue;
+    if (!IsSignificant(start, screening)) continue;
+    const bool first = std::ranges::none_of(list, same);
+    if (first && static_cast<int>(list.size()) < options_.shortlist) {
+      list.push_back(start);
+    } else if (!first && static_cast<int>(more.size()) < options_.shortlist / 2) {
+      more.push_back(start);
+    }
   }
+  list.insert(list.end(), more.begin(), more.end());
   return list;
 }
 
@@ -177,12 +187,19 @@ std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) 
 Rung Search::Round(const std::vector<Start>& shortlist) const {
   const std::vector<Entry> entries = Preview(shortlist);
   constexpr double kHopeless = 200.0;
-  constexpr int kFinalists = 3;
+  constexpr int kFinalists = 4;
   Rung rung;
   double best = std::numeric_limits<double>::infinity();
   int finalists = 0;
   for (const Entry& entry : entries) {
     const double behind = entry.criterion - entries.front().criterion;
+    // Several starts of one candidate must not crowd out a simpler one.
+    constexpr auto kStarts = 2;
+    const auto starts =
+        std::ranges::count_if(rung.contenders, [&](const Contender& other) {
+          return other.cause.candidate == entry.causes.back().candidate;
+        });
+    if (starts >= kStarts) continue;
     if (finalists >= kFinalists || behind > kHopeless) {
       rung.contenders.push_back({entry.causes.back(), best + behind, 0.0});
       continue;

@@ -144,7 +144,8 @@ TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
       << answer.unexplained->text;
 }
 
-// A fixed handful of the benchmark `mjdiag study --preset hidden`.
+// A fixed handful of the benchmark `mjdiag study --preset hidden`, on shorter records:
+// dry friction, an offset, a spring, an encoder's scale.
 class HiddenInTheBonder : public ::testing::TestWithParam<int> {};
 
 TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
@@ -159,7 +160,7 @@ TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
   EXPECT_LT(outcome.unseen_ratio, 1.2);
 }
 
-INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 7, 12, 22));
+INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 7, 15, 22));
 
 }  // namespace
 }  // namespace mjdiag
