@@ -18,8 +18,11 @@ using Eigen::VectorXd;
 // Below this share of the excess over noise that causes take away they are not an
 // explanation but the best of the wrong ones.
 constexpr double kNamedShare = 0.9;
+// More than noise, times the noise power of the sensors.
+constexpr double kMuch = 4.0;
 // Bandwidth of the fast observer, of the control rate.
 constexpr double kFastShare = 0.02;
+constexpr int kFurtherCauses = 3;
 constexpr double kLeastProbability = 0.01;
 constexpr double kNormal95 = 1.959964;
 
@@ -68,7 +71,6 @@ std::vector<Alternative> Discoverer::AlternativesOf(
 // it piles up, and few of its values are independent of each other. A fast observer
 // takes it away as it comes, and smaller causes show.
 bool Discoverer::IsColoured() const {
-  constexpr double kMuch = 4.0;  // times the noise power of the sensors
   return search_.fit.train > kMuch &&
          IndependentShare(problem_, search_.fit.residual).minCoeff() < 0.5;
 }
@@ -124,7 +126,7 @@ void Discoverer::Judge() {
   if (!found) {
     discovery_.verdict =
         something ? DiscoveryVerdict::kUnexplained : DiscoveryVerdict::kNoDiscrepancy;
-  } else if (!search_.significant_rest) {
+  } else if (!search_.significant_rest && search_.fit.train <= kMuch) {
     discovery_.verdict = DiscoveryVerdict::kExplained;
   } else if (share >= kNamedShare) {
     discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
@@ -213,6 +215,8 @@ Discovery Discoverer::Run() {
   if (options_.bandwidth == 0.0 && IsColoured()) {
     problem_ = PoseProblem(setup_, plant_, measured_, options_.train_share,
                            kFastShare * setup_.control_rate);
+    // Every further one takes longer than all before it.
+    search.most_causes = std::min(search.most_causes, kFurtherCauses);
     search_ = SearchCauses(problem_, candidates_, search, &search_);
   }
   NameCauses();
