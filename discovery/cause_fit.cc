@@ -59,8 +59,12 @@ double StepOf(const FitParameter& parameter, double value, double duration) {
 class Simulator {
  public:
   Simulator(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
-            const std::vector<FittedCause>& causes, const MatrixXd* known)
-      : problem_(problem), candidates_(candidates), causes_(causes), known_(known) {
+            const std::vector<FittedCause>& causes, const FitOptions& options)
+      : problem_(problem),
+        candidates_(candidates),
+        causes_(causes),
+        known_(options.known),
+        secant_(options.secant) {
     for (const FittedCause& cause : causes) {
       const auto& list = candidates[cause.candidate].parameters;
       parameters_.insert(parameters_.end(), list.begin(), list.end());
@@ -76,7 +80,19 @@ class Simulator {
     return residual_;
   }
 
-  /// J at theta, all samples.
+  /// J at theta for a step of the fit, all samples.
+  const MatrixXd& Slope(const VectorXd& theta) {
+    if (secant_ && slope_.size() > 0) {
+      Broyden(theta);
+    } else {
+      slope_ = Sensitivities(theta);
+    }
+    slope_theta_ = theta;
+    slope_residual_ = Residual(theta);
+    return slope_;
+  }
+
+  /// J at theta by differences, all samples.
   MatrixXd Sensitivities(const VectorXd& theta) {
     const VectorXd base = Residual(theta);
     const double duration =
@@ -97,6 +113,17 @@ class Simulator {
   }
 
  private:
+  /// J += (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
+  /// squared norms of its columns: parameters of all units count alike.
+  void Broyden(const VectorXd& theta) {
+    const VectorXd step = theta - slope_theta_;
+    const VectorXd metric =
+        slope_.colwise().squaredNorm().transpose().cwiseProduct(step);
+    const double length = step.dot(metric);
+    if (!(length > 0.0)) return;
+    const VectorXd missed = Residual(theta) - slope_residual_ - slope_ * step;
+    slope_ += missed * (metric / length).transpose();
+  }
   VectorXd RunAt(const VectorXd& theta) const {
     return problem_.Residual(ChangesOf(candidates_, WithValues(causes_, theta)));
   }
@@ -105,9 +132,13 @@ class Simulator {
   const std::vector<Candidate>& candidates_;
   const std::vector<FittedCause>& causes_;
   const MatrixXd* known_;
+  bool secant_;
   std::vector<FitParameter> parameters_;
   VectorXd theta_;
   VectorXd residual_;
+  MatrixXd slope_;  // of the last step of the fit, with where it was taken
+  VectorXd slope_theta_;
+  VectorXd slope_residual_;
 };
 
 class InnovationCost final : public ceres::CostFunction {
@@ -127,7 +158,7 @@ class InnovationCost final : public ceres::CostFunction {
       if (jacobians == nullptr || jacobians[0] == nullptr) return true;
       using RowMajor =
           Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      MatrixXd J = simulator_.Sensitivities(theta).middleRows(first_, count_);
+      MatrixXd J = simulator_.Slope(theta).middleRows(first_, count_);
       if (!J.allFinite()) return false;
       if (size == 1) {
         Eigen::Map<VectorXd>(jacobians[0], count_) = J.col(0);
@@ -188,7 +219,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   fit.causes = start;
   // What is held out need not be run while the fit goes on.
   const DiscoveryProblem seen = Beginning(problem, problem.train);
-  Simulator simulator(seen, candidates, start, options.known);
+  Simulator simulator(seen, candidates, start, options);
   VectorXd theta = Flatten(start);
   if (theta.size() > 0) {
     ceres::Problem::Options ownership;

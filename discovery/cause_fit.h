@@ -44,6 +44,9 @@ struct FitOptions {
   /// J of the first parameters, kept as it is instead of being computed at every step:
   /// those of causes that have been fitted before and hardly move. Not owned.
   const Eigen::MatrixXd* known = nullptr;
+  /// J from differences at the start only, then by Broyden's updates: one run a step
+  /// instead of one for every parameter. Near enough to compare causes.
+  bool secant = false;
 };
 
 /// Changes to the plant that the causes are.

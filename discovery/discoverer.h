@@ -39,7 +39,7 @@ class Discoverer {
     return FollowRun(setup_, plant_, changes, problem_.run, problem_.observer, true);
   }
   ObservedMotion MotionOf(const Track& track) const {
-    return ObserveMotion(plant_, problem_.run, track, problem_.StillSpeed());
+    return ObserveMotion(plant_, problem_.run, track);
   }
   bool IsColoured() const;
   void NameCauses();
@@ -57,7 +57,7 @@ class Discoverer {
   void AddLaws(const ObservedMotion& motion);
   void AddLadder();
   void AddComparisons();
-  void AddLimits(const Track& nominal, const Track& final);
+  void AddLimits();
 
   const Setup& setup_;
   const mjModel& plant_;

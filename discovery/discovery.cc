@@ -242,7 +242,7 @@ Discovery Discoverer::Run() {
     AddLaws(motion);
     AddLadder();
     AddComparisons();
-    AddLimits(nominal, final);
+    AddLimits();
     discovery_.colour_before =
         1.0 - IndependentShare(problem_, problem_.Scaled(nominal)).mean();
     discovery_.colour_after =

@@ -225,12 +225,9 @@ void Discoverer::AddComparisons() {
            discovery_.noise_floor);
 }
 
-void Discoverer::AddLimits(const Track& nominal, const Track& final) {
-  const auto limits = [&](const Track& track) {
-    return FaultLimits(problem_, candidates_, MotionOf(track), problem_.Scaled(track));
-  };
-  const auto before = limits(nominal);
-  const auto after = limits(final);
+void Discoverer::AddLimits() {
+  const auto before = FaultLimits(problem_, candidates_, {});
+  const auto after = FaultLimits(problem_, candidates_, changes_);
   for (const auto& [fault, limit] : before) {
     const auto now = after.find(fault);
     if (now == after.end()) continue;

@@ -1,15 +1,13 @@
 #pragma once
 // What an error of the model leaves in the innovations of an observer (observer.h), to
-// first order along the observed motion. With the linear tick model, a generalised
-// force f that the model lacks and an error d of the readings,
+// first order along the observed motion. With a generalised force f that the model
+// lacks and an error d of the readings,
 //
-//   xt[k+1] = (A - L C) xt[k] + B_f f[k] - L d[k],     e[k] = C xt[k] + d[k] + noise
+//   xt[k+1] = (A_k - L C) xt[k] + B_k f[k] - L d[k],     e[k] = C xt[k] + d[k] + noise
 //
-// f is held over a tick. Dry friction that the plant has makes A and B change with
-// time: a joint that sticks at tick k keeps its place, takes no force and passes none
-// on, so its velocity is struck from the equations of that tick. Everything that
-// screening needs is linear in f and d; what it finds is fitted on the nonlinear plant
-// afterwards.
+// f is held over a tick. A_k and B_k are the first order of the nonlinear tick where
+// the run is (tangent.h). Everything that screening needs is linear in f and d; what it
+// finds is fitted on the nonlinear plant afterwards.
 //
 // To be fast, the equations step over blocks of ticks, over which f and d are averaged;
 // responses are block averages times the root of the block length, so that they compare
@@ -19,25 +17,25 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/observer.h"
+#include "mjdiag/discovery/tangent.h"
 
 namespace mjdiag {
 
-/// Which joints stick at every sample, nq x samples of 0 and 1.
-using Sticking = Eigen::Matrix<unsigned char, Eigen::Dynamic, Eigen::Dynamic>;
-
 class ErrorDynamics {
  public:
-  /// @param sticking  of every sample
-  /// @param block     samples a block
-  ErrorDynamics(const MechanicalModel& model, const Observer& observer, double step,
-                int substeps, const Sticking& sticking, Eigen::Index block);
+  /// @param block  samples a block
+  ErrorDynamics(const Observer& observer, Eigen::Index block);
+
+  /// The next tick of the run.
+  void Add(const TickTangent& tick);
+  /// Whole blocks so far.
+  Eigen::Index blocks() const { return static_cast<Eigen::Index>(blocks_.size()); }
 
   /// Innovations divided by innovation_sd, ny x samples, stacked as one column per
   /// signal: (ny blocks) x signals, sensor index fastest.
   /// @param entry    generalised force per unit of each signal, nq x signals
-  /// @param forces   samples x signals, at most as many samples as `sticking` has
+  /// @param forces   samples x signals, at most as many samples as ticks were added
   Eigen::MatrixXd OfForces(const Eigen::MatrixXd& entry,
                            const Eigen::MatrixXd& forces) const;
   /// The same of errors of one sensor. @param errors  samples x signals
@@ -54,22 +52,25 @@ class ErrorDynamics {
   const Eigen::VectorXd& weight() const { return weight_; }
 
  private:
-  /// The equations while a certain set of joints sticks.
-  struct Mode {
-    Eigen::MatrixXd F;  // (A - L C)^block
+  struct Block {
+    Eigen::MatrixXd F;  // product of A_k - L C
     Eigen::MatrixXd B;  // of unit forces on every joint
     Eigen::MatrixXd L;  // of unit errors of every sensor
   };
-  const Mode& At(Eigen::Index block) const {
-    return modes_[mode_of_[static_cast<std::size_t>(block)]];
-  }
-
+  /// drive(x', k) adds what drives block k, seen(y, k) what the readings show of it
+  /// beside the states.
+  template <typename Drive, typename Seen>
+  Eigen::MatrixXd Respond(Eigen::Index blocks, Eigen::Index signals, const Drive& drive,
+                          const Seen& seen) const;
   Eigen::MatrixXd SeenMean() const;
 
-  std::vector<Mode> modes_;
-  std::vector<std::size_t> mode_of_;  // of every block
+  std::vector<Block> blocks_;
+  Block open_;  // not yet whole
+  Eigen::Index in_open_ = 0;
   Eigen::Index block_;
   Eigen::MatrixXd C_;  // over innovation_sd
+  Eigen::MatrixXd L_;
+  Eigen::MatrixXd LC_;
   Eigen::VectorXd weight_;
 };
 

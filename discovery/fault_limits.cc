@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mjdiag/discovery/error_dynamics.h"
+#include "mjdiag/discovery/trial.h"
 
 namespace mjdiag {
 namespace {
@@ -34,11 +35,13 @@ double Limit(const VectorXd& phi, const VectorXd& e) {
 
 std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,
-                                          const ObservedMotion& motion,
-                                          const VectorXd& residual) {
-  const ErrorDynamics dynamics(problem.model, problem.observer, problem.step(),
-                               problem.setup->substeps, motion.sticking, 1);
-  const Index skipped = problem.run.outputs.rows() * problem.skip;
+                                          const Changes& changes) {
+  const auto [track, dynamics] = problem.Linearised(changes);
+  const ObservedMotion motion = ObserveMotion(*problem.plant, problem.run, track);
+  const Index channels = problem.run.outputs.rows();
+  const VectorXd residual =
+      Averaged(problem.Scaled(track), channels, dynamics.block());
+  const Index skipped = channels * (problem.skip / dynamics.block());
   std::map<std::string, double> limits;
   for (const Candidate& candidate : candidates) {
     if (!candidate.cause.fault) continue;

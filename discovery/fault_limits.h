@@ -15,14 +15,12 @@
 
 #include "mjdiag/discovery/candidate.h"
 #include "mjdiag/discovery/problem.h"
-#include "mjdiag/discovery/trial.h"
 
 namespace mjdiag {
 
-/// Knob -> limit, as a change of the knob. @param residual  scaled innovations
+/// Knob -> limit, as a change of the knob. @param changes  to the model
 std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,
-                                          const ObservedMotion& motion,
-                                          const Eigen::VectorXd& residual);
+                                          const Changes& changes);
 
 }  // namespace mjdiag

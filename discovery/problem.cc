@@ -40,6 +40,14 @@ VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
   return Scaled(FollowRun(*setup, *plant, changes, run, observer, false));
 }
 
+std::pair<Track, ErrorDynamics> DiscoveryProblem::Linearised(
+    const Changes& changes) const {
+  constexpr Eigen::Index kBlocks = 5000;
+  ErrorDynamics dynamics(observer, std::max<Eigen::Index>(1, run.samples() / kBlocks));
+  Track track = FollowRun(*setup, *plant, changes, run, observer, model, dynamics);
+  return {std::move(track), std::move(dynamics)};
+}
+
 VectorXd SensorNoise(const Setup& setup, const MeasuredRun& run,
                      const Eigen::MatrixXd& innovations) {
   VectorXd sd(run.outputs.rows());

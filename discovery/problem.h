@@ -5,6 +5,7 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <utility>
 
 #include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/cause.h"
@@ -28,6 +29,9 @@ struct DiscoveryProblem {
   /// sample, (ny samples).
   Eigen::VectorXd Residual(const Changes& changes) const;
   Eigen::VectorXd Scaled(const Track& track) const;
+  /// The run with those changes and its first order, in blocks: some thousand of them
+  /// hold what forces do to a machine with inertia.
+  std::pair<Track, ErrorDynamics> Linearised(const Changes& changes) const;
   /// Speed of every joint below which dry friction holds it: a fiftieth of the sensor
   /// noise a tick, nv.
   Eigen::VectorXd StillSpeed() const;

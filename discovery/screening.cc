@@ -28,13 +28,12 @@ MatrixXd Orthonormal(const MatrixXd& columns) {
 /// What a screening works on: the samples of `problem` that are for fits.
 class Screener {
  public:
-  Screener(const DiscoveryProblem& problem, const ObservedMotion& motion,
+  Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
            const VectorXd& residual, const MatrixXd& sensitivities)
       : problem_(problem),
-        dynamics_(problem.model, problem.observer, problem.step(),
-                  problem.setup->substeps, motion.sticking, BlockOf(problem)),
+        dynamics_(dynamics),
         channels_(problem.run.outputs.rows()),
-        block_(BlockOf(problem)),
+        block_(dynamics.block()),
         skip_((problem.skip + block_ - 1) / block_),
         blocks_(problem.train / block_ - skip_),
         full_(residual.segment(channels_ * block_ * skip_,
@@ -63,20 +62,15 @@ class Screener {
   std::vector<Trial> BestOf(const Sweep& sweep, const Candidate& candidate) const;
 
  private:
-  /// Some thousand blocks hold what forces do to a machine with inertia.
-  static Index BlockOf(const DiscoveryProblem& problem) {
-    constexpr Index kBlocks = 5000;
-    return std::max<Index>(1, problem.train / kBlocks);
-  }
   MatrixXd Fast(const Trial& trial, const Candidate& candidate) const;
-  VectorXd Common(const Trial& trial, const Candidate& candidate) const;
+  std::vector<double> Common(const Sweep& sweep, const Candidate& candidate) const;
   MatrixXd Responses(const std::vector<Trial>& trials, std::size_t first,
                      std::size_t last, const Candidate& candidate) const;
   std::optional<Start> Regress(const Trial& trial, const MatrixXd& response,
                                const VectorXd& residual) const;
 
   const DiscoveryProblem& problem_;
-  ErrorDynamics dynamics_;
+  const ErrorDynamics& dynamics_;
   Index channels_;
   Index block_;                     // samples
   Index skip_;                      // blocks
@@ -172,20 +166,38 @@ std::vector<Start> Screener::Judge(const std::vector<Trial>& trials,
   return starts;
 }
 
-VectorXd Screener::Common(const Trial& trial, const Candidate& candidate) const {
-  if (trial.fast) {
-    const Eigen::Map<const MatrixXd> channels(full_.data(), channels_,
-                                              block_ * blocks_);
-    return Fast(trial, candidate).transpose() *
-           channels.row(candidate.channel).transpose();
-  }
-  const MatrixXd mean = Averaged(trial.signals.topRows(problem_.train), 1, block_)
-                            .topRows(skip_ + blocks_) /
-                        std::sqrt(static_cast<double>(block_));
-  const VectorXd adjoint = trial.entry.size() > 0
-                               ? VectorXd(adjoint_.forces * trial.entry.col(0))
+/// What the whole sweep has in common with the residual, squared. A response e has
+/// <e, r> = <signal, g> with g the adjoint, or r itself for what is fast.
+std::vector<double> Screener::Common(const Sweep& sweep,
+                                     const Candidate& candidate) const {
+  const Eigen::Map<const MatrixXd> channels(full_.data(), channels_, block_ * blocks_);
+  VectorXd of_fast = VectorXd::Zero(problem_.train);
+  of_fast.segment(block_ * skip_, block_ * blocks_) =
+      dynamics_.weight()[candidate.channel] *
+      channels.row(candidate.channel).transpose();
+  const Trial first = sweep.make(sweep.values.front());
+  const VectorXd adjoint = first.entry.size() > 0
+                               ? VectorXd(adjoint_.forces * first.entry.col(0))
                                : VectorXd(adjoint_.readings.col(candidate.channel));
-  return mean.transpose() * adjoint;
+  VectorXd of_slow = VectorXd::Zero(problem_.train);
+  for (Index k = 0; k < block_ * (skip_ + blocks_); ++k) {
+    of_slow[k] = adjoint[k / block_] / static_cast<double>(block_);
+  }
+  const auto waves = [](const VectorXd& angle) {
+    Eigen::ArrayXcd wave(angle.size());
+    wave.real() = angle.array().cos();
+    wave.imag() = angle.array().sin();
+    return wave;
+  };
+  Eigen::ArrayXcd wave = waves(sweep.angle.head(problem_.train));
+  const Eigen::ArrayXcd turn = waves(sweep.increment.head(problem_.train));
+  std::vector<double> common;
+  for (std::size_t i = 0; i < sweep.values.size(); ++i) {
+    const VectorXd& weight = sweep.values[i] < sweep.fast_below ? of_fast : of_slow;
+    common.push_back(std::norm((wave * weight.array()).sum()));
+    wave *= turn;
+  }
+  return common;
 }
 
 std::vector<Trial> Screener::BestOf(const Sweep& sweep,
@@ -201,13 +213,13 @@ std::vector<Trial> Screener::BestOf(const Sweep& sweep,
     known_size.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
   }
   std::vector<std::pair<double, std::size_t>> worth;
+  const std::vector<double> common = Common(sweep, candidate);
   for (std::size_t i = 0; i < count; ++i) {
-    const VectorXd common = Common(sweep.make(sweep.values[i]), candidate);
     const std::size_t before = i / kEvery;
     const std::size_t after = std::min(before + 1, known_size.size() - 1);
     const double part = static_cast<double>(i % kEvery) / kEvery;
     const double size = (1.0 - part) * known_size[before] + part * known_size[after];
-    worth.emplace_back(common.squaredNorm() / std::exp(size), i);
+    worth.emplace_back(common[i] / std::exp(size), i);
   }
   std::ranges::sort(worth, std::greater<>());
   std::vector<std::size_t> kept;
@@ -244,9 +256,9 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
-                 const VectorXd& residual, const MatrixXd& sensitivities,
+                 const ErrorDynamics& dynamics, const VectorXd& residual, const MatrixXd& sensitivities,
                  int starts_each) {
-  const Screener screener(problem, motion, residual, sensitivities);
+  const Screener screener(problem, dynamics, residual, sensitivities);
   std::vector<std::vector<Start>> found(candidates.size());
   std::vector<int> tried(candidates.size());
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {

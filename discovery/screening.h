@@ -38,13 +38,14 @@ struct Screening {
   std::vector<std::size_t> not_excited;
 };
 
+/// @param dynamics       of the train part at least, in blocks
 /// @param residual       scaled innovations, only the train part is used
 /// @param sensitivities  J of what has been found, (ny samples) x parameters; may be
 ///                       empty
 /// @param starts_each    how many starts of one candidate to keep at most
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
-                 const Eigen::VectorXd& residual, const Eigen::MatrixXd& sensitivities,
+                 const ErrorDynamics& dynamics, const Eigen::VectorXd& residual, const Eigen::MatrixXd& sensitivities,
                  int starts_each);
 
 }  // namespace mjdiag

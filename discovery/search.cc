@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
+#include <map>
 #include <optional>
 
 #include "mjdiag/discovery/mismatch.h"
@@ -65,6 +65,8 @@ class Search {
   }
   Screening ScreenRest() const;
   bool IsSignificant(const Start& start, const Screening& screening) const;
+  double RestOf(const Start& start) const;
+  double MostRest(const Screening& screening) const;
   std::vector<Start> Shortlist(const Screening& screening) const;
   double Criterion(const DiscoveryProblem& problem, const CauseFit& fit) const;
   std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
@@ -74,6 +76,9 @@ class Search {
     std::vector<FittedCause> causes;
     double criterion = std::numeric_limits<double>::infinity();
   };
+  static void KeepFinite(std::vector<Entry>& entries);
+  void FitToBeginning(Entry& entry, int iterations) const;
+  std::string NamesOf(const std::vector<Entry>& entries) const;
   std::vector<Entry> Preview(const std::vector<Start>& shortlist) const;
   Rung Round(const std::vector<Start>& shortlist) const;
   /// Sensitivities of what has been found, if anything has.
@@ -93,13 +98,12 @@ class Search {
 };
 
 Screening Search::ScreenRest() const {
-  const Changes changes = ChangesOf(candidates_, result_.fit.causes);
-  const Track track = FollowRun(*problem_.setup, *problem_.plant, changes, problem_.run,
-                                problem_.observer, true);
-  const ObservedMotion motion =
-      ObserveMotion(*problem_.plant, problem_.run, track, problem_.StillSpeed());
-  return Screen(problem_, candidates_, motion, result_.fit.residual,
-                result_.fit.sensitivities, 3);
+  const DiscoveryProblem seen = Beginning(problem_, problem_.train);
+  const auto [track, dynamics] =
+      seen.Linearised(ChangesOf(candidates_, result_.fit.causes));
+  return Screen(problem_, candidates_,
+                ObserveMotion(*problem_.plant, seen.run, track), dynamics,
+                result_.fit.residual, result_.fit.sensitivities, 3);
 }
 
 bool Search::IsSignificant(const Start& start, const Screening& screening) const {
@@ -111,9 +115,32 @@ bool Search::IsSignificant(const Start& start, const Screening& screening) const
          GainByChance(options_.false_alarm, screening.trials, start.freedom);
 }
 
+/// Squared innovations that a start leaves to first order, not less than noise does.
+double Search::RestOf(const Start& start) const {
+  const auto samples = static_cast<double>(problem_.run.outputs.rows() *
+                                           (problem_.train - problem_.skip));
+  return std::max(samples * result_.fit.train - start.gain, samples);
+}
+
+/// The most that a start may leave to first order to be worth a fit. The first order is
+/// rough for large effects and for shapes that the grid of trials misses; what it is
+/// off by grows with what there is to explain and with what the best leaves of it.
+double Search::MostRest(const Screening& screening) const {
+  constexpr double kOfExcess = 0.1;
+  constexpr double kOfRest = 5.0;
+  constexpr double kChance = 200.0;
+  const auto noise = static_cast<double>(problem_.run.outputs.rows() *
+                                         (problem_.train - problem_.skip));
+  const double excess = noise * std::max(result_.fit.train - 1.0, 0.0);
+  double least = noise + excess;
+  for (const Start& start : screening.starts) least = std::min(least, RestOf(start));
+  return least + kOfRest * (least - noise) + kOfExcess * excess + kChance;
+}
+
 /// The best start of every candidate first, then second ones, so that a flexible law
 /// with many starts does not crowd out a simple one.
 std::vector<Start> Search::Shortlist(const Screening& screening) const {
+  const double most = MostRest(screening);
   std::vector<Start> list;
   std::vector<Start> more;
   for (const Start& start : screening.starts) {
@@ -121,7 +148,7 @@ std::vector<Start> Search::Shortlist(const Screening& screening) const {
       return other.candidate == start.candidate;
     };
     if (std::ranges::any_of(result_.fit.causes, same)) continue;
-    if (!IsSignificant(start, screening)) continue;
+    if (!IsSignificant(start, screening) || RestOf(start) > most) continue;
     const bool first = std::ranges::none_of(list, same);
     if (first && static_cast<int>(list.size()) < options_.shortlist) {
       list.push_back(start);
@@ -152,11 +179,29 @@ std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
   }
 }
 
+/// Without those that diverge, best first.
+void Search::KeepFinite(std::vector<Entry>& entries) {
+  std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
+  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
+}
+
+void Search::FitToBeginning(Entry& entry, int iterations) const {
+  const auto fit =
+      TryFit(beginning_, entry.causes, {iterations, 1e-3, false, Known(), true});
+  if (!fit) return;
+  entry.causes = fit->causes;
+  // On more data a difference grows in proportion.
+  const double growth = static_cast<double>(problem_.train - problem_.skip) /
+                        static_cast<double>(beginning_.train - beginning_.skip);
+  entry.criterion = growth * Criterion(beginning_, *fit);
+}
+
 /// How promising every start of the shortlist is: small effects by their gain, which is
 /// exact enough for them and holds for the whole train part; large ones, for which the
 /// first order is not, by a fit on the beginning of the record.
 std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) const {
   constexpr double kSmall = 1.5;  // times the power of the noise
+  constexpr std::size_t kBetter = 6;
   const bool small = result_.fit.train < kSmall;
   std::vector<Entry> entries(shortlist.size());
   ParallelFor(static_cast<int>(shortlist.size()), [&](int number) {
@@ -170,43 +215,55 @@ std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) 
           -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
       return;
     }
-    const auto fit = TryFit(beginning_, entry.causes, {5, 1e-3, false, Known()});
-    if (!fit) return;
-    entry.causes = fit->causes;
-    // On more data a difference grows in proportion.
-    const double growth = static_cast<double>(problem_.train - problem_.skip) /
-                          static_cast<double>(beginning_.train - beginning_.skip);
-    entry.criterion = growth * Criterion(beginning_, *fit);
+    FitToBeginning(entry, 2);
   });
-  std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
-  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
+  KeepFinite(entries);
+  if (small) return entries;
+  // Those that a few steps show to be worse than most get no more of them.
+  const auto better = std::min<std::size_t>(entries.size(), kBetter);
+  ParallelFor(static_cast<int>(better), [&](int number) {
+    FitToBeginning(entries[static_cast<std::size_t>(number)], 4);
+  });
+  KeepFinite(entries);
   return entries;
+}
+
+std::string Search::NamesOf(const std::vector<Entry>& entries) const {
+  std::string names;
+  for (const Entry& entry : entries) {
+    names += (names.empty() ? "" : ", ") +
+             Describe(candidates_[entry.causes.back().candidate]);
+  }
+  return names;
 }
 
 /// Fits the most promising of the shortlist on the whole train part.
 Rung Search::Round(const std::vector<Start>& shortlist) const {
-  const std::vector<Entry> entries = Preview(shortlist);
-  constexpr double kHopeless = 200.0;
-  constexpr int kFinalists = 4;
+  constexpr double kHopeless = 200.0;  // behind the best, in units of the criterion
+  constexpr std::size_t kFinalists = 4;
+  // Several starts of one candidate must not crowd out a simpler one.
+  constexpr auto kStarts = 2;
+  std::vector<Entry> finalists;
+  std::vector<Entry> others;
+  std::map<std::size_t, int> starts;
+  for (Entry& entry : Preview(shortlist)) {
+    if (starts[entry.causes.back().candidate]++ >= kStarts) continue;
+    const bool hopeless = !finalists.empty() &&
+                          entry.criterion - finalists.front().criterion > kHopeless;
+    (finalists.size() < kFinalists && !hopeless ? finalists : others)
+        .push_back(std::move(entry));
+  }
+  std::vector<std::optional<CauseFit>> fits(finalists.size());
+  if (!finalists.empty()) {
+    Report("fit of " + NamesOf(finalists), 0.5);
+  }
+  ParallelFor(static_cast<int>(finalists.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    fits[i] = TryFit(problem_, finalists[i].causes, {8, 1e-4, false, Known(), true});
+  });
   Rung rung;
   double best = std::numeric_limits<double>::infinity();
-  int finalists = 0;
-  for (const Entry& entry : entries) {
-    const double behind = entry.criterion - entries.front().criterion;
-    // Several starts of one candidate must not crowd out a simpler one.
-    constexpr auto kStarts = 2;
-    const auto starts =
-        std::ranges::count_if(rung.contenders, [&](const Contender& other) {
-          return other.cause.candidate == entry.causes.back().candidate;
-        });
-    if (starts >= kStarts) continue;
-    if (finalists >= kFinalists || behind > kHopeless) {
-      rung.contenders.push_back({entry.causes.back(), best + behind, 0.0});
-      continue;
-    }
-    ++finalists;
-    Report("fit of " + Describe(candidates_[entry.causes.back().candidate]), 0.5);
-    auto fit = TryFit(problem_, entry.causes, {6, 1e-4, false, Known()});
+  for (auto& fit : fits) {
     if (!fit) continue;
     const double criterion = Criterion(problem_, *fit);
     rung.contenders.push_back({fit->causes.back(), criterion, 0.0});
@@ -214,6 +271,10 @@ Rung Search::Round(const std::vector<Start>& shortlist) const {
       best = criterion;
       rung.fit = std::move(*fit);
     }
+  }
+  for (const Entry& entry : others) {
+    const double behind = entry.criterion - finalists.front().criterion;
+    rung.contenders.push_back({entry.causes.back(), best + behind, 0.0});
   }
   std::ranges::stable_sort(rung.contenders, std::less<>(), &Contender::criterion);
   return rung;
@@ -261,19 +322,20 @@ bool Search::Prune() {
   if (result_.fit.causes.size() < 2) return false;
   std::optional<CauseFit> best;
   std::size_t dropped = 0;
+  constexpr double kFar = 60.0;  // in units of the deviance
   double criterion = Criterion(problem_, result_.fit);
   for (std::size_t i = 0; i < result_.fit.causes.size(); ++i) {
     std::vector<FittedCause> causes = result_.fit.causes;
     causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
     // If it is far from superfluous the beginning says so.
-    const auto early = TryFit(beginning_, causes, {4, 1e-3, false, nullptr});
+    const auto early = TryFit(beginning_, causes, {4, 1e-3, false, nullptr, true});
     if (!early) continue;
     const double now =
         Deviance(early->residual, independent_, problem_.skip, beginning_.train);
     const double before =
         Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
-    if (now - before > 60.0) continue;
-    auto fit = TryFit(problem_, causes, {6, 1e-5, false, nullptr});
+    if (now - before > kFar) continue;
+    auto fit = TryFit(problem_, causes, {8, 1e-5, false, nullptr, true});
     if (!fit || Criterion(problem_, *fit) >= criterion) continue;
     criterion = Criterion(problem_, *fit);
     best = std::move(fit);

@@ -7,7 +7,9 @@
 #include <map>
 #include <string>
 
+#include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/cause.h"
+#include "mjdiag/discovery/error_dynamics.h"
 #include "mjdiag/discovery/observer.h"
 #include "mjdiag/plugin/setup.h"
 #include "mjdiag/signals/record.h"
@@ -38,5 +40,11 @@ struct Track {
 /// NumericalError if the run diverges.
 Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
                 const MeasuredRun& run, const Observer& observer, bool states);
+
+/// The same, and the first order of it. @param model  linear model of `plant`
+/// @param dynamics  every tick is added to it
+Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+                const MeasuredRun& run, const Observer& observer,
+                const MechanicalModel& model, ErrorDynamics& dynamics);
 
 }  // namespace mjdiag

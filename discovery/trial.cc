@@ -293,7 +293,7 @@ std::vector<Trial> TrialMaker::Make() {
 }  // namespace
 
 ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
-                             const Track& track, const VectorXd& still) {
+                             const Track& track) {
   ObservedMotion motion;
   motion.sample_time = run.sample_time;
   const Eigen::Map<const VectorXd> rest(plant.qpos0, plant.nv);
@@ -302,12 +302,6 @@ ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
   motion.acceleration = CentralDifferences(track.velocity, run.sample_time);
   motion.inputs = run.inputs;
   motion.outputs = run.outputs;
-  motion.sticking = Sticking::Zero(plant.nv, motion.samples());
-  for (Index j = 0; j < plant.nv; ++j) {
-    if (plant.dof_frictionloss[j] <= 0.0) continue;
-    motion.sticking.row(j) =
-        (track.velocity.row(j).array().abs() < still[j]).cast<unsigned char>();
-  }
   return motion;
 }
 
@@ -343,14 +337,15 @@ Sweep PeriodSweep(const MechanicalModel& model, const Candidate& candidate,
   // stroke from one to the next misses no maximum. A scale may have far finer errors
   // than a motor has poles.
   const int finest = encoder ? 1600 : 240;
-  for (int m = 2; m <= finest; m += encoder ? 2 : 1) {
-    sweep.values.push_back(4.0 * range / m);
-  }
+  const int step = encoder ? 2 : 1;
+  for (int m = 2; m <= finest; m += step) sweep.values.push_back(4.0 * range / m);
+  sweep.angle = 2.0 * kTurn / (4.0 * range) * x;
+  sweep.increment = step * kTurn / (4.0 * range) * x;
   // What goes by faster than the observer follows by far.
-  const double slow = range / 6.0;
-  sweep.make = [&model, &candidate, x, encoder, slow](double period) {
+  sweep.fast_below = encoder ? range / 6.0 : 0.0;
+  sweep.make = [&model, &candidate, x, fast_below = sweep.fast_below](double period) {
     Trial trial = WaveTrial(model, candidate, kTurn / period * x, "period", period);
-    trial.fast = encoder && period < slow;
+    trial.fast = period < fast_below;
     return trial;
   };
   return sweep;
@@ -365,6 +360,8 @@ Sweep FrequencySweep(const MechanicalModel& model, const Candidate& candidate,
   const Index n = motion.samples();
   const VectorXd time =
       motion.sample_time * VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  sweep.angle = kTurn * 2.0 * spacing * time;
+  sweep.increment = kTurn * spacing * time;
   sweep.make = [&model, &candidate, time](double frequency) {
     return WaveTrial(model, candidate, kTurn * frequency * time, "frequency",
                      frequency);

@@ -15,7 +15,6 @@
 
 #include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/candidate.h"
-#include "mjdiag/discovery/error_dynamics.h"
 #include "mjdiag/discovery/tracking.h"
 
 namespace mjdiag {
@@ -28,12 +27,10 @@ struct ObservedMotion {
   Eigen::MatrixXd acceleration;  ///< nv x samples
   Eigen::MatrixXd inputs;        ///< actuators x samples
   Eigen::MatrixXd outputs;       ///< sensors x samples
-  Sticking sticking;             ///< nv x samples, by the plant's own dry friction
   Eigen::Index samples() const { return position.cols(); }
 };
-/// @param still  speed of every joint [m/s, rad/s] below which dry friction holds it
 ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
-                             const Track& track, const Eigen::VectorXd& still);
+                             const Track& track);
 
 using Amplitudes = Eigen::VectorXd;
 /// Values of the cause's parameters for amplitudes; none: not physical.
@@ -55,9 +52,13 @@ std::vector<Trial> MakeTrials(const mjModel& plant, const MechanicalModel& model
                               const Candidate& candidate, const ObservedMotion& motion);
 
 /// Trials over one parameter that has to be met closely: a period or a frequency. Each
-/// is a sine and a cosine.
+/// is the sine and the cosine of an angle, which grows evenly from one to the next.
 struct Sweep {
   std::vector<double> values;  ///< in order, close enough to miss no maximum
+  Eigen::VectorXd angle;       ///< of the first value, samples [rad]
+  Eigen::VectorXd increment;   ///< from one value to the next, samples [rad]
+  /// Errors of readings with a lower value (a period) are `fast`.
+  double fast_below = 0.0;
   std::function<Trial(double)> make;
 };
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "discovery/stage_under_test.h"
+#include "mjdiag/discovery/cause_fit.h"
 #include "mjdiag/discovery/trial.h"
 
 namespace mjdiag {
@@ -20,6 +21,14 @@ VectorXd Noise(Index n, unsigned seed) {
   return VectorXd::NullaryExpr(n, [&] { return normal(generator); });
 }
 
+/// First order of the run of a problem, its first samples.
+ErrorDynamics DynamicsOf(const DiscoveryProblem& problem, Index samples, Index block) {
+  ErrorDynamics dynamics(problem.observer, block);
+  FollowRun(*problem.setup, *problem.plant, {}, Beginning(problem, samples).run,
+            problem.observer, problem.model, dynamics);
+  return dynamics;
+}
+
 // A force that the model lacks, small enough that dry friction and saturation stay out:
 // the nonlinear replay and the linear prediction agree.
 TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
@@ -32,12 +41,10 @@ TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
   DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   problem.run =
       ToMeasuredRun(stage.setup, Simulate(stage.setup, *stage.plant, motion, quiet));
-  const Track track =
-      FollowRun(stage.setup, *stage.plant, {}, problem.run, problem.observer, true);
-  const ObservedMotion observed =
-      ObserveMotion(*stage.plant, problem.run, track, problem.StillSpeed());
-  const ErrorDynamics dynamics(problem.model, problem.observer, problem.step(),
-                               stage.setup.substeps, observed.sticking, 1);
+  ErrorDynamics dynamics(problem.observer, 1);
+  const Track track = FollowRun(stage.setup, *stage.plant, {}, problem.run,
+                                problem.observer, problem.model, dynamics);
+  const ObservedMotion observed = ObserveMotion(*stage.plant, problem.run, track);
   const MatrixXd force = -0.5 * observed.velocity.transpose();
   const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
   const VectorXd seen = problem.Scaled(track);
@@ -48,12 +55,10 @@ TEST(ErrorDynamics, LosesLittleByBlocks) {
   const test::Stage stage;
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   const Index n = 2000;
-  const Sticking free = Sticking::Zero(1, n);
   const MatrixXd force =
       VectorXd::LinSpaced(n, 0.0, 20.0).array().sin().matrix();  // 3 Hz
   const auto response = [&](Index block) {
-    const ErrorDynamics dynamics(problem.model, problem.observer, problem.step(),
-                                 stage.setup.substeps, free, block);
+    const ErrorDynamics dynamics = DynamicsOf(problem, n, block);
     return dynamics.OfForces(MatrixXd::Ones(1, 1), force);
   };
   const MatrixXd fine = Averaged(response(1), 1, 4);
@@ -68,11 +73,8 @@ TEST(ErrorDynamics, HasAnAdjoint) {
   const DiscoveryProblem problem =
       PoseProblem(setup, *plant, Simulate(setup, *plant, motion, options), 0.7, 0.0);
   const Index n = 600;
-  Sticking sticking = Sticking::Zero(plant->nv, n);
-  sticking.row(3).segment(200, 150).setOnes();
   for (const Index block : {1, 3}) {
-    const ErrorDynamics dynamics(problem.model, problem.observer, problem.step(),
-                                 setup.substeps, sticking, block);
+    const ErrorDynamics dynamics = DynamicsOf(problem, n, block);
     const VectorXd e = Noise(3 * (n / block), 1);
     const ErrorDynamics::Adjoint adjoint = dynamics.AdjointOf(e);
     const VectorXd signal = Noise(n, 2);
@@ -94,14 +96,36 @@ TEST(ErrorDynamics, HasAnAdjoint) {
   }
 }
 
-TEST(ErrorDynamics, AStuckJointTakesNoForce) {
-  const test::Stage stage;
-  const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  const Sticking stuck = Sticking::Ones(1, 100);
-  const ErrorDynamics dynamics(problem.model, problem.observer, problem.step(),
-                               stage.setup.substeps, stuck, 1);
-  EXPECT_EQ(dynamics.OfForces(MatrixXd::Ones(1, 1), MatrixXd::Ones(100, 1)).norm(),
-            0.0);
+// The bonder's guides and its Z bearing stick and slide in turn: the first order has to
+// know when. Y stands still most of the time, held by 2 N.
+TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
+  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
+  const ModelPtr plant = LoadPlant(setup);
+  const Record measured =
+      Simulate(setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")),
+               {});
+  const DiscoveryProblem problem = Beginning(
+      PoseProblem(setup, *plant, measured, 0.8, 0.0), 6000);
+  for (const Index block : {1, 3}) {
+    ErrorDynamics dynamics(problem.observer, block);
+    const Track track = FollowRun(setup, *plant, {}, problem.run, problem.observer,
+                                  problem.model, dynamics);
+    const ObservedMotion motion = ObserveMotion(*plant, problem.run, track);
+    for (const char* name : {"X", "Y", "Z"}) {
+      const int joint = mj_name2id(plant.get(), mjOBJ_JOINT, name);
+      const double coefficient = 1e-5 * plant->dof_damping[joint];
+      const EffectSpec effect{
+          "viscous_friction", name, {{"coefficient", coefficient}}};
+      const VectorXd response =
+          problem.Residual({{}, {effect}}) - problem.Scaled(track);
+      const VectorXd blocks = Averaged(response, 3, block);
+      const VectorXd predicted =
+          dynamics.OfForces(VectorXd::Unit(plant->nv, joint),
+                            -coefficient * motion.velocity.row(joint).transpose());
+      EXPECT_LT((predicted + blocks).norm(), 0.05 * blocks.norm())
+          << name << ", block " << block;
+    }
+  }
 }
 
 }  // namespace

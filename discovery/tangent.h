@@ -1,0 +1,60 @@
+#pragma once
+// First order of the control ticks of a run of the nonlinear plant.
+//
+// One substep of h (velocity first, as MuJoCo's Euler integrator has it), at the place
+// where the run is,
+//
+//   v' = v + h (M + h D)^-1 M W^-1 (f - K q - D v - B_s v),    q' = q + h v'
+//
+// with W = M + sum over the joints that dry friction holds of r e e^T. Such a joint is
+// a stiff damper in MuJoCo: a force r (a + b v) against its motion, and B_s holds r b.
+// A joint that slides has a constant friction force, which the first order does not
+// see. M and which joints stick are those of every single substep: a machine whose
+// guides stick half of the time is another machine then.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "mjdiag/diagnosis/mechanical_model.h"
+
+namespace mjdiag {
+
+/// x' = A x + B f over a control tick, x = [q; v], f a force on every joint, held.
+struct TickTangent {
+  Eigen::MatrixXd A;  ///< 2 nv x 2 nv
+  Eigen::MatrixXd B;  ///< 2 nv x nv
+};
+
+class TangentRecorder {
+ public:
+  /// @param plant  the nominal one, which `model` is the linear model of
+  TangentRecorder(const mjModel& plant, const MechanicalModel& model);
+
+  /// After every substep. @param plant  of the run, changes and all
+  void Substep(const mjModel& plant, const mjData& data);
+  /// The tick that the substeps since the last call make.
+  TickTangent EndTick();
+
+ private:
+  /// Joints that stick, with r and r b.
+  using Held = std::map<int, std::pair<double, double>>;
+  /// v' = Q q + V v + F f.
+  struct Map {
+    Eigen::MatrixXd Q, V, F;
+  };
+  bool MassChanged(const mjModel& plant, const mjData& data);
+  const Map& MapOf(const mjModel& plant, const Held& held);
+
+  Eigen::MatrixXd stiffness_;  // what is not of springs in the joints
+  Eigen::MatrixXd damping_;    // what is not of dampers in the joints
+  std::vector<mjtNum> packed_mass_;
+  Eigen::MatrixXd mass_;
+  std::map<Held, Map> known_;  // with that mass
+  TickTangent tick_;
+};
+
+}  // namespace mjdiag
