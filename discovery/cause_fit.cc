@@ -92,6 +92,9 @@ class Simulator {
     return slope_;
   }
 
+  /// J of the last step of the fit.
+  const MatrixXd& slope() const { return slope_; }
+
   /// J at theta by differences, all samples.
   MatrixXd Sensitivities(const VectorXd& theta) {
     const VectorXd base = Residual(theta);
@@ -194,17 +197,21 @@ void SetBounds(ceres::Problem& problem, double* theta,
 
 }  // namespace
 
+Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted) {
+  const Candidate& candidate = candidates[fitted.candidate];
+  Cause cause = candidate.cause;
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    cause.spec.parameters[candidate.parameters[i].name] =
+        fitted.value[static_cast<Index>(i)];
+  }
+  return cause;
+}
+
 Changes ChangesOf(const std::vector<Candidate>& candidates,
                   const std::vector<FittedCause>& causes) {
   std::vector<Cause> list;
   for (const FittedCause& fitted : causes) {
-    const Candidate& candidate = candidates[fitted.candidate];
-    Cause cause = candidate.cause;
-    for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-      cause.spec.parameters[candidate.parameters[i].name] =
-          fitted.value[static_cast<Index>(i)];
-    }
-    list.push_back(std::move(cause));
+    list.push_back(CauseOf(candidates, fitted));
   }
   return ChangesOf(list);
 }
@@ -234,6 +241,9 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     solver.function_tolerance = options.tolerance;
     solver.parameter_tolerance = 1e-9;
     solver.logging_type = ceres::SILENT;
+    // With bounds Ceres searches along every step; a cubic would ask for J there.
+    solver.line_search_interpolation_type = ceres::BISECTION;
+    solver.max_num_line_search_step_size_iterations = 3;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &least_squares, &summary);
     if (!summary.IsSolutionUsable()) {
@@ -242,8 +252,9 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.converged = summary.termination_type == ceres::CONVERGENCE;
     fit.causes = WithValues(start, theta);
   }
-  if (options.sensitivities && theta.size() > 0) {
-    fit.sensitivities = simulator.Sensitivities(theta);
+  if (theta.size() > 0) {
+    fit.sensitivities = options.sensitivities ? simulator.Sensitivities(theta)
+                                              : simulator.slope();
   }
   fit.residual = problem.Residual(ChangesOf(candidates, fit.causes));
   const Index samples = problem.run.samples();

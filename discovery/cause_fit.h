@@ -40,15 +40,17 @@ struct FitOptions {
   int iterations = 12;
   /// Of the sum of squares, relative: when to stop.
   double tolerance = 1e-6;
-  bool sensitivities = true;  ///< compute J at the solution
-  /// J of the first parameters, kept as it is instead of being computed at every step:
-  /// those of causes that have been fitted before and hardly move. Not owned.
+  /// Compute J at the solution; else it is that of the last step.
+  bool sensitivities = true;
+  /// J of the first parameters at the start, instead of differences: of causes that
+  /// have been fitted before. Not owned.
   const Eigen::MatrixXd* known = nullptr;
   /// J from differences at the start only, then by Broyden's updates: one run a step
   /// instead of one for every parameter. Near enough to compare causes.
   bool secant = false;
 };
 
+Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted);
 /// Changes to the plant that the causes are.
 Changes ChangesOf(const std::vector<Candidate>& candidates,
                   const std::vector<FittedCause>& causes);

@@ -34,7 +34,6 @@ class Discoverer {
   void Report(const std::string& what, double fraction) const {
     if (options_.progress) options_.progress(what, fraction);
   }
-  Cause CauseOf(const FittedCause& fitted) const;
   Track FollowWith(const Changes& changes) const {
     return FollowRun(setup_, plant_, changes, problem_.run, problem_.observer, true);
   }

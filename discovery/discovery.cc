@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "mjdiag/discovery/candidate_bounds.h"
 #include "mjdiag/discovery/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/sensor_noise.h"
@@ -28,16 +30,6 @@ constexpr double kNormal95 = 1.959964;
 
 }  // namespace
 
-Cause Discoverer::CauseOf(const FittedCause& fitted) const {
-  const Candidate& candidate = candidates_[fitted.candidate];
-  Cause cause = candidate.cause;
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-    cause.spec.parameters[candidate.parameters[i].name] =
-        fitted.value[static_cast<Index>(i)];
-  }
-  return cause;
-}
-
 std::vector<CauseParameter> Discoverer::ParametersOf(const FittedCause& fitted,
                                                      const MatrixXd& covariance,
                                                      Index first) const {
@@ -62,7 +54,7 @@ std::vector<Alternative> Discoverer::AlternativesOf(
   for (const Contender& other : contenders) {
     if (other.cause.candidate == fitted.candidate) continue;
     if (other.probability < kLeastProbability) continue;
-    alternatives.push_back({CauseOf(other.cause), other.probability, false});
+    alternatives.push_back({CauseOf(candidates_, other.cause), other.probability, false});
   }
   return alternatives;
 }
@@ -82,7 +74,7 @@ void Discoverer::NameCauses() {
   Index first = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
     FoundCause found;
-    found.cause = CauseOf(fit.causes[i]);
+    found.cause = CauseOf(candidates_, fit.causes[i]);
     found.parameters = ParametersOf(fit.causes[i], covariance, first);
     first += fit.causes[i].value.size();
     found.probability = 1.0;
@@ -117,6 +109,10 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
 
 void Discoverer::Judge() {
   const bool something = !search_.ladder.empty() || search_.significant_rest;
+  for (const FittedCause& refuted : search_.refuted) {
+    discovery_.notes.push_back("not named, for it spoils what the fit did not see: " +
+                               Describe(CauseOf(candidates_, refuted)));
+  }
   const bool found = !discovery_.causes.empty();
   const Index channels = problem_.run.outputs.rows();
   const double nominal =
@@ -139,11 +135,7 @@ void Discoverer::Judge() {
     discovery_.notes.push_back("not named, for too much is left beside it: " + tried);
     discovery_.causes.clear();
   }
-  std::vector<Cause> causes;
-  for (const FoundCause& found_cause : discovery_.causes) {
-    causes.push_back(found_cause.cause);
-  }
-  changes_ = ChangesOf(causes);
+  changes_ = ChangesOf(discovery_);
 }
 
 void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
@@ -181,13 +173,13 @@ void Discoverer::NoteTwins(std::size_t cause,
       continue;
     }
     std::string note = "the record does not tell " + Describe(found.cause) + " from " +
-                       Describe(CauseOf(other.cause));
+                       Describe(CauseOf(candidates_, other.cause));
     Setup noisy = setup_;
     for (std::size_t y = 0; y < noisy.sensors.size(); ++y) {
       noisy.sensors[y].noise_sd = problem_.observer.noise_sd[static_cast<Index>(y)];
     }
     const auto motion = FindTellingMotion(noisy, plant_, ChangesOf({found.cause}),
-                                          ChangesOf({CauseOf(other.cause)}));
+                                          ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
     if (!motion || motion->separation < kTells) {
       note += "; no trajectory of the setup would, a larger or faster motion may";
@@ -208,9 +200,15 @@ Discovery Discoverer::Run() {
   discovery_.setup = setup_.name;
   discovery_.train_share = options_.train_share;
   discovery_.sample_time = setup_.sample_time();
+  BoundByRecord(candidates_, MotionOf(FollowWith({})));
   SearchOptions search;
   search.most_causes = options_.most_causes;
   search.progress = options_.progress;
+  std::optional<MeasuredRun> unseen;
+  if (validation_ != nullptr) {
+    unseen = ToMeasuredRun(setup_, *validation_);
+    search.unseen = &*unseen;
+  }
   search_ = SearchCauses(problem_, candidates_, search);
   if (options_.bandwidth == 0.0 && IsColoured()) {
     problem_ = PoseProblem(setup_, plant_, measured_, options_.train_share,

@@ -159,32 +159,28 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
   }
 }
 
+/// Every rung behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
   const Index channels = problem_.run.outputs.rows();
-  const auto step = [&](const std::string& added, const CauseFit& fit) {
+  const auto step = [&](const std::string& added, const Changes& changes) {
+    const VectorXd rest = problem_.Residual(changes);
     LadderStep entry;
     entry.added = added;
-    entry.train = std::sqrt(fit.train);
-    entry.held_out = std::sqrt(fit.held_out);
-    if (options_.figures) {
-      const Changes changes = ChangesOf(candidates_, fit.causes);
-      entry.error_percent = ReplayErrors(setup_, plant_, changes, measured_);
-      if (validation_ != nullptr) {
-        entry.validation_percent = ReplayErrors(setup_, plant_, changes, *validation_);
-      }
+    entry.train = std::sqrt(MeanSquare(rest, channels, problem_.skip, problem_.train));
+    entry.held_out =
+        std::sqrt(MeanSquare(rest, channels, problem_.train, problem_.run.samples()));
+    entry.error_percent = ReplayErrors(setup_, plant_, changes, measured_);
+    if (validation_ != nullptr) {
+      entry.validation_percent = ReplayErrors(setup_, plant_, changes, *validation_);
     }
     discovery_.ladder.push_back(std::move(entry));
   };
-  CauseFit nominal;
-  nominal.residual = problem_.Residual({});
-  nominal.train = MeanSquare(nominal.residual, channels, problem_.skip, problem_.train);
-  nominal.held_out =
-      MeanSquare(nominal.residual, channels, problem_.train, problem_.run.samples());
-  step("nothing", nominal);
+  step("nothing", {});
   for (const Rung& rung : search_.ladder) {
-    if (!rung.kept) continue;
-    step(Describe(candidates_[rung.fit.causes.back().candidate]), rung.fit);
+    step(Describe(candidates_[rung.fit.causes.back().candidate]),
+         ChangesOf(candidates_, rung.fit.causes));
   }
+  if (!discovery_.causes.empty()) step("all, fitted together", changes_);
 }
 
 void Discoverer::AddComparisons() {

@@ -52,14 +52,20 @@ class Screener {
     adjoint_ = dynamics_.AdjointOf(padded);
   }
 
-  /// The starts that trials of one candidate give; those that are not physical or do
-  /// not show give none.
-  std::vector<Start> Judge(const std::vector<Trial>& trials,
-                           const Candidate& candidate) const;
+  /// The start that every trial of one candidate gives; those that are not physical or
+  /// do not show give none.
+  std::vector<std::optional<Start>> Judge(const std::vector<Trial>& trials,
+                                          const Candidate& candidate) const;
+  template <typename Take>
+  void ForEachResponse(const std::vector<Trial>& trials, const Candidate& candidate,
+                       const Take& take) const;
   /// The trials of a sweep that promise most, and neighbours of them. What a wave has
   /// in common with the residual comes from the adjoint, one product each; its size is
   /// smooth over the sweep and comes from a few of them.
   std::vector<Trial> BestOf(const Sweep& sweep, const Candidate& candidate) const;
+  std::vector<double> BestPlaces(const Sweep& sweep, const std::vector<double>& places,
+                                 const Candidate& candidate, std::size_t count) const;
+  static double ValueAt(const Sweep& sweep, double place);
 
  private:
   MatrixXd Fast(const Trial& trial, const Candidate& candidate) const;
@@ -133,19 +139,14 @@ std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& respo
   return start;
 }
 
-std::vector<Start> Screener::Judge(const std::vector<Trial>& trials,
-                                   const Candidate& candidate) const {
-  std::vector<Start> starts;
-  const auto keep = [&starts](std::optional<Start> start) {
-    if (start) starts.push_back(std::move(*start));
-  };
+/// take(t, response of trial t) for all trials in order, filtered many at a time.
+template <typename Take>
+void Screener::ForEachResponse(const std::vector<Trial>& trials,
+                               const Candidate& candidate, const Take& take) const {
   std::size_t first = 0;
   while (first < trials.size()) {
     if (trials[first].fast) {
-      const Eigen::Map<const MatrixXd> channels(full_.data(), channels_,
-                                                block_ * blocks_);
-      keep(Regress(trials[first], Fast(trials[first], candidate),
-                   channels.row(candidate.channel)));
+      take(first, Fast(trials[first], candidate));
       ++first;
       continue;
     }
@@ -158,11 +159,22 @@ std::vector<Start> Screener::Judge(const std::vector<Trial>& trials,
     Index next = 0;
     for (std::size_t t = first; t < last; ++t) {
       const Index width = trials[t].signals.cols();
-      keep(Regress(trials[t], responses.middleCols(next, width), residual_));
+      take(t, responses.middleCols(next, width));
       next += width;
     }
     first = last;
   }
+}
+
+std::vector<std::optional<Start>> Screener::Judge(const std::vector<Trial>& trials,
+                                                  const Candidate& candidate) const {
+  std::vector<std::optional<Start>> starts(trials.size());
+  const Eigen::Map<const MatrixXd> channels(full_.data(), channels_, block_ * blocks_);
+  ForEachResponse(trials, candidate, [&](std::size_t t, const auto& response) {
+    starts[t] = trials[t].fast
+                    ? Regress(trials[t], response, channels.row(candidate.channel))
+                    : Regress(trials[t], response, residual_);
+  });
   return starts;
 }
 
@@ -203,15 +215,18 @@ std::vector<double> Screener::Common(const Sweep& sweep,
 std::vector<Trial> Screener::BestOf(const Sweep& sweep,
                                     const Candidate& candidate) const {
   constexpr std::size_t kEvery = 16;
-  constexpr int kKept = 5;
+  constexpr std::size_t kCoarse = 12;
+  constexpr std::size_t kFine = 6;
+  constexpr std::size_t kKept = 6;
   const std::size_t count = sweep.values.size();
-  std::vector<double> known_size;  // log, of every kEvery-th
+  std::vector<Trial> sample;
   for (std::size_t i = 0; i < count; i += kEvery) {
-    const Trial trial = sweep.make(sweep.values[i]);
-    const MatrixXd response =
-        trial.fast ? Fast(trial, candidate) : Responses({trial}, 0, 1, candidate);
-    known_size.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
+    sample.push_back(sweep.make(sweep.values[i]));
   }
+  std::vector<double> known_size;  // log
+  ForEachResponse(sample, candidate, [&](std::size_t, const auto& response) {
+    known_size.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
+  });
   std::vector<std::pair<double, std::size_t>> worth;
   const std::vector<double> common = Common(sweep, candidate);
   for (std::size_t i = 0; i < count; ++i) {
@@ -222,28 +237,68 @@ std::vector<Trial> Screener::BestOf(const Sweep& sweep,
     worth.emplace_back(common[i] / std::exp(size), i);
   }
   std::ranges::sort(worth, std::greater<>());
-  std::vector<std::size_t> kept;
+  // A motion between few places makes many narrow peaks of nearly the same height: the
+  // best values, and then the best of what lies closely around them.
+  std::vector<double> kept;
+  std::vector<std::size_t> centres;
   for (const auto& [gain, i] : worth) {
-    const bool near = std::ranges::any_of(
-        kept, [i = i](std::size_t k) { return std::max(i, k) - std::min(i, k) < 3; });
+    const bool near = std::ranges::any_of(centres, [i = i](std::size_t k) {
+      return std::max(i, k) - std::min(i, k) < 2;
+    });
     if (near) continue;
-    kept.push_back(i);
-    if (static_cast<int>(kept.size()) == kKept) break;
+    centres.push_back(i);
+    for (const double part : {-0.35, 0.0, 0.35}) {
+      kept.push_back(static_cast<double>(i) + part);
+    }
+    if (centres.size() == kCoarse) break;
+  }
+  kept = BestPlaces(sweep, kept, candidate, kFine);
+  std::vector<double> fine;
+  for (const double place : kept) {
+    for (const double part : {-0.2, -0.1, 0.0, 0.1, 0.2}) {
+      fine.push_back(place + part);
+    }
   }
   std::vector<Trial> trials;
-  for (const std::size_t i : kept) {
-    // Periods are evenly spaced by their inverse, frequencies as they are; between
-    // neighbours both are close enough to even.
-    const double here = sweep.values[i];
-    const double below = sweep.values[i > 0 ? i - 1 : i];
-    const double above = sweep.values[std::min(i + 1, count - 1)];
-    for (const double part : {0.25, 0.5}) {
-      trials.push_back(sweep.make(here + part * (below - here)));
-      trials.push_back(sweep.make(here + part * (above - here)));
-    }
-    trials.push_back(sweep.make(here));
+  for (const double place : BestPlaces(sweep, fine, candidate, kKept)) {
+    trials.push_back(sweep.make(ValueAt(sweep, place)));
   }
   return trials;
+}
+
+/// The `count` places with the largest gain, at least a third of a step apart.
+std::vector<double> Screener::BestPlaces(const Sweep& sweep,
+                                         const std::vector<double>& places,
+                                         const Candidate& candidate,
+                                         std::size_t count) const {
+  std::vector<Trial> trials;
+  for (const double place : places) trials.push_back(sweep.make(ValueAt(sweep, place)));
+  const std::vector<std::optional<Start>> starts = Judge(trials, candidate);
+  std::vector<std::pair<double, double>> gains;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (starts[i]) gains.emplace_back(starts[i]->gain, places[i]);
+  }
+  std::ranges::sort(gains, std::greater<>());
+  std::vector<double> best;
+  for (const auto& [gain, place] : gains) {
+    const bool near = std::ranges::any_of(best, [place = place](double other) {
+      return std::abs(place - other) < 1.0 / 3.0;
+    });
+    if (!near) best.push_back(place);
+    if (best.size() == count) break;
+  }
+  return best;
+}
+
+/// Between two values of a sweep, whose angles are evenly spaced: periods by their
+/// inverse, frequencies as they are; between neighbours both are near enough to even.
+double Screener::ValueAt(const Sweep& sweep, double place) {
+  const double last = static_cast<double>(sweep.values.size() - 1);
+  const double inside = std::clamp(place, 0.0, last);
+  const auto below = static_cast<std::size_t>(inside);
+  const std::size_t above = std::min(below + 1, sweep.values.size() - 1);
+  const double part = inside - static_cast<double>(below);
+  return (1.0 - part) * sweep.values[below] + part * sweep.values[above];
 }
 
 /// The largest first, `count` of them.
@@ -266,13 +321,16 @@ Screening Screen(const DiscoveryProblem& problem,
     const Candidate& candidate = candidates[c];
     const double duration =
         static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+    std::vector<Trial> trials;
     if (const auto sweep = MakeSweep(problem.model, candidate, motion, duration)) {
       tried[c] = static_cast<int>(sweep->values.size());
-      found[c] = screener.Judge(screener.BestOf(*sweep, candidate), candidate);
+      trials = screener.BestOf(*sweep, candidate);
     } else {
-      const auto trials = MakeTrials(*problem.plant, problem.model, candidate, motion);
+      trials = MakeTrials(*problem.plant, problem.model, candidate, motion);
       tried[c] = static_cast<int>(trials.size());
-      found[c] = screener.Judge(trials, candidate);
+    }
+    for (auto& start : screener.Judge(trials, candidate)) {
+      if (start) found[c].push_back(std::move(*start));
     }
     for (Start& start : found[c]) start.candidate = c;
     KeepBest(found[c], static_cast<std::size_t>(starts_each));

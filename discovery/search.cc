@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "mjdiag/discovery/mismatch.h"
@@ -49,6 +50,7 @@ class Search {
     result_.fit.causes = before->fit.causes;
     result_.contenders = before->contenders;
     result_.ladder = before->ladder;
+    result_.refuted = before->refuted;
   }
 
   SearchResult Run();
@@ -68,7 +70,13 @@ class Search {
   double RestOf(const Start& start) const;
   double MostRest(const Screening& screening) const;
   std::vector<Start> Shortlist(const Screening& screening) const;
-  double Criterion(const DiscoveryProblem& problem, const CauseFit& fit) const;
+  static double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
+                          const VectorXd& independent);
+  static std::vector<double> Criteria(const DiscoveryProblem& problem,
+                                      const std::vector<std::optional<CauseFit>>& fits);
+  double Criterion(const CauseFit& fit) const {
+    return Criterion(problem_, fit, independent_);
+  }
   std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                  const std::vector<FittedCause>& causes,
                                  const FitOptions& options) const;
@@ -76,17 +84,23 @@ class Search {
     std::vector<FittedCause> causes;
     double criterion = std::numeric_limits<double>::infinity();
   };
-  static void KeepFinite(std::vector<Entry>& entries);
-  void FitToBeginning(Entry& entry, int iterations) const;
+  void FitToBeginning(std::vector<Entry>& entries, std::size_t count,
+                      int iterations) const;
   std::string NamesOf(const std::vector<Entry>& entries) const;
   std::vector<Entry> Preview(const std::vector<Start>& shortlist) const;
-  Rung Round(const std::vector<Start>& shortlist) const;
+  struct Round {
+    std::vector<Contender> contenders;  // those that were fitted first, best first
+    std::vector<CauseFit> fits;         // of as many
+  };
+  Round Compete(const std::vector<Start>& shortlist) const;
+  bool Keep(Round round);
   /// Sensitivities of what has been found, if anything has.
   const MatrixXd* Known() const {
     return result_.fit.sensitivities.cols() > 0 ? &result_.fit.sensitivities : nullptr;
   }
   bool Improves(const CauseFit& after) const;
-  void Keep(const Rung& rung);
+  double UnseenDeviance(const CauseFit& fit) const;
+  MatrixXd SensitivitiesWithout(std::size_t i) const;
   bool Prune();
 
   const DiscoveryProblem& problem_;
@@ -103,7 +117,7 @@ Screening Search::ScreenRest() const {
       seen.Linearised(ChangesOf(candidates_, result_.fit.causes));
   return Screen(problem_, candidates_,
                 ObserveMotion(*problem_.plant, seen.run, track), dynamics,
-                result_.fit.residual, result_.fit.sensitivities, 3);
+                result_.fit.residual, result_.fit.sensitivities, 6);
 }
 
 bool Search::IsSignificant(const Start& start, const Screening& screening) const {
@@ -127,7 +141,7 @@ double Search::RestOf(const Start& start) const {
 /// off by grows with what there is to explain and with what the best leaves of it.
 double Search::MostRest(const Screening& screening) const {
   constexpr double kOfExcess = 0.1;
-  constexpr double kOfRest = 5.0;
+  constexpr double kOfRest = 1.0;
   constexpr double kChance = 200.0;
   const auto noise = static_cast<double>(problem_.run.outputs.rows() *
                                          (problem_.train - problem_.skip));
@@ -160,11 +174,30 @@ std::vector<Start> Search::Shortlist(const Screening& screening) const {
   return list;
 }
 
-double Search::Criterion(const DiscoveryProblem& problem, const CauseFit& fit) const {
+double Search::Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
+                         const VectorXd& independent) {
   const double samples = static_cast<double>(problem.train - problem.skip);
-  const double n = std::max(2.0, samples * independent_.sum());
-  return Deviance(fit.residual, independent_, problem.skip, problem.train) +
+  const double n = std::max(2.0, samples * independent.sum());
+  return Deviance(fit.residual, independent, problem.skip, problem.train) +
          ParameterCount(fit.causes) * std::log(n);
+}
+
+/// Criteria of competing fits. How many independent values they are judged by is what
+/// the best of them leaves: beside all models a real machine does what is no white
+/// noise, and a law with many parameters must not win by that. None: the fit failed.
+std::vector<double> Search::Criteria(const DiscoveryProblem& problem,
+                                     const std::vector<std::optional<CauseFit>>& fits) {
+  const CauseFit* best = nullptr;
+  for (const auto& fit : fits) {
+    if (fit && (best == nullptr || fit->train < best->train)) best = &*fit;
+  }
+  std::vector<double> criteria(fits.size(), std::numeric_limits<double>::infinity());
+  if (best == nullptr) return criteria;
+  const VectorXd independent = IndependentShare(problem, best->residual);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i]) criteria[i] = Criterion(problem, *fits[i], independent);
+  }
+  return criteria;
 }
 
 std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
@@ -179,21 +212,27 @@ std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
   }
 }
 
-/// Without those that diverge, best first.
-void Search::KeepFinite(std::vector<Entry>& entries) {
-  std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
-  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
-}
-
-void Search::FitToBeginning(Entry& entry, int iterations) const {
-  const auto fit =
-      TryFit(beginning_, entry.causes, {iterations, 1e-3, false, Known(), true});
-  if (!fit) return;
-  entry.causes = fit->causes;
+/// Fits the first `count` of the entries to the beginning of the record; those that
+/// diverge go, the rest is put in order, best first.
+void Search::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
+                            int iterations) const {
+  if (entries.size() > count) entries.resize(count);
+  std::vector<std::optional<CauseFit>> fits(entries.size());
+  ParallelFor(static_cast<int>(entries.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    fits[i] = TryFit(beginning_, entries[i].causes,
+                     {iterations, 1e-3, false, Known(), true});
+  });
   // On more data a difference grows in proportion.
   const double growth = static_cast<double>(problem_.train - problem_.skip) /
                         static_cast<double>(beginning_.train - beginning_.skip);
-  entry.criterion = growth * Criterion(beginning_, *fit);
+  const std::vector<double> criteria = Criteria(beginning_, fits);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    entries[i].criterion = growth * criteria[i];
+    if (fits[i]) entries[i].causes = fits[i]->causes;
+  }
+  std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
+  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
 }
 
 /// How promising every start of the shortlist is: small effects by their gain, which is
@@ -201,30 +240,20 @@ void Search::FitToBeginning(Entry& entry, int iterations) const {
 /// first order is not, by a fit on the beginning of the record.
 std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) const {
   constexpr double kSmall = 1.5;  // times the power of the noise
-  constexpr std::size_t kBetter = 6;
-  const bool small = result_.fit.train < kSmall;
-  std::vector<Entry> entries(shortlist.size());
-  ParallelFor(static_cast<int>(shortlist.size()), [&](int number) {
-    const Start& start = shortlist[static_cast<std::size_t>(number)];
-    Entry& entry = entries[static_cast<std::size_t>(number)];
-    entry.causes = result_.fit.causes;
+  std::vector<Entry> entries;
+  for (const Start& start : shortlist) {
+    Entry entry{result_.fit.causes};
     entry.causes.push_back(ToFitted(candidates_[start.candidate], start));
-    if (small) {
-      const double n = static_cast<double>(problem_.train) * independent_.sum();
-      entry.criterion =
-          -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
-      return;
-    }
-    FitToBeginning(entry, 2);
-  });
-  KeepFinite(entries);
-  if (small) return entries;
+    const double n = static_cast<double>(problem_.train) * independent_.sum();
+    entry.criterion = -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
+    entries.push_back(std::move(entry));
+  }
+  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
+  if (result_.fit.train < kSmall) return entries;
   // Those that a few steps show to be worse than most get no more of them.
-  const auto better = std::min<std::size_t>(entries.size(), kBetter);
-  ParallelFor(static_cast<int>(better), [&](int number) {
-    FitToBeginning(entries[static_cast<std::size_t>(number)], 4);
-  });
-  KeepFinite(entries);
+  constexpr std::size_t kBetter = 6;
+  FitToBeginning(entries, entries.size(), 2);
+  FitToBeginning(entries, kBetter, 4);
   return entries;
 }
 
@@ -238,16 +267,22 @@ std::string Search::NamesOf(const std::vector<Entry>& entries) const {
 }
 
 /// Fits the most promising of the shortlist on the whole train part.
-Rung Search::Round(const std::vector<Start>& shortlist) const {
+Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
   constexpr double kHopeless = 200.0;  // behind the best, in units of the criterion
-  constexpr std::size_t kFinalists = 4;
-  // Several starts of one candidate must not crowd out a simpler one.
-  constexpr auto kStarts = 2;
+  constexpr std::size_t kFinalists = 6;
+  // Several starts of one candidate must not crowd out a simpler one; waves have many
+  // maxima of nearly the same height.
+  constexpr int kStarts = 2;
+  constexpr int kWaves = 4;
   std::vector<Entry> finalists;
   std::vector<Entry> others;
   std::map<std::size_t, int> starts;
   for (Entry& entry : Preview(shortlist)) {
-    if (starts[entry.causes.back().candidate]++ >= kStarts) continue;
+    const std::size_t candidate = entry.causes.back().candidate;
+    const bool wave = std::ranges::any_of(
+        candidates_[candidate].parameters,
+        [](const FitParameter& parameter) { return parameter.name == "phase"; });
+    if (starts[candidate]++ >= (wave ? kWaves : kStarts)) continue;
     const bool hopeless = !finalists.empty() &&
                           entry.criterion - finalists.front().criterion > kHopeless;
     (finalists.size() < kFinalists && !hopeless ? finalists : others)
@@ -261,23 +296,37 @@ Rung Search::Round(const std::vector<Start>& shortlist) const {
     const auto i = static_cast<std::size_t>(number);
     fits[i] = TryFit(problem_, finalists[i].causes, {8, 1e-4, false, Known(), true});
   });
-  Rung rung;
-  double best = std::numeric_limits<double>::infinity();
-  for (auto& fit : fits) {
-    if (!fit) continue;
-    const double criterion = Criterion(problem_, *fit);
-    rung.contenders.push_back({fit->causes.back(), criterion, 0.0});
-    if (criterion < best) {
-      best = criterion;
-      rung.fit = std::move(*fit);
-    }
+  Round round;
+  const std::vector<double> criteria = Criteria(problem_, fits);
+  std::vector<std::size_t> order(fits.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::less<>(),
+                           [&](std::size_t i) { return criteria[i]; });
+  for (const std::size_t i : order) {
+    if (!fits[i]) continue;
+    round.contenders.push_back({fits[i]->causes.back(), criteria[i], 0.0});
+    round.fits.push_back(std::move(*fits[i]));
   }
+  if (round.fits.empty()) return round;
   for (const Entry& entry : others) {
     const double behind = entry.criterion - finalists.front().criterion;
-    rung.contenders.push_back({entry.causes.back(), best + behind, 0.0});
+    round.contenders.push_back(
+        {entry.causes.back(), round.contenders.front().criterion + behind, 0.0});
   }
-  std::ranges::stable_sort(rung.contenders, std::less<>(), &Contender::criterion);
-  return rung;
+  return round;
+}
+
+/// Of several starts of one candidate the best.
+void KeepOneEach(std::vector<Contender>& contenders) {
+  std::ranges::stable_sort(contenders, std::less<>(), &Contender::criterion);
+  std::vector<Contender> kept;
+  for (const Contender& c : contenders) {
+    const bool seen = std::ranges::any_of(kept, [&](const Contender& k) {
+      return k.cause.candidate == c.cause.candidate;
+    });
+    if (!seen) kept.push_back(c);
+  }
+  contenders = std::move(kept);
 }
 
 void SetProbabilities(std::vector<Contender>& contenders) {
@@ -289,68 +338,97 @@ void SetProbabilities(std::vector<Contender>& contenders) {
   for (Contender& c : contenders) c.probability /= sum;
 }
 
-/// Of several starts of one candidate the best.
-void KeepOneEach(std::vector<Contender>& contenders) {
-  std::vector<Contender> kept;
-  for (const Contender& c : contenders) {
-    const bool seen = std::ranges::any_of(kept, [&](const Contender& k) {
-      return k.cause.candidate == c.cause.candidate;
-    });
-    if (!seen) kept.push_back(c);
+/// Of the part held out and of another record.
+double Search::UnseenDeviance(const CauseFit& fit) const {
+  const Index samples = problem_.run.samples();
+  double deviance = problem_.train < samples
+                        ? Deviance(fit.residual, independent_, problem_.train, samples)
+                        : 0.0;
+  if (options_.unseen == nullptr) return deviance;
+  DiscoveryProblem other = problem_;
+  other.run = *options_.unseen;
+  try {
+    const VectorXd residual = other.Residual(ChangesOf(candidates_, fit.causes));
+    deviance += Deviance(residual, independent_, problem_.skip, other.run.samples());
+  } catch (const NumericalError&) {
+    return std::numeric_limits<double>::infinity();
   }
-  contenders = std::move(kept);
+  return deviance;
 }
 
 bool Search::Improves(const CauseFit& after) const {
-  const Index samples = problem_.run.samples();
-  const bool held_out = problem_.train < samples;
-  const auto unseen = [&](const CauseFit& fit) {
-    return held_out ? Deviance(fit.residual, independent_, problem_.train, samples)
-                    : 0.0;
-  };
-  return Criterion(problem_, after) < Criterion(problem_, result_.fit) &&
-         (!held_out || unseen(after) < unseen(result_.fit));
+  return Criterion(after) < Criterion(result_.fit) &&
+         UnseenDeviance(after) <= UnseenDeviance(result_.fit);
 }
 
-void Search::Keep(const Rung& rung) {
-  result_.fit = rung.fit;
-  result_.contenders.push_back(rung.contenders);
+/// Keeps the best contender that explains unseen data as well; false if none does.
+bool Search::Keep(Round round) {
+  for (std::size_t i = 0; i < round.fits.size(); ++i) {
+    independent_ = IndependentShare(problem_, round.fits[i].residual);
+    if (!Improves(round.fits[i])) {
+      result_.refuted.push_back(round.fits[i].causes.back());
+      continue;
+    }
+    round.contenders.erase(round.contenders.begin(),
+                           round.contenders.begin() + static_cast<std::ptrdiff_t>(i));
+    KeepOneEach(round.contenders);
+    SetProbabilities(round.contenders);
+    result_.ladder.push_back({round.contenders, round.fits[i]});
+    result_.contenders.push_back(round.contenders);
+    result_.fit = std::move(round.fits[i]);
+    return true;
+  }
+  return false;
+}
+
+/// J of what has been found but cause i.
+MatrixXd Search::SensitivitiesWithout(std::size_t i) const {
+  const MatrixXd& all = result_.fit.sensitivities;
+  Index first = 0;
+  for (std::size_t k = 0; k < i; ++k) first += result_.fit.causes[k].value.size();
+  const Index count = result_.fit.causes[i].value.size();
+  MatrixXd rest(all.rows(), all.cols() - count);
+  rest << all.leftCols(first), all.rightCols(all.cols() - first - count);
+  return rest;
 }
 
 /// Drops the cause whose loss the criterion likes best; true if there was one.
 bool Search::Prune() {
   if (result_.fit.causes.size() < 2) return false;
-  std::optional<CauseFit> best;
-  std::size_t dropped = 0;
   constexpr double kFar = 60.0;  // in units of the deviance
-  double criterion = Criterion(problem_, result_.fit);
-  for (std::size_t i = 0; i < result_.fit.causes.size(); ++i) {
+  const double before =
+      Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
+  std::vector<std::optional<CauseFit>> fits(result_.fit.causes.size());
+  ParallelFor(static_cast<int>(fits.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
     std::vector<FittedCause> causes = result_.fit.causes;
-    causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
+    causes.erase(causes.begin() + number);
+    const MatrixXd known = SensitivitiesWithout(i);
     // If it is far from superfluous the beginning says so.
-    const auto early = TryFit(beginning_, causes, {4, 1e-3, false, nullptr, true});
-    if (!early) continue;
+    const auto early = TryFit(beginning_, causes, {4, 1e-3, false, &known, true});
+    if (!early) return;
     const double now =
         Deviance(early->residual, independent_, problem_.skip, beginning_.train);
-    const double before =
-        Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
-    if (now - before > kFar) continue;
-    auto fit = TryFit(problem_, causes, {8, 1e-5, false, nullptr, true});
-    if (!fit || Criterion(problem_, *fit) >= criterion) continue;
-    criterion = Criterion(problem_, *fit);
-    best = std::move(fit);
+    if (now - before > kFar) return;
+    fits[i] = TryFit(problem_, causes, {8, 1e-5, false, &known, true});
+  });
+  double criterion = Criterion(result_.fit);
+  std::optional<std::size_t> dropped;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i] || Criterion(*fits[i]) >= criterion) continue;
+    criterion = Criterion(*fits[i]);
     dropped = i;
   }
-  if (!best) return false;
-  result_.fit = std::move(*best);
+  if (!dropped) return false;
+  result_.fit = std::move(*fits[*dropped]);
   result_.contenders.erase(result_.contenders.begin() +
-                           static_cast<std::ptrdiff_t>(dropped));
+                           static_cast<std::ptrdiff_t>(*dropped));
   return true;
 }
 
 SearchResult Search::Run() {
   result_.fit =
-      FitCauses(problem_, candidates_, result_.fit.causes, {10, 1e-5, true, nullptr});
+      FitCauses(problem_, candidates_, result_.fit.causes, {10, 1e-5, true, nullptr, true});
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
   independent_ = VectorXd::Ones(problem_.run.outputs.rows());
@@ -363,26 +441,16 @@ SearchResult Search::Run() {
     const std::vector<Start> shortlist = Shortlist(result_.left);
     result_.significant_rest = !shortlist.empty();
     if (shortlist.empty() || round >= options_.most_causes) break;
-    Rung rung = Round(shortlist);
-    if (rung.contenders.empty() || rung.fit.residual.size() == 0) break;
-    KeepOneEach(rung.contenders);
-    SetProbabilities(rung.contenders);
-    independent_ = IndependentShare(problem_, rung.fit.residual);
-    rung.train = rung.fit.train;
-    rung.held_out = rung.fit.held_out;
-    rung.kept = Improves(rung.fit);
-    result_.ladder.push_back(rung);
-    if (!rung.kept) break;
-    Keep(rung);
+    if (!Keep(Compete(shortlist))) break;
     while (Prune()) {
     }
-    // The sensitivities of what is kept, for the next screening and the intervals.
-    result_.fit =
-        FitCauses(problem_, candidates_, result_.fit.causes, {4, 1e-5, true, nullptr});
   }
   if (!result_.fit.causes.empty()) {
+    // Near the optimum by secants, the rest by differences.
     result_.fit =
-        FitCauses(problem_, candidates_, result_.fit.causes, {12, 1e-8, true, nullptr});
+        FitCauses(problem_, candidates_, result_.fit.causes, {12, 1e-8, false, Known(), true});
+    result_.fit =
+        FitCauses(problem_, candidates_, result_.fit.causes, {4, 1e-8, true, nullptr});
   }
   return std::move(result_);
 }

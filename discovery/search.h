@@ -11,7 +11,8 @@
 // m_c: mean square of the scaled innovations, 1 if sensor noise is all that is left;
 // n_c: number of independent values among them, fewer than samples if what is left is
 // coloured. A cause is kept if it lowers deviance + parameters log n (the Bayesian
-// information criterion) on the train part and the deviance on the part held out.
+// information criterion) on the train part and the deviance on the part held out and
+// on another record, if there is one; else the next best is asked.
 // Causes that a later one has made superfluous are dropped again. Probabilities of
 // competing causes are exp(-BIC / 2) over their sum.
 
@@ -30,6 +31,9 @@ namespace mjdiag {
 struct SearchOptions {
   int most_causes = 6;
   int shortlist = 8;  ///< candidates a round that are fitted
+  /// Another record of the machine: what makes its innovations larger is no cause. Not
+  /// owned, may be null.
+  const MeasuredRun* unseen = nullptr;
   /// Chance to claim a cause where there is noise only, per round.
   double false_alarm = 1e-4;
   std::function<void(const std::string& what, double fraction)> progress;
@@ -45,10 +49,7 @@ struct Contender {
 /// One round.
 struct Rung {
   std::vector<Contender> contenders;  ///< best first
-  double train = 0.0;                 ///< mean squares after it
-  double held_out = 0.0;
-  bool kept = false;
-  CauseFit fit;
+  CauseFit fit;                       ///< with the one that was kept
 };
 
 struct SearchResult {
@@ -56,6 +57,8 @@ struct SearchResult {
   /// Of every cause of the fit, who else could have been in its place, itself included.
   std::vector<std::vector<Contender>> contenders;
   std::vector<Rung> ladder;
+  /// Those that explained the train part best but not what a fit did not see.
+  std::vector<FittedCause> refuted;
   Screening left;  ///< screening of what is left in the end
   /// Whether that shows any candidate to be significant.
   bool significant_rest = false;

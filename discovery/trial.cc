@@ -169,8 +169,10 @@ void TrialMaker::MakeDrives() {
     AddLinear(parts, MotorEntry(2), {"slope", "curvature"});
   } else if (effect == "force_saturation") {
     const double top = u().cwiseAbs().maxCoeff();
-    for (const double share : {0.3, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98}) {
-      const double limit = share * top;
+    // The last of them cut off the very peaks.
+    for (const double cut : {0.7, 0.5, 0.35, 0.2, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3,
+                             1e-3, 5e-4, 2e-4, 1e-4}) {
+      const double limit = (1.0 - cut) * top;
       trials_.push_back({u().cwiseMax(-limit).cwiseMin(limit) - u(), MotorEntry(1),
                          [limit](const Amplitudes& a) -> Parameters {
                            if (a[0] <= 0.0) return std::nullopt;
