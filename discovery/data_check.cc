@@ -101,9 +101,8 @@ class RecordCheck {
   void CheckSaturation(const SensorSetup& sensor) const;
   void CheckReadingUnits() const;
   void CheckUnits() const;
-  /// @param start  from the first readings, else from rest at the equilibrium: readings
-  /// in
-  ///               wrong units would start far away
+  /// @param start  from the first readings; else from rest at the equilibrium, for
+  ///               readings in wrong units would start far away
   void SimulateNominal(bool start);
   const VectorXd* Expected(const SensorSetup& sensor) const;
 

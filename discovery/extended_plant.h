@@ -5,11 +5,14 @@
 //
 // What MuJoCo has itself becomes attributes of the named elements, with all digits:
 //
-//   coulomb_friction       frictionloss, solreffriction, solimpfriction
-//   (native_effect.h) viscous_friction       damping linear_stiffness       stiffness,
-//   springref structural_stiffness   stiffness added_mass             mass of
-//   <inertial> (slide), armature (hinge) motor_constant         gear force_saturation
-//   forcerange faults                 damping, stiffness, gear of what the knob names
+// - coulomb_friction: frictionloss, solreffriction, solimpfriction (native_effect.h)
+// - viscous_friction: damping
+// - linear_stiffness: stiffness, springref
+// - structural_stiffness: stiffness
+// - added_mass: mass of <inertial> of a slide, armature of a hinge
+// - motor_constant: gear
+// - force_saturation: forcerange
+// - faults: damping, stiffness or gear of what the knob names
 //
 // encoder_noise becomes noise of the sensor in the setup; every other effect
 // <custom><numeric name="effect.<name>.<site>" data="..."/>, which mjdiag turns into

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjdiag/discovery/riccati.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -29,33 +30,6 @@ VectorXd ForceNoise(const MechanicalModel& model, const VectorXd& noise_sd,
     sd[u] = strongest > 0.0 ? omega * omega / strongest : 0.0;
   }
   return sd;
-}
-
-/// The stabilising solution of P = A P A^T - A P C^T (C P C^T + I)^-1 C P A^T + Q by
-/// doubling (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin, C.-S. Wang, "Structure-preserving
-/// algorithms for periodic discrete-time algebraic Riccati equations", 2004).
-MatrixXd SolveRiccati(const MatrixXd& A, const MatrixXd& C, const MatrixXd& Q) {
-  constexpr int kDoublings = 60;
-  const MatrixXd identity = MatrixXd::Identity(A.rows(), A.rows());
-  MatrixXd a = A.transpose();
-  MatrixXd g = C.transpose() * C;
-  MatrixXd h = Q;
-  for (int i = 0; i < kDoublings; ++i) {
-    const Eigen::PartialPivLU<MatrixXd> w(identity + g * h);
-    const MatrixXd wa = w.solve(a);
-    const MatrixXd wg = w.solve(g);
-    const MatrixXd step = a.transpose() * h * wa;
-    g += a * wg * a.transpose();
-    a = a * wa;
-    h += step;
-    h = 0.5 * (h + h.transpose()).eval();
-    g = 0.5 * (g + g.transpose()).eval();
-    if (!h.allFinite()) break;
-    if (step.norm() <= 1e-14 * h.norm()) return h;
-  }
-  throw NumericalError(
-      "observer: no stable one exists; a motion that nothing holds is not seen by any "
-      "sensor");
 }
 
 /// sd of e = (I - C (z I - A + L C)^-1 L) n for white n of sd r, by the impulse
@@ -104,7 +78,10 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
       noise_sd.cwiseInverse().asDiagonal() * observer.tick.C * scale.asDiagonal();
   const MatrixXd B = scale.cwiseInverse().asDiagonal() * observer.tick.B *
                      ForceNoise(model, noise_sd, bandwidth).asDiagonal();
-  const MatrixXd P = SolveRiccati(A, C, B * B.transpose());
+  const MatrixXd P = SolveRiccati(
+      A, C, B * B.transpose(), 1e-14,
+      "observer: no stable one exists; a motion that nothing holds is not seen by any "
+      "sensor");
   const MatrixXd S = C * P * C.transpose() + MatrixXd::Identity(C.rows(), C.rows());
   const MatrixXd gain = S.ldlt().solve(C * P * A.transpose()).transpose();
   observer.L = scale.asDiagonal() * gain * noise_sd.cwiseInverse().asDiagonal();

@@ -7,7 +7,6 @@
 #include "mjdiag/plugin/active_effect.h"
 #include "mjdiag/plugin/channels.h"
 #include "mjdiag/plugin/mujoco_model.h"
-#include "mjdiag/plugin/native_effect.h"
 #include "mjdiag/plugin/scenery.h"
 #include "mjdiag/plugin/simulation.h"
 #include "mjdiag/plugin/start_state.h"
@@ -29,13 +28,6 @@ Eigen::RowVectorXd Samples(const Record& measured, const std::string& name,
   return channel.samples.transpose();
 }
 
-ModelPtr ChangedPlant(const mjModel& plant, const Changes& changes) {
-  ModelPtr model = CopyModel(plant);
-  for (const Fault& fault : changes.faults) ApplyFault(*model, fault);
-  for (const EffectSpec& effect : changes.effects) ApplyNativeEffect(*model, effect);
-  return model;
-}
-
 /// Where dry friction in the joints is the only constraint there are as many unknown
 /// forces as joints that rub, next to uncoupled, and projected Gauss-Seidel finds them
 /// in a few sweeps, closer than Newton's default tolerance and in half of its time.
@@ -49,12 +41,6 @@ void ChooseSolver(mjModel& model) {
   if (model.neq == 0 && !limited && !contacts) model.opt.solver = mjSOL_PGS;
 }
 
-bool HasDiverged(const mjData& data) {
-  return data.warning[mjWARN_BADQPOS].number > 0 ||
-         data.warning[mjWARN_BADQVEL].number > 0 ||
-         data.warning[mjWARN_BADQACC].number > 0;
-}
-
 /// Called after every substep and every tick.
 struct Watch {
   std::function<void(const mjModel&, const mjData&)> substep;
@@ -64,7 +50,7 @@ struct Watch {
 Track Follow(const Setup& setup, const mjModel& plant, const Changes& changes,
              const MeasuredRun& run, const Observer& observer, bool states,
              const Watch& watch) {
-  const ModelPtr model = ChangedPlant(plant, changes);
+  const ModelPtr model = ChangedPlant(plant, changes.faults, changes.effects);
   const VectorXd start = StartPosition(setup, *model, run.start);
   DropScenery(*model);
   ChooseSolver(*model);

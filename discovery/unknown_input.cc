@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mjdiag/discovery/riccati.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -49,27 +50,6 @@ struct Filter {
   VectorXd sd;       ///< of the smoothed inputs, in z0
   std::vector<Index> edge;
 };
-
-/// Stationary P of the predictor by doubling (Chu, Fan, Lin and Wang, 2004).
-MatrixXd SolveRiccati(const MatrixXd& A, const MatrixXd& C, const MatrixXd& Q) {
-  const MatrixXd identity = MatrixXd::Identity(A.rows(), A.rows());
-  MatrixXd a = A.transpose();
-  MatrixXd g = C.transpose() * C;
-  MatrixXd h = Q;
-  for (int i = 0; i < kDoublings; ++i) {
-    const Eigen::PartialPivLU<MatrixXd> w(identity + g * h);
-    const MatrixXd wa = w.solve(a);
-    const MatrixXd step = a.transpose() * h * wa;
-    g += a * w.solve(g) * a.transpose();
-    a = a * wa;
-    h += step;
-    h = 0.5 * (h + h.transpose()).eval();
-    g = 0.5 * (g + g.transpose()).eval();
-    if (!h.allFinite()) break;
-    if (step.norm() <= 1e-11 * h.norm()) return h;
-  }
-  throw NumericalError("unknown inputs: the covariance does not converge");
-}
 
 /// W, its memory, and sd and edge, which follow from the sums over fewer samples.
 void AddSmoother(const MatrixXd& C, Filter& filter) {
@@ -114,7 +94,8 @@ Filter DesignFilter(const Augmented& system, const VectorXd& grid) {
   }
   const MatrixXd A = unit.cwiseInverse().asDiagonal() * system.A * unit.asDiagonal();
   const MatrixXd P = unit.asDiagonal() *
-                     SolveRiccati(A, system.C * unit.asDiagonal(), Q) *
+                     SolveRiccati(A, system.C * unit.asDiagonal(), Q, 1e-11,
+                                  "unknown inputs: the covariance does not converge") *
                      unit.asDiagonal();
   const MatrixXd& C = system.C;
   const MatrixXd S = C * P * C.transpose() + MatrixXd::Identity(C.rows(), C.rows());

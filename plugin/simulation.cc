@@ -16,14 +16,6 @@ namespace {
 
 constexpr Eigen::Index kTicksBetweenProgress = 512;
 
-// On divergence MuJoCo resets the state and goes on; only the warning counters tell.
-bool HasDiverged(const mjData& data) {
-  return data.warning[mjWARN_BADQPOS].number > 0 ||
-         data.warning[mjWARN_BADQVEL].number > 0 ||
-         data.warning[mjWARN_BADQACC].number > 0 ||
-         data.warning[mjWARN_BADCTRL].number > 0;
-}
-
 int JointOfPosition(const mjModel& model, int address) {
   int joint = model.njnt - 1;
   while (joint > 0 && model.jnt_qposadr[joint] > address) --joint;
@@ -42,11 +34,6 @@ int JointOfPosition(const mjModel& model, int address) {
   }
   throw NumericalError("simulation: diverged at " + std::to_string(time) + " s in " +
                        where);
-}
-
-void ApplyWhatIsWrong(mjModel& model, const RunOptions& options) {
-  for (const Fault& fault : options.faults) ApplyFault(model, fault);
-  for (const EffectSpec& effect : options.effects) ApplyNativeEffect(model, effect);
 }
 
 void ReportProgress(const RunOptions& options, Eigen::Index tick, Eigen::Index ticks) {
@@ -108,11 +95,26 @@ ModelPtr LoadPlant(const Setup& setup) {
   return model;
 }
 
+ModelPtr ChangedPlant(const mjModel& plant, const std::vector<Fault>& faults,
+                      const std::vector<EffectSpec>& effects) {
+  ModelPtr model = CopyModel(plant);
+  for (const Fault& fault : faults) ApplyFault(*model, fault);
+  for (const EffectSpec& effect : effects) ApplyNativeEffect(*model, effect);
+  return model;
+}
+
+// Only the warning counters tell.
+bool HasDiverged(const mjData& data) {
+  return data.warning[mjWARN_BADQPOS].number > 0 ||
+         data.warning[mjWARN_BADQVEL].number > 0 ||
+         data.warning[mjWARN_BADQACC].number > 0 ||
+         data.warning[mjWARN_BADCTRL].number > 0;
+}
+
 Record Simulate(const Setup& setup, const mjModel& plant, const Excitation& excitation,
                 const RunOptions& options) {
   CheckNotEmpty(excitation);
-  const ModelPtr model = CopyModel(plant);
-  ApplyWhatIsWrong(*model, options);
+  const ModelPtr model = ChangedPlant(plant, options.faults, options.effects);
   const Eigen::VectorXd start = StartPosition(setup, *model, excitation.start);
   DropScenery(*model);
   const DataPtr data = MakeData(*model);
@@ -143,7 +145,7 @@ Record SimulateLinear(const Setup& setup, const mjModel& plant,
     throw InputError("effect", "the linear plant has no effects",
                      "faults only, or the nonlinear plant");
   }
-  const ModelPtr model = CopyModel(plant);
+  const ModelPtr model = ChangedPlant(plant, options.faults, options.effects);
   const std::vector<EffectSpec> carried = EffectsOf(*model);
   if (std::any_of(carried.begin(), carried.end(), [](const EffectSpec& effect) {
         return !FindEffect(effect.effect).native;
@@ -151,7 +153,6 @@ Record SimulateLinear(const Setup& setup, const mjModel& plant,
     throw InputError(model->names, "the plant carries effects, which are not linear",
                      "a plant without, or the nonlinear plant");
   }
-  ApplyWhatIsWrong(*model, options);
   const MechanicalModel machine = Linearize(*model, setup);
   const StateSpace tick_model =
       TickModel(machine, setup.sample_time() / setup.substeps, setup.substeps);

@@ -92,6 +92,13 @@ void PreparePlant(const Setup& setup, mjModel& model);
 /// missing.
 ModelPtr LoadPlant(const Setup& setup);
 
+/// A copy of the plant with those faults and what of the effects is native.
+ModelPtr ChangedPlant(const mjModel& plant, const std::vector<Fault>& faults,
+                      const std::vector<EffectSpec>& effects);
+
+/// Whether the run has diverged: MuJoCo resets the state then and goes on.
+bool HasDiverged(const mjData& data);
+
 /// One run of the nonlinear plant. NumericalError says at which time and joint it
 /// diverged. `plant` stays as it is; faults and effects go into a copy.
 Record Simulate(const Setup& setup, const mjModel& plant, const Excitation& excitation,
