@@ -82,6 +82,7 @@ class Simulator {
 
   /// J at theta for a step of the fit, all samples.
   const MatrixXd& Slope(const VectorXd& theta) {
+    if (slope_.size() > 0 && theta == slope_theta_) return slope_;
     if (secant_ && slope_.size() > 0) {
       Broyden(theta);
     } else {
@@ -229,6 +230,10 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   Simulator simulator(seen, candidates, start, options);
   VectorXd theta = Flatten(start);
   if (theta.size() > 0) {
+    // Throws where the first values cannot be run; Ceres would write to stderr.
+    if (!simulator.Slope(theta).allFinite()) {
+      throw NumericalError("fit: the run with the first values diverges");
+    }
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     InnovationCost cost(simulator, first, count, theta.size());

@@ -7,6 +7,7 @@
 #include "mjdiag/discovery/candidate_bounds.h"
 #include "mjdiag/discovery/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/model_choice.h"
 #include "mjdiag/discovery/sensor_noise.h"
 #include "mjdiag/discovery/telling_motion.h"
 

@@ -3,16 +3,12 @@
 //
 // A round screens all candidates on what is left (screening.h), fits the best of them
 // together with what has been found, first on the beginning of the record, then, those
-// that are still in the race, on all of the train part (cause_fit.h), and keeps the one
-// that is best. Models are compared by what they leave,
+// that are still in the race, on all of the train part (cause_fit.h). They compete for
+// the place by the Bayesian information criterion, deviance + parameters log n
+// (model_choice.h), on the train part. The best is kept if it lowers that, and does not
+// raise the deviance on the part held out and on another record, if there is one; else
+// the next is asked.
 //
-//   deviance = sum over sensors of n_c (log s_c^2 + m_c / s_c^2),  s_c^2 = max(1, m_c)
-//
-// m_c: mean square of the scaled innovations, 1 if sensor noise is all that is left;
-// n_c: number of independent values among them, fewer than samples if what is left is
-// coloured. A cause is kept if it lowers deviance + parameters log n (the Bayesian
-// information criterion) on the train part and the deviance on the part held out and
-// on another record, if there is one; else the next best is asked.
 // Causes that a later one has made superfluous are dropped again. Probabilities of
 // competing causes are exp(-BIC / 2) over their sum.
 
@@ -63,19 +59,6 @@ struct SearchResult {
   /// Whether that shows any candidate to be significant.
   bool significant_rest = false;
 };
-
-/// Deviance of samples first .. last - 1.
-/// @param independent  n_c over the number of samples, of every sensor
-double Deviance(const Eigen::VectorXd& residual, const Eigen::VectorXd& independent,
-                Eigen::Index first, Eigen::Index last);
-
-/// n_c over the number of samples of every sensor, from the spectra of the residual.
-Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
-                                 const Eigen::VectorXd& residual);
-
-/// Gain that the best of `trials` reaches by chance with that probability where there
-/// is noise only, of a trial with that many degrees of freedom.
-double GainByChance(double probability, int trials, int freedom);
 
 /// @param before  a search of the same record with another observer to go on from, or
 ///                null

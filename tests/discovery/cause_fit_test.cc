@@ -49,6 +49,25 @@ TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
   EXPECT_NEAR(fit.train, 1.0, 0.1);
 }
 
+// Broyden's updates change the way, not the place: within a tenth of the interval.
+TEST(CauseFit, BySecantsFindsTheSamePlace) {
+  const test::Stage stage;
+  const DiscoveryProblem problem = stage.Pose(
+      stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
+  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const std::vector<FittedCause> start = {
+      {Place(candidates, "stribeck_friction@load"), Eigen::Vector3d(11.0, 7.0, 0.012)}};
+  const CauseFit full =
+      FitCauses(problem, candidates, start, {30, 1e-10, true, nullptr, false});
+  const CauseFit secant =
+      FitCauses(problem, candidates, start, {60, 1e-10, false, nullptr, true});
+  const Eigen::VectorXd sd = ParameterCovariance(problem, full).diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(secant.causes[0].value[i], full.causes[0].value[i], 0.1 * 1.96 * sd[i])
+        << i;
+  }
+}
+
 TEST(CauseFit, StaysWithinItsBounds) {
   const test::Stage stage;
   // Less damping than the plant has; more cannot be taken away.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -68,6 +69,24 @@ TEST(Discovery, NamesATurnedKnobAsTheFault) {
   ASSERT_FALSE(answer.causes[0].alternatives.empty());
   EXPECT_TRUE(answer.causes[0].alternatives[0].indistinguishable);
   EXPECT_EQ(answer.causes[0].alternatives[0].cause.spec.effect, "viscous_friction");
+}
+
+// A drive that was limited in one record and is not in the other: the machine has no
+// such limit.
+TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
+  const test::Stage stage;
+  const Record measured = stage.Measure({"force_saturation@drive:limit=1.2"});
+  const Discovery alone =
+      Discover(stage.setup, *stage.plant, measured, nullptr, CausesOnly());
+  EXPECT_EQ(Named(alone), "force_saturation@drive");
+  const Record validation = stage.Measure({}, {}, 2);
+  const Discovery judged =
+      Discover(stage.setup, *stage.plant, measured, &validation, CausesOnly());
+  EXPECT_EQ(Named(judged).find("force_saturation"), std::string::npos);
+  EXPECT_TRUE(std::ranges::any_of(judged.notes, [](const std::string& note) {
+    return note.find("spoils") != std::string::npos &&
+           note.find("force_saturation@drive") != std::string::npos;
+  }));
 }
 
 TEST(Discovery, FindsTwoCausesAtOnce) {
