@@ -1,7 +1,7 @@
-// What a discovery costs, in runs: the time from a record to causes over the time of one
-// nominal replay of that record, and the largest memory of the process. A run in real
-// time is the machine's own: 2.5 s of the AB383, 24.8 s of EMPS. The effects that are
-// looked for are put in here, so that no measured data is needed.
+// What a discovery costs, in runs: the time from a record to causes over the time of
+// one nominal replay of that record, and the largest memory of the process. A run in
+// real time is the machine's own: 2.5 s of the AB383, 24.8 s of EMPS. The effects that
+// are looked for are put in here, so that no measured data is needed.
 //
 // Counters: seconds (for people; no test reads it), runs (seconds over one replay),
 // MiB (largest resident set), found (1 if the cause was named).
@@ -37,10 +37,11 @@ void DiscoverIn(benchmark::State& state, const std::string& machine,
   const Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" + machine);
   const ModelPtr plant = LoadPlant(setup);
   RunOptions hidden;
-  for (const std::string& effect : effects) hidden.effects.push_back(ParseEffect(effect));
+  for (const std::string& effect : effects)
+    hidden.effects.push_back(ParseEffect(effect));
   const Record measured = Simulate(
-      setup, *plant, FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory)),
-      hidden);
+      setup, *plant,
+      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory)), hidden);
   DiscoverOptions options;
   for (auto _ : state) {
     const DiscoveryProblem problem = PoseProblem(setup, *plant, measured, 0.8, 0.0);

@@ -36,7 +36,8 @@ void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& mot
         Narrow(parameter, 1.0 / duration, 0.5 / motion.sample_time);
       }
       if (parameter.name == "limit") {
-        Narrow(parameter, 0.0, motion.inputs.row(candidate.channel).cwiseAbs().maxCoeff());
+        Narrow(parameter, 0.0,
+               motion.inputs.row(candidate.channel).cwiseAbs().maxCoeff());
       }
     }
   }

@@ -258,8 +258,8 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.causes = WithValues(start, theta);
   }
   if (theta.size() > 0) {
-    fit.sensitivities = options.sensitivities ? simulator.Sensitivities(theta)
-                                              : simulator.slope();
+    fit.sensitivities =
+        options.sensitivities ? simulator.Sensitivities(theta) : simulator.slope();
   }
   fit.residual = problem.Residual(ChangesOf(candidates, fit.causes));
   const Index samples = problem.run.samples();

@@ -55,7 +55,8 @@ std::vector<Alternative> Discoverer::AlternativesOf(
   for (const Contender& other : contenders) {
     if (other.cause.candidate == fitted.candidate) continue;
     if (other.probability < kLeastProbability) continue;
-    alternatives.push_back({CauseOf(candidates_, other.cause), other.probability, false});
+    alternatives.push_back(
+        {CauseOf(candidates_, other.cause), other.probability, false});
   }
   return alternatives;
 }
@@ -179,8 +180,9 @@ void Discoverer::NoteTwins(std::size_t cause,
     for (std::size_t y = 0; y < noisy.sensors.size(); ++y) {
       noisy.sensors[y].noise_sd = problem_.observer.noise_sd[static_cast<Index>(y)];
     }
-    const auto motion = FindTellingMotion(noisy, plant_, ChangesOf({found.cause}),
-                                          ChangesOf({CauseOf(candidates_, other.cause)}));
+    const auto motion =
+        FindTellingMotion(noisy, plant_, ChangesOf({found.cause}),
+                          ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
     if (!motion || motion->separation < kTells) {
       note += "; no trajectory of the setup would, a larger or faster motion may";

@@ -71,8 +71,8 @@ MatrixXd ErrorDynamics::OfForces(const MatrixXd& entry, const MatrixXd& forces) 
   return Respond(
       mean.cols(), mean.rows(),
       [&](MatrixXd& next, Index k) {
-        next.noalias() += blocks_[static_cast<std::size_t>(k)].B *
-                          (entry * mean.col(k).asDiagonal());
+        next.noalias() +=
+            blocks_[static_cast<std::size_t>(k)].B * (entry * mean.col(k).asDiagonal());
       },
       nothing);
 }

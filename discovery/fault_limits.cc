@@ -39,8 +39,7 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
   const auto [track, dynamics] = problem.Linearised(changes);
   const ObservedMotion motion = ObserveMotion(*problem.plant, problem.run, track);
   const Index channels = problem.run.outputs.rows();
-  const VectorXd residual =
-      Averaged(problem.Scaled(track), channels, dynamics.block());
+  const VectorXd residual = Averaged(problem.Scaled(track), channels, dynamics.block());
   const Index skipped = channels * (problem.skip / dynamics.block());
   std::map<std::string, double> limits;
   for (const Candidate& candidate : candidates) {

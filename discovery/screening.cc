@@ -311,8 +311,8 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
-                 const ErrorDynamics& dynamics, const VectorXd& residual, const MatrixXd& sensitivities,
-                 int starts_each) {
+                 const ErrorDynamics& dynamics, const VectorXd& residual,
+                 const MatrixXd& sensitivities, int starts_each) {
   const Screener screener(problem, dynamics, residual, sensitivities);
   std::vector<std::vector<Start>> found(candidates.size());
   std::vector<int> tried(candidates.size());

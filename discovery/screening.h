@@ -45,7 +45,7 @@ struct Screening {
 /// @param starts_each    how many starts of one candidate to keep at most
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
-                 const ErrorDynamics& dynamics, const Eigen::VectorXd& residual, const Eigen::MatrixXd& sensitivities,
-                 int starts_each);
+                 const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
+                 const Eigen::MatrixXd& sensitivities, int starts_each);
 
 }  // namespace mjdiag

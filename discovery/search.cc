@@ -114,9 +114,8 @@ Screening Search::ScreenRest() const {
   const DiscoveryProblem seen = Beginning(problem_, problem_.train);
   const auto [track, dynamics] =
       seen.Linearised(ChangesOf(candidates_, result_.fit.causes));
-  return Screen(problem_, candidates_,
-                ObserveMotion(*problem_.plant, seen.run, track), dynamics,
-                result_.fit.residual, result_.fit.sensitivities, 6);
+  return Screen(problem_, candidates_, ObserveMotion(*problem_.plant, seen.run, track),
+                dynamics, result_.fit.residual, result_.fit.sensitivities, 6);
 }
 
 bool Search::IsSignificant(const Start& start, const Screening& screening) const {
@@ -219,8 +218,8 @@ void Search::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   std::vector<std::optional<CauseFit>> fits(entries.size());
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] = TryFit(beginning_, entries[i].causes,
-                     {iterations, 1e-3, false, Known(), true});
+    fits[i] =
+        TryFit(beginning_, entries[i].causes, {iterations, 1e-3, false, Known(), true});
   });
   // On more data a difference grows in proportion.
   const double growth = static_cast<double>(problem_.train - problem_.skip) /
@@ -282,8 +281,8 @@ Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
         candidates_[candidate].parameters,
         [](const FitParameter& parameter) { return parameter.name == "phase"; });
     if (starts[candidate]++ >= (wave ? kWaves : kStarts)) continue;
-    const bool hopeless = !finalists.empty() &&
-                          entry.criterion - finalists.front().criterion > kHopeless;
+    const bool hopeless =
+        !finalists.empty() && entry.criterion - finalists.front().criterion > kHopeless;
     (finalists.size() < kFinalists && !hopeless ? finalists : others)
         .push_back(std::move(entry));
   }
@@ -426,8 +425,8 @@ bool Search::Prune() {
 }
 
 SearchResult Search::Run() {
-  result_.fit =
-      FitCauses(problem_, candidates_, result_.fit.causes, {10, 1e-5, true, nullptr, true});
+  result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
+                          {10, 1e-5, true, nullptr, true});
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
   independent_ = VectorXd::Ones(problem_.run.outputs.rows());
@@ -446,8 +445,8 @@ SearchResult Search::Run() {
   }
   if (!result_.fit.causes.empty()) {
     // Near the optimum by secants, the rest by differences.
-    result_.fit =
-        FitCauses(problem_, candidates_, result_.fit.causes, {12, 1e-8, false, Known(), true});
+    result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
+                            {12, 1e-8, false, Known(), true});
     result_.fit =
         FitCauses(problem_, candidates_, result_.fit.causes, {4, 1e-8, true, nullptr});
   }

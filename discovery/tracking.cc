@@ -32,10 +32,9 @@ Eigen::RowVectorXd Samples(const Record& measured, const std::string& name,
 /// forces as joints that rub, next to uncoupled, and projected Gauss-Seidel finds them
 /// in a few sweeps, closer than Newton's default tolerance and in half of its time.
 void ChooseSolver(mjModel& model) {
-  const bool limited =
-      std::any_of(model.jnt_limited, model.jnt_limited + model.njnt,
-                  [](mjtByte is) { return is != 0; }) ||
-      model.ntendon > 0;
+  const bool limited = std::any_of(model.jnt_limited, model.jnt_limited + model.njnt,
+                                   [](mjtByte is) { return is != 0; }) ||
+                       model.ntendon > 0;
   const bool contacts =
       model.ngeom > 0 && (model.opt.disableflags & mjDSBL_CONTACT) == 0;
   if (model.neq == 0 && !limited && !contacts) model.opt.solver = mjSOL_PGS;

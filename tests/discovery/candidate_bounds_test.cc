@@ -11,8 +11,8 @@ namespace {
 
 const FitParameter& Parameter(const std::vector<Candidate>& candidates,
                               const std::string& candidate, const std::string& name) {
-  const auto found = std::ranges::find(
-      candidates, candidate, [](const Candidate& c) { return Describe(c); });
+  const auto found = std::ranges::find(candidates, candidate,
+                                       [](const Candidate& c) { return Describe(c); });
   return *std::ranges::find(found->parameters, name, &FitParameter::name);
 }
 
@@ -21,8 +21,8 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
   const auto before = candidates;
-  const Track track = FollowRun(stage.setup, *stage.plant, {}, problem.run,
-                                problem.observer, true);
+  const Track track =
+      FollowRun(stage.setup, *stage.plant, {}, problem.run, problem.observer, true);
   const ObservedMotion motion = ObserveMotion(*stage.plant, problem.run, track);
   BoundByRecord(candidates, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();

@@ -101,11 +101,10 @@ TEST(ErrorDynamics, HasAnAdjoint) {
 TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
   const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
   const ModelPtr plant = LoadPlant(setup);
-  const Record measured =
-      Simulate(setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")),
-               {});
-  const DiscoveryProblem problem = Beginning(
-      PoseProblem(setup, *plant, measured, 0.8, 0.0), 6000);
+  const Record measured = Simulate(
+      setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")), {});
+  const DiscoveryProblem problem =
+      Beginning(PoseProblem(setup, *plant, measured, 0.8, 0.0), 6000);
   for (const Index block : {1, 3}) {
     ErrorDynamics dynamics(problem.observer, block);
     const Track track = FollowRun(setup, *plant, {}, problem.run, problem.observer,
@@ -114,8 +113,7 @@ TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
     for (const char* name : {"X", "Y", "Z"}) {
       const int joint = mj_name2id(plant.get(), mjOBJ_JOINT, name);
       const double coefficient = 1e-5 * plant->dof_damping[joint];
-      const EffectSpec effect{
-          "viscous_friction", name, {{"coefficient", coefficient}}};
+      const EffectSpec effect{"viscous_friction", name, {{"coefficient", coefficient}}};
       const VectorXd response =
           problem.Residual({{}, {effect}}) - problem.Scaled(track);
       const VectorXd blocks = Averaged(response, 3, block);
