@@ -1,3 +1,13 @@
+# What nearly every file includes, parsed once a target: a third of a clean build. The
+# files still include what they use; MJDIAG_PRECOMPILE=OFF shows whether they do.
+option(MJDIAG_PRECOMPILE "Precompile the common headers" ON)
+function(mjdiag_precompile target)
+  if(MJDIAG_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${ARGN} <algorithm> <cmath> <filesystem>
+                              <functional> <map> <string> <vector>)
+  endif()
+endfunction()
+
 # mjdiag_folder(<name> LINKS <targets...> [PRIVATE_LINKS <targets...>])
 #
 # Makes the library target mjdiag_<name> (alias mjdiag::<name>) from the .cc files
@@ -21,6 +31,7 @@ function(mjdiag_folder name)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS}
                                          $<BUILD_INTERFACE:mjdiag_warnings>)
+  mjdiag_precompile(${target} <Eigen/Core>)
   install(TARGETS ${target} EXPORT mjdiagTargets)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION include/mjdiag/${name}
           FILES_MATCHING PATTERN "*.h")
