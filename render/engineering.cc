@@ -63,7 +63,7 @@ std::string GroupedNumber(double value) {
   std::string digits = Fixed(value, value == std::floor(value) ? 0 : 1);
   const std::size_t whole = std::min(digits.find('.'), digits.size());
   if (whole < 5) return digits;
-  for (std::size_t at = whole; at > 3; at -= 3) digits.insert(at - 3, " ");
+  for (std::size_t at = whole; at > 3; at -= 3) digits.insert(at - 3, 1, ' ');
   if (digits.front() == ' ') digits.erase(0, 1);
   return digits;
 }
