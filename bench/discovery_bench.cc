@@ -44,7 +44,8 @@ void DiscoverIn(benchmark::State& state, const std::string& machine,
       FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory)), hidden);
   DiscoverOptions options;
   for (auto _ : state) {
-    const DiscoveryProblem problem = PoseProblem(setup, *plant, measured, 0.8, 0.0);
+    const DiscoveryProblem problem =
+        PoseProblem(setup, *plant, measured, options.train_share, options.bandwidth);
     auto start = Clock::now();
     benchmark::DoNotOptimize(problem.Residual({}));
     const double replay = Since(start);

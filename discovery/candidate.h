@@ -8,7 +8,7 @@
 // that stand on it, drive effects at the actuators and encoder errors at the sensors of
 // the setup. Knobs come first; an effect that no measurement can tell from a knob
 // (Indistinguishable) is left to it. White encoder noise is not among the candidates:
-// it shows in the variance of the innovations, not in their course (noise_cause.h).
+// it shows in the variance of the innovations, not in their course (sensor_noise.h).
 
 #include <mujoco/mujoco.h>
 

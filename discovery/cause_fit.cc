@@ -254,15 +254,16 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     if (!summary.IsSolutionUsable()) {
       throw NumericalError("fit: the run with the first values diverges");
     }
-    fit.converged = summary.termination_type == ceres::CONVERGENCE;
     fit.causes = WithValues(start, theta);
   }
   if (theta.size() > 0) {
     fit.sensitivities =
         options.sensitivities ? simulator.Sensitivities(theta) : simulator.slope();
   }
-  fit.residual = problem.Residual(ChangesOf(candidates, fit.causes));
   const Index samples = problem.run.samples();
+  fit.residual = problem.train == samples
+                     ? simulator.Residual(theta)
+                     : problem.Residual(ChangesOf(candidates, fit.causes));
   fit.train = MeanSquare(fit.residual, channels, problem.skip, problem.train);
   fit.held_out = MeanSquare(fit.residual, channels, problem.train, samples);
   return fit;

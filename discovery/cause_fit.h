@@ -33,7 +33,6 @@ struct CauseFit {
   Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of the train part
   double train = 0.0;             ///< mean square of the train part
   double held_out = 0.0;          ///< of the rest; 0 without
-  bool converged = false;
 };
 
 struct FitOptions {

@@ -10,6 +10,7 @@
 
 #include "mjdiag/discovery/clock_drift.h"
 #include "mjdiag/discovery/tracking.h"
+#include "mjdiag/discovery/trial_signals.h"
 #include "mjdiag/plugin/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
@@ -55,8 +56,6 @@ double SmallestStep(const VectorXd& x) {
   }
   return smallest;
 }
-
-double Range(const VectorXd& x) { return x.maxCoeff() - x.minCoeff(); }
 
 class RecordCheck {
  public:

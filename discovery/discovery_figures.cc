@@ -97,9 +97,8 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
     variables.push_back(
         {name + " acceleration", unit + "/s^2", motion.acceleration.row(j), false});
   }
-  VectorXd direction = own;
   const double still = problem_.StillSpeed()[joint];
-  direction = own.unaryExpr([still](double v) {
+  const VectorXd direction = own.unaryExpr([still](double v) {
     return std::abs(v) < still ? 0.0 : v > 0.0 ? 1.0 : -1.0;
   });
   variables.push_back({"direction", "1", direction, true});

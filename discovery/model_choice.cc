@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mjdiag/discovery/mismatch.h"
 #include "mjdiag/discovery/noise_floor.h"
@@ -53,6 +54,35 @@ double GainByChance(double probability, int trials, int freedom) {
     half = target + power * std::log(half) - std::lgamma(0.5 * freedom);
   }
   return 2.0 * half;
+}
+
+int ParameterCount(const std::vector<FittedCause>& causes) {
+  int count = 0;
+  for (const FittedCause& cause : causes) count += static_cast<int>(cause.value.size());
+  return count;
+}
+
+double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
+                 const VectorXd& independent) {
+  const double samples = static_cast<double>(problem.train - problem.skip);
+  const double n = std::max(2.0, samples * independent.sum());
+  return Deviance(fit.residual, independent, problem.skip, problem.train) +
+         ParameterCount(fit.causes) * std::log(n);
+}
+
+std::vector<double> Criteria(const DiscoveryProblem& problem,
+                             const std::vector<std::optional<CauseFit>>& fits) {
+  const CauseFit* best = nullptr;
+  for (const auto& fit : fits) {
+    if (fit && (best == nullptr || fit->train < best->train)) best = &*fit;
+  }
+  std::vector<double> criteria(fits.size(), std::numeric_limits<double>::infinity());
+  if (best == nullptr) return criteria;
+  const VectorXd independent = IndependentShare(problem, best->residual);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i]) criteria[i] = Criterion(problem, *fits[i], independent);
+  }
+  return criteria;
 }
 
 }  // namespace mjdiag

@@ -8,7 +8,10 @@
 // coloured.
 
 #include <Eigen/Core>
+#include <optional>
+#include <vector>
 
+#include "mjdiag/discovery/cause_fit.h"
 #include "mjdiag/discovery/problem.h"
 
 namespace mjdiag {
@@ -25,5 +28,18 @@ Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
 /// Gain that the best of `trials` reaches by chance with that probability where there
 /// is noise only, of a trial with that many degrees of freedom.
 double GainByChance(double probability, int trials, int freedom);
+
+int ParameterCount(const std::vector<FittedCause>& causes);
+
+/// Bayesian information criterion of the train part, deviance + parameters log n.
+double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
+                 const Eigen::VectorXd& independent);
+
+/// Criteria of competing fits. How many independent values they are judged by is what
+/// the best of them leaves: beside all models a real machine does what is no white
+/// noise, and a law with many parameters must not win by that. A fit that failed, and
+/// is none, has infinity.
+std::vector<double> Criteria(const DiscoveryProblem& problem,
+                             const std::vector<std::optional<CauseFit>>& fits);
 
 }  // namespace mjdiag

@@ -182,11 +182,14 @@ std::vector<std::optional<Start>> Screener::Judge(const std::vector<Trial>& tria
 /// <e, r> = <signal, g> with g the adjoint, or r itself for what is fast.
 std::vector<double> Screener::Common(const Sweep& sweep,
                                      const Candidate& candidate) const {
-  const Eigen::Map<const MatrixXd> channels(full_.data(), channels_, block_ * blocks_);
   VectorXd of_fast = VectorXd::Zero(problem_.train);
-  of_fast.segment(block_ * skip_, block_ * blocks_) =
-      dynamics_.weight()[candidate.channel] *
-      channels.row(candidate.channel).transpose();
+  if (sweep.fast_below > 0.0) {  // a sensor; joints have no channel
+    const Eigen::Map<const MatrixXd> channels(full_.data(), channels_,
+                                              block_ * blocks_);
+    of_fast.segment(block_ * skip_, block_ * blocks_) =
+        dynamics_.weight()[candidate.channel] *
+        channels.row(candidate.channel).transpose();
+  }
   const Trial first = sweep.make(sweep.values.front());
   const VectorXd adjoint = first.entry.size() > 0
                                ? VectorXd(adjoint_.forces * first.entry.col(0))
@@ -337,7 +340,6 @@ Screening Screen(const DiscoveryProblem& problem,
   });
   Screening screening;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    if (tried[c] == 0) screening.not_excited.push_back(c);
     screening.trials += tried[c];
     screening.starts.insert(screening.starts.end(), found[c].begin(), found[c].end());
   }

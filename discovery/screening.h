@@ -34,8 +34,6 @@ struct Screening {
   /// The best starts of every candidate that is excited, best first.
   std::vector<Start> starts;
   int trials = 0;  ///< how many were looked at, for the chance of the best
-  /// Candidates that the motion does not excite.
-  std::vector<std::size_t> not_excited;
 };
 
 /// @param dynamics       of the train part at least, in blocks

@@ -18,12 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-int ParameterCount(const std::vector<FittedCause>& causes) {
-  int count = 0;
-  for (const FittedCause& cause : causes) count += static_cast<int>(cause.value.size());
-  return count;
-}
-
 FittedCause ToFitted(const Candidate& candidate, const Start& start) {
   FittedCause cause;
   cause.candidate = start.candidate;
@@ -36,6 +30,15 @@ FittedCause ToFitted(const Candidate& candidate, const Start& start) {
   return cause;
 }
 
+/// For fits that are compared: by secants, from what is known of J, none at the end.
+FitOptions CompareFrom(const MatrixXd* known, int iterations, double tolerance) {
+  return {.iterations = iterations,
+          .tolerance = tolerance,
+          .sensitivities = false,
+          .known = known,
+          .secant = true};
+}
+
 /// A search under way.
 class Search {
  public:
@@ -45,6 +48,10 @@ class Search {
         candidates_(candidates),
         options_(options),
         beginning_(Beginning(problem, BeginningLength(problem))) {
+    if (options.unseen != nullptr) {
+      unseen_ = problem;
+      unseen_->run = *options.unseen;
+    }
     if (before == nullptr) return;
     result_.fit.causes = before->fit.causes;
     result_.contenders = before->contenders;
@@ -66,14 +73,15 @@ class Search {
   }
   Screening ScreenRest() const;
   bool IsSignificant(const Start& start, const Screening& screening) const;
+  /// Squared innovations of the train part if noise is all there is.
+  double Noise() const {
+    return static_cast<double>(problem_.run.outputs.rows() *
+                               (problem_.train - problem_.skip));
+  }
   double RestOf(const Start& start) const;
   double MostRest(const Screening& screening) const;
   std::vector<Start> Shortlist(const Screening& screening) const;
-  static double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
-                          const VectorXd& independent);
-  static std::vector<double> Criteria(const DiscoveryProblem& problem,
-                                      const std::vector<std::optional<CauseFit>>& fits);
-  double Criterion(const CauseFit& fit) const {
+  double CriterionOf(const CauseFit& fit) const {
     return Criterion(problem_, fit, independent_);
   }
   std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
@@ -97,8 +105,8 @@ class Search {
   const MatrixXd* Known() const {
     return result_.fit.sensitivities.cols() > 0 ? &result_.fit.sensitivities : nullptr;
   }
-  bool Improves(const CauseFit& after) const;
-  double UnseenDeviance(const CauseFit& fit) const;
+  VectorXd UnseenResidual(const CauseFit& fit) const;
+  double UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const;
   MatrixXd SensitivitiesWithout(std::size_t i) const;
   bool Prune();
 
@@ -106,6 +114,7 @@ class Search {
   const std::vector<Candidate>& candidates_;
   const SearchOptions& options_;
   DiscoveryProblem beginning_;
+  std::optional<DiscoveryProblem> unseen_;  // the other record
   SearchResult result_;
   VectorXd independent_;
 };
@@ -129,9 +138,7 @@ bool Search::IsSignificant(const Start& start, const Screening& screening) const
 
 /// Squared innovations that a start leaves to first order, not less than noise does.
 double Search::RestOf(const Start& start) const {
-  const auto samples = static_cast<double>(problem_.run.outputs.rows() *
-                                           (problem_.train - problem_.skip));
-  return std::max(samples * result_.fit.train - start.gain, samples);
+  return std::max(Noise() * result_.fit.train - start.gain, Noise());
 }
 
 /// The most that a start may leave to first order to be worth a fit. The first order is
@@ -141,12 +148,10 @@ double Search::MostRest(const Screening& screening) const {
   constexpr double kOfExcess = 0.1;
   constexpr double kOfRest = 1.0;
   constexpr double kChance = 200.0;
-  const auto noise = static_cast<double>(problem_.run.outputs.rows() *
-                                         (problem_.train - problem_.skip));
-  const double excess = noise * std::max(result_.fit.train - 1.0, 0.0);
-  double least = noise + excess;
+  const double excess = Noise() * std::max(result_.fit.train - 1.0, 0.0);
+  double least = Noise() + excess;
   for (const Start& start : screening.starts) least = std::min(least, RestOf(start));
-  return least + kOfRest * (least - noise) + kOfExcess * excess + kChance;
+  return least + kOfRest * (least - Noise()) + kOfExcess * excess + kChance;
 }
 
 /// The best start of every candidate first, then second ones, so that a flexible law
@@ -172,32 +177,6 @@ std::vector<Start> Search::Shortlist(const Screening& screening) const {
   return list;
 }
 
-double Search::Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
-                         const VectorXd& independent) {
-  const double samples = static_cast<double>(problem.train - problem.skip);
-  const double n = std::max(2.0, samples * independent.sum());
-  return Deviance(fit.residual, independent, problem.skip, problem.train) +
-         ParameterCount(fit.causes) * std::log(n);
-}
-
-/// Criteria of competing fits. How many independent values they are judged by is what
-/// the best of them leaves: beside all models a real machine does what is no white
-/// noise, and a law with many parameters must not win by that. None: the fit failed.
-std::vector<double> Search::Criteria(const DiscoveryProblem& problem,
-                                     const std::vector<std::optional<CauseFit>>& fits) {
-  const CauseFit* best = nullptr;
-  for (const auto& fit : fits) {
-    if (fit && (best == nullptr || fit->train < best->train)) best = &*fit;
-  }
-  std::vector<double> criteria(fits.size(), std::numeric_limits<double>::infinity());
-  if (best == nullptr) return criteria;
-  const VectorXd independent = IndependentShare(problem, best->residual);
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (fits[i]) criteria[i] = Criterion(problem, *fits[i], independent);
-  }
-  return criteria;
-}
-
 std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
                                        const std::vector<FittedCause>& causes,
                                        const FitOptions& options) const {
@@ -219,7 +198,7 @@ void Search::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     fits[i] =
-        TryFit(beginning_, entries[i].causes, {iterations, 1e-3, false, Known(), true});
+        TryFit(beginning_, entries[i].causes, CompareFrom(Known(), iterations, 1e-3));
   });
   // On more data a difference grows in proportion.
   const double growth = static_cast<double>(problem_.train - problem_.skip) /
@@ -292,7 +271,7 @@ Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
   }
   ParallelFor(static_cast<int>(finalists.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] = TryFit(problem_, finalists[i].causes, {8, 1e-4, false, Known(), true});
+    fits[i] = TryFit(problem_, finalists[i].causes, CompareFrom(Known(), 8, 1e-4));
   });
   Round round;
   const std::vector<double> criteria = Criteria(problem_, fits);
@@ -336,35 +315,40 @@ void SetProbabilities(std::vector<Contender>& contenders) {
   for (Contender& c : contenders) c.probability /= sum;
 }
 
-/// Of the part held out and of another record.
-double Search::UnseenDeviance(const CauseFit& fit) const {
-  const Index samples = problem_.run.samples();
-  double deviance = problem_.train < samples
-                        ? Deviance(fit.residual, independent_, problem_.train, samples)
-                        : 0.0;
-  if (options_.unseen == nullptr) return deviance;
-  DiscoveryProblem other = problem_;
-  other.run = *options_.unseen;
+/// What the other record leaves with those causes; nothing without one or where it
+/// diverges.
+VectorXd Search::UnseenResidual(const CauseFit& fit) const {
+  if (!unseen_) return {};
   try {
-    const VectorXd residual = other.Residual(ChangesOf(candidates_, fit.causes));
-    deviance += Deviance(residual, independent_, problem_.skip, other.run.samples());
+    return unseen_->Residual(ChangesOf(candidates_, fit.causes));
   } catch (const NumericalError&) {
-    return std::numeric_limits<double>::infinity();
+    return {};
   }
-  return deviance;
 }
 
-bool Search::Improves(const CauseFit& after) const {
-  return Criterion(after) < Criterion(result_.fit) &&
-         UnseenDeviance(after) <= UnseenDeviance(result_.fit);
+/// Of the part held out and of another record.
+double Search::UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const {
+  const Index samples = problem_.run.samples();
+  const double deviance =
+      problem_.train < samples
+          ? Deviance(fit.residual, independent_, problem_.train, samples)
+          : 0.0;
+  if (!unseen_) return deviance;
+  if (unseen.size() == 0) return std::numeric_limits<double>::infinity();
+  return deviance +
+         Deviance(unseen, independent_, problem_.skip, unseen_->run.samples());
 }
 
 /// Keeps the best contender that explains unseen data as well; false if none does.
 bool Search::Keep(Round round) {
+  const VectorXd unseen_before = UnseenResidual(result_.fit);
   for (std::size_t i = 0; i < round.fits.size(); ++i) {
-    independent_ = IndependentShare(problem_, round.fits[i].residual);
-    if (!Improves(round.fits[i])) {
-      result_.refuted.push_back(round.fits[i].causes.back());
+    const CauseFit& after = round.fits[i];
+    independent_ = IndependentShare(problem_, after.residual);
+    if (CriterionOf(after) >= CriterionOf(result_.fit)) continue;
+    if (UnseenDeviance(after, UnseenResidual(after)) >
+        UnseenDeviance(result_.fit, unseen_before)) {
+      result_.refuted.push_back(after.causes.back());
       continue;
     }
     round.contenders.erase(round.contenders.begin(),
@@ -403,18 +387,18 @@ bool Search::Prune() {
     causes.erase(causes.begin() + number);
     const MatrixXd known = SensitivitiesWithout(i);
     // If it is far from superfluous the beginning says so.
-    const auto early = TryFit(beginning_, causes, {4, 1e-3, false, &known, true});
+    const auto early = TryFit(beginning_, causes, CompareFrom(&known, 4, 1e-3));
     if (!early) return;
     const double now =
         Deviance(early->residual, independent_, problem_.skip, beginning_.train);
     if (now - before > kFar) return;
-    fits[i] = TryFit(problem_, causes, {8, 1e-5, false, &known, true});
+    fits[i] = TryFit(problem_, causes, CompareFrom(&known, 8, 1e-5));
   });
-  double criterion = Criterion(result_.fit);
+  double criterion = CriterionOf(result_.fit);
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i] || Criterion(*fits[i]) >= criterion) continue;
-    criterion = Criterion(*fits[i]);
+    if (!fits[i] || CriterionOf(*fits[i]) >= criterion) continue;
+    criterion = CriterionOf(*fits[i]);
     dropped = i;
   }
   if (!dropped) return false;
@@ -426,7 +410,7 @@ bool Search::Prune() {
 
 SearchResult Search::Run() {
   result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
-                          {10, 1e-5, true, nullptr, true});
+                          {.iterations = 10, .tolerance = 1e-5, .secant = true});
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
   independent_ = VectorXd::Ones(problem_.run.outputs.rows());
@@ -435,8 +419,7 @@ SearchResult Search::Run() {
   }
   for (int round = 0;; ++round) {
     Report("screening", 0.0);
-    result_.left = ScreenRest();
-    const std::vector<Start> shortlist = Shortlist(result_.left);
+    const std::vector<Start> shortlist = Shortlist(ScreenRest());
     result_.significant_rest = !shortlist.empty();
     if (shortlist.empty() || round >= options_.most_causes) break;
     if (!Keep(Compete(shortlist))) break;
@@ -446,9 +429,9 @@ SearchResult Search::Run() {
   if (!result_.fit.causes.empty()) {
     // Near the optimum by secants, the rest by differences.
     result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
-                            {12, 1e-8, false, Known(), true});
-    result_.fit =
-        FitCauses(problem_, candidates_, result_.fit.causes, {4, 1e-8, true, nullptr});
+                            CompareFrom(Known(), 12, 1e-8));
+    result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
+                            {.iterations = 4, .tolerance = 1e-8});
   }
   return std::move(result_);
 }

@@ -55,8 +55,7 @@ struct SearchResult {
   std::vector<Rung> ladder;
   /// Those that explained the train part best but not what a fit did not see.
   std::vector<FittedCause> refuted;
-  Screening left;  ///< screening of what is left in the end
-  /// Whether that shows any candidate to be significant.
+  /// Whether a screening of what is left shows any candidate to be significant.
   bool significant_rest = false;
 };
 
