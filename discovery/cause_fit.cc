@@ -17,41 +17,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// All parameters in one vector and back.
-VectorXd Flatten(const std::vector<FittedCause>& causes) {
-  Index size = 0;
-  for (const FittedCause& cause : causes) size += cause.value.size();
-  VectorXd all(size);
-  Index next = 0;
-  for (const FittedCause& cause : causes) {
-    all.segment(next, cause.value.size()) = cause.value;
-    next += cause.value.size();
-  }
-  return all;
-}
-
-std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
-                                    const VectorXd& all) {
-  Index next = 0;
-  for (FittedCause& cause : causes) {
-    cause.value = all.segment(next, cause.value.size());
-    next += cause.value.size();
-  }
-  return causes;
-}
-
-/// Step of a forward difference: small beside what the parameter does, large beside
-/// the rounding of a run.
-double StepOf(const FitParameter& parameter, double value, double duration) {
-  constexpr double kRelative = 1e-4;
-  if (parameter.name == "phase") return kRelative;
-  if (parameter.name == "frequency")
-    return kRelative * std::min(value, 10.0 / duration);
+/// What a parameter is compared with: steps of differences are small beside it.
+double ScaleOf(const FitParameter& parameter, double value, double duration) {
+  if (parameter.name == "phase") return 1.0;
+  if (parameter.name == "frequency") return std::min(value, 10.0 / duration);
   // Around 1: what counts is how far it is from there.
   if (parameter.name == "factor" || parameter.name == "value") {
-    return kRelative * std::max(std::abs(value - 1.0), 1e-3);
+    return std::max(std::abs(value - 1.0), 1e-3);
   }
-  return kRelative * std::max(std::abs(value), 1e-12);
+  return std::max(std::abs(value), 1e-12);
 }
 
 /// The innovations as a function of theta, with the last run kept: Ceres asks for the
@@ -64,12 +38,8 @@ class Simulator {
         candidates_(candidates),
         causes_(causes),
         known_(options.known),
-        secant_(options.secant) {
-    for (const FittedCause& cause : causes) {
-      const auto& list = candidates[cause.candidate].parameters;
-      parameters_.insert(parameters_.end(), list.begin(), list.end());
-    }
-  }
+        secant_(options.secant),
+        parameters_(ParametersOf(candidates, causes)) {}
   const std::vector<FitParameter>& parameters() const { return parameters_; }
 
   const VectorXd& Residual(const VectorXd& theta) {
@@ -106,12 +76,7 @@ class Simulator {
     if (kept > 0) J.leftCols(kept) = known_->topRows(base.size());
     ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
       const Index i = kept + number;
-      const FitParameter& parameter = parameters_[static_cast<std::size_t>(i)];
-      double step = StepOf(parameter, theta[i], duration);
-      if (theta[i] + step > parameter.upper) step = -step;
-      VectorXd moved = theta;
-      moved[i] += step;
-      J.col(i) = (RunAt(moved) - base) / step;
+      J.col(i) = Difference(theta, base, i, duration);
     });
     return J;
   }
@@ -127,6 +92,38 @@ class Simulator {
     if (!(length > 0.0)) return;
     const VectorXd missed = Residual(theta) - slope_residual_ - slope_ * step;
     slope_ += missed * (metric / length).transpose();
+  }
+  /// Column i of J. A machine that sticks and slips may answer to any change, however
+  /// small, with a course of its own: a difference that a step ten times as large does
+  /// not raise. Then only large steps show the slope.
+  VectorXd Difference(const VectorXd& theta, const VectorXd& base, Index i,
+                      double duration) const {
+    constexpr double kFirst = 1e-4;
+    constexpr double kLast = 0.1;
+    constexpr double kNoticed = 10.0;  // standard deviations of the noise
+    constexpr double kGrows = 5.0;
+    const FitParameter& parameter = parameters_[static_cast<std::size_t>(i)];
+    const double scale = ScaleOf(parameter, theta[i], duration);
+    const auto slope = [&](double step) {
+      if (theta[i] + step > parameter.upper) step = -step;
+      VectorXd moved = theta;
+      moved[i] += step;
+      return VectorXd((RunAt(moved) - base) / step);
+    };
+    VectorXd found = slope(kFirst * scale);
+    for (double part = kFirst; part < kLast; part *= 10.0) {
+      if (found.norm() * part * scale < kNoticed) break;
+      try {
+        VectorXd further = slope(10.0 * part * scale);
+        if (10.0 * further.norm() > kGrows * found.norm()) break;
+        found = std::move(further);
+      } catch (const NumericalError&) {
+        break;
+      } catch (const InputError&) {
+        break;
+      }
+    }
+    return found;
   }
   VectorXd RunAt(const VectorXd& theta) const {
     return problem_.Residual(ChangesOf(candidates_, WithValues(causes_, theta)));
@@ -198,6 +195,38 @@ void SetBounds(ceres::Problem& problem, double* theta,
 
 }  // namespace
 
+VectorXd Flatten(const std::vector<FittedCause>& causes) {
+  Index size = 0;
+  for (const FittedCause& cause : causes) size += cause.value.size();
+  VectorXd all(size);
+  Index next = 0;
+  for (const FittedCause& cause : causes) {
+    all.segment(next, cause.value.size()) = cause.value;
+    next += cause.value.size();
+  }
+  return all;
+}
+
+std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
+                                    const VectorXd& all) {
+  Index next = 0;
+  for (FittedCause& cause : causes) {
+    cause.value = all.segment(next, cause.value.size());
+    next += cause.value.size();
+  }
+  return causes;
+}
+
+std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
+                                       const std::vector<FittedCause>& causes) {
+  std::vector<FitParameter> parameters;
+  for (const FittedCause& cause : causes) {
+    const auto& list = candidates[cause.candidate].parameters;
+    parameters.insert(parameters.end(), list.begin(), list.end());
+  }
+  return parameters;
+}
+
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted) {
   const Candidate& candidate = candidates[fitted.candidate];
   Cause cause = candidate.cause;
@@ -240,6 +269,13 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     ceres::Problem least_squares(ownership);
     least_squares.AddResidualBlock(&cost, nullptr, theta.data());
     SetBounds(least_squares, theta.data(), simulator.parameters());
+    const int size = static_cast<int>(theta.size());
+    if (options.held && size == 1) {
+      least_squares.SetParameterBlockConstant(theta.data());
+    } else if (options.held) {
+      const int held = static_cast<int>(*options.held);
+      least_squares.SetManifold(theta.data(), new ceres::SubsetManifold(size, {held}));
+    }
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = options.iterations;
@@ -267,6 +303,37 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   fit.train = MeanSquare(fit.residual, channels, problem.skip, problem.train);
   fit.held_out = MeanSquare(fit.residual, channels, problem.train, samples);
   return fit;
+}
+
+FitOptions CompareFrom(const MatrixXd* known, int iterations, double tolerance) {
+  return {.iterations = iterations,
+          .tolerance = tolerance,
+          .sensitivities = false,
+          .known = known,
+          .secant = true};
+}
+
+std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
+                               const std::vector<Candidate>& candidates,
+                               const std::vector<FittedCause>& start,
+                               const FitOptions& options) {
+  try {
+    return FitCauses(problem, candidates, start, options);
+  } catch (const NumericalError&) {
+    return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i) {
+  const MatrixXd& all = fit.sensitivities;
+  Index first = 0;
+  for (std::size_t k = 0; k < i; ++k) first += fit.causes[k].value.size();
+  const Index count = fit.causes[i].value.size();
+  MatrixXd rest(all.rows(), all.cols() - count);
+  rest << all.leftCols(first), all.rightCols(all.cols() - first - count);
+  return rest;
 }
 
 MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {

@@ -14,6 +14,7 @@
 //   s_k = J_k^T e_k,   w_l = 1 - |l| / (m + 1)
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "mjdiag/discovery/candidate.h"
@@ -47,7 +48,17 @@ struct FitOptions {
   /// J from differences at the start only, then by Broyden's updates: one run a step
   /// instead of one for every parameter. Near enough to compare causes.
   bool secant = false;
+  /// Place of a parameter that keeps its value.
+  std::optional<Eigen::Index> held = std::nullopt;
 };
+
+/// All parameters in one vector, in order of the causes, and back.
+Eigen::VectorXd Flatten(const std::vector<FittedCause>& causes);
+std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
+                                    const Eigen::VectorXd& all);
+/// Names and bounds in the same order.
+std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
+                                       const std::vector<FittedCause>& causes);
 
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted);
 /// Changes to the plant that the causes are.
@@ -60,6 +71,19 @@ Changes ChangesOf(const std::vector<Candidate>& candidates,
 CauseFit FitCauses(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates,
                    const std::vector<FittedCause>& start, const FitOptions& options);
+
+/// For fits that are compared: by secants, from what is known of J (or null), none
+/// computed at the end.
+FitOptions CompareFrom(const Eigen::MatrixXd* known, int iterations, double tolerance);
+
+/// The same; none where the start diverges or takes away more than there is.
+std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
+                               const std::vector<Candidate>& candidates,
+                               const std::vector<FittedCause>& start,
+                               const FitOptions& options);
+
+/// J of a fit but for cause i.
+Eigen::MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i);
 
 /// Covariance of all parameters of the fit, in order of the causes; infinite variance
 /// where the data say nothing.

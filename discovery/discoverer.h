@@ -9,6 +9,7 @@
 #include "mjdiag/discovery/cause_fit.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/problem.h"
+#include "mjdiag/discovery/profile_interval.h"
 #include "mjdiag/discovery/search.h"
 #include "mjdiag/discovery/trial.h"
 
@@ -42,9 +43,10 @@ class Discoverer {
   }
   bool IsColoured() const;
   void NameCauses();
-  std::vector<CauseParameter> ParametersOf(const FittedCause& fitted,
-                                           const Eigen::MatrixXd& covariance,
-                                           Eigen::Index first) const;
+  std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
+                                                 const Eigen::MatrixXd& covariance,
+                                                 const std::vector<Interval>& intervals,
+                                                 Eigen::Index first) const;
   std::vector<Alternative> AlternativesOf(
       const FittedCause& fitted, const std::vector<Contender>& contenders) const;
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);

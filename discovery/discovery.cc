@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/model_choice.h"
+#include "mjdiag/discovery/profile_interval.h"
 #include "mjdiag/discovery/sensor_noise.h"
 #include "mjdiag/discovery/telling_motion.h"
 
@@ -31,20 +32,20 @@ constexpr double kNormal95 = 1.959964;
 
 }  // namespace
 
-std::vector<CauseParameter> Discoverer::ParametersOf(const FittedCause& fitted,
-                                                     const MatrixXd& covariance,
-                                                     Index first) const {
+std::vector<CauseParameter> Discoverer::DescribeParameters(
+    const FittedCause& fitted, const MatrixXd& covariance,
+    const std::vector<Interval>& intervals, Index first) const {
   const Candidate& candidate = candidates_[fitted.candidate];
   std::vector<CauseParameter> parameters;
   for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
     const auto index = static_cast<Index>(i);
-    const double value = fitted.value[index];
+    const Interval& interval = intervals[static_cast<std::size_t>(first) + i];
     const double sd = std::sqrt(covariance(first + index, first + index));
     const std::string& name = candidate.parameters[i].name;
     const std::string unit =
         candidate.cause.fault ? "1" : SiteUnit(plant_, candidate.cause.spec, name);
     parameters.push_back(
-        {name, unit, value, sd, value - kNormal95 * sd, value + kNormal95 * sd});
+        {name, unit, fitted.value[index], sd, interval.low, interval.high});
   }
   return parameters;
 }
@@ -73,11 +74,14 @@ void Discoverer::NameCauses() {
   const CauseFit& fit = search_.fit;
   if (fit.causes.empty()) return;
   const MatrixXd covariance = ParameterCovariance(problem_, fit);
+  Report("intervals", 0.7);
+  const std::vector<Interval> intervals =
+      ParameterIntervals(problem_, candidates_, fit, covariance);
   Index first = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
     FoundCause found;
     found.cause = CauseOf(candidates_, fit.causes[i]);
-    found.parameters = ParametersOf(fit.causes[i], covariance, first);
+    found.parameters = DescribeParameters(fit.causes[i], covariance, intervals, first);
     first += fit.causes[i].value.size();
     found.probability = 1.0;
     for (const Contender& contender : search_.contenders[i]) {

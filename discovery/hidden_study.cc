@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "mjdiag/discovery/mismatch.h"
 #include "mjdiag/plugin/simulation.h"
@@ -19,32 +20,38 @@ void Normalise(std::map<std::string, double>& values) {
   values.at("phase") += std::numbers::pi;
 }
 
-/// Whether a true value lies in the interval; phases up to whole turns.
+/// Whether a true value lies in the interval, an end of which may be missing; one
+/// without both says nothing and covers nothing. Phases up to whole turns.
 bool Covers(const CauseParameter& parameter, double truth, double shift) {
   double off = truth - (parameter.value + shift);
   if (parameter.name == "phase") off = std::remainder(off, 2.0 * std::numbers::pi);
-  return std::abs(off) <= 0.5 * (parameter.high - parameter.low);
+  return (std::isfinite(parameter.low) || std::isfinite(parameter.high)) &&
+         off >= parameter.low - parameter.value &&
+         off <= parameter.high - parameter.value;
+}
+
+/// The value of that kind which is the same change of the model; none if none is.
+std::optional<double> TwinValue(const mjModel& plant, Cause cause, double value,
+                                const Cause& kind) {
+  cause.spec.parameters.begin()->second = value;
+  for (const Cause& twin : Twins(plant, cause)) {
+    if (SameKind(twin, kind)) return twin.spec.parameters.begin()->second;
+  }
+  return std::nullopt;
 }
 
 void CountParameters(const mjModel& plant, const FoundCause& found, const Cause& truth,
                      HiddenOutcome& outcome) {
   if (!SameKind(found.cause, truth)) {
     // A knob for an effect or the other way round: the interval of the twin is that of
-    // the one found, scaled alike.
-    for (const Cause& twin : Twins(plant, found.cause)) {
-      if (!SameKind(twin, truth)) continue;
-      const CauseParameter& parameter = found.parameters.front();
-      FoundCause high = found;
-      high.cause.spec.parameters.begin()->second = parameter.high;
-      for (const Cause& upper : Twins(plant, high.cause)) {
-        if (!SameKind(upper, truth)) continue;
-        const double value = twin.spec.parameters.begin()->second;
-        const double half = std::abs(upper.spec.parameters.begin()->second - value);
-        ++outcome.parameters;
-        outcome.covered +=
-            std::abs(truth.spec.parameters.begin()->second - value) <= half;
-      }
-    }
+    // the one found.
+    const CauseParameter& parameter = found.parameters.front();
+    const auto low = TwinValue(plant, found.cause, parameter.low, truth);
+    const auto high = TwinValue(plant, found.cause, parameter.high, truth);
+    if (!low || !high) return;
+    const double value = truth.spec.parameters.begin()->second;
+    ++outcome.parameters;
+    outcome.covered += std::min(*low, *high) <= value && value <= std::max(*low, *high);
     return;
   }
   std::map<std::string, double> values = truth.spec.parameters;
@@ -127,8 +134,10 @@ HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
     ++outcome.named;
     CountParameters(plant, *found, cause, outcome);
   }
+  outcome.claim = outcome.answer.verdict != DiscoveryVerdict::kNoDiscrepancy;
   outcome.right = outcome.named == static_cast<int>(truth.size()) &&
-                  outcome.answer.causes.size() == truth.size();
+                  outcome.answer.causes.size() == truth.size() &&
+                  outcome.claim == !truth.empty();
   outcome.unseen_ratio = UnseenRatio(setup, plant, outcome.hidden, outcome.answer);
   outcome.hidden.record = {};
   outcome.hidden.unseen = {};

@@ -21,6 +21,7 @@ struct HiddenOutcome {
   HiddenCase hidden;  ///< without its records
   Discovery answer;
   int named = 0;       ///< of the truth, effect (or an indistinguishable one) and site
+  bool claim = false;  ///< that anything is there, with or without a name
   bool right = false;  ///< all named, and nothing else
   int parameters = 0;  ///< of those that were named
   int covered = 0;     ///< of them inside their 95 % interval

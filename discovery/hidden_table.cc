@@ -42,7 +42,7 @@ StudyTable Summary(const Count& count, int causes) {
   table.title = "How often it is right";
   table.columns = {"figure", "value"};
   if (causes == 0) {
-    table.rows.push_back({"runs with a claim", Of(count.claims, count.runs)});
+    table.rows.push_back({"runs with a claim that something is there", Of(count.claims, count.runs)});
     return table;
   }
   table.rows.push_back(
@@ -80,7 +80,7 @@ std::vector<StudyTable> HiddenStudy(const Setup& setup, const mjModel& plant,
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     ++count.runs;
     count.right += outcome.right;
-    count.claims += !outcome.answer.causes.empty();
+    count.claims += outcome.claim;
     count.parameters += outcome.parameters;
     count.covered += outcome.covered;
     count.close += outcome.right && outcome.unseen_ratio <= 1.2;

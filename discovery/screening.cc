@@ -59,10 +59,16 @@ class Screener {
   template <typename Take>
   void ForEachResponse(const std::vector<Trial>& trials, const Candidate& candidate,
                        const Take& take) const;
-  /// The trials of a sweep that promise most, and neighbours of them. What a wave has
-  /// in common with the residual comes from the adjoint, one product each; its size is
-  /// smooth over the sweep and comes from a few of them.
-  std::vector<Trial> BestOf(const Sweep& sweep, const Candidate& candidate) const;
+  /// The trials of a sweep that promise most, and neighbours of them.
+  /// @param worth  of its values, larger is better
+  std::vector<Trial> BestOf(const Sweep& sweep, const Candidate& candidate,
+                            const std::vector<double>& worth) const;
+  /// About what every value of a sweep gains. What a wave has in common with the
+  /// residual comes from the adjoint, one product each; its size, which is nearly
+  /// smooth over the sweep, from a few of them.
+  std::vector<double> RoughGains(const Sweep& sweep, const Candidate& candidate) const;
+  /// What every value gains.
+  std::vector<double> Gains(const Sweep& sweep, const Candidate& candidate) const;
   std::vector<double> BestPlaces(const Sweep& sweep, const std::vector<double>& places,
                                  const Candidate& candidate, std::size_t count) const;
   static double ValueAt(const Sweep& sweep, double place);
@@ -215,12 +221,9 @@ std::vector<double> Screener::Common(const Sweep& sweep,
   return common;
 }
 
-std::vector<Trial> Screener::BestOf(const Sweep& sweep,
-                                    const Candidate& candidate) const {
+std::vector<double> Screener::RoughGains(const Sweep& sweep,
+                                         const Candidate& candidate) const {
   constexpr std::size_t kEvery = 16;
-  constexpr std::size_t kCoarse = 12;
-  constexpr std::size_t kFine = 6;
-  constexpr std::size_t kKept = 6;
   const std::size_t count = sweep.values.size();
   std::vector<Trial> sample;
   for (std::size_t i = 0; i < count; i += kEvery) {
@@ -230,21 +233,41 @@ std::vector<Trial> Screener::BestOf(const Sweep& sweep,
   ForEachResponse(sample, candidate, [&](std::size_t, const auto& response) {
     known_size.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
   });
-  std::vector<std::pair<double, std::size_t>> worth;
-  const std::vector<double> common = Common(sweep, candidate);
+  std::vector<double> gains = Common(sweep, candidate);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t before = i / kEvery;
     const std::size_t after = std::min(before + 1, known_size.size() - 1);
     const double part = static_cast<double>(i % kEvery) / kEvery;
     const double size = (1.0 - part) * known_size[before] + part * known_size[after];
-    worth.emplace_back(common[i] / std::exp(size), i);
+    gains[i] /= std::exp(size);
   }
-  std::ranges::sort(worth, std::greater<>());
+  return gains;
+}
+
+std::vector<double> Screener::Gains(const Sweep& sweep,
+                                    const Candidate& candidate) const {
+  std::vector<Trial> trials;
+  for (const double value : sweep.values) trials.push_back(sweep.make(value));
+  std::vector<double> gains;
+  for (const auto& start : Judge(trials, candidate)) {
+    gains.push_back(start ? start->gain : 0.0);
+  }
+  return gains;
+}
+
+std::vector<Trial> Screener::BestOf(const Sweep& sweep, const Candidate& candidate,
+                                    const std::vector<double>& worth) const {
+  constexpr std::size_t kCoarse = 12;
+  constexpr std::size_t kFine = 6;
+  constexpr std::size_t kKept = 6;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < worth.size(); ++i) order.emplace_back(worth[i], i);
+  std::ranges::sort(order, std::greater<>());
   // A motion between few places makes many narrow peaks of nearly the same height: the
   // best values, and then the best of what lies closely around them.
   std::vector<double> kept;
   std::vector<std::size_t> centres;
-  for (const auto& [gain, i] : worth) {
+  for (const auto& [gain, i] : order) {
     const bool near = std::ranges::any_of(centres, [i = i](std::size_t k) {
       return std::max(i, k) - std::min(i, k) < 2;
     });
@@ -312,6 +335,19 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 
 }  // namespace
 
+FittedCause FittedFrom(const std::vector<Candidate>& candidates, const Start& start) {
+  const Candidate& candidate = candidates[start.candidate];
+  FittedCause cause;
+  cause.candidate = start.candidate;
+  cause.value.resize(static_cast<Index>(candidate.parameters.size()));
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    const FitParameter& parameter = candidate.parameters[i];
+    cause.value[static_cast<Index>(i)] = std::clamp(start.parameters.at(parameter.name),
+                                                    parameter.lower, parameter.upper);
+  }
+  return cause;
+}
+
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const VectorXd& residual,
@@ -327,7 +363,8 @@ Screening Screen(const DiscoveryProblem& problem,
     std::vector<Trial> trials;
     if (const auto sweep = MakeSweep(problem.model, candidate, motion, duration)) {
       tried[c] = static_cast<int>(sweep->values.size());
-      trials = screener.BestOf(*sweep, candidate);
+      trials =
+          screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
     } else {
       trials = MakeTrials(*problem.plant, problem.model, candidate, motion);
       tried[c] = static_cast<int>(trials.size());
@@ -345,6 +382,25 @@ Screening Screen(const DiscoveryProblem& problem,
   }
   KeepBest(screening.starts, screening.starts.size());
   return screening;
+}
+
+std::vector<Start> ScreenWave(const DiscoveryProblem& problem, const Candidate& wave,
+                              const ObservedMotion& motion,
+                              const ErrorDynamics& dynamics, const VectorXd& residual,
+                              const MatrixXd& sensitivities, int most) {
+  const double duration =
+      static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+  const auto sweep = MakeSweep(problem.model, wave, motion, duration);
+  if (!sweep) return {};
+  const Screener screener(problem, dynamics, residual, sensitivities);
+  const std::vector<Trial> trials =
+      screener.BestOf(*sweep, wave, screener.Gains(*sweep, wave));
+  std::vector<Start> starts;
+  for (auto& start : screener.Judge(trials, wave)) {
+    if (start) starts.push_back(std::move(*start));
+  }
+  KeepBest(starts, static_cast<std::size_t>(most));
+  return starts;
 }
 
 }  // namespace mjdiag

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/cause_fit.h"
 #include "mjdiag/discovery/error_dynamics.h"
 #include "mjdiag/discovery/problem.h"
 #include "mjdiag/discovery/trial.h"
@@ -29,6 +30,9 @@ struct Start {
   double gain = 0.0;  ///< of the squared scaled innovations
   int freedom = 1;    ///< amplitudes
 };
+
+/// The cause of a start, with its values.
+FittedCause FittedFrom(const std::vector<Candidate>& candidates, const Start& start);
 
 struct Screening {
   /// The best starts of every candidate that is excited, best first.
@@ -45,5 +49,14 @@ Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
                  const Eigen::MatrixXd& sensitivities, int starts_each);
+
+/// The best starts of one wave (a candidate with a sweep), every value of its sweep
+/// judged exactly: Screen, which has many candidates to look at, only estimates the
+/// size of most of them. `candidate` of the starts is not set.
+std::vector<Start> ScreenWave(const DiscoveryProblem& problem, const Candidate& wave,
+                              const ObservedMotion& motion,
+                              const ErrorDynamics& dynamics,
+                              const Eigen::VectorXd& residual,
+                              const Eigen::MatrixXd& sensitivities, int most);
 
 }  // namespace mjdiag

@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -8,6 +9,8 @@
 #include <optional>
 
 #include "mjdiag/discovery/model_choice.h"
+#include "mjdiag/discovery/unsteady_fit.h"
+#include "mjdiag/discovery/wave_period.h"
 #include "mjdiag/plugin/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -17,27 +20,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-FittedCause ToFitted(const Candidate& candidate, const Start& start) {
-  FittedCause cause;
-  cause.candidate = start.candidate;
-  cause.value.resize(static_cast<Index>(candidate.parameters.size()));
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-    const FitParameter& parameter = candidate.parameters[i];
-    cause.value[static_cast<Index>(i)] = std::clamp(start.parameters.at(parameter.name),
-                                                    parameter.lower, parameter.upper);
-  }
-  return cause;
-}
-
-/// For fits that are compared: by secants, from what is known of J, none at the end.
-FitOptions CompareFrom(const MatrixXd* known, int iterations, double tolerance) {
-  return {.iterations = iterations,
-          .tolerance = tolerance,
-          .sensitivities = false,
-          .known = known,
-          .secant = true};
-}
 
 /// A search under way.
 class Search {
@@ -72,7 +54,8 @@ class Search {
     if (options_.progress) options_.progress(what, fraction);
   }
   Screening ScreenRest() const;
-  bool IsSignificant(const Start& start, const Screening& screening) const;
+  bool IsSignificant(double gain, int freedom, int trials) const;
+  bool IsSignificant(const CauseFit& after, int trials) const;
   /// Squared innovations of the train part if noise is all there is.
   double Noise() const {
     return static_cast<double>(problem_.run.outputs.rows() *
@@ -84,9 +67,6 @@ class Search {
   double CriterionOf(const CauseFit& fit) const {
     return Criterion(problem_, fit, independent_);
   }
-  std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
-                                 const std::vector<FittedCause>& causes,
-                                 const FitOptions& options) const;
   struct Entry {
     std::vector<FittedCause> causes;
     double criterion = std::numeric_limits<double>::infinity();
@@ -100,15 +80,16 @@ class Search {
     std::vector<CauseFit> fits;         // of as many
   };
   Round Compete(const std::vector<Start>& shortlist) const;
-  bool Keep(Round round);
+  bool Keep(Round round, int trials);
   /// Sensitivities of what has been found, if anything has.
   const MatrixXd* Known() const {
     return result_.fit.sensitivities.cols() > 0 ? &result_.fit.sensitivities : nullptr;
   }
   VectorXd UnseenResidual(const CauseFit& fit) const;
   double UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const;
-  MatrixXd SensitivitiesWithout(std::size_t i) const;
   bool Prune();
+  void ChangePeriods();
+  void MeetUnsteadiness();
 
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
@@ -117,6 +98,7 @@ class Search {
   std::optional<DiscoveryProblem> unseen_;  // the other record
   SearchResult result_;
   VectorXd independent_;
+  double unsteadiness_ = 0.0;
 };
 
 Screening Search::ScreenRest() const {
@@ -127,13 +109,22 @@ Screening Search::ScreenRest() const {
                 dynamics, result_.fit.residual, result_.fit.sensitivities, 6);
 }
 
-bool Search::IsSignificant(const Start& start, const Screening& screening) const {
+/// Whether to take away so much of the squared innovations, with the best of so many
+/// trials, is more than chance.
+bool Search::IsSignificant(double gain, int freedom, int trials) const {
   // What is left may be more than sensor noise, and coloured; both make chance gains
   // larger.
   const double inflation =
       std::max(1.0, result_.fit.train) / std::min(1.0, independent_.minCoeff());
-  return start.gain / inflation >
-         GainByChance(options_.false_alarm, screening.trials, start.freedom);
+  return gain / inflation - unsteadiness_ >
+         GainByChance(options_.false_alarm, trials, freedom);
+}
+
+/// The same of a fit with one more cause: what the first order promises may not be
+/// there.
+bool Search::IsSignificant(const CauseFit& after, int trials) const {
+  return IsSignificant(Noise() * (result_.fit.train - after.train),
+                       ParameterCount({after.causes.back()}), trials);
 }
 
 /// Squared innovations that a start leaves to first order, not less than noise does.
@@ -165,7 +156,8 @@ std::vector<Start> Search::Shortlist(const Screening& screening) const {
       return other.candidate == start.candidate;
     };
     if (std::ranges::any_of(result_.fit.causes, same)) continue;
-    if (!IsSignificant(start, screening) || RestOf(start) > most) continue;
+    if (!IsSignificant(start.gain, start.freedom, screening.trials)) continue;
+    if (RestOf(start) > most) continue;
     const bool first = std::ranges::none_of(list, same);
     if (first && static_cast<int>(list.size()) < options_.shortlist) {
       list.push_back(start);
@@ -177,18 +169,6 @@ std::vector<Start> Search::Shortlist(const Screening& screening) const {
   return list;
 }
 
-std::optional<CauseFit> Search::TryFit(const DiscoveryProblem& problem,
-                                       const std::vector<FittedCause>& causes,
-                                       const FitOptions& options) const {
-  try {
-    return FitCauses(problem, candidates_, causes, options);
-  } catch (const NumericalError&) {
-    return std::nullopt;  // diverges with these values
-  } catch (const InputError&) {
-    return std::nullopt;  // takes away more than there is
-  }
-}
-
 /// Fits the first `count` of the entries to the beginning of the record; those that
 /// diverge go, the rest is put in order, best first.
 void Search::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
@@ -197,8 +177,8 @@ void Search::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   std::vector<std::optional<CauseFit>> fits(entries.size());
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] =
-        TryFit(beginning_, entries[i].causes, CompareFrom(Known(), iterations, 1e-3));
+    fits[i] = TryFit(beginning_, candidates_, entries[i].causes,
+                     CompareFrom(Known(), iterations, 1e-3));
   });
   // On more data a difference grows in proportion.
   const double growth = static_cast<double>(problem_.train - problem_.skip) /
@@ -220,7 +200,7 @@ std::vector<Search::Entry> Search::Preview(const std::vector<Start>& shortlist) 
   std::vector<Entry> entries;
   for (const Start& start : shortlist) {
     Entry entry{result_.fit.causes};
-    entry.causes.push_back(ToFitted(candidates_[start.candidate], start));
+    entry.causes.push_back(FittedFrom(candidates_, start));
     const double n = static_cast<double>(problem_.train) * independent_.sum();
     entry.criterion = -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
     entries.push_back(std::move(entry));
@@ -256,10 +236,8 @@ Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
   std::map<std::size_t, int> starts;
   for (Entry& entry : Preview(shortlist)) {
     const std::size_t candidate = entry.causes.back().candidate;
-    const bool wave = std::ranges::any_of(
-        candidates_[candidate].parameters,
-        [](const FitParameter& parameter) { return parameter.name == "phase"; });
-    if (starts[candidate]++ >= (wave ? kWaves : kStarts)) continue;
+    if (starts[candidate]++ >= (IsWave(candidates_[candidate]) ? kWaves : kStarts))
+      continue;
     const bool hopeless =
         !finalists.empty() && entry.criterion - finalists.front().criterion > kHopeless;
     (finalists.size() < kFinalists && !hopeless ? finalists : others)
@@ -271,7 +249,8 @@ Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
   }
   ParallelFor(static_cast<int>(finalists.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] = TryFit(problem_, finalists[i].causes, CompareFrom(Known(), 8, 1e-4));
+    fits[i] = TryFit(problem_, candidates_, finalists[i].causes,
+                     CompareFrom(Known(), 8, 1e-4));
   });
   Round round;
   const std::vector<double> criteria = Criteria(problem_, fits);
@@ -340,12 +319,13 @@ double Search::UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const
 }
 
 /// Keeps the best contender that explains unseen data as well; false if none does.
-bool Search::Keep(Round round) {
+bool Search::Keep(Round round, int trials) {
   const VectorXd unseen_before = UnseenResidual(result_.fit);
   for (std::size_t i = 0; i < round.fits.size(); ++i) {
     const CauseFit& after = round.fits[i];
     independent_ = IndependentShare(problem_, after.residual);
     if (CriterionOf(after) >= CriterionOf(result_.fit)) continue;
+    if (!IsSignificant(after, trials)) continue;
     if (UnseenDeviance(after, UnseenResidual(after)) >
         UnseenDeviance(result_.fit, unseen_before)) {
       result_.refuted.push_back(after.causes.back());
@@ -363,17 +343,6 @@ bool Search::Keep(Round round) {
   return false;
 }
 
-/// J of what has been found but cause i.
-MatrixXd Search::SensitivitiesWithout(std::size_t i) const {
-  const MatrixXd& all = result_.fit.sensitivities;
-  Index first = 0;
-  for (std::size_t k = 0; k < i; ++k) first += result_.fit.causes[k].value.size();
-  const Index count = result_.fit.causes[i].value.size();
-  MatrixXd rest(all.rows(), all.cols() - count);
-  rest << all.leftCols(first), all.rightCols(all.cols() - first - count);
-  return rest;
-}
-
 /// Drops the cause whose loss the criterion likes best; true if there was one.
 bool Search::Prune() {
   if (result_.fit.causes.size() < 2) return false;
@@ -385,14 +354,15 @@ bool Search::Prune() {
     const auto i = static_cast<std::size_t>(number);
     std::vector<FittedCause> causes = result_.fit.causes;
     causes.erase(causes.begin() + number);
-    const MatrixXd known = SensitivitiesWithout(i);
+    const MatrixXd known = SensitivitiesWithout(result_.fit, i);
     // If it is far from superfluous the beginning says so.
-    const auto early = TryFit(beginning_, causes, CompareFrom(&known, 4, 1e-3));
+    const auto early =
+        TryFit(beginning_, candidates_, causes, CompareFrom(&known, 4, 1e-3));
     if (!early) return;
     const double now =
         Deviance(early->residual, independent_, problem_.skip, beginning_.train);
     if (now - before > kFar) return;
-    fits[i] = TryFit(problem_, causes, CompareFrom(&known, 8, 1e-5));
+    fits[i] = TryFit(problem_, candidates_, causes, CompareFrom(&known, 8, 1e-5));
   });
   double criterion = CriterionOf(result_.fit);
   std::optional<std::size_t> dropped;
@@ -408,6 +378,36 @@ bool Search::Prune() {
   return true;
 }
 
+/// Gives waves of the fit other periods while that explains more.
+void Search::ChangePeriods() {
+  constexpr double kBetter = 1.0;  // in units of the criterion
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (std::size_t i = 0; i < result_.fit.causes.size(); ++i) {
+      if (!IsWave(candidates_[result_.fit.causes[i].candidate])) continue;
+      for (CauseFit& other : FitOtherPeriods(problem_, candidates_, result_.fit, i)) {
+        if (CriterionOf(other) > CriterionOf(result_.fit) - kBetter) continue;
+        result_.fit = std::move(other);
+        changed = true;
+      }
+    }
+  }
+}
+
+/// If the course of the machine depends on the last digit, the fit is looked for around
+/// where slopes led it, and further causes have to be worth more.
+void Search::MeetUnsteadiness() {
+  constexpr double kUnsteady = 30.0;  // of chi-squared
+  constexpr int kRounds = 6;
+  unsteadiness_ = Unsteadiness(problem_, candidates_, result_.fit);
+  for (int i = 0; i < kRounds && unsteadiness_ > kUnsteady; ++i) {
+    auto better = LookAround(problem_, candidates_, result_.fit, unsteadiness_);
+    if (!better) break;
+    result_.fit = std::move(*better);
+  }
+}
+
 SearchResult Search::Run() {
   result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
                           {.iterations = 10, .tolerance = 1e-5, .secant = true});
@@ -419,12 +419,21 @@ SearchResult Search::Run() {
   }
   for (int round = 0;; ++round) {
     Report("screening", 0.0);
-    const std::vector<Start> shortlist = Shortlist(ScreenRest());
+    const Screening screening = ScreenRest();
+    const std::vector<Start> shortlist = Shortlist(screening);
     result_.significant_rest = !shortlist.empty();
     if (shortlist.empty() || round >= options_.most_causes) break;
-    if (!Keep(Compete(shortlist))) break;
+    Round contest = Compete(shortlist);
+    result_.significant_rest =
+        contest.fits.empty() ||
+        std::ranges::any_of(contest.fits, [&](const CauseFit& after) {
+          return IsSignificant(after, screening.trials);
+        });
+    if (!Keep(std::move(contest), screening.trials)) break;
+    ChangePeriods();
     while (Prune()) {
     }
+    MeetUnsteadiness();
   }
   if (!result_.fit.causes.empty()) {
     // Near the optimum by secants, the rest by differences.

@@ -331,6 +331,17 @@ Trial WaveTrial(const MechanicalModel& model, const Candidate& candidate,
   return trial;
 }
 
+/// The readings at samples as their neighbours have them, two on either side: what is
+/// made of a reading and compared with its own innovation must not hold its noise.
+VectorXd WithoutOwnNoise(const VectorXd& y) {
+  const Index n = y.size();
+  VectorXd x = y;
+  for (Index k = 2; k + 2 < n; ++k) {
+    x[k] = (4.0 * (y[k - 1] + y[k + 1]) - y[k - 2] - y[k + 2]) / 6.0;
+  }
+  return x;
+}
+
 Sweep PeriodSweep(const MechanicalModel& model, const Candidate& candidate,
                   const VectorXd& x, bool encoder) {
   const double range = Range(x);
@@ -379,8 +390,8 @@ std::optional<Sweep> MakeSweep(const MechanicalModel& model, const Candidate& ca
   }
   const bool encoder = effect == "encoder_periodic_error";
   if (!encoder && effect != "force_ripple") return std::nullopt;
-  const VectorXd x = encoder ? motion.outputs.row(candidate.channel).transpose()
-                             : motion.position.row(candidate.joint).transpose();
+  const VectorXd x = encoder ? WithoutOwnNoise(motion.outputs.row(candidate.channel))
+                             : VectorXd(motion.position.row(candidate.joint));
   if (Range(x) == 0.0) return std::nullopt;
   return PeriodSweep(model, candidate, x, encoder);
 }

@@ -1,0 +1,162 @@
+#include "mjdiag/discovery/profile_interval.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kNormal95 = 1.959964;
+constexpr double kChiSquared95 = kNormal95 * kNormal95;
+
+/// Where the profile of one parameter crosses.
+class Profile {
+ public:
+  /// @param direction  how all others follow, per unit of parameter `index`
+  Profile(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+          const CauseFit& fit, Index index, VectorXd direction, double crossing)
+      : problem_(problem),
+        candidates_(candidates),
+        fit_(fit),
+        index_(index),
+        direction_(std::move(direction)),
+        crossing_(crossing),
+        least_(fit.train) {}
+
+  /// @param step  to where a quadratic one crosses, with its sign
+  /// @param bound of the parameter on that side
+  double End(double step, double bound) const;
+
+ private:
+  double Value() const { return Flatten(fit_.causes)[index_]; }
+  /// Root of what is lost over the crossing, 1 at an end; infinite where the plant
+  /// cannot be run.
+  double Lost(double step) const;
+  double Clipped(double step, double bound) const {
+    return step < 0.0 ? std::max(step, bound - Value())
+                      : std::min(step, bound - Value());
+  }
+
+  const DiscoveryProblem& problem_;
+  const std::vector<Candidate>& candidates_;
+  const CauseFit& fit_;
+  Index index_;
+  VectorXd direction_;
+  double crossing_;
+  double least_;
+};
+
+double Profile::Lost(double step) const {
+  const Index channels = problem_.run.outputs.rows();
+  VectorXd theta = Flatten(fit_.causes) + step * direction_;
+  const std::vector<FitParameter> parameters = ParametersOf(candidates_, fit_.causes);
+  for (Index i = 0; i < theta.size(); ++i) {
+    const FitParameter& parameter = parameters[static_cast<std::size_t>(i)];
+    theta[i] = std::clamp(theta[i], parameter.lower, parameter.upper);
+  }
+  FitOptions options;
+  options.iterations = 5;
+  options.tolerance = 1e-6;
+  options.sensitivities = false;
+  options.known = &fit_.sensitivities;
+  options.secant = true;
+  options.held = index_;
+  try {
+    const double train =
+        FitCauses(problem_, candidates_, WithValues(fit_.causes, theta), options).train;
+    const double lost =
+        static_cast<double>(channels * (problem_.train - problem_.skip)) *
+        (train - least_);
+    return std::sqrt(std::max(lost, 0.0) / crossing_);
+  } catch (const NumericalError&) {
+    return std::numeric_limits<double>::infinity();
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
+double Profile::End(double step, double bound) const {
+  constexpr double kNear = 0.03;
+  constexpr int kSteps = 8;
+  // The root of what is lost grows nearly in proportion: false position from 0 on.
+  double below = 0.0;
+  double lost_below = 0.0;
+  double above = 0.0;
+  double lost_above = std::numeric_limits<double>::infinity();
+  double next = Clipped(step, bound);
+  for (int i = 0; i < kSteps; ++i) {
+    const double lost = Lost(next);
+    if (std::abs(lost - 1.0) < kNear) return Value() + next;
+    if (lost < 1.0) {
+      if (next == Clipped(2.0 * next, bound)) return bound;
+      below = next;
+      lost_below = lost;
+    } else {
+      above = next;
+      lost_above = lost;
+    }
+    if (above == 0.0) {
+      next = Clipped(below * std::clamp(1.0 / std::max(lost_below, 1e-3), 1.2, 3.0),
+                     bound);
+    } else if (std::isfinite(lost_above)) {
+      const double part = (1.0 - lost_below) / (lost_above - lost_below);
+      next = below + std::clamp(part, 0.1, 0.9) * (above - below);
+    } else {
+      next = 0.5 * (below + above);
+    }
+  }
+  return Value() + next;
+}
+
+/// Whether a standard deviation is so small beside what the parameter can sensibly
+/// change by that its likelihood is quadratic.
+bool IsSharp(const FitParameter& parameter, double value, double sd) {
+  constexpr double kSharp = 0.03;
+  return sd < kSharp * (parameter.name == "phase" ? 1.0 : std::abs(value));
+}
+
+}  // namespace
+
+std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
+                                         const std::vector<Candidate>& candidates,
+                                         const CauseFit& fit,
+                                         const MatrixXd& covariance) {
+  const Index channels = problem.run.outputs.rows();
+  const VectorXd theta = Flatten(fit.causes);
+  const MatrixXd J = fit.sensitivities.middleRows(
+      channels * problem.skip, channels * (problem.train - problem.skip));
+  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd scaled = J * scale.asDiagonal();
+  const MatrixXd C = scale.asDiagonal() *
+                     MatrixXd((scaled.transpose() * scaled).inverse()) *
+                     scale.asDiagonal();
+  const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  std::vector<Interval> intervals(parameters.size());
+  ParallelFor(2 * static_cast<int>(parameters.size()), [&](int number) {
+    const Index i = number / 2;
+    const double side = number % 2 == 0 ? -1.0 : 1.0;
+    const auto p = static_cast<std::size_t>(i);
+    double& end = side < 0.0 ? intervals[p].low : intervals[p].high;
+    const double sd = std::sqrt(covariance(i, i));
+    end = theta[i] + side * kNormal95 * sd;
+    if (!std::isfinite(sd) || IsSharp(parameters[p], theta[i], sd)) return;
+    const double colour = covariance(i, i) / C(i, i);
+    const Profile profile(seen, candidates, fit, i, C.col(i) / C(i, i),
+                          kChiSquared95 * colour);
+    end = profile.End(side * kNormal95 * sd,
+                      side < 0.0 ? parameters[p].lower : parameters[p].upper);
+  });
+  return intervals;
+}
+
+}  // namespace mjdiag

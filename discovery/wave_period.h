@@ -1,0 +1,28 @@
+#pragma once
+// Other periods for a wave that was found. Where a motion stays in few places many
+// periods explain nearly the same (aliases), and the first screening, beside a plant
+// without the wave, is too rough to tell them apart. Beside the plant with the wave in
+// it the first order is good to the noise, so the wave is screened again there, on what
+// is left plus what it explains itself,
+//
+//   e - a de/da,   e innovations, a its amplitude
+
+#include <vector>
+
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/cause_fit.h"
+#include "mjdiag/discovery/problem.h"
+
+namespace mjdiag {
+
+/// Whether a candidate is a wave over position or time: amplitude, phase, and a period
+/// or a frequency.
+bool IsWave(const Candidate& candidate);
+
+/// Fits with other periods (or frequencies) of cause i, a wave, the most promising
+/// ones; those that diverge are left out.
+std::vector<CauseFit> FitOtherPeriods(const DiscoveryProblem& problem,
+                                      const std::vector<Candidate>& candidates,
+                                      const CauseFit& fit, std::size_t i);
+
+}  // namespace mjdiag
