@@ -1,8 +1,10 @@
 #include "mjdiag/discovery/hidden_effect.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
@@ -18,6 +20,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using Values = std::map<std::string, double>;
+
+// DrawEffect meets the size that it draws to a fifth.
+constexpr double kOwnShare = 0.8;
 
 /// What the sizes of effects are measured in: the nominal run at a candidate's site.
 struct Scales {
@@ -193,6 +198,39 @@ RunOptions WithCauses(const std::vector<Cause>& causes, std::uint64_t seed,
   return options;
 }
 
+/// The nominal motion posed with the noise of that seed.
+DiscoveryProblem PoseNominal(const Setup& setup, const mjModel& plant,
+                             std::uint64_t seed) {
+  RunOptions noisy;
+  noisy.seed = seed;
+  return PoseProblem(setup, plant, Simulate(setup, plant, NominalMotion(setup), noisy),
+                     1.0, 0.0);
+}
+
+/// What a cause adds without noise: the scaled innovations of the nominal plant on a
+/// clean run.
+VectorXd CleanResidual(const DiscoveryProblem& problem, const Cause& cause) {
+  const Setup& setup = *problem.setup;
+  DiscoveryProblem clean = problem;
+  clean.run = ToMeasuredRun(setup, Simulate(setup, *problem.plant, NominalMotion(setup),
+                                            WithCauses({cause}, 1, 0.0)));
+  return clean.Residual({});
+}
+
+/// The least squared innovations that any of the columns adds beside what the
+/// amplitudes of all others explain.
+double LeastOwnShare(const Eigen::MatrixXd& columns) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < columns.cols(); ++i) {
+    Eigen::MatrixXd others(columns.rows(), columns.cols() - 1);
+    others << columns.leftCols(i), columns.rightCols(columns.cols() - 1 - i);
+    const VectorXd explained =
+        others * others.colPivHouseholderQr().solve(columns.col(i));
+    least = std::min(least, (columns.col(i) - explained).squaredNorm());
+  }
+  return least;
+}
+
 Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate,
                      const Record& nominal) {
   const mjModel& plant = *problem.plant;
@@ -244,10 +282,7 @@ Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& ty
   quiet.log_joints = true;
   const Excitation motion = NominalMotion(setup);
   const Record nominal = Simulate(setup, plant, motion, quiet);
-  RunOptions noisy;
-  noisy.seed = seed;
-  const DiscoveryProblem problem =
-      PoseProblem(setup, plant, Simulate(setup, plant, motion, noisy), 1.0, 0.0);
+  const DiscoveryProblem problem = PoseNominal(setup, plant, seed);
 
   if (type == "encoder_noise") {
     const SensorSetup& sensor = setup.sensors[random.Index(setup.sensors.size())];
@@ -267,13 +302,8 @@ Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& ty
     cause.spec.parameters = shape(scale);
     return cause;
   };
-  // What the effect adds, without noise: of the innovations of the nominal plant on a
-  // clean run.
   const auto shows = [&](double scale) {
-    DiscoveryProblem clean = problem;
-    clean.run = ToMeasuredRun(
-        setup, Simulate(setup, plant, motion, WithCauses({at(scale)}, 1, 0.0)));
-    return clean.Residual({}).squaredNorm();
+    return CleanResidual(problem, at(scale)).squaredNorm();
   };
   const double target = random.Log(size.least, size.most);
   double scale = 1.0;
@@ -297,6 +327,29 @@ Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& ty
         std::clamp(scale * std::pow(target / before, 1.0 / slope), scale / 30.0, 1.0);
   }
   return at(scale);
+}
+
+std::vector<Cause> DrawEffects(const Setup& setup, const mjModel& plant,
+                               const std::vector<std::string>& types,
+                               const HiddenSize& size, std::uint64_t seed) {
+  constexpr std::uint64_t kDraws = 50;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    std::vector<Cause> causes;
+    for (std::size_t i = 0; i < types.size(); ++i) {
+      causes.push_back(
+          DrawEffect(setup, plant, types[i], size, 1000 * seed + 10 * draw + i));
+    }
+    if (causes.size() < 2) return causes;
+    const DiscoveryProblem problem = PoseNominal(setup, plant, seed);
+    Eigen::MatrixXd columns(problem.run.outputs.size(), 0);
+    for (const Cause& cause : causes) {
+      if (cause.spec.effect == "encoder_noise") continue;  // like nothing else
+      columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+      columns.rightCols(1) = CleanResidual(problem, cause);
+    }
+    if (LeastOwnShare(columns) >= kOwnShare * size.least) return causes;
+  }
+  throw NumericalError("hidden effects: no draw of these types tells them apart");
 }
 
 }  // namespace mjdiag

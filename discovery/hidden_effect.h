@@ -40,4 +40,11 @@ HiddenCase MakeCase(const Setup& setup, const mjModel& plant,
 Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& type,
                  const HiddenSize& size, std::uint64_t seed);
 
+/// Several effects at once, each drawn as above, and drawn again until each adds at
+/// least `size.least` that no amplitudes of the others explain: two that cancel, or are
+/// each other's image on this motion, are one.
+std::vector<Cause> DrawEffects(const Setup& setup, const mjModel& plant,
+                               const std::vector<std::string>& types,
+                               const HiddenSize& size, std::uint64_t seed);
+
 }  // namespace mjdiag

@@ -115,18 +115,29 @@ bool Names(const mjModel& plant, const FoundCause& found, const Cause& truth) {
   return Indistinguishable(plant, found.cause, truth);
 }
 
+/// Whether the answer says of a cause it names that the record does not tell it from
+/// this one.
+bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& truth) {
+  constexpr double kCompetes = 0.05;
+  return std::ranges::any_of(found.alternatives, [&](const Alternative& other) {
+    return other.probability >= kCompetes &&
+           Indistinguishable(plant, other.cause, truth);
+  });
+}
+
 HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
                         const std::vector<std::string>& types, std::uint64_t seed) {
   HiddenOutcome outcome;
-  std::vector<Cause> truth;
-  for (std::size_t i = 0; i < types.size(); ++i) {
-    truth.push_back(DrawEffect(setup, plant, types[i], {}, 1000 * seed + i));
-  }
+  const std::vector<Cause> truth = DrawEffects(setup, plant, types, {}, seed);
   outcome.hidden = MakeCase(setup, plant, truth, seed);
   DiscoverOptions options;
   options.figures = false;
   outcome.answer = Discover(setup, plant, outcome.hidden.record, nullptr, options);
   for (const Cause& cause : truth) {
+    outcome.considered +=
+        std::ranges::any_of(outcome.answer.causes, [&](const FoundCause& f) {
+          return Names(plant, f, cause) || IsAlternative(plant, f, cause);
+        });
     const auto found = std::ranges::find_if(
         outcome.answer.causes,
         [&](const FoundCause& f) { return Names(plant, f, cause); });
@@ -138,6 +149,9 @@ HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
   outcome.right = outcome.named == static_cast<int>(truth.size()) &&
                   outcome.answer.causes.size() == truth.size() &&
                   outcome.claim == !truth.empty();
+  outcome.undecided = !outcome.right &&
+                      outcome.considered == static_cast<int>(truth.size()) &&
+                      outcome.answer.causes.size() == truth.size();
   outcome.unseen_ratio = UnseenRatio(setup, plant, outcome.hidden, outcome.answer);
   outcome.hidden.record = {};
   outcome.hidden.unseen = {};

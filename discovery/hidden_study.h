@@ -23,6 +23,10 @@ struct HiddenOutcome {
   int named = 0;       ///< of the truth, effect (or an indistinguishable one) and site
   bool claim = false;  ///< that anything is there, with or without a name
   bool right = false;  ///< all named, and nothing else
+  /// Of the truth, named, or given as what the record does not tell from what is named.
+  int considered = 0;
+  /// Not right, but all considered, and nothing else named.
+  bool undecided = false;
   int parameters = 0;  ///< of those that were named
   int covered = 0;     ///< of them inside their 95 % interval
   /// Mismatch of the extended plant on the unseen motion over its noise floor, the

@@ -3,10 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
+#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/cause_fit.h"
 #include "mjdiag/discovery/comparison.h"
+#include "mjdiag/discovery/problem.h"
+#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/signals/record_file.h"
 
 namespace mjdiag {
 namespace {
@@ -77,6 +84,51 @@ TEST_F(Emps, IncompletePlantIsVisiblyWorseAndSaidToBe) {
   const Comparison authors = CompareWith("DATA_EMPS.mat", kAuthors);
   EXPECT_GT(RelativeError(incomplete, "force"), 3.0 * RelativeError(authors, "force"));
   EXPECT_TRUE(incomplete.exceeds_noise());
+}
+
+std::size_t Place(const std::vector<Candidate>& candidates, const std::string& name) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (Describe(candidates[i]) == name) return i;
+  }
+  ADD_FAILURE() << "no candidate " << name;
+  return 0;
+}
+
+// The model class of the authors' asymmetric friction, fitted to the innovations of the
+// observer that discovery ends with (20 Hz): mass, Coulomb force, viscous coefficients
+// of both directions and the offset that their two Coulomb forces are. Both have an
+// uncertainty; theirs is printed for the symmetric model only.
+TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
+  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
+  const ModelPtr plant = LoadPlant(setup);
+  const DiscoveryProblem problem =
+      PoseProblem(setup, *plant,
+                  ReadRecord(DataFolder() / "DATA_EMPS.mat", setup.record), 1.0, 20.0);
+  const auto candidates = ListCandidates(setup, *plant, problem.model);
+  const std::vector<FittedCause> start = {
+      {Place(candidates, "coulomb_friction@load"), Eigen::VectorXd::Constant(1, 15.0)},
+      {Place(candidates, "asymmetric_viscous_friction@load"),
+       Eigen::Vector2d(-10.0, 10.0)},
+      {Place(candidates, "added_mass@load"), Eigen::VectorXd::Constant(1, 0.5)},
+      {Place(candidates, "force_offset@load"), Eigen::VectorXd::Constant(1, 0.1)}};
+  const CauseFit fit =
+      FitCauses(problem, candidates, start, {.iterations = 30, .tolerance = 1e-8});
+  Eigen::VectorXd authors(5);
+  authors << 0.5 * (20.1440 + 20.6277), 166.7061 - plant->dof_damping[0],
+      240.4236 - plant->dof_damping[0],
+      95.1540 - plant->body_mass[FindElement(*plant, mjOBJ_BODY, "load")],
+      0.5 * (20.6277 - 20.1440);
+  Eigen::VectorXd sd(5);
+  sd << 0.10, 1.15, 1.15, 0.11, 0.04;
+  const Eigen::MatrixXd joint =
+      ParameterCovariance(problem, fit) + Eigen::MatrixXd(sd.cwiseAbs2().asDiagonal());
+  const Eigen::VectorXd off = Flatten(fit.causes) - authors;
+  RecordProperty("chi_squared", std::to_string(off.dot(joint.inverse() * off)));
+  constexpr double kChiSquared95 = 11.07;  // five degrees of freedom
+  EXPECT_LT(off.dot(joint.inverse() * off), kChiSquared95) << off.transpose();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    EXPECT_LT(std::abs(off[i]), 1.96 * std::sqrt(joint(i, i))) << i;
+  }
 }
 
 }  // namespace
