@@ -1,11 +1,14 @@
 // mjdiag render: a clip of the machine, the healthy one beside the faulty one.
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "app/command.h"
+#include "app/diagnosis_output.h"
 #include "app/format.h"
 #include "app/machine.h"
 #include "app/output.h"
@@ -27,6 +30,8 @@ struct RenderOptions {
   std::vector<std::string> amplify;
   std::optional<double> still;
   bool frames = false;
+  bool diagnose = false;
+  DiagnosisSource source;
 };
 
 /// "5000" for all joints, "u3=2000" for one.
@@ -85,6 +90,87 @@ std::vector<TitledRecord> ReadRuns(const std::vector<std::string>& files) {
   return runs;
 }
 
+/// The estimate as the diagnosis would judge it now: about the middle of what healthy
+/// runs gave, and no surer than they agree on. NaN while the motion so far does not
+/// determine the faults.
+void NoteEstimate(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+                  Eigen::Index column, std::vector<EstimateHistory>& histories) {
+  std::optional<FaultEstimate> estimate;
+  if (monitor.estimator().samples() > 0 && monitor.estimator().Inseparable().empty()) {
+    estimate = monitor.estimator().Estimate();
+  }
+  for (std::size_t i = 0; i < histories.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    EstimateHistory& history = histories[i];
+    history.value[column] = std::numeric_limits<double>::quiet_NaN();
+    history.half_width[column] = std::numeric_limits<double>::quiet_NaN();
+    if (!estimate) continue;
+    Interval usual;
+    if (!design.limits.estimates.empty()) usual = design.limits.estimates[i];
+    const double spread =
+        0.5 * (usual.max - usual.min) / TwoSidedQuantile(kOutsideLimits);
+    const double sd = std::hypot(std::sqrt(estimate->covariance(at, at)), spread);
+    history.value[column] =
+        history.healthy + estimate->value[at] - 0.5 * (usual.min + usual.max);
+    history.half_width[column] = TwoSidedQuantile(0.05) * sd;
+  }
+}
+
+/// The monitor of `simulate --diagnose` over a run, sample by sample, with what it knew
+/// at every estimate.
+DiagnosisOverlay DiagnoseRun(const ReadyDiagnosis& ready, const Record& record,
+                             std::size_t run) {
+  const DiagnosisDesign& design = ready.design;
+  // A clip shows some hundred moments.
+  constexpr Eigen::Index kMostEstimates = 2000;
+  const Eigen::Index every =
+      design.stride *
+      std::max<Eigen::Index>(1, record.samples() / (design.stride * kMostEstimates));
+  const Eigen::Index count = (record.samples() + every - 1) / every;
+  DiagnosisOverlay overlay;
+  overlay.run = run;
+  overlay.limit_low = design.limits.residual.limits.min;
+  overlay.limit_high = design.limits.residual.limits.max;
+  overlay.estimate_time.resize(count);
+  const std::vector<std::string> names = design.FaultNames();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    overlay.estimates.push_back({names[i], design.Healthy(static_cast<Eigen::Index>(i)),
+                                 Eigen::VectorXd(count), Eigen::VectorXd(count)});
+  }
+  DiagnosisMonitor monitor(design, record.samples(), ready.baseline);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index first = k * every;
+    const Eigen::Index samples = std::min(every, record.samples() - first);
+    Run(monitor, design, record.Slice(first, samples));
+    overlay.estimate_time[k] =
+        record.start_time() +
+        static_cast<double>(first + samples - 1) * record.sample_time();
+    NoteEstimate(design, monitor, k, overlay.estimates);
+  }
+  if (const auto sample = monitor.first_detection()) {
+    overlay.detection =
+        record.start_time() + static_cast<double>(*sample) * record.sample_time();
+  }
+  overlay.residual = Record(record.sample_time(), record.start_time());
+  overlay.residual.Add({"residual", "1", monitor.Log().residual});
+  return overlay;
+}
+
+/// The diagnosis of the last run: the faulty one, or the record given last.
+DiagnosisOverlay Diagnose(const RenderOptions& options, const Machine& machine,
+                          const std::vector<TitledRecord>& runs) {
+  const Record& record = runs.back().record;
+  const bool needs_motion = options.source.baseline || !options.source.robust.empty();
+  Excitation excitation;
+  if (needs_motion) {
+    excitation = options.records.empty() ? MakeExcitation(machine.setup, options.motion)
+                                         : Replay(machine.setup, record);
+  }
+  const ReadyDiagnosis ready =
+      PrepareDiagnosis(options.source, machine, excitation, options.motion.linear);
+  return DiagnoseRun(ready, record, runs.size() - 1);
+}
+
 void Render(RenderOptions options) {
   const Machine machine = LoadMachine(options.machine);
   for (const std::string& text : options.amplify) {
@@ -93,10 +179,14 @@ void Render(RenderOptions options) {
   const std::vector<TitledRecord> titled =
       options.records.empty() ? std::vector<TitledRecord>() : ReadRuns(options.records);
   PrepareOutput(options.output);
+  CheckPicture(*machine.plant, options.clip.picture);
   const std::vector<TitledRecord> records =
       titled.empty() ? SimulateRuns(machine, options.motion) : titled;
   std::vector<ClipRun> runs;
   for (const TitledRecord& run : records) runs.push_back({run.title, &run.record});
+  if (options.diagnose) {
+    options.clip.picture.diagnosis = Diagnose(options, machine, records);
+  }
 
   const std::filesystem::path folder = options.output.folder;
   nlohmann::json document = ToJson(machine.options);
@@ -105,6 +195,10 @@ void Render(RenderOptions options) {
   document["command"] = CommandLine();
   document["width"] = options.clip.picture.width;
   document["height"] = options.clip.picture.height;
+  if (options.diagnose) {
+    const std::optional<double> detection = options.clip.picture.diagnosis->detection;
+    document["first_detection"] = detection ? nlohmann::json(*detection) : nullptr;
+  }
   std::string text;
   if (options.still) {
     RenderStill(*machine.plant, runs, options.clip.picture, *options.still,
@@ -134,7 +228,8 @@ void AddRender(CLI::App& app) {
   auto options = std::make_shared<RenderOptions>();
   PictureOptions& picture = options->clip.picture;
   CLI::App* command = app.add_subcommand(
-      "render", "A clip of the machine: healthy and faulty side by side");
+      "render",
+      "A clip of the machine: healthy and faulty side by side or one in the other");
   AddMachineOptions(*command, options->machine);
   AddMotionOptions(*command, options->motion);
   AddOutputOptions(*command, options->output, true);
@@ -165,6 +260,13 @@ void AddRender(CLI::App& app) {
                    "One picture of this moment [s] instead of a clip")
       ->check(Within(-kLatest, kLatest));
   command->add_flag("--frames", options->frames, "Also write every frame as PNG");
+  command->add_flag("--ghost", picture.ghost,
+                    "One view: the faulty machine, the healthy one translucent in it");
+  command->add_option("--path", picture.path_site,
+                      "Site whose path is drawn, or none (default: the tool's)");
+  command->add_flag("--diagnose", options->diagnose,
+                    "Show what the diagnosis of the last run says in step with it");
+  AddDiagnosisOptions(*command, options->source);
   command->callback([options] { Render(*options); });
 }
 

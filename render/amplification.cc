@@ -78,16 +78,27 @@ Amplification::Amplification(std::vector<DrawnJoint> joints, const Record& refer
     double& peak = peaks[{joints_[j].role, joints_[j].motion}];
     peak = std::max(peak, PeakDeviation(j, runs, range));
   }
+  const auto fitting = [&](JointRole role, JointMotion motion) {
+    const double wanted = motion == JointMotion::kTranslation ? options.drawn_length
+                                                              : options.drawn_angle;
+    const double peak = peaks[{role, motion}];
+    return peak < kNoMotion || wanted < peak ? 1.0 : RoundDown125(wanted / peak);
+  };
+  const auto moves = [&](JointMotion motion) {
+    return peaks[{JointRole::kDriven, motion}] >= kNoMotion;
+  };
   const auto choose = [&](const DrawnJoint& joint) {
     const auto own = options.factors.find(joint.name);
     if (own != options.factors.end()) return own->second;
     if (options.all) return *options.all;
-    const double wanted = joint.motion == JointMotion::kTranslation
-                              ? options.drawn_length
-                              : options.drawn_angle;
-    const double peak = peaks[{joint.role, joint.motion}];
-    if (peak < kNoMotion || wanted < peak) return 1.0;
-    return RoundDown125(wanted / peak);
+    const double factor = fitting(joint.role, joint.motion);
+    const JointMotion other = joint.motion == JointMotion::kTranslation
+                                  ? JointMotion::kRotation
+                                  : JointMotion::kTranslation;
+    if (joint.role == JointRole::kCompliant || !moves(joint.motion) || !moves(other)) {
+      return factor;
+    }
+    return std::min(factor, fitting(joint.role, other));
   };
   for (const DrawnJoint& joint : joints_) factors_.push_back(choose(joint));
 }

@@ -14,7 +14,9 @@
 // Joints of one role and one kind of motion form a group and share a factor, so that
 // they keep their proportions. It follows from the data: the largest deviation of the
 // group over the runs and times drawn, times a, is at most the wanted size on the
-// picture; a is the largest such number of the form 1, 2 or 5 times 10^n.
+// picture; a is the largest such number of the form 1, 2 or 5 times 10^n. Driven joints
+// share the smaller of their two groups' factors: with one of its own, the rounding
+// noise of an axis that follows the reference would look like the fault of another.
 
 #include <map>
 #include <optional>

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "mjdiag/render/clip_layout.h"
 #include "mjdiag/render/clip_painter.h"
 #include "mjdiag/render/clip_writer.h"
+#include "mjdiag/render/site_path.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -15,6 +17,20 @@ void CheckPositive(const char* name, double value) {
 }
 
 }  // namespace
+
+void CheckPicture(const mjModel& model, const PictureOptions& options) {
+  LayOutClip({options.width, options.height}, 1, 0);
+  PathSite(model, options.path_site);
+  // A small picture finds out as much as a large one.
+  constexpr int kSide = 16;
+  const SceneRenderer probe(model, {kSide, kSide, options.camera});
+  if (options.begin && options.end && !(*options.begin < *options.end)) {
+    throw InputError(
+        "time range",
+        std::to_string(*options.begin) + " to " + std::to_string(*options.end) + " s",
+        "begin before end");
+  }
+}
 
 ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
                        const ClipOptions& options, const std::filesystem::path& file) {

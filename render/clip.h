@@ -1,6 +1,7 @@
 #pragma once
 // Clips and stills: runs of one machine side by side in slow motion, their small motion
-// amplified (amplification.h), with time, tracking errors and strip charts in step.
+// amplified (amplification.h), with time, tracking errors and strip charts in step, and
+// what a diagnosis said at the time (diagnosis_overlay.h).
 //
 // Frame n shows time t_n = begin + n * speed / fps. Rendering and encoding overlap; the
 // frames are the same bytes every time.
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/render/diagnosis_overlay.h"
 #include "mjdiag/render/scene_renderer.h"
 #include "mjdiag/signals/record.h"
 
@@ -42,6 +44,11 @@ struct PictureOptions {
   std::optional<double> amplify_all;  ///< one factor for all joints without an own one
   std::optional<double> begin;        ///< [s]; default: where all records have begun
   std::optional<double> end;          ///< [s]; default: where the first record ends
+  /// One view: the last run, and the first as a translucent ghost where it differs.
+  bool ghost = false;
+  /// Site whose path is drawn. Empty: the tool's (site_path.h); "none": no path.
+  std::string path_site = {};
+  std::optional<DiagnosisOverlay> diagnosis = {};  ///< of one of the runs
 };
 
 struct ClipOptions {
@@ -58,9 +65,14 @@ struct ClipSummary {
   std::string codec;  ///< "avc1" (H.264) or "mp4v"
 };
 
+/// Finds what is wrong with the options without any run: size, camera, site, or no
+/// OpenGL. InputError says what.
+void CheckPicture(const mjModel& model, const PictureOptions& options);
+
 /// Writes an mp4. Nothing is left behind on an error. InputError: no runs, a record
 /// without a joint's channel, unknown camera, axis or joint, an option out of bounds,
-/// times outside of the records, no encoder, `file` not writable or not *.mp4.
+/// times outside of the records, a
+/// ghost of other than two runs, no encoder, `file` not writable or not *.mp4.
 ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
                        const ClipOptions& options, const std::filesystem::path& file);
 

@@ -14,6 +14,9 @@ constexpr int kLeastHeight = 240;
 constexpr int kLargestSide = 4096;
 constexpr int kLeastPanelWidth = 150;
 constexpr int kLeastChartWidth = 150;
+constexpr double kResidualShare = 1.7;  // of the residual's width over another chart's
+constexpr double kDiagnosisShare = 0.28;  // of the picture's width
+constexpr int kLeastDiagnosisWidth = 172;
 
 int Round(double value) { return static_cast<int>(std::lround(value)); }
 
@@ -55,15 +58,24 @@ void LayOutHeader(const cv::Rect& header, ClipLayout& layout) {
 }
 
 PanelLayout LayOutPanel(const cv::Rect& view, std::size_t traces,
-                        const ClipLayout& layout) {
+                        const LayoutExtras& extras, const ClipLayout& layout) {
   const int m = layout.margin;
   const int inner = view.width - 2 * m;
   PanelLayout panel;
   panel.view = view;
   panel.title = {view.x + m, view.y + m, inner, Round(1.8 * layout.title.em)};
+  int bottom = panel.title.br().y;
+  if (extras.ghost) {
+    panel.ghost = panel.title + cv::Point(0, panel.title.height + m / 2);
+    bottom = panel.ghost.br().y;
+  }
+  if (extras.legend > 0) {
+    const int height = extras.legend * Round(1.5 * layout.small.em) + m / 2;
+    panel.legend = {view.x + m, view.br().y - m - height, inner, height};
+  }
   if (traces > 0) {
     const int height = static_cast<int>(traces) * layout.line_height + m;
-    panel.readout = {view.x + m, panel.title.br().y + m / 2,
+    panel.readout = {view.x + m, bottom + m / 2,
                      std::min(inner, Round(11.5 * layout.body.em)), height};
   }
   return panel;
@@ -84,18 +96,64 @@ ChartLayout LayOutChart(const cv::Rect& area, const ClipLayout& layout) {
   return chart;
 }
 
-}  // namespace
-
-std::size_t MostTraces(int width) {
-  return static_cast<std::size_t>(std::max(1, width / kLeastChartWidth));
+// The residual's chart, with room on the right for the names of its limits.
+ChartLayout LayOutResidual(const cv::Rect& area, const ClipLayout& layout) {
+  const int labels_width = Round(4.2 * layout.small.em);
+  ChartLayout chart = LayOutChart(area, layout);
+  chart.plot.width -= labels_width;
+  chart.time_labels.width -= labels_width;
+  chart.level_labels = {chart.plot.br().x, chart.plot.y, labels_width,
+                        chart.plot.height};
+  return chart;
 }
 
-ClipLayout LayOutClip(cv::Size size, std::size_t panels, std::size_t traces) {
+// Takes the residual's part off the left of the area of the charts.
+cv::Rect TakeResidual(std::size_t traces, ClipLayout& layout, cv::Rect area) {
+  const int gap = 2 * layout.margin;
+  const double share = kResidualShare / (kResidualShare + static_cast<double>(traces));
+  cv::Rect part = area;
+  if (traces > 0) part.width = Round(share * (area.width - gap));
+  layout.residual = LayOutResidual(part, layout);
+  area.x += part.width + gap;
+  area.width -= part.width + gap;
+  return area;
+}
+
+DiagnosisLayout LayOutDiagnosis(const cv::Rect& area, const ClipLayout& layout) {
+  const int m = layout.margin;
+  const int inner = area.width - 2 * m;
+  const int small_line = Round(1.5 * layout.small.em);
+  DiagnosisLayout part;
+  part.area = area;
+  part.badge = {area.x + m, area.y + m, inner, Round(3.2 * layout.body.em)};
+  part.heading = {area.x + m, part.badge.br().y + m / 2, inner, small_line};
+  const int bottom = area.br().y - m / 2;
+  part.axis_title = {area.x + m, bottom - small_line, inner, small_line};
+  part.axis_labels = {area.x + m, part.axis_title.y - small_line, inner, small_line};
+  part.rows = {area.x + m, part.heading.br().y, inner,
+               part.axis_labels.y - part.heading.br().y};
+  return part;
+}
+
+}  // namespace
+
+std::size_t MostTraces(int width, bool diagnosis) {
+  const double residual = diagnosis ? kResidualShare * kLeastChartWidth : 0.0;
+  return static_cast<std::size_t>(std::max(1.0, (width - residual) / kLeastChartWidth));
+}
+
+ClipLayout LayOutClip(cv::Size size, std::size_t panels, std::size_t traces,
+                      const LayoutExtras& extras) {
+  const bool diagnosis = extras.diagnosis;
   CheckSide("width", size.width, kLeastWidth);
   CheckSide("height", size.height, kLeastHeight);
-  CheckCount("runs", panels, static_cast<std::size_t>(size.width / kLeastPanelWidth),
+  const int diagnosis_width =
+      diagnosis ? std::max(kLeastDiagnosisWidth, Round(kDiagnosisShare * size.width))
+                : 0;
+  const int views_width = size.width - diagnosis_width;
+  CheckCount("runs", panels, static_cast<std::size_t>(views_width / kLeastPanelWidth),
              size.width);
-  CheckCount("traces", traces, MostTraces(size.width), size.width);
+  CheckCount("traces", traces, MostTraces(size.width, diagnosis), size.width);
 
   // Text shrinks with the picture only as far as it stays readable.
   const double unit = std::min(size.width / 1280.0, size.height / 720.0);
@@ -109,20 +167,25 @@ ClipLayout LayOutClip(cv::Size size, std::size_t panels, std::size_t traces) {
 
   const cv::Rect header(0, 0, size.width, Round(2.1 * layout.body.em));
   LayOutHeader(header, layout);
-  const int charts_height = traces > 0 ? Round(0.27 * size.height) : 0;
+  const int charts_height = traces > 0 || diagnosis ? Round(0.27 * size.height) : 0;
   layout.charts_area = {0, size.height - charts_height, size.width, charts_height};
 
-  const cv::Rect views(0, header.height, size.width,
+  const cv::Rect views(0, header.height, views_width,
                        layout.charts_area.y - header.height);
+  if (diagnosis) {
+    layout.diagnosis =
+        LayOutDiagnosis({views.br().x, views.y, diagnosis_width, views.height}, layout);
+  }
   const int gutter = std::max(2, Round(3.0 * unit));
   for (std::size_t i = 0; i < panels; ++i) {
     layout.panels.push_back(
-        LayOutPanel(Column(views, i, panels, gutter), traces, layout));
+        LayOutPanel(Column(views, i, panels, gutter), traces, extras, layout));
   }
-  const cv::Rect charts(layout.charts_area.x + layout.margin,
-                        layout.charts_area.y + layout.margin / 2,
-                        layout.charts_area.width - 2 * layout.margin,
-                        layout.charts_area.height - layout.margin);
+  cv::Rect charts(layout.charts_area.x + layout.margin,
+                  layout.charts_area.y + layout.margin / 2,
+                  layout.charts_area.width - 2 * layout.margin,
+                  layout.charts_area.height - layout.margin);
+  if (diagnosis) charts = TakeResidual(traces, layout, charts);
   for (std::size_t i = 0; i < traces; ++i) {
     layout.charts.push_back(
         LayOutChart(Column(charts, i, traces, 2 * layout.margin), layout));

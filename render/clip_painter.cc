@@ -1,25 +1,23 @@
 #include "mjdiag/render/clip_painter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/render/amplification_label.h"
-#include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/render/engineering.h"
+#include "mjdiag/render/estimate_panel.h"
+#include "mjdiag/render/machine_views.h"
 #include "mjdiag/render/palette.h"
+#include "mjdiag/render/site_path.h"
 #include "mjdiag/render/strip_chart.h"
+#include "mjdiag/render/strokes.h"
 #include "mjdiag/render/trace.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
-
-// How large the largest amplified deviation of a group comes out.
-constexpr double kDrawnShare = 0.05;  // of the picture's height
-constexpr double kDrawnAngle = 0.06;  // [rad]
-constexpr double kBoxOpacity = 0.82;
 
 std::vector<const Record*> Records(std::span<const ClipRun> runs) {
   if (runs.empty()) throw InputError("clip", "no runs", "at least one");
@@ -63,14 +61,10 @@ std::vector<Trace> ShownTraces(std::span<const Record* const> records,
   std::vector<std::string> axes = options.axes;
   if (axes.empty()) {
     axes = TrackedAxes(*records[0]);
-    axes.resize(std::min(axes.size(), MostTraces(options.width)));
+    const std::size_t most = MostTraces(options.width, options.diagnosis.has_value());
+    axes.resize(std::min(axes.size(), most));
   }
   return TrackingErrors(records, axes);
-}
-
-AmplificationOptions ChooseAmplification(const PictureOptions& options,
-                                         double view_height) {
-  return {kDrawnShare * view_height, kDrawnAngle, options.amplify, options.amplify_all};
 }
 
 std::string SpeedText(double speed) {
@@ -80,20 +74,13 @@ std::string SpeedText(double speed) {
   return GroupedNumber(1.0 / speed) + "\u00d7 slower";
 }
 
-// Lets what lies below shine through a little.
-void DrawBox(const cv::Rect& box, cv::Mat& picture) {
-  cv::Mat part = picture(box);
-  part = part * (1.0 - kBoxOpacity) + palette::kPaper * kBoxOpacity;
-}
-
-SceneOptions ViewOptions(const PictureOptions& options, const ClipLayout& layout) {
-  // Columns may differ by a pixel; the renderer serves the widest.
-  SceneOptions scene{0, layout.panels[0].view.height, options.camera, options.smoothing,
-                     options.shadows};
-  for (const PanelLayout& panel : layout.panels) {
-    scene.width = std::max(scene.width, panel.view.width);
+LayoutExtras Extras(const mjModel& model, const PictureOptions& options,
+                    std::size_t runs) {
+  LayoutExtras extras{options.diagnosis.has_value(), options.ghost, 0};
+  if (PathSite(model, options.path_site)) {
+    extras.legend = options.ghost ? static_cast<int>(runs) : 1;
   }
-  return scene;
+  return extras;
 }
 
 }  // namespace
@@ -101,16 +88,15 @@ SceneOptions ViewOptions(const PictureOptions& options, const ClipLayout& layout
 struct ClipPainter::State {
   State(const mjModel& source, std::span<const ClipRun> clip_runs,
         const PictureOptions& options, double clip_speed, double time_step)
-      : model(source),
-        runs(clip_runs.begin(), clip_runs.end()),
+      : runs(clip_runs.begin(), clip_runs.end()),
         records(Records(clip_runs)),
         range(ShownRange(records, options)),
         traces(ShownTraces(records, options)),
-        layout(LayOutClip({options.width, options.height}, runs.size(), traces.size())),
-        scene(source, ViewOptions(options, layout)),
-        data(MakeData(source)),
-        amplification(DrawnJoints(source), *records[0], records, range,
-                      ChooseAmplification(options, ViewHeightAtStart())),
+        diagnosis(options.diagnosis),
+        layout(LayOutClip({options.width, options.height},
+                          options.ghost ? 1 : runs.size(), traces.size(),
+                          Extras(source, options, runs.size()))),
+        views(source, runs, records, range, options, layout),
         speed(SpeedText(clip_speed)),
         clock(FormatForResolution(
             "s", std::max(std::abs(range.begin), std::abs(range.end)), time_step)) {
@@ -118,15 +104,22 @@ struct ClipPainter::State {
     for (std::size_t i = 0; i < traces.size(); ++i) {
       charts.emplace_back(layout, layout.charts[i], traces[i], records, range);
     }
+    if (diagnosis) AddDiagnosis();
     DrawBackground();
   }
 
-  // The machine as it truly stands at the first moment, without amplification.
-  double ViewHeightAtStart() {
-    const AmplificationOptions as_is{0.0, 0.0, {}, 1.0};
-    const Amplification truth(DrawnJoints(model), *records[0], records, range, as_is);
-    SetPositions(model, truth.DrawnPositions(*records[0], range.begin), *data);
-    return scene.ViewHeight(*data);
+  void AddDiagnosis() {
+    CheckOverlay(*diagnosis, runs.size());
+    const Channel& residual = diagnosis->residual.channels()[0];
+    const Trace trace{"residual", "residual", residual.unit, {residual.samples}};
+    const std::array<const Record*, 1> record{&diagnosis->residual};
+    const StripMarks marks{
+        {{diagnosis->limit_high, "limit"}, {diagnosis->limit_low, "limit"}},
+        diagnosis->detection,
+        "detected at " + DetectionText(*diagnosis),
+        diagnosis->run};
+    charts.emplace_back(layout, *layout.residual, trace, record, range, marks);
+    estimates.emplace(layout, *diagnosis);
   }
 
   EngineeringFormat ReadoutFormat(const Trace& trace) const {
@@ -141,12 +134,13 @@ struct ClipPainter::State {
               palette::kQuietInk, background);
     DrawAmplification();
     for (const StripChart& chart : charts) chart.DrawBackground(type, background);
+    if (estimates) estimates->DrawBackground(type, background);
   }
 
   void DrawAmplification() {
     const cv::Rect& box = layout.amplification;
     std::string text;
-    for (const std::string& label : AmplificationLabels(amplification)) {
+    for (const std::string& label : AmplificationLabels(views.amplification())) {
       text = type.Fit(label, box.width, layout.small);
       if (text == label) break;
     }
@@ -155,34 +149,9 @@ struct ClipPainter::State {
     type.Draw(text, origin, layout.small, palette::kInk, background);
   }
 
-  void DrawView(std::size_t run, double time, cv::Mat& picture) {
-    SetPositions(model, amplification.DrawnPositions(*records[run], time), *data);
-    scene.Render(*data, view);
-    const cv::Mat rendered(view.height, view.width, CV_8UC3, view.rgb.data());
-    const cv::Rect& place = layout.panels[run].view;
-    rendered(cv::Rect(0, 0, place.width, place.height)).copyTo(picture(place));
-  }
-
-  void DrawTitle(std::size_t run, cv::Mat& picture) {
-    const cv::Rect& place = layout.panels[run].title;
-    const int pad = layout.margin;
-    const int chip = static_cast<int>(std::lround(0.7 * layout.title.em));
-    const int text_x = 2 * pad + chip;
-    const std::string title =
-        type.Fit(runs[run].title, place.width - text_x - pad, layout.title);
-    const cv::Rect box(place.x, place.y, text_x + type.Width(title, layout.title) + pad,
-                       place.height);
-    DrawBox(box, picture);
-    cv::rectangle(picture,
-                  cv::Rect(box.x + pad, box.y + (box.height - chip) / 2, chip, chip),
-                  palette::OfRun(run), cv::FILLED);
-    const cv::Rect line(box.x + text_x, box.y, box.width - text_x, box.height);
-    type.Draw(title, BaselineIn(line, layout.title), layout.title, palette::kInk,
-              picture);
-  }
-
-  void DrawReadout(std::size_t run, double time, cv::Mat& picture) {
-    const cv::Rect& box = layout.panels[run].readout;
+  void DrawReadout(std::size_t panel, double time, cv::Mat& picture) {
+    const cv::Rect& box = layout.panels[panel].readout;
+    const std::size_t run = views.RunOf(panel);
     if (box.empty()) return;
     DrawBox(box, picture);
     for (std::size_t i = 0; i < traces.size(); ++i) {
@@ -218,22 +187,20 @@ struct ClipPainter::State {
               font, palette::kInk, picture);
   }
 
-  const mjModel& model;
   std::vector<ClipRun> runs;
   std::vector<const Record*> records;
   TimeRange range;
   std::vector<Trace> traces;
+  std::optional<DiagnosisOverlay> diagnosis;
   ClipLayout layout;
-  SceneRenderer scene;
-  DataPtr data;
-  Amplification amplification;
+  MachineViews views;
   std::string speed;
   EngineeringFormat clock;
   std::vector<EngineeringFormat> readout_formats;
   std::vector<StripChart> charts;
+  std::optional<EstimatePanel> estimates;
   Typesetter type;
   cv::Mat background;
-  Image view;
 };
 
 ClipPainter::ClipPainter(const mjModel& model, std::span<const ClipRun> runs,
@@ -253,12 +220,12 @@ void ClipPainter::Paint(double time, Image& picture) {
   cv::Mat canvas(picture.height, picture.width, CV_8UC3, picture.rgb.data());
   s.background.copyTo(canvas);
   s.DrawClock(time, canvas);
-  for (std::size_t run = 0; run < s.runs.size(); ++run) {
-    s.DrawView(run, time, canvas);
-    s.DrawTitle(run, canvas);
-    s.DrawReadout(run, time, canvas);
+  for (std::size_t panel = 0; panel < s.layout.panels.size(); ++panel) {
+    s.views.Draw(panel, time, s.type, canvas);
+    s.DrawReadout(panel, time, canvas);
   }
-  for (const StripChart& chart : s.charts) chart.DrawUpTo(time, canvas);
+  for (const StripChart& chart : s.charts) chart.DrawUpTo(time, s.type, canvas);
+  if (s.estimates) s.estimates->DrawAt(time, s.type, canvas);
 }
 
 }  // namespace mjdiag

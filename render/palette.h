@@ -12,7 +12,8 @@ inline const cv::Scalar kInk{28, 32, 38};        // text
 inline const cv::Scalar kQuietInk{92, 99, 110};  // axis numbers, captions
 inline const cv::Scalar kPaper{252, 252, 253};   // behind text and plots
 inline const cv::Scalar kGrid{222, 226, 231};
-inline const cv::Scalar kRule{178, 184, 192};  // frames, zero lines
+inline const cv::Scalar kRule{178, 184, 192};    // frames, zero lines
+inline const cv::Scalar kWarning{240, 228, 66};  // Okabe and Ito's yellow, on ink
 
 /// Colour of the n-th run: blue, vermillion, bluish green, reddish purple, orange.
 inline cv::Scalar OfRun(std::size_t run) {

@@ -2,6 +2,7 @@
 
 #include <GL/gl.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -17,7 +18,7 @@ namespace {
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 4096;
 constexpr float kBackground = 1.0F;    // in the depth buffer
-constexpr int kMaxDecorations = 1000;  // geoms beside those of the model
+constexpr int kMaxDecorations = 1000;  // geoms beside those of the model and its ghost
 
 void CheckSide(const char* name, int side) {
   if (side < kMinSide || side > kMaxSide) {
@@ -84,7 +85,7 @@ class Scene {
  public:
   explicit Scene(const mjModel& model) {
     mjv_defaultScene(&scene_);
-    mjv_makeScene(&model, &scene_, model.ngeom + model.nsite + kMaxDecorations);
+    mjv_makeScene(&model, &scene_, 2 * model.ngeom + model.nsite + kMaxDecorations);
   }
   ~Scene() { mjv_freeScene(&scene_); }
   Scene(const Scene&) = delete;
@@ -140,13 +141,34 @@ struct SceneRenderer::State {
   // The context must be current while its objects are freed.
   ~State() { offscreen.MakeCurrent(); }
 
-  void Draw(mjData& data) {
+  void Draw(mjData& data, mjData* ghost_data = nullptr, const Ghost& ghost = {}) {
     offscreen.MakeCurrent();
     mjr_setBuffer(mjFB_OFFSCREEN, context.get());
     UpdatePose(*model, data);
     mjv_updateScene(model.get(), &data, &visual, nullptr, &camera, mjCAT_ALL,
                     scene.get());
+    if (ghost_data != nullptr) {
+      UpdatePose(*model, *ghost_data);
+      AddGhost(*model, *ghost_data, visual, ghost, *scene.get());
+    }
     mjr_render(viewport, scene.get(), context.get());
+  }
+
+  // The picture in the framebuffer, turned upright and averaged down to its size.
+  void Read(Image& image) {
+    mjr_readPixels(pixels.data(), nullptr, viewport, context.get());
+    image.width = options.width;
+    image.height = options.height;
+    image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
+    const cv::Mat upside_down(viewport.height, viewport.width, CV_8UC3, pixels.data());
+    cv::Mat target(image.height, image.width, CV_8UC3, image.rgb.data());
+    if (upside_down.size() == target.size()) {
+      cv::flip(upside_down, target, 0);
+    } else {
+      cv::Mat small;
+      cv::resize(upside_down, small, target.size(), 0, 0, cv::INTER_AREA);
+      cv::flip(small, target, 0);
+    }
   }
 
   // Of what was drawn there; kBackground if that is nothing.
@@ -180,22 +202,34 @@ SceneRenderer::SceneRenderer(const mjModel& model, const SceneOptions& options) 
 SceneRenderer::~SceneRenderer() = default;
 
 void SceneRenderer::Render(mjData& data, Image& image) {
-  State& s = *state_;
-  s.Draw(data);
-  mjr_readPixels(s.pixels.data(), nullptr, s.viewport, s.context.get());
-  image.width = s.options.width;
-  image.height = s.options.height;
-  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
+  state_->Draw(data);
+  state_->Read(image);
+}
 
-  cv::Mat upside_down(s.viewport.height, s.viewport.width, CV_8UC3, s.pixels.data());
-  cv::Mat target(image.height, image.width, CV_8UC3, image.rgb.data());
-  if (upside_down.size() == target.size()) {
-    cv::flip(upside_down, target, 0);
-  } else {
-    cv::Mat small;
-    cv::resize(upside_down, small, target.size(), 0, 0, cv::INTER_AREA);
-    cv::flip(small, target, 0);
-  }
+void SceneRenderer::Render(mjData& data, mjData& ghost_data, const Ghost& ghost,
+                           Image& image) {
+  state_->Draw(data, &ghost_data, ghost);
+  state_->Read(image);
+}
+
+// The perspective projection of the fixed pipeline: the frustum at its near plane.
+std::optional<Eigen::Vector2d> SceneRenderer::Project(
+    const Eigen::Vector3d& point) const {
+  const mjvScene& scene = *state_->scene.get();
+  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+  const auto vector = [](const float* v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
+  const Eigen::Vector3d forward = vector(eye.forward);
+  const Eigen::Vector3d up = vector(eye.up);
+  const Eigen::Vector3d offset = point - vector(eye.pos);
+  const double distance = forward.dot(offset);
+  if (distance < eye.frustum_near) return std::nullopt;
+  const double scale = eye.frustum_near / distance;
+  const double x = forward.cross(up).dot(offset) * scale - eye.frustum_center;
+  const double y = up.dot(offset) * scale;
+  const double height = eye.frustum_top - eye.frustum_bottom;
+  const double per_unit = state_->options.height / height;
+  return Eigen::Vector2d(0.5 * state_->options.width + x * per_unit,
+                         (eye.frustum_top - y) * per_unit);
 }
 
 double SceneRenderer::ViewHeight(mjData& data) {

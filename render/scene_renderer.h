@@ -3,9 +3,12 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "mjdiag/render/ghost.h"
 #include "mjdiag/render/image.h"
 
 namespace mjdiag {
@@ -36,6 +39,12 @@ class SceneRenderer {
   /// Draws the pose data.qpos; refreshes the kinematics in `data` but runs no callback.
   /// `image` is resized as needed, so that its memory can be reused.
   void Render(mjData& data, Image& image);
+  /// The same with the ghost of a second pose; with the same ghost the same bytes.
+  void Render(mjData& data, mjData& ghost_data, const Ghost& ghost, Image& image);
+
+  /// Where the last picture shows a point [m] of the world, in pixels from its left
+  /// top; nothing for points behind the camera.
+  std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& point) const;
 
   /// Height of the picture [m] at the distance of what its middle shows in that pose
   /// (median of what is not background).

@@ -5,29 +5,14 @@
 #include <opencv2/imgproc.hpp>
 
 #include "mjdiag/render/palette.h"
+#include "mjdiag/render/strokes.h"
 
 namespace mjdiag {
 namespace {
 
 constexpr double kHeadroom = 0.08;    // of the value range, above and below
 constexpr double kFaint = 0.28;       // share of colour in what is yet to come
-constexpr int kFractionBits = 4;      // of a pixel, in OpenCV's drawing calls
 constexpr double kLeastSpan = 1e-15;  // value range of a trace that stays at zero
-
-cv::Point FixedPoint(const cv::Point2d& point) {
-  constexpr double kOne = 1 << kFractionBits;
-  return {static_cast<int>(std::lround(point.x * kOne)),
-          static_cast<int>(std::lround(point.y * kOne))};
-}
-
-void DrawLine(const std::vector<cv::Point2d>& points, const cv::Scalar& rgb,
-              double width, cv::Mat& picture) {
-  std::vector<cv::Point> fixed;
-  fixed.reserve(points.size());
-  for (const cv::Point2d& point : points) fixed.push_back(FixedPoint(point));
-  cv::polylines(picture, fixed, false, rgb, std::max(1, static_cast<int>(width)),
-                cv::LINE_AA, kFractionBits);
-}
 
 double Spacing(const std::vector<double>& ticks, double otherwise) {
   return ticks.size() > 1 ? ticks[1] - ticks[0] : otherwise;
@@ -42,12 +27,16 @@ ValueRange WithHeadroom(ValueRange values) {
 
 StripChart::StripChart(const ClipLayout& layout, const ChartLayout& place,
                        const Trace& trace, std::span<const Record* const> runs,
-                       TimeRange range)
+                       TimeRange range, const StripMarks& marks)
     : place_(place),
       font_(layout.small),
       line_width_(std::max(1.0, std::round(layout.small.em / 8.0))),
-      range_(range) {
-  const ValueRange data = RangeWithZero(trace, runs, range);
+      range_(range),
+      marks_(marks) {
+  ValueRange data = RangeWithZero(trace, runs, range);
+  for (const StripMarks::Level& level : marks_.levels) {
+    data = {std::min(data.low, level.value), std::max(data.high, level.value)};
+  }
   values_ = WithHeadroom(data);
   const int most =
       std::clamp(static_cast<int>(place.plot.height / (1.9 * font_.em)), 3, 6);
@@ -145,13 +134,57 @@ void StripChart::DrawBackground(Typesetter& type, cv::Mat& picture) const {
   DrawTimeAxis(type, picture);
   DrawValueAxis(type, picture);
   for (std::size_t i = curves_.size(); i-- > 0;) {  // the reference run on top
-    const cv::Scalar rgb = palette::Tint(palette::OfRun(i), kFaint);
-    DrawLine(curves_[i].points, rgb, line_width_, picture);
+    const cv::Scalar rgb =
+        palette::Tint(palette::OfRun(marks_.first_colour + i), kFaint);
+    DrawCurve(curves_[i].points, rgb, line_width_, picture);
   }
+  DrawLevels(type, picture);
   cv::rectangle(picture, place_.plot, palette::kRule);
 }
 
-void StripChart::DrawUpTo(double time, cv::Mat& picture) const {
+void StripChart::DrawLevels(Typesetter& type, cv::Mat& picture) const {
+  if (marks_.levels.empty()) return;
+  const cv::Rect& column = place_.level_labels;
+  const int line = static_cast<int>(std::lround(1.2 * font_.em));
+  std::vector<StripMarks::Level> levels = marks_.levels;
+  std::sort(levels.begin(), levels.end(),
+            [](const auto& a, const auto& b) { return a.value > b.value; });
+  int top = column.y;  // names of limits that lie close move apart
+  int left = static_cast<int>(levels.size());
+  for (const StripMarks::Level& level : levels) {
+    const int y = static_cast<int>(std::lround(Place(range_.begin, level.value).y));
+    DrawDashes({place_.plot.x, y}, {place_.plot.br().x - 1, y}, palette::kInk, 1,
+               picture);
+    const int bottom = column.br().y - left-- * line;  // leaves room for those below
+    const int name_top = std::max(top, std::min(y - line / 2, bottom));
+    const cv::Rect box(column.x + static_cast<int>(0.3 * font_.em), name_top,
+                       column.width - static_cast<int>(0.3 * font_.em), line);
+    type.Draw(type.Fit(level.name, box.width, font_), BaselineIn(box, font_), font_,
+              palette::kInk, picture);
+    top = name_top + line;
+  }
+}
+
+// A line of its own weight, and in the caption's line what it means.
+void StripChart::DrawMoment(Typesetter& type, cv::Mat& picture) const {
+  const cv::Rect& plot = place_.plot;
+  const double x = Place(*marks_.moment, 0.0).x;
+  const int width = 1 + static_cast<int>(line_width_);
+  cv::line(picture, {static_cast<int>(std::lround(x)), plot.y + 1},
+           {static_cast<int>(std::lround(x)), plot.br().y - 2}, palette::kInk, width);
+  const int right =
+      place_.level_labels.empty() ? plot.br().x : place_.level_labels.br().x;
+  cv::Point origin = BaselineIn(place_.caption, font_);
+  const int from = plot.x + type.Width(caption_, font_) + static_cast<int>(font_.em);
+  const std::string name = type.Fit(marks_.moment_name, right - from, font_);
+  origin.x = right - type.Width(name, font_);
+  type.Draw(name, origin, {font_.em, Weight::kBold}, palette::kInk, picture);
+}
+
+void StripChart::DrawUpTo(double time, Typesetter& type, cv::Mat& picture) const {
+  if (marks_.moment && *marks_.moment >= range_.begin && *marks_.moment <= time) {
+    DrawMoment(type, picture);
+  }
   const int x = static_cast<int>(std::lround(Place(time, 0.0).x));
   cv::line(picture, {x, place_.plot.y + 1}, {x, place_.plot.br().y - 2},
            palette::kQuietInk);
@@ -161,12 +194,9 @@ void StripChart::DrawUpTo(double time, cv::Mat& picture) const {
     const std::vector<cv::Point2d> past(
         curve.points.begin(), curve.points.begin() + (end - curve.times.begin()));
     if (past.empty()) continue;
-    const cv::Scalar rgb = palette::OfRun(i);
-    DrawLine(past, rgb, line_width_, picture);
-    const int radius =
-        static_cast<int>(std::lround(1.6 * (1 << kFractionBits) * line_width_));
-    cv::circle(picture, FixedPoint(past.back()), radius, rgb, cv::FILLED, cv::LINE_AA,
-               kFractionBits);
+    const cv::Scalar rgb = palette::OfRun(marks_.first_colour + i);
+    DrawCurve(past, rgb, line_width_, picture);
+    DrawDot(past.back(), 1.6 * line_width_, rgb, picture);
   }
 }
 

@@ -3,7 +3,9 @@
 // full colour and beyond it faintly.
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mjdiag/render/clip_layout.h"
@@ -13,15 +15,28 @@
 
 namespace mjdiag {
 
+/// What a chart shows beside its traces.
+struct StripMarks {
+  struct Level {
+    double value = 0.0;
+    std::string name;
+  };
+  std::vector<Level> levels;     ///< dashed, with their names right of the plot
+  std::optional<double> moment;  ///< [s]; a line in the plot from then on
+  std::string moment_name;       ///< in the caption's line from then on
+  std::size_t first_colour = 0;  ///< palette index of the first run
+};
+
 class StripChart {
  public:
   StripChart(const ClipLayout& layout, const ChartLayout& place, const Trace& trace,
-             std::span<const Record* const> runs, TimeRange range);
+             std::span<const Record* const> runs, TimeRange range,
+             const StripMarks& marks = {});
 
   /// Caption, axes, grid and the faint traces: what stays the same in all frames.
   void DrawBackground(Typesetter& type, cv::Mat& picture) const;
-  /// The traces up to `time`, and a cursor there.
-  void DrawUpTo(double time, cv::Mat& picture) const;
+  /// The traces up to `time`, a cursor there, and the marked moment if it is past.
+  void DrawUpTo(double time, Typesetter& type, cv::Mat& picture) const;
 
  private:
   // A run's trace in plot coordinates, fractions of a pixel.
@@ -34,6 +49,8 @@ class StripChart {
   cv::Point2d Place(double time, double value) const;
   void DrawValueAxis(Typesetter& type, cv::Mat& picture) const;
   void DrawTimeAxis(Typesetter& type, cv::Mat& picture) const;
+  void DrawLevels(Typesetter& type, cv::Mat& picture) const;
+  void DrawMoment(Typesetter& type, cv::Mat& picture) const;
 
   ChartLayout place_;
   Font font_;
@@ -44,6 +61,7 @@ class StripChart {
   std::vector<double> value_ticks_;
   EngineeringFormat value_format_;
   std::vector<Curve> curves_;
+  StripMarks marks_;
 };
 
 }  // namespace mjdiag

@@ -1,6 +1,5 @@
 #pragma once
-// What the clip plots over time, for every run: for now the tracking errors of the
-// axes.
+// What the clip plots over time, for every run: the tracking errors of the axes.
 
 #include <Eigen/Core>
 #include <span>

@@ -61,6 +61,16 @@ TEST(Amplification, DrawsThePeakOfAGroupAtTheWantedSize) {
   EXPECT_DOUBLE_EQ(drawn.factors()[3], 1.0);
 }
 
+TEST(Amplification, DrawsDrivenJointsWithOneFactorSoThatNoiseStaysSmall) {
+  const Record healthy = test::Run({});
+  // The arm is off by rounding noise, the stage by a fault.
+  const Record faulty = test::Run({.stage = 4e-6, .arm = 1e-5 + 1e-10});
+  const Amplification drawn =
+      Amplify(healthy, faulty, {.drawn_length = 0.01, .drawn_angle = 0.05});
+  EXPECT_DOUBLE_EQ(drawn.factors()[1], 2000.0);
+  EXPECT_DOUBLE_EQ(drawn.factors()[3], 2000.0);
+}
+
 TEST(Amplification, FollowsItsEquation) {
   const Record healthy = test::Run({});
   const Record faulty = test::Run({.mount = 3e-8, .stage = 4e-6});

@@ -7,9 +7,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "mjdiag/render/clip_layout.h"
 #include "mjdiag/render/clip_writer.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
+#include "support/message_of.h"
 #include "test_machine.h"
 
 namespace mjdiag {
@@ -71,6 +73,101 @@ TEST_F(Clip, GivesTheSameFramesEveryTime) {
   }
   EXPECT_NE(ReadTextFile(folder_ / "a" / "frame_000000.png"),
             ReadTextFile(folder_ / "a" / "frame_000005.png"));
+}
+
+TEST_F(Clip, GivesTheSameFramesEveryTimeWithGhostAndDiagnosis) {
+  for (const bool ghost : {false, true}) {
+    options_.picture.ghost = ghost;
+    options_.picture.diagnosis = test::Overlay();
+    const test::TemporaryFolder folder;
+    for (const char* name : {"a", "b"}) {
+      options_.frames = folder / name;
+      RenderClip(*model_, runs_, options_, folder / (std::string(name) + ".mp4"));
+    }
+    for (int n = 0; n <= 10; ++n) {
+      const std::string frame =
+          "frame_0000" + std::string(n < 10 ? "0" : "") + std::to_string(n) + ".png";
+      EXPECT_EQ(ReadTextFile(folder / "a" / frame), ReadTextFile(folder / "b" / frame));
+    }
+    EXPECT_EQ(ReadTextFile(folder / "a.mp4"), ReadTextFile(folder / "b.mp4"));
+    EXPECT_NE(ReadTextFile(folder / "a" / "frame_000004.png"),
+              ReadTextFile(folder / "a" / "frame_000005.png"));
+  }
+}
+
+TEST_F(Clip, ShowsTheDiagnosisAsItStoodAtTheTime) {
+  options_.picture.diagnosis = test::Overlay();
+  const cv::Rect panel = LayOutClip({640, 360}, 2, 1, {true, false, 1}).diagnosis->area;
+  const auto still = [&](double time, const DiagnosisOverlay& overlay) {
+    PictureOptions picture = options_.picture;
+    picture.diagnosis = overlay;
+    RenderStill(*model_, runs_, picture, time, folder_ / "still.png");
+    return cv::imread((folder_ / "still.png").string())(panel).clone();
+  };
+  DiagnosisOverlay later = test::Overlay();
+  for (EstimateHistory& history : later.estimates) {
+    history.value.tail(5).array() += 0.1;  // from 60 ms on
+  }
+  const auto difference = [&](double time) {
+    // Both reach as far, so that only what is drawn then can differ.
+    return cv::norm(still(time, test::Overlay()), still(time, later), cv::NORM_INF);
+  };
+  later.estimates[0].value.tail(1)[0] -= 0.1;
+  later.estimates[1].value.tail(1)[0] -= 0.1;
+  EXPECT_EQ(difference(0.03), 0.0);
+  EXPECT_GT(difference(0.07), 50.0);
+}
+
+TEST_F(Clip, GhostShowsTheHealthyMachineInTheFaultyOnesView) {
+  options_.picture.ghost = true;
+  options_.picture.path_site = "none";
+  const auto still = [&](const Record& other) {
+    const std::array runs{ClipRun{"Healthy", &healthy_}, ClipRun{"Faulty", &other}};
+    RenderStill(*model_, runs, options_.picture, 0.03, folder_ / "still.png");
+    return cv::imread((folder_ / "still.png").string())(cv::Rect(160, 120, 320, 140))
+        .clone();
+  };
+  // Bluish where the ghost shines through: nowhere if nothing differs.
+  const auto ghostly = [](const cv::Mat& picture) {
+    int count = 0;
+    for (int y = 0; y < picture.rows; ++y) {
+      for (int x = 0; x < picture.cols; ++x) {
+        const auto bgr = picture.at<cv::Vec3b>(y, x);
+        count += bgr[0] > bgr[2] + 60 && bgr[1] > bgr[2] + 30 ? 1 : 0;
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(ghostly(still(faulty_)), ghostly(still(healthy_)) + 100);
+}
+
+TEST_F(Clip, GhostNeedsTwoRuns) {
+  options_.picture.ghost = true;
+  const std::array alone{runs_[0]};
+  EXPECT_THAT(test::MessageOf<InputError>(
+                  [&] { RenderClip(*model_, alone, options_, folder_ / "clip.mp4"); }),
+              HasSubstr("ghost: of 1 runs"));
+  EXPECT_EQ(folder_.size(), 0);
+}
+
+TEST_F(Clip, ChecksThePictureBeforeThereAreRuns) {
+  const auto refusal = [&](const PictureOptions& picture) {
+    return test::MessageOf<InputError>([&] { CheckPicture(*model_, picture); });
+  };
+  EXPECT_NO_THROW(CheckPicture(*model_, options_.picture));
+  PictureOptions picture = options_.picture;
+  picture.camera = "side";
+  EXPECT_THAT(refusal(picture), HasSubstr("one of: front, top"));
+  picture = options_.picture;
+  picture.path_site = "toe";
+  EXPECT_THAT(refusal(picture), HasSubstr("one of: none, corner, elbow, tip"));
+  picture = options_.picture;
+  picture.width = 100001;
+  EXPECT_THAT(refusal(picture), HasSubstr("width: 100001 px"));
+  picture = options_.picture;
+  picture.begin = 0.05;
+  picture.end = 0.05;
+  EXPECT_THAT(refusal(picture), HasSubstr("begin before end"));
 }
 
 TEST_F(Clip, FramesReplaceThoseOfALongerClip) {

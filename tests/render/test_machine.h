@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/render/diagnosis_overlay.h"
 #include "mjdiag/signals/record.h"
 #include "support/temporary_folder.h"
 
@@ -20,6 +21,7 @@ inline constexpr const char* kMachine = R"(<mujoco>
     <body>
       <joint name="mount" type="slide" axis="1 0 0" stiffness="1e8"/>
       <geom type="box" size="0.2 0.1 0.02" rgba="0.3 0.3 0.35 1"/>
+      <site name="corner" pos="0.2 0.1 0.02" group="4"/>
       <body pos="0 0 0.05">
         <joint name="stage" type="slide" axis="1 0 0"/>
         <geom type="box" size="0.05 0.05 0.03" rgba="0.8 0.4 0.1 1"/>
@@ -29,6 +31,8 @@ inline constexpr const char* kMachine = R"(<mujoco>
           <body pos="0 0 0.03">
             <joint name="arm" type="hinge" axis="0 1 0" stiffness="1.5"/>
             <geom type="capsule" size="0.008" fromto="0 0 0 0.08 0 0"/>
+            <site name="elbow" pos="0 0 0" group="4"/>
+            <site name="tip" pos="0.08 0 0" group="4"/>
           </body>
         </body>
       </body>
@@ -76,6 +80,30 @@ inline Record Run(const RunSpec& spec) {
   record.Add({"x", "m", stage});
   record.Add({"x_ref", "m", stroke});
   return record;
+}
+
+/// A diagnosis of the second of two runs: the residual leaves its limits 2.5 .. -1.5 at
+/// 41 ms; "damping" is off healthy, "force" is not, "gap" is never determined.
+inline DiagnosisOverlay Overlay() {
+  DiagnosisOverlay overlay;
+  overlay.run = 1;
+  overlay.residual = Record(1e-3);
+  const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(101, 0.0, 100.0);
+  overlay.residual.Add({"residual", "1", 3.0 * (ramp.array() / 50.0).matrix()});
+  overlay.limit_low = -1.5;
+  overlay.limit_high = 2.5;
+  overlay.detection = 0.041;
+  constexpr Eigen::Index kEstimates = 11;
+  overlay.estimate_time = Eigen::VectorXd::LinSpaced(kEstimates, 0.0, 0.1);
+  const Eigen::VectorXd shrinking =
+      (0.5 / (1.0 + Eigen::ArrayXd::LinSpaced(kEstimates, 0.0, 10.0))).matrix();
+  const auto constant = [&](double value) {
+    return Eigen::VectorXd::Constant(kEstimates, value).eval();
+  };
+  overlay.estimates = {{"damping", 1.0, constant(1.2), shrinking},
+                       {"force", 0.0, constant(-0.01), shrinking},
+                       {"gap", 1.0, constant(std::nan("")), constant(std::nan(""))}};
+  return overlay;
 }
 
 }  // namespace mjdiag::test
