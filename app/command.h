@@ -13,6 +13,7 @@ void AddCompare(CLI::App& app);
 void AddDiscover(CLI::App& app);
 void AddRender(CLI::App& app);
 void AddStudy(CLI::App& app);
+void AddReport(CLI::App& app);
 
 /// The command line as it was typed, for files that say how they were made.
 const std::string& CommandLine();

@@ -11,7 +11,6 @@
 #include "mjdiag/report/comparison_json.h"
 #include "mjdiag/report/comparison_page.h"
 #include "mjdiag/signals/quantity.h"
-#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -62,16 +61,11 @@ void Compare(const CompareOptions& options) {
   document.update(ToJson(machine.options));
   document["record"] = options.record;
   document["command"] = CommandLine();
-  std::string text = ComparisonVerdict(comparison) + "\n\n" + ChannelTable(comparison) +
-                     DerivedTable(comparison);
-  if (!options.output.folder.empty()) {
-    const RunDescription run{
-        CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
-    const auto page = std::filesystem::path(options.output.folder) / "compare.html";
-    WriteTextFile(page, ComparisonPage(comparison, run));
-    text += "\npage: " + page.string() + "\n";
-  }
-  Publish(options.output, "compare", document, text);
+  const std::string text = ComparisonVerdict(comparison) + "\n\n" +
+                           ChannelTable(comparison) + DerivedTable(comparison);
+  const RunDescription run{CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
+  Publish(options.output, "compare", document, text,
+          NamedPage{"compare", ComparisonPage(comparison, run)});
 }
 
 }  // namespace
@@ -85,6 +79,7 @@ void AddCompare(CLI::App& app) {
       ->required();
   command->add_option("--seed", options->seed, "Seed of the noise floor's simulation");
   AddOutputOptions(*command, options->output, false);
+  AddReportOption(*command, options->output);
   command->callback([options] { Compare(*options); });
 }
 

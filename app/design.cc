@@ -15,7 +15,6 @@
 #include "mjdiag/plugin/linearize.h"
 #include "mjdiag/report/design_page.h"
 #include "mjdiag/report/filters_file.h"
-#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -95,16 +94,13 @@ std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
   return text;
 }
 
-/// Writes design.html and says which files there are; nothing without a folder.
-std::string WriteDesignPage(const OutputOptions& output, const Machine& machine,
-                            const DiagnosisDesign& design, DesignFacts facts) {
-  if (output.folder.empty()) return "";
+/// The page of a design; none without a folder for it.
+std::optional<NamedPage> PageOf(const OutputOptions& output, const Machine& machine,
+                                const DiagnosisDesign& design, DesignFacts facts) {
+  if (output.folder.empty()) return std::nullopt;
   facts.changed = WithoutStiffness(machine);
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
-  const std::filesystem::path folder(output.folder);
-  WriteTextFile(folder / "design.html", DesignPage(design, facts, run));
-  return "filters: " + (folder / "filters.json").string() +
-         "\npage: " + (folder / "design.html").string() + "\n";
+  return NamedPage{"design", DesignPage(design, facts, run)};
 }
 
 void Design(const DesignOptions& options) {
@@ -120,10 +116,14 @@ void Design(const DesignOptions& options) {
   document["states"] = facts.states;
   document["minimal_degree"] = facts.minimal_degree;
   if (facts.linear_program) document["linear_program"] = ToJson(*facts.linear_program);
-  const std::string text =
-      Summary(ready.design, facts) +
-      WriteDesignPage(options.output, machine, ready.design, facts);
-  Publish(options.output, "filters", document, text);
+  std::string text = Summary(ready.design, facts);
+  if (!options.output.folder.empty()) {
+    text += "filters: " +
+            (std::filesystem::path(options.output.folder) / "filters.json").string() +
+            "\n";
+  }
+  Publish(options.output, "filters", document, text,
+          PageOf(options.output, machine, ready.design, facts));
 }
 
 }  // namespace
@@ -134,6 +134,7 @@ void AddDesign(CLI::App& app) {
       app.add_subcommand("design", "Make residual filters, prefilters and thresholds");
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
+  AddReportOption(*command, options->output);
   AddDiagnosisOptions(*command, options->source);
   command->add_flag("--linear", options->linear,
                     "Thresholds from runs of the linearised plant");

@@ -72,10 +72,8 @@ void Diagnose(const DiagnoseOptions& options) {
   nlohmann::json document = ToJson(result);
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
-  const std::string text =
-      Describe(result) + WriteDiagnosisPage(options.output, ready.design, monitor,
-                                            result, document["record"]);
-  Publish(options.output, "diagnosis", document, text);
+  Publish(options.output, "diagnosis", document, Describe(result),
+          PageOf(ready.design, monitor, result, document["record"]));
 }
 
 }  // namespace
@@ -86,6 +84,7 @@ void AddDiagnose(CLI::App& app) {
       app.add_subcommand("diagnose", "Find faults in a measured or simulated record");
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
+  AddReportOption(*command, options->output);
   AddDiagnosisOptions(*command, options->source);
   command->add_option("--record", options->record, "Record to be diagnosed")
       ->required();

@@ -9,7 +9,6 @@
 #include "mjdiag/report/diagnosis_verdict.h"
 #include "mjdiag/report/filters_file.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -98,16 +97,10 @@ ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& ma
   return ready;
 }
 
-std::string WriteDiagnosisPage(const OutputOptions& output,
-                               const DiagnosisDesign& design,
-                               const DiagnosisMonitor& monitor,
-                               const DiagnosisResult& result,
-                               const std::string& record) {
-  if (output.folder.empty()) return "";
+NamedPage PageOf(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+                 const DiagnosisResult& result, const std::string& record) {
   const RunDescription run{CommandLine(), record, {{"mjdiag", MJDIAG_VERSION}}};
-  const auto page = std::filesystem::path(output.folder) / "diagnosis.html";
-  WriteTextFile(page, DiagnosisPage(design, result, monitor.Log(), run));
-  return "\npage: " + page.string() + "\n";
+  return {"diagnosis", DiagnosisPage(design, result, monitor.Log(), run)};
 }
 
 std::string Describe(const DiagnosisResult& result) {

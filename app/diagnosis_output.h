@@ -31,12 +31,9 @@ struct ReadyDiagnosis {
 ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
                                 const Excitation& excitation, bool linear);
 
-/// Writes diagnosis.html into the output folder, if there is one, and says so.
-std::string WriteDiagnosisPage(const OutputOptions& output,
-                               const DiagnosisDesign& design,
-                               const DiagnosisMonitor& monitor,
-                               const DiagnosisResult& result,
-                               const std::string& record);
+/// The page of a diagnosis.
+NamedPage PageOf(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+                 const DiagnosisResult& result, const std::string& record);
 
 /// The table for people.
 std::string Describe(const DiagnosisResult& result);

@@ -12,6 +12,7 @@
 #include "app/progress.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/report/discovery_json.h"
+#include "mjdiag/report/discovery_page.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 
@@ -73,7 +74,6 @@ void Discover(const DiscoverCommand& command) {
   PrepareOutput(command.output);
   Discovery discovery = RunDiscovery(machine, command, measured, unseen);
 
-  const std::string& folder = command.output.folder;
   const DiscoveryRun run{{CommandLine(), command.record, {{"mjdiag", MJDIAG_VERSION}}},
                          command.validation,
                          Extend(command, machine, discovery)};
@@ -88,8 +88,8 @@ void Discover(const DiscoverCommand& command) {
   if (!run.extended_plant.empty()) {
     text += "\nextended plant: " + run.extended_plant + "\n";
   }
-  text += "\npage: " + WriteDiscoveryPage(folder, discovery, run) + "\n";
-  Publish(command.output, "discovery", document, text);
+  Publish(command.output, "discovery", document, text,
+          NamedPage{"discovery", DiscoveryPage(discovery, run)});
   if (discovery.verdict == DiscoveryVerdict::kUnexplained) throw NegativeAnswer{};
 }
 
@@ -117,6 +117,7 @@ void AddDiscover(CLI::App& app) {
       ->check(CLI::Range(1, kMostCauses));
   command->add_option("--seed", options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
+  AddReportOption(*command, options->output);
   command->callback([options] { Discover(*options); });
 }
 

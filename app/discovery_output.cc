@@ -62,11 +62,4 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
   return (extended / "plant.xml").string();
 }
 
-std::string WriteDiscoveryPage(const std::string& folder, const Discovery& discovery,
-                               const DiscoveryRun& run) {
-  const fs::path page = fs::path(folder) / "discovery.html";
-  WriteTextFile(page, DiscoveryPage(discovery, run));
-  return page.string();
-}
-
 }  // namespace mjdiag::app

@@ -1,12 +1,11 @@
 #pragma once
-// How `discover` shows its answer: the tables for people, the page, and the files of
+// How `discover` shows its answer: the tables for people and the files of
 // the extended plant.
 
 #include <string>
 
 #include "app/machine.h"
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/report/discovery_page.h"
 
 namespace mjdiag::app {
 
@@ -17,9 +16,5 @@ std::string Describe(const Discovery& discovery);
 /// @return the path of the plant; empty without causes
 std::string WriteExtendedPlant(const std::string& folder, const std::string& setup,
                                const Machine& machine, const Discovery& discovery);
-
-/// Writes `<folder>/discovery.html`. @return its path
-std::string WriteDiscoveryPage(const std::string& folder, const Discovery& discovery,
-                               const DiscoveryRun& run);
 
 }  // namespace mjdiag::app

@@ -66,6 +66,7 @@ int Main(int argc, char** argv) {
   AddDiscover(app);
   AddRender(app);
   AddStudy(app);
+  AddReport(app);
   try {
     RequireKnownCommand(app, argc, argv);
     app.parse(argc, argv);

@@ -2,6 +2,9 @@
 
 #include <cstdio>
 
+#include "mjdiag/report/page_file.h"
+#include "mjdiag/report/plot_library.h"
+#include "mjdiag/report/run_folder.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -15,18 +18,41 @@ void AddOutputOptions(CLI::App& command, OutputOptions& options, bool folder_req
                    "Print one JSON document on stdout and nothing else");
 }
 
+void AddReportOption(CLI::App& command, OutputOptions& options) {
+  command
+      .add_flag("--report", options.report,
+                "Make report.html of the folder: one page with all that commands and "
+                "render wrote into it")
+      ->needs("--out");
+}
+
 void PrepareOutput(const OutputOptions& options) {
+  if (options.report) LoadPlotLibrary();
   if (!options.folder.empty()) MakeOutputFolder(options.folder);
 }
 
+namespace {
+
+/// Page and report of the folder, and what to say about them.
+std::string WritePageAndReport(const OutputOptions& options, const NamedPage& page) {
+  WritePage(options.folder, page.name, page.page);
+  if (options.report) return "\nreport: " + WriteReport(options.folder).string() + "\n";
+  return "\n`mjdiag report " + options.folder + "` makes a page of it\n";
+}
+
+}  // namespace
+
 void Publish(const OutputOptions& options, const std::string& name,
-             const nlohmann::json& document, const std::string& text) {
+             const nlohmann::json& document, const std::string& text,
+             const std::optional<NamedPage>& page) {
   const std::string dump =
       document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  std::string made;
   if (!options.folder.empty()) {
     WriteTextFile(std::filesystem::path(options.folder) / (name + ".json"), dump);
+    if (page) made = WritePageAndReport(options, *page);
   }
-  if (std::fputs(options.json ? dump.c_str() : text.c_str(), stdout) < 0 ||
+  if (std::fputs(options.json ? dump.c_str() : (text + made).c_str(), stdout) < 0 ||
       std::fflush(stdout) != 0) {
     throw InputError("standard output", "cannot be written", "a place for the results");
   }

@@ -5,8 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "mjdiag/report/page.h"
 #include "mjdiag/signals/record_file.h"
 
 namespace mjdiag::app {
@@ -14,17 +16,30 @@ namespace mjdiag::app {
 struct OutputOptions {
   std::string folder;  ///< empty: no files
   bool json = false;
+  bool report = false;  ///< make report.html of the folder at the end
+};
+
+/// What a command adds to the report of its folder.
+struct NamedPage {
+  std::string name;  ///< of its file, before ".page.json"
+  Page page;
 };
 
 void AddOutputOptions(CLI::App& command, OutputOptions& options, bool folder_required);
 
-/// Makes the folder, if one is asked for, before any work is done.
+/// `--report`, for commands that have a page. Call after AddOutputOptions.
+void AddReportOption(CLI::App& command, OutputOptions& options);
+
+/// Makes the folder, if one is asked for, before any work is done. InputError if it
+/// cannot be written to, or a report is wanted and the plot library is not installed.
 void PrepareOutput(const OutputOptions& options);
 
-/// Writes `<folder>/<name>.json`, if there is a folder, and prints either the document
-/// or the text.
+/// Writes `<folder>/<name>.json` and the page, if there is a folder, then the report if
+/// one is wanted, and prints either the document or the text. The results are on disk
+/// before the report is made, which other files of the folder may spoil.
 void Publish(const OutputOptions& options, const std::string& name,
-             const nlohmann::json& document, const std::string& text);
+             const nlohmann::json& document, const std::string& text,
+             const std::optional<NamedPage>& page = std::nullopt);
 
 /// "csv", "mat" (v5) or "mat73" to format and file extension.
 RecordFormat ParseRecordFormat(const std::string& name);

@@ -101,6 +101,7 @@ void Simulate(const SimulateOptions& options) {
     document["record"] = file.filename().string();
     text += "\nrecord: " + file.string() + "\n";
   }
+  std::optional<NamedPage> page;
   if (options.diagnose) {
     const DiagnosisResult result = Conclude(ready->design, *monitor);
     document["diagnosis"] = ToJson(result);
@@ -108,11 +109,11 @@ void Simulate(const SimulateOptions& options) {
     if (!options.output.folder.empty()) {
       WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
                     document["diagnosis"].dump(2) + "\n");
-      text += WriteDiagnosisPage(options.output, ready->design, *monitor, result,
-                                 "simulated: " + Describe(machine.options));
     }
+    page = PageOf(ready->design, *monitor, result,
+                  "simulated: " + Describe(machine.options));
   }
-  Publish(options.output, "simulate", document, text);
+  Publish(options.output, "simulate", document, text, page);
 }
 
 }  // namespace
@@ -124,6 +125,7 @@ void AddSimulate(CLI::App& app) {
   AddMachineOptions(*command, options->machine);
   AddMotionOptions(*command, options->motion);
   AddOutputOptions(*command, options->output, false);
+  AddReportOption(*command, options->output);
   command->add_option("--format", options->format, "Format of the record")
       ->check(CLI::IsMember({"csv", "mat", "mat73"}));
   command->add_flag("--log-joints", options->log_joints,

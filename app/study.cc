@@ -1,7 +1,6 @@
 // mjdiag study: sweeps and Monte-Carlo studies with their tables.
 
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,7 +12,6 @@
 #include "app/progress.h"
 #include "mjdiag/discovery/hidden_table.h"
 #include "mjdiag/report/study_page.h"
-#include "mjdiag/signals/text_file.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
@@ -92,15 +90,11 @@ std::string ToText(const StudyTable& table) {
   return result + (table.notes.empty() ? "\n" : "\n\n");
 }
 
-/// Writes study.html into the output folder, if there is one, and says so.
-std::string WriteStudyPage(const StudyCommand& command, const std::string& setup,
-                           const std::vector<StudyTable>& tables) {
-  if (command.output.folder.empty()) return "";
+NamedPage PageOf(const StudyCommand& command, const std::string& setup,
+                 const std::vector<StudyTable>& tables) {
   const StudyFacts facts{setup, command.preset, command.runs, command.seed};
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
-  const auto page = std::filesystem::path(command.output.folder) / "study.html";
-  WriteTextFile(page, StudyPage(facts, tables, run));
-  return "page: " + page.string() + "\n";
+  return {"study", StudyPage(facts, tables, run)};
 }
 
 void RunStudy(const StudyCommand& command) {
@@ -125,8 +119,8 @@ void RunStudy(const StudyCommand& command) {
     document["tables"].push_back(ToJson(table));
     text += ToText(table);
   }
-  text += WriteStudyPage(command, machine.setup.name, tables);
-  Publish(command.output, "study", document, text);
+  Publish(command.output, "study", document, text,
+          PageOf(command, machine.setup.name, tables));
 }
 
 }  // namespace
@@ -136,6 +130,7 @@ void AddStudy(CLI::App& app) {
   CLI::App* command = app.add_subcommand("study", "Run a study with its tables");
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
+  AddReportOption(*command, options->output);
   std::vector<std::string> presets;
   for (const auto& [name, study] : Studies()) presets.push_back(name);
   command->add_option("--preset", options->preset, "Which study")

@@ -166,9 +166,9 @@ std::string ComparisonVerdict(const Comparison& comparison) {
          " times its noise floor (" + size + ").";
 }
 
-std::string ComparisonPage(const Comparison& comparison, const RunDescription& run) {
+Page ComparisonPage(const Comparison& comparison, const RunDescription& run) {
   Page page("Measured against simulated: " + comparison.setup);
-  page.AddVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
+  page.SetVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
                   ComparisonVerdict(comparison));
   AddFacts(page, comparison, run);
   page.AddHeading("Channels");
@@ -180,10 +180,8 @@ std::string ComparisonPage(const Comparison& comparison, const RunDescription& r
     AddMismatchPlot(page, comparison, channel);
     AddMismatchSpectrum(page, channel);
   }
-  page.AddHeading("To do it again");
-  page.AddCode(run.command);
-  page.AddFacts(run.versions);
-  return page.Html();
+  page.SetRun(run);
+  return page;
 }
 
 }  // namespace mjdiag

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mjdiag/discovery/comparison.h"
+#include "mjdiag/report/page.h"
 #include "mjdiag/report/run_description.h"
 
 namespace mjdiag {
@@ -12,7 +13,7 @@ namespace mjdiag {
 /// noise floor (1.1 µm rms)."
 std::string ComparisonVerdict(const Comparison& comparison);
 
-/// The whole page. InputError if the plot library is not installed.
-std::string ComparisonPage(const Comparison& comparison, const RunDescription& run);
+/// The whole page.
+Page ComparisonPage(const Comparison& comparison, const RunDescription& run);
 
 }  // namespace mjdiag

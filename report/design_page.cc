@@ -133,10 +133,10 @@ HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds) {
   return plot;
 }
 
-std::string DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
-                       const RunDescription& run) {
+Page DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
+                const RunDescription& run) {
   Page page("Diagnosis designed for " + design.setup);
-  page.AddVerdict(Tone::kNeutral, Verdict(design, facts));
+  page.SetVerdict(Tone::kNeutral, Verdict(design, facts));
   page.AddFacts({{"Setup", design.setup},
                  {"Faults estimated", Joined(design.FaultNames())},
                  {"Residuals", std::to_string(design.bank.residuals)},
@@ -156,10 +156,8 @@ std::string DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
     AddHealthyEstimates(page, design);
   }
   AddFilters(page, design, facts);
-  page.AddHeading("To do it again");
-  page.AddCode(run.command);
-  page.AddFacts(run.versions);
-  return page.Html();
+  page.SetRun(run);
+  return page;
 }
 
 }  // namespace mjdiag

@@ -9,6 +9,7 @@
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 #include "mjdiag/report/filter_plots.h"
+#include "mjdiag/report/page.h"
 #include "mjdiag/report/run_description.h"
 
 namespace mjdiag {
@@ -41,9 +42,8 @@ std::string DescribeRowPrograms(const RowProgramFacts& facts);
 /// Bars, fitted normal distribution and thresholds of the nominal residuals.
 HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds);
 
-/// The whole page; plots of the residual only where its limits are known. InputError if
-/// the plot library is not installed.
-std::string DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
-                       const RunDescription& run);
+/// The whole page; plots of the residual only where its limits are known.
+Page DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
+                const RunDescription& run);
 
 }  // namespace mjdiag

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "mjdiag/diagnosis/diagnosis_result.h"
+#include "mjdiag/report/page.h"
 #include "mjdiag/report/run_description.h"
 
 namespace mjdiag {
 
-/// The whole page. InputError if the plot library is not installed.
-std::string DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
-                          const MonitorLog& log, const RunDescription& run);
+/// The whole page.
+Page DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
+                   const MonitorLog& log, const RunDescription& run);
 
 }  // namespace mjdiag

@@ -186,9 +186,9 @@ void AddFaultLimits(Page& page, const Discovery& discovery) {
 
 }  // namespace
 
-std::string DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
+Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   Page page("What the simulation gets wrong: " + discovery.setup);
-  page.AddVerdict(ToneOf(discovery.verdict), DiscoveryAnswer(discovery));
+  page.SetVerdict(ToneOf(discovery.verdict), DiscoveryAnswer(discovery));
   AddFacts(page, discovery, run);
   AddCauses(page, discovery);
   AddNotes(page, discovery);
@@ -198,10 +198,8 @@ std::string DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   AddSignature(page, discovery);
   AddUnexplained(page, discovery);
   AddFaultLimits(page, discovery);
-  page.AddHeading("To do it again");
-  page.AddCode(run.run.command);
-  page.AddFacts(run.run.versions);
-  return page.Html();
+  page.SetRun(run.run);
+  return page;
 }
 
 }  // namespace mjdiag

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mjdiag/discovery/discovery.h"
+#include "mjdiag/report/page.h"
 #include "mjdiag/report/run_description.h"
 
 namespace mjdiag {
@@ -16,7 +17,7 @@ struct DiscoveryRun {
   std::string extended_plant;  ///< path of the MJCF file; empty: none
 };
 
-/// The whole page. InputError if the plot library is not installed.
-std::string DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run);
+/// The whole page.
+Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run);
 
 }  // namespace mjdiag

@@ -1,20 +1,22 @@
 #pragma once
-// One self-contained HTML page: no network, no second file. Text, tables and plots are
-// appended in reading order, and Html() gives the finished page. It follows the
-// reader's light or dark scheme, fits a phone and prints.
+// The page of a command: text, tables and plots in reading order, and how it was made.
+// It is a document (page_file.h) from which a report is made (report.h), so that a
+// report can be made anew, or of several commands, without running them again.
 //
-// All text that goes in is plain text: it is escaped here and nowhere else.
+// All text that goes in is plain text.
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mjdiag/report/plot.h"
+#include "mjdiag/report/run_description.h"
 
 namespace mjdiag {
 
 /// How the verdict of a run looks: the mark next to it, never the colour alone.
-enum class Tone { kGood, kBad, kNeutral };
+enum class Tone { kBad, kNeutral, kGood };
 
 /// A table; every row has as many cells as there are columns.
 struct Table {
@@ -26,13 +28,24 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// Schema "mjdiag.page/1": title; verdict {tone: "bad", "neutral" or "good", text} or
+/// null; command; versions [[program, version]]; blocks in reading order, each with a
+/// kind:
+///
+///   heading, paragraph, code  text
+///   facts                     rows [[name, value]]
+///   table                     columns [{title, number}], rows [[text]]
+///   plot                      caption, plot (DescribePlot of plot.h)
 class Page {
  public:
   /// @param title  of the page and its first heading
   explicit Page(std::string title);
 
-  /// The answer in one sentence.
-  void AddVerdict(Tone tone, const std::string& text);
+  /// The answer in one sentence; a later one takes the place of an earlier one.
+  void SetVerdict(Tone tone, const std::string& text);
+  /// How to do it again.
+  void SetRun(const RunDescription& run);
+
   void AddHeading(const std::string& text);
   void AddParagraph(const std::string& text);
   /// Name and value pairs.
@@ -40,23 +53,19 @@ class Page {
   void AddTable(const Table& table);
   /// A command line or other text to be copied as it is.
   void AddCode(const std::string& text);
-  /// All time plots of a page zoom and show their cursor together.
-  void AddPlot(const TimePlot& plot);
-  void AddPlot(const SpectrumPlot& plot);
-  void AddPlot(const XyPlot& plot);
-  void AddPlot(const HistogramPlot& plot);
-  void AddPlot(const BodePlot& plot);
+  /// All time plots of a report zoom and show their cursor together.
+  template <typename Plot>
+  void AddPlot(const Plot& plot) {
+    AddBlock(
+        {{"kind", "plot"}, {"caption", plot.caption}, {"plot", DescribePlot(plot)}});
+  }
 
-  /// The page. InputError if the plot library is not installed.
-  std::string Html() const;
+  const nlohmann::json& document() const { return document_; }
 
  private:
-  void AddPlotElement(const std::string& caption, int height,
-                      const std::string& description);
+  void AddBlock(nlohmann::json block);
 
-  std::string title_;
-  std::string body_;
-  bool has_plots_ = false;
+  nlohmann::json document_;
 };
 
 }  // namespace mjdiag

@@ -1,4 +1,3 @@
-'use strict';
 // Draws the plots of a page. Every figure.plot holds its data as JSON.
 (function () {
   function decode(base64) {
@@ -29,7 +28,7 @@
     const table = [];
     if (plot.curves.length === 0) return table;
     for (let k = 0; k < plot.curves[0].samples.length; ++k) {
-      const x = plot.frequency ? plot.frequency[k] : plot.start + k * plot.step;
+      const x = plot.frequency[k];
       if (logarithmicX(plot) && !(x > 0)) continue;
       const row = [x];
       for (const curve of plot.curves) {
@@ -122,6 +121,24 @@
     }
   }
 
+  // The names of the marks of a spectrum beside their lines, lower where one would lie
+  // on another.
+  function drawNames(canvas, area, graph, plot, scheme) {
+    canvas.font = '12px system-ui, "DejaVu Sans", sans-serif';
+    canvas.fillStyle = color('ink', scheme);
+    const ends = [];
+    for (const mark of plot.marks.slice().sort((a, b) => a.value - b.value)) {
+      const x = area.x + graph.toPercentXCoord(mark.value) * area.w;
+      if (!(x >= area.x && x <= area.x + area.w)) continue;
+      const width = canvas.measureText(mark.label).width;
+      const left = Math.min(x + 4, area.x + area.w - width);
+      let row = ends.findIndex((end) => end < left);
+      if (row < 0) row = ends.length;
+      ends[row] = left + width + 6;
+      canvas.fillText(mark.label, left, area.y + 12 + 14 * row);
+    }
+  }
+
   function drawUnderlay(plot, scheme) {
     return function (canvas, area, graph) {
       canvas.save();
@@ -131,6 +148,7 @@
       drawBands(canvas, area, graph, plot, scheme());
       // Bars would hide them.
       if (!hasShapes(plot)) drawDashes(canvas, area, graph, plot, scheme());
+      if (plot.kind === 'spectrum') drawNames(canvas, area, graph, plot, scheme());
       canvas.restore();
     };
   }
@@ -242,7 +260,9 @@
         }
       }
       addDashes(box, plot.levels || [], color('noise', scheme()));
-      addDashes(box, plot.marks || [], color('quiet', scheme()));
+      const named = plot.kind === 'spectrum' && (plot.marks || []).length > 0;
+      addDashes(box, named ? [{ label: 'tones' }] : plot.marks || [],
+          color('quiet', scheme()));
       for (const band of plot.bands || []) {
         if (band.label) box.append(entry('band', '', band.label));
       }
@@ -273,6 +293,13 @@
       axisLineColor: color('quiet', scheme),
       gridLineColor: color('rule', scheme),
     };
+  }
+
+  // dygraphs takes the names of axes for HTML.
+  function escaped(text) {
+    const box = document.createElement('div');
+    box.textContent = text;
+    return box.innerHTML;
   }
 
   // What sampled curves and shapes each ask of dygraphs.
@@ -310,14 +337,16 @@
     });
     const logX = logarithmicX(plot);
     const logY = plot.kind === 'spectrum';
-    const rows = shapes ? shapeRows(plot) : sampledRows(plot);
+    const frame = figure.querySelector('.chart');
+    const rows = plot.kind === 'time' ? sampling.rows(plot, null, frame.clientWidth) :
+        shapes ? shapeRows(plot) : sampledRows(plot);
     if (rows.length === 0) return null;
-    const graph = new Dygraph(figure.querySelector('.chart'), rows, Object.assign({
+    const graph = new Dygraph(frame, rows, Object.assign({
       labelsDiv: figure.querySelector('.legend'),
       legend: 'always',
       legendFormatter: legend(plot, scheme),
-      xlabel: plot.x_label,
-      ylabel: plot.y_label,
+      xlabel: escaped(plot.x_label),
+      ylabel: escaped(plot.y_label),
       logscale: logY,
       axes: {
         x: Object.assign({ logscale: logX, pixelsPerLabel: 70 }, axis(logX)),
@@ -330,7 +359,8 @@
       interactionModel: touchFriendly(),
       underlayCallback: drawUnderlay(plot, scheme),
     }, shapes ? shapeOptions(plot, scheme) : sampledOptions(plot), colors(plot, scheme())));
-    return { plot: plot, graph: graph };
+    frame.dygraph = graph;  // for the console and for tests
+    return { plot: plot, graph: graph, frame: frame, rows: rows };
   }
 
   const screen = document.documentElement;
@@ -343,20 +373,69 @@
     for (const chart of charts) chart.graph.updateOptions(colors(chart.plot, scheme));
   }
 
-  const timeGraphs = charts.filter((chart) => chart.plot.kind === 'time')
-      .map((chart) => chart.graph);
-  if (timeGraphs.length > 1) Dygraph.synchronize(timeGraphs, { range: false });
+  // All time plots show the same window, [from, to] or null for all of their record,
+  // in rows made for it.
+  const timeCharts = charts.filter((chart) => chart.plot.kind === 'time');
+  let drawing = false;
+  let shown = null;
+  function show(window) {
+    drawing = true;
+    shown = window;
+    for (const chart of timeCharts) {
+      chart.rows = sampling.rows(chart.plot, window, chart.frame.clientWidth);
+      chart.graph.updateOptions({ file: chart.rows, dateWindow: window });
+    }
+    drawing = false;
+  }
+
+  // After the reader has zoomed or moved one of them.
+  function follow(graph, initial) {
+    if (initial || drawing) return;
+    const window = graph.isZoomed('x') ? graph.xAxisRange() : null;
+    if (String(window) !== String(shown)) show(window);
+  }
+
+  function point(source, time) {
+    for (const chart of timeCharts) {
+      if (chart === source) continue;
+      const row = sampling.nearest(chart.rows, time);
+      if (row < 0) chart.graph.clearSelection();
+      else chart.graph.setSelection(row);
+    }
+  }
+
+  for (const chart of timeCharts) {
+    chart.graph.updateOptions({
+      drawCallback: follow,
+      highlightCallback: (event, time) => point(chart, time),
+      unhighlightCallback: () => point(chart, NaN),
+    }, true);
+  }
 
   document.getElementById('reset-zoom').addEventListener('click', () => {
     for (const chart of charts) chart.graph.resetZoom();
   });
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', recolor);
+  // Charts are as wide as the screen until they are told; A4 and Letter hold this.
+  const paperWidth = 680;
+  function fit(width) {
+    for (const chart of charts) {
+      if (width) {
+        chart.graph.resize(width, chart.frame.clientHeight);
+      } else {
+        chart.frame.style.width = '';
+        chart.graph.resize();
+      }
+    }
+  }
   window.addEventListener('beforeprint', () => {
     scheme = paper;
     recolor();
+    fit(paperWidth);
   });
   window.addEventListener('afterprint', () => {
     scheme = screen;
+    fit(0);
     recolor();
   });
 })();

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <nlohmann/json.hpp>
-#include <string_view>
 
+#include "mjdiag/report/base64.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -16,26 +13,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little,
               "pages hold little-endian samples");
-
-std::string Base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::uint32_t byte =
-          j < count ? static_cast<unsigned char>(bytes[i + j]) : 0U;
-      word = word << 8 | byte;
-    }
-    for (std::size_t j = 0; j < 4; ++j) {
-      text += j <= count ? kDigits[word >> (18 - 6 * j) & 63U] : '=';
-    }
-  }
-  return text;
-}
 
 std::string EncodeSamples(const Eigen::VectorXd& values) {
   const Eigen::VectorXf samples = values.cast<float>();
@@ -131,8 +108,10 @@ constexpr std::size_t kPaletteSize = 6;
 
 }  // namespace
 
-std::string DescribePlot(const TimePlot& plot) {
-  const DisplayUnit unit = ChooseDisplayUnit(Magnitude(plot.curves), plot.unit);
+nlohmann::json DescribePlot(const TimePlot& plot) {
+  const DisplayUnit unit = plot.scaled
+                               ? ChooseDisplayUnit(Magnitude(plot.curves), plot.unit)
+                               : DisplayUnit{1.0, plot.unit};
   nlohmann::json json = CurvesAndLevels(plot.curves, plot.levels, unit.factor);
   json["kind"] = "time";
   json["x_label"] = "time [s]";
@@ -141,15 +120,16 @@ std::string DescribePlot(const TimePlot& plot) {
   json["start"] = plot.start_time;
   json["step"] = plot.sample_time;
   json["height"] = plot.height;
+  json["marks"] = MarksJson(plot.marks, 1.0);
   json["bands"] = nlohmann::json::array();
   for (const Band& band : plot.bands) {
     json["bands"].push_back(
         {{"from", band.from}, {"to", band.to}, {"label", band.label}});
   }
-  return json.dump();
+  return json;
 }
 
-std::string DescribePlot(const SpectrumPlot& plot) {
+nlohmann::json DescribePlot(const SpectrumPlot& plot) {
   const DisplayUnit unit = ChooseDisplayUnit(Magnitude(plot.curves), plot.unit);
   nlohmann::json json = CurvesAndLevels(plot.curves, plot.levels, unit.factor);
   json["kind"] = "spectrum";
@@ -159,11 +139,12 @@ std::string DescribePlot(const SpectrumPlot& plot) {
   json["unit"] = density;
   json["frequency"] = EncodeSamples(plot.frequency);
   json["height"] = plot.height;
+  json["marks"] = MarksJson(plot.marks, 1.0);
   json["bands"] = nlohmann::json::array();
-  return json.dump();
+  return json;
 }
 
-std::string DescribePlot(const XyPlot& plot) {
+nlohmann::json DescribePlot(const XyPlot& plot) {
   double x_magnitude = 0.0;
   double y_magnitude = 0.0;
   const auto include = [&](const auto& all_series) {
@@ -182,11 +163,10 @@ std::string DescribePlot(const XyPlot& plot) {
       {"y_label", AxisLabel(plot.y_quantity, y.name)},
       {"height", plot.height},
       {"points", SeriesJson(plot.caption, plot.points, x.factor, y.factor)},
-      {"curves", SeriesJson(plot.caption, plot.curves, x.factor, y.factor)}}
-      .dump();
+      {"curves", SeriesJson(plot.caption, plot.curves, x.factor, y.factor)}};
 }
 
-std::string DescribePlot(const HistogramPlot& plot) {
+nlohmann::json DescribePlot(const HistogramPlot& plot) {
   RequireSize(plot.caption, "edges", plot.edges.size(), plot.counts.size() + 1);
   const DisplayUnit unit = ChooseDisplayUnit(Magnitude(plot.edges), plot.unit);
   return nlohmann::json{
@@ -199,11 +179,10 @@ std::string DescribePlot(const HistogramPlot& plot) {
         {"edges", EncodeSamples(unit.factor * plot.edges)},
         {"counts", EncodeSamples(plot.counts)}}},
       {"curves", SeriesJson(plot.caption, plot.curves, unit.factor, 1.0)},
-      {"marks", MarksJson(plot.marks, unit.factor)}}
-      .dump();
+      {"marks", MarksJson(plot.marks, unit.factor)}};
 }
 
-std::string DescribePlot(const BodePlot& plot) {
+nlohmann::json DescribePlot(const BodePlot& plot) {
   nlohmann::json curves = nlohmann::json::array();
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const BodeCurve& curve = plot.curves[i];
@@ -224,8 +203,7 @@ std::string DescribePlot(const BodePlot& plot) {
       {"frequency", EncodeSamples(plot.frequency)},
       {"height", plot.height},
       {"curves", curves},
-      {"marks", MarksJson(plot.marks, 1.0)}}
-      .dump();
+      {"marks", MarksJson(plot.marks, 1.0)}};
 }
 
 }  // namespace mjdiag

@@ -3,6 +3,7 @@
 // that suits the data. Samples are embedded as 32-bit floats.
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -31,17 +32,25 @@ struct Level {
   std::string label;
 };
 
+/// A value of the x axis that is marked by a dashed line.
+struct Mark {
+  double value = 0.0;  ///< unit of the x axis
+  std::string label;
+};
+
 /// Curves over t_k = start_time + k * sample_time.
 struct TimePlot {
   std::string caption;
   std::string quantity;      ///< at the y axis, before its unit
   std::string unit;          ///< SI unit of the values
+  bool scaled = true;        ///< with the prefix that suits; false: the unit as it is
   double start_time = 0.0;   ///< [s]
   double sample_time = 0.0;  ///< [s]
   std::vector<Curve> curves;
   std::vector<Band> bands;
   std::vector<Level> levels;
-  int height = 240;  ///< CSS pixels
+  std::vector<Mark> marks;  ///< [s], for example the moment of detection
+  int height = 240;         ///< CSS pixels
 };
 
 /// Amplitude spectral densities over frequency, both axes logarithmic. Values that are
@@ -53,7 +62,8 @@ struct SpectrumPlot {
   Eigen::VectorXd frequency;  ///< [Hz], increasing
   std::vector<Curve> curves;  ///< unit/sqrt(Hz)
   std::vector<Level> levels;
-  int height = 240;  ///< CSS pixels
+  std::vector<Mark> marks;  ///< [Hz], named where they stand, for example peaks
+  int height = 240;         ///< CSS pixels
 };
 
 /// Measured pairs, drawn as dots.
@@ -84,12 +94,6 @@ struct XyPlot {
   std::vector<XyPoints> points;
   std::vector<XyCurve> curves;
   int height = 320;  ///< CSS pixels
-};
-
-/// A value of the x axis that is marked by a dashed line.
-struct Mark {
-  double value = 0.0;  ///< unit of the x axis
-  std::string label;
 };
 
 /// Counts of a quantity in bins, lines over them (a fitted distribution in counts), and
@@ -126,10 +130,10 @@ struct BodePlot {
 
 /// The plot as a JSON object for the page's script. InputError if x and y, edges and
 /// counts, or frequencies and magnitudes do not go together.
-std::string DescribePlot(const TimePlot& plot);
-std::string DescribePlot(const SpectrumPlot& plot);
-std::string DescribePlot(const XyPlot& plot);
-std::string DescribePlot(const HistogramPlot& plot);
-std::string DescribePlot(const BodePlot& plot);
+nlohmann::json DescribePlot(const TimePlot& plot);
+nlohmann::json DescribePlot(const SpectrumPlot& plot);
+nlohmann::json DescribePlot(const XyPlot& plot);
+nlohmann::json DescribePlot(const HistogramPlot& plot);
+nlohmann::json DescribePlot(const BodePlot& plot);
 
 }  // namespace mjdiag

@@ -37,8 +37,7 @@ std::string ReadWithoutSourceMap(const fs::path& file) {
 
 PlotLibrary LoadPlotLibrary() {
   const fs::path folder = LibraryFolder();
-  return {ReadWithoutSourceMap(folder / "dygraph.min.js") + "\n" +
-              ReadWithoutSourceMap(folder / "extras/synchronizer.js"),
+  return {ReadWithoutSourceMap(folder / "dygraph.min.js"),
           ReadWithoutSourceMap(folder / "dygraph.min.css")};
 }
 

@@ -7,7 +7,7 @@
 namespace mjdiag {
 
 struct PlotLibrary {
-  std::string script;  ///< dygraphs and its synchronizer
+  std::string script;  ///< dygraphs
   std::string style;
 };
 

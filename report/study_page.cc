@@ -30,8 +30,8 @@ Table ForPage(const StudyTable& study) {
 
 }  // namespace
 
-std::string StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
-                      const RunDescription& run) {
+Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
+               const RunDescription& run) {
   Page page("Study " + facts.preset + " of " + facts.setup);
   page.AddFacts({{"Setup", facts.setup},
                  {"Preset", facts.preset},
@@ -42,10 +42,8 @@ std::string StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& ta
     page.AddTable(ForPage(table));
     for (const std::string& note : table.notes) page.AddParagraph(note);
   }
-  page.AddHeading("To do it again");
-  page.AddCode(run.command);
-  page.AddFacts(run.versions);
-  return page.Html();
+  page.SetRun(run);
+  return page;
 }
 
 }  // namespace mjdiag

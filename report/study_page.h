@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/report/page.h"
 #include "mjdiag/report/run_description.h"
 #include "mjdiag/studies/study_table.h"
 
@@ -19,7 +20,7 @@ struct StudyFacts {
 };
 
 /// The whole page. Columns that hold a number are aligned to the right.
-std::string StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
-                      const RunDescription& run);
+Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
+               const RunDescription& run);
 
 }  // namespace mjdiag

@@ -153,17 +153,18 @@ TEST_F(Diagnosis, RefinedIsExactForLargeFaults) {
 TEST_F(Diagnosis, NamesALargeFaultWithoutWhatLeaksIntoTheOthers) {
   const CommandResult result = RunCommand(std::string("simulate ") + kLinear +
                                           "--fault zeta_x=1.2 --diagnose --filters " +
-                                          Filters() + " --out " + Path("run"));
+                                          Filters() + " --report --out " + Path("run"));
   ASSERT_EQ(result.status, 0) << result.err;
   // Its estimate is off by the square of the deviation; see --refine.
   EXPECT_THAT(result.out,
               ::testing::ContainsRegex("Detected: zeta_x = 1\\.199[0-9]*\\.\n"));
-  EXPECT_THAT(ReadAll(Path("run") + "/diagnosis.html"),
+  EXPECT_THAT(ReadAll(Path("run") + "/report.html"),
               ::testing::ContainsRegex("Detected: zeta_x = 1\\.199[0-9]*\\.<"));
 }
 
 TEST_F(Diagnosis, WritesThePageOfADesignBesideItsFilters) {
-  const std::string page = ReadAll(fs::path(Filters()).parent_path() / "design.html");
+  const std::string page =
+      ReadAll(fs::path(Filters()).parent_path() / "design.page.json");
   EXPECT_THAT(page,
               AllOf(HasSubstr("Residual of healthy runs"),
                     HasSubstr("half power at 50.0 Hz"), HasSubstr("beta_x = 0.01")));
@@ -193,7 +194,7 @@ TEST_F(Diagnosis, FindsByLinearProgramsARowOfTheSameNullSpace) {
     file->erase("command");
   }
   EXPECT_EQ(document, other);
-  EXPECT_THAT(ReadAll(out + "/design.html"), HasSubstr("Linear programs: "));
+  EXPECT_THAT(ReadAll(out + "/design.page.json"), HasSubstr("Linear programs: "));
 }
 
 TEST_F(Diagnosis, RefusesAMethodThatItDoesNotKnow) {
@@ -284,10 +285,10 @@ TEST(Study, WritesAPageWithItsTables) {
   const TemporaryFolder folder;
   const std::string out = (folder.path() / "bound").string();
   const CommandResult result =
-      RunCommand("study --setup mjcf/ab383 --preset bound --out " + out);
+      RunCommand("study --setup mjcf/ab383 --preset bound --report --out " + out);
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("study.html"));
-  EXPECT_THAT(ReadAll(out + "/study.html"),
+  EXPECT_THAT(result.out, HasSubstr("report.html"));
+  EXPECT_THAT(ReadAll(out + "/report.html"),
               AllOf(HasSubstr("Study bound of AB383"), HasSubstr("<td>zeta_x</td>"),
                     HasSubstr("Standard deviations of the knob")));
 }

@@ -79,7 +79,7 @@ TEST_F(OwnMachine, WalkEndsAtTheHiddenCause) {
   EXPECT_NEAR(coefficient["value"], kHidden, 6.0 * coefficient["sd"].get<double>());
   EXPECT_LT(coefficient["sd"], 0.01 * kHidden);
   EXPECT_GT(discovery["gain"]["validation"], 0.99);
-  EXPECT_THAT(ReadAll(folder_ / "found/discovery.html"), HasSubstr("cubic_stiffness"));
+  EXPECT_THAT(ReadAll(folder_ / "found/report.html"), HasSubstr("cubic_stiffness"));
 
   EXPECT_TRUE(fs::exists(discovery["extended_plant"].get<std::string>()));
   const std::string again =

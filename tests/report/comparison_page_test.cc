@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mjdiag/report/report.h"
 #include "sample_comparison.h"
 
 namespace mjdiag {
@@ -28,7 +29,7 @@ TEST(ComparisonVerdict, SaysSoIfThereIsNothing) {
 }
 
 TEST(ComparisonPage, BeginsWithTheVerdict) {
-  const std::string html = ComparisonPage(SampleComparison(), kRun);
+  const std::string html = ReportHtml(ComparisonPage(SampleComparison(), kRun));
   const auto verdict = html.find("class=\"verdict bad\"");
   ASSERT_NE(verdict, std::string::npos);
   EXPECT_LT(verdict, html.find("<dl>"));
@@ -36,7 +37,7 @@ TEST(ComparisonPage, BeginsWithTheVerdict) {
 }
 
 TEST(ComparisonPage, ShowsSignalMismatchAndSpectrumOfEveryChannel) {
-  const std::string html = ComparisonPage(SampleComparison(), kRun);
+  const std::string html = ReportHtml(ComparisonPage(SampleComparison(), kRun));
   for (const char* caption :
        {"q, measured and simulated", "q, mismatch", "q, spectrum of the mismatch",
         "u, measured and simulated", "u, mismatch", "u, spectrum of the mismatch"}) {
@@ -46,7 +47,7 @@ TEST(ComparisonPage, ShowsSignalMismatchAndSpectrumOfEveryChannel) {
 }
 
 TEST(ComparisonPage, SaysHowToDoItAgain) {
-  const std::string html = ComparisonPage(SampleComparison(), kRun);
+  const std::string html = ReportHtml(ComparisonPage(SampleComparison(), kRun));
   EXPECT_THAT(html, HasSubstr("<code>mjdiag compare --setup &#39;a &lt;b&gt;&#39;"));
   EXPECT_THAT(html, HasSubstr("<dt>mjdiag</dt>\n<dd>0.1.0</dd>"));
   EXPECT_THAT(html, HasSubstr("<dd>record.csv</dd>"));
@@ -55,7 +56,7 @@ TEST(ComparisonPage, SaysHowToDoItAgain) {
 }
 
 TEST(ComparisonPage, ListsWhatWasNotMeasured) {
-  const std::string html = ComparisonPage(SampleComparison(), kRun);
+  const std::string html = ReportHtml(ComparisonPage(SampleComparison(), kRun));
   EXPECT_THAT(html, HasSubstr("<dt>Not measured</dt>\n<dd>w</dd>"));
 }
 

@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/linearize.h"
+#include "mjdiag/report/report.h"
 
 namespace mjdiag {
 namespace {
@@ -54,7 +55,7 @@ TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
   facts.healthy = Linearize(*plant, setup);
   const RunDescription run{"mjdiag design", "", {}};
 
-  const std::string without = DesignPage(design, facts, run);
+  const std::string without = ReportHtml(DesignPage(design, facts, run));
   EXPECT_THAT(without, HasSubstr("from degree 6 on; the residual has degree 7."));
   EXPECT_THAT(without, HasSubstr("3, 6, 20 of 20 states"));
   EXPECT_THAT(without, Not(HasSubstr("Residual of healthy runs")));
@@ -66,7 +67,7 @@ TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
   design.limits = CalibrateLimits(design, setup, *plant, nominal);
   facts.changed = {{"beta = 0.01", facts.healthy}};
   facts.linear_program = Solved();
-  const std::string whole = DesignPage(design, facts, run);
+  const std::string whole = ReportHtml(DesignPage(design, facts, run));
   EXPECT_THAT(whole, HasSubstr("and is healthy between -"));
   EXPECT_THAT(whole, HasSubstr("Residual of healthy runs"));
   EXPECT_THAT(whole, HasSubstr("Linear programs: 12 of 16"));

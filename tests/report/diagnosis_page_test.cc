@@ -7,6 +7,7 @@
 #include "mjdiag/report/diagnosis_json.h"
 #include "mjdiag/report/diagnosis_verdict.h"
 #include "mjdiag/report/filters_file.h"
+#include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
@@ -44,8 +45,8 @@ struct Example {
 
 TEST(DiagnosisPage, SaysWhatIsWrongFirst) {
   const Example faulty(1.01);
-  const std::string page = DiagnosisPage(faulty.design, faulty.result,
-                                         faulty.monitor->Log(), {"cmd", "r", {}});
+  const std::string page = ReportHtml(DiagnosisPage(
+      faulty.design, faulty.result, faulty.monitor->Log(), {"cmd", "r", {}}));
   EXPECT_EQ(DiagnosisVerdict(faulty.result), "Detected: zeta_x = 1.01.");
   EXPECT_LT(page.find("Detected: zeta_x"), page.find("<table"));
   EXPECT_THAT(page, HasSubstr("threshold"));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mjdiag/report/discovery_plots.h"
+#include "mjdiag/report/report.h"
 #include "sample_discovery.h"
 
 namespace mjdiag {
@@ -22,7 +23,7 @@ const DiscoveryRun kRun = {
 std::string Caption(const std::string& text) { return "<figcaption>" + text; }
 
 TEST(DiscoveryPage, BeginsWithTheVerdictThenTheCauses) {
-  const std::string html = DiscoveryPage(SampleDiscovery(), kRun);
+  const std::string html = ReportHtml(DiscoveryPage(SampleDiscovery(), kRun));
   const auto verdict = html.find("class=\"verdict good\"");
   const auto causes = html.find("<h2>Causes");
   ASSERT_NE(verdict, std::string::npos);
@@ -34,7 +35,7 @@ TEST(DiscoveryPage, BeginsWithTheVerdictThenTheCauses) {
 }
 
 TEST(DiscoveryPage, ShowsMismatchForceAndLaw) {
-  const std::string html = DiscoveryPage(SampleDiscovery(), kRun);
+  const std::string html = ReportHtml(DiscoveryPage(SampleDiscovery(), kRun));
   for (const char* caption :
        {"q, measured - simulated", "Unexplained at load, plant as given",
         "Unexplained at load, extended plant",
@@ -46,7 +47,7 @@ TEST(DiscoveryPage, ShowsMismatchForceAndLaw) {
 }
 
 TEST(DiscoveryPage, SaysHowToDoItAgain) {
-  const std::string html = DiscoveryPage(SampleDiscovery(), kRun);
+  const std::string html = ReportHtml(DiscoveryPage(SampleDiscovery(), kRun));
   EXPECT_THAT(html, HasSubstr("<code>mjdiag discover --setup &#39;a &lt;b&gt;&#39;"));
   EXPECT_THAT(html, HasSubstr("<dd>record.csv</dd>"));
   EXPECT_THAT(html, HasSubstr("<dd>pulses.csv</dd>"));
@@ -55,7 +56,7 @@ TEST(DiscoveryPage, SaysHowToDoItAgain) {
 }
 
 TEST(DiscoveryPage, ShowsTheSignatureOfWhatNoCauseExplains) {
-  const std::string html = DiscoveryPage(SampleUnexplained(), kRun);
+  const std::string html = ReportHtml(DiscoveryPage(SampleUnexplained(), kRun));
   EXPECT_THAT(html, HasSubstr("class=\"verdict bad\""));
   EXPECT_THAT(html, HasSubstr(Caption("What is left at load, over position of load")));
   EXPECT_THAT(html, HasSubstr("<dd>fourth power</dd>"));
@@ -66,7 +67,7 @@ TEST(DiscoveryPage, ShowsTheSignatureOfWhatNoCauseExplains) {
 TEST(DiscoveryPage, HoldsADiscoveryWithoutFigures) {
   Discovery discovery;
   discovery.setup = "empty";
-  const std::string html = DiscoveryPage(discovery, kRun);
+  const std::string html = ReportHtml(DiscoveryPage(discovery, kRun));
   EXPECT_THAT(html, HasSubstr("noise explains the mismatch"));
   EXPECT_THAT(html, Not(HasSubstr("<figure")));
   EXPECT_THAT(html, Not(HasSubstr("<dt>Length")));

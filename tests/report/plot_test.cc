@@ -19,7 +19,7 @@ nlohmann::json Floats(const std::vector<float>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     plot.curves[0].values[static_cast<Eigen::Index>(i)] = values[i];
   }
-  return nlohmann::json::parse(DescribePlot(plot))["curves"][0]["samples"];
+  return DescribePlot(plot)["curves"][0]["samples"];
 }
 
 TEST(Plot, EmbedsSamplesAsBase64OfFloats) {
@@ -29,7 +29,7 @@ TEST(Plot, EmbedsSamplesAsBase64OfFloats) {
   plot.start_time = 0.5;
   plot.sample_time = 0.25;
   plot.curves = {{"measured", CurveRole::kMeasured, Eigen::Vector2d(1.0, -2.0)}};
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["curves"][0]["samples"], "AACAPwAAAMA=");
   EXPECT_EQ(json["start"], 0.5);
   EXPECT_EQ(json["step"], 0.25);
@@ -41,7 +41,7 @@ TEST(Plot, ChoosesThePrefixThatSuitsTheData) {
   plot.unit = "m";
   plot.curves = {{"mismatch", CurveRole::kMismatch, Eigen::Vector2d(2e-6, -4e-6)}};
   plot.levels = {{1e-6, "noise floor"}};
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["y_label"], "x [µm]");
   EXPECT_NEAR(json["levels"][0]["value"].get<double>(), 1.0, 1e-12);
 }
@@ -52,7 +52,7 @@ TEST(Plot, NamesTheUnitOfAnAmplitudeDensity) {
   plot.unit = "m";
   plot.frequency = Eigen::Vector2d(1.0, 2.0);
   plot.curves = {{"mismatch", CurveRole::kMismatch, Eigen::Vector2d(2e-9, 1e-9)}};
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["kind"], "spectrum");
   EXPECT_EQ(json["y_label"], "x [nm/√Hz]");
 }
@@ -61,7 +61,7 @@ TEST(Plot, ShadesItsBands) {
   TimePlot plot;
   plot.curves = {{"measured", CurveRole::kMeasured, Eigen::Vector2d(0.0, 0.0)}};
   plot.bands = {{1.0, 1.5, "worst window"}};
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["bands"][0]["from"], 1.0);
   EXPECT_EQ(json["bands"][0]["to"], 1.5);
   EXPECT_EQ(json["bands"][0]["label"], "worst window");
@@ -78,7 +78,7 @@ TEST(Plot, GivesBothAxesOfAnXyPlotTheUnitThatSuitsThem) {
                   Eigen::Vector2d(-20.0, 20.0)}};
   plot.curves = {{"law", CurveRole::kSimulated, Eigen::Vector3d(-0.002, 0.0, 0.002),
                   Eigen::Vector3d(-2000.0, 0.0, 2000.0)}};
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["kind"], "xy");
   EXPECT_EQ(json["x_label"], "velocity [mm/s]");
   EXPECT_EQ(json["y_label"], "force [kN]");
@@ -109,7 +109,7 @@ TEST(Plot, ShowsAHistogramInTheUnitOfItsQuantity) {
   plot.curves = {{"normal", CurveRole::kMismatch, Eigen::Vector2d(-1e-6, 1e-6),
                   Eigen::Vector2d(6.0, 6.0)}};
   plot.marks = {{2e-6, "threshold"}};
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["x_label"], "residual [µm]");
   EXPECT_EQ(json["bars"]["edges"], Floats({-1.0F, 0.0F, 1.0F}));
   EXPECT_EQ(json["bars"]["counts"], Floats({5.0F, 7.0F}));
@@ -126,7 +126,7 @@ TEST(Plot, ShowsABodeMagnitudeInDecibels) {
   plot.unit = "1/N";
   plot.frequency = Eigen::Vector2d(1.0, 10.0);
   plot.curves.assign(7, {"low-pass", Eigen::Vector2d(1.0, 0.01)});
-  const auto json = nlohmann::json::parse(DescribePlot(plot));
+  const auto json = DescribePlot(plot);
   EXPECT_EQ(json["y_label"], "gain [dB re 1/N]");
   EXPECT_EQ(json["curves"][0]["samples"], Floats({0.0F, -40.0F}));
   // Neighbours differ in colour; the seventh begins again.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mjdiag/report/report.h"
+
 namespace mjdiag {
 namespace {
 
@@ -15,7 +17,7 @@ TEST(StudyPage, HasEveryTableWithItsNotes) {
                                            {"On the linear plant."}},
                                           {"Delays", {"fault"}, {{"eta_y"}}, {}}};
   const std::string page =
-      StudyPage({"bonder", "table2", 40, 7}, tables, {"cmd", "", {}});
+      ReportHtml(StudyPage({"bonder", "table2", 40, 7}, tables, {"cmd", "", {}}));
   EXPECT_THAT(page, HasSubstr("<h1>Study table2 of bonder</h1>"));
   EXPECT_THAT(page, HasSubstr("<dd>40</dd>"));
   EXPECT_THAT(page, HasSubstr("<h2>Smallest faults</h2>"));
@@ -27,7 +29,8 @@ TEST(StudyPage, AlignsColumnsOfNumbersAndFillsShortRows) {
   // A number that was not found is a text; its column stays one of numbers.
   const std::vector<StudyTable> tables = {
       {"t", {"fault", "size"}, {{"a", "none"}, {"b", 1.25}, {"c"}}, {}}};
-  const std::string page = StudyPage({"bonder", "p", 2, 1}, tables, {"cmd", "", {}});
+  const std::string page =
+      ReportHtml(StudyPage({"bonder", "p", 2, 1}, tables, {"cmd", "", {}}));
   EXPECT_THAT(page, HasSubstr("<td>a</td><td class=\"number\">none</td>"));
   EXPECT_THAT(page, HasSubstr("<td>b</td><td class=\"number\">1.25</td>"));
   EXPECT_THAT(page, HasSubstr("<td>c</td><td class=\"number\"></td>"));

@@ -1,0 +1,75 @@
+// What a report costs: the page of a diagnosis of a 20,000-sample run of the bonder
+// (2.5 s at 8 kHz, its default motion), from what the monitor holds to the HTML file on
+// disk, by way of the page's own file. Counters: seconds (median of the repetitions)
+// and megabytes of report.html.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/report/diagnosis_page.h"
+#include "mjdiag/report/page_file.h"
+#include "mjdiag/report/run_folder.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+void ReportOfADiagnosis(benchmark::State& state) {
+  const Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
+  const ModelPtr plant = LoadPlant(setup);
+  DiagnosisDesign design = DesignFilters(setup, *plant);
+  NominalRuns nominal;
+  nominal.linear = true;
+  nominal.runs = 2;
+  design.limits = CalibrateLimits(design, setup, *plant, nominal);
+  RunOptions options;
+  options.faults = {{"zeta_x", 1.2}};
+  const Record record = SimulateLinear(
+      setup, *plant,
+      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory)), options);
+  DiagnosisMonitor monitor(design, record.samples());
+  Run(monitor, design, record);
+  const DiagnosisResult result = Conclude(design, monitor);
+
+  std::string name = (fs::temp_directory_path() / "mjdiag-bench-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    state.SkipWithError("no temporary folder");
+    return;
+  }
+  const fs::path folder = name;
+  std::vector<double> seconds;
+  for (auto _ : state) {
+    const auto start = Clock::now();
+    WritePage(folder, "diagnosis",
+              DiagnosisPage(design, result, monitor.Log(), {"cmd", "record.csv", {}}));
+    WriteReport(folder);
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  state.counters["samples"] = static_cast<double>(record.samples());
+  state.counters["s_report"] = Median(seconds);
+  state.counters["MB_report"] =
+      1e-6 * static_cast<double>(fs::file_size(folder / "report.html"));
+  fs::remove_all(folder);
+}
+
+BENCHMARK(ReportOfADiagnosis)->Unit(benchmark::kMillisecond)->Iterations(11);
+
+}  // namespace
+}  // namespace mjdiag
+
+BENCHMARK_MAIN();
