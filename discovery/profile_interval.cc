@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "mjdiag/plugin/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -64,8 +65,8 @@ double Profile::Lost(double step) const {
     theta[i] = std::clamp(theta[i], parameter.lower, parameter.upper);
   }
   FitOptions options;
-  options.iterations = 5;
-  options.tolerance = 1e-6;
+  options.iterations = 4;
+  options.tolerance = 1e-5;
   options.sensitivities = false;
   options.known = &fit_.sensitivities;
   options.secant = true;
@@ -85,8 +86,8 @@ double Profile::Lost(double step) const {
 }
 
 double Profile::End(double step, double bound) const {
-  constexpr double kNear = 0.03;
-  constexpr int kSteps = 8;
+  constexpr double kNear = 0.05;
+  constexpr int kSteps = 6;
   // The root of what is lost grows nearly in proportion: false position from 0 on.
   double below = 0.0;
   double lost_below = 0.0;
@@ -117,11 +118,36 @@ double Profile::End(double step, double bound) const {
   return Value() + next;
 }
 
-/// Whether a standard deviation is so small beside what the parameter can sensibly
-/// change by that its likelihood is quadratic.
-bool IsSharp(const FitParameter& parameter, double value, double sd) {
-  constexpr double kSharp = 0.03;
-  return sd < kSharp * (parameter.name == "phase" ? 1.0 : std::abs(value));
+/// Whether parameters of a candidate say where or how its law bends, and not only how
+/// large its parts are: those enter the motion nearly linearly.
+bool HasShape(const Candidate& candidate) {
+  const std::string& effect = candidate.cause.spec.effect;
+  if (candidate.parameters.size() > 1) {
+    return effect != "asymmetric_viscous_friction" &&
+           effect != "position_dependent_motor_constant";
+  }
+  return effect == "force_saturation" || effect == "backlash";
+}
+
+/// For every parameter of the causes whether its profile has to be followed: of laws
+/// with a shape, where a parameter is not known to a small part of itself.
+std::vector<bool> NeedProfile(const std::vector<Candidate>& candidates,
+                              const std::vector<FittedCause>& causes,
+                              const MatrixXd& covariance) {
+  constexpr double kSharp = 0.05;
+  std::vector<bool> needed;
+  for (const FittedCause& cause : causes) {
+    const Candidate& candidate = candidates[cause.candidate];
+    for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
+      const auto i = static_cast<Index>(needed.size());
+      const double size = candidate.parameters[k].name == "phase"
+                              ? 1.0
+                              : std::abs(cause.value[static_cast<Index>(k)]);
+      const double sd = std::sqrt(covariance(i, i));
+      needed.push_back(HasShape(candidate) && std::isfinite(sd) && sd > kSharp * size);
+    }
+  }
+  return needed;
 }
 
 }  // namespace
@@ -140,6 +166,7 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                      MatrixXd((scaled.transpose() * scaled).inverse()) *
                      scale.asDiagonal();
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
+  const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
   const DiscoveryProblem seen = Beginning(problem, problem.train);
   std::vector<Interval> intervals(parameters.size());
   ParallelFor(2 * static_cast<int>(parameters.size()), [&](int number) {
@@ -149,7 +176,7 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
     double& end = side < 0.0 ? intervals[p].low : intervals[p].high;
     const double sd = std::sqrt(covariance(i, i));
     end = theta[i] + side * kNormal95 * sd;
-    if (!std::isfinite(sd) || IsSharp(parameters[p], theta[i], sd)) return;
+    if (!needed[p]) return;
     const double colour = covariance(i, i) / C(i, i);
     const Profile profile(seen, candidates, fit, i, C.col(i) / C(i, i),
                           kChiSquared95 * colour);

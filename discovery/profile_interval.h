@@ -27,10 +27,10 @@ struct Interval {
   double high = 0.0;
 };
 
-/// The 95 % intervals of all parameters of the fit: value +- 1.96 sd where the standard
-/// deviation is small beside the value, so that the likelihood is quadratic; else the
-/// profile is followed from there to where it crosses. An end beyond a parameter's
-/// bounds is the bound.
+/// The 95 % intervals of all parameters of the fit: value +- 1.96 sd where the
+/// likelihood is quadratic, for sizes of laws and where the standard deviation is small
+/// beside the value; else the profile is followed from there to where it crosses. An
+/// end beyond a parameter's bounds is the bound.
 /// @param fit         with sensitivities at its solution
 /// @param covariance  of its parameters
 std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,

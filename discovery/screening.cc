@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
+#include <string>
 
 #include "mjdiag/plugin/parallel.h"
 
@@ -67,8 +69,12 @@ class Screener {
   /// residual comes from the adjoint, one product each; its size, which is nearly
   /// smooth over the sweep, from a few of them.
   std::vector<double> RoughGains(const Sweep& sweep, const Candidate& candidate) const;
-  /// What every value gains.
-  std::vector<double> Gains(const Sweep& sweep, const Candidate& candidate) const;
+  /// What places of a sweep gain: numbers of its values, and between them.
+  std::vector<double> Gains(const Sweep& sweep, const Candidate& candidate,
+                            const std::vector<double>& places) const;
+  /// The tops of the `count` peaks of a sweep that look highest.
+  std::vector<double> Peaks(const Sweep& sweep, const Candidate& candidate,
+                            std::size_t count) const;
   std::vector<double> BestPlaces(const Sweep& sweep, const std::vector<double>& places,
                                  const Candidate& candidate, std::size_t count) const;
   static double ValueAt(const Sweep& sweep, double place);
@@ -244,15 +250,50 @@ std::vector<double> Screener::RoughGains(const Sweep& sweep,
   return gains;
 }
 
-std::vector<double> Screener::Gains(const Sweep& sweep,
-                                    const Candidate& candidate) const {
+std::vector<double> Screener::Gains(const Sweep& sweep, const Candidate& candidate,
+                                    const std::vector<double>& places) const {
   std::vector<Trial> trials;
-  for (const double value : sweep.values) trials.push_back(sweep.make(value));
+  for (const double place : places) trials.push_back(sweep.make(ValueAt(sweep, place)));
   std::vector<double> gains;
   for (const auto& start : Judge(trials, candidate)) {
     gains.push_back(start ? start->gain : 0.0);
   }
   return gains;
+}
+
+std::vector<double> Screener::Peaks(const Sweep& sweep, const Candidate& candidate,
+                                    std::size_t count) const {
+  std::vector<double> all;
+  for (std::size_t i = 0; i + 1 < 2 * sweep.values.size(); ++i) {
+    all.push_back(0.5 * static_cast<double>(i));
+  }
+  const std::vector<double> gains = Gains(sweep, candidate, all);
+  std::vector<std::pair<double, double>> maxima;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool above_left = i == 0 || gains[i] >= gains[i - 1];
+    const bool above_right = i + 1 == all.size() || gains[i] >= gains[i + 1];
+    if (above_left && above_right) maxima.emplace_back(gains[i], all[i]);
+  }
+  std::ranges::sort(maxima, std::greater<>());
+  if (maxima.size() > count) maxima.resize(count);
+  std::vector<double> tops;
+  for (const auto& [gain, place] : maxima) tops.push_back(place);
+  // A strong wave loses much within a small part of a step: halve it.
+  constexpr int kHalvings = 5;
+  double step = 0.25;
+  for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
+    std::vector<double> around;
+    for (const double top : tops) {
+      around.insert(around.end(), {top - step, top, top + step});
+    }
+    const std::vector<double> worth = Gains(sweep, candidate, around);
+    for (std::size_t k = 0; k < tops.size(); ++k) {
+      const auto first = worth.begin() + static_cast<std::ptrdiff_t>(3 * k);
+      const auto best = std::max_element(first, first + 3) - worth.begin();
+      tops[k] = around[static_cast<std::size_t>(best)];
+    }
+  }
+  return tops;
 }
 
 std::vector<Trial> Screener::BestOf(const Sweep& sweep, const Candidate& candidate,
@@ -327,6 +368,10 @@ double Screener::ValueAt(const Sweep& sweep, double place) {
   return (1.0 - part) * sweep.values[below] + part * sweep.values[above];
 }
 
+std::string SweptName(const Start& start) {
+  return start.parameters.contains("period") ? "period" : "frequency";
+}
+
 /// The largest first, `count` of them.
 void KeepBest(std::vector<Start>& starts, std::size_t count) {
   std::ranges::stable_sort(starts, std::greater<>(), &Start::gain);
@@ -384,23 +429,43 @@ Screening Screen(const DiscoveryProblem& problem,
   return screening;
 }
 
-std::vector<Start> ScreenWave(const DiscoveryProblem& problem, const Candidate& wave,
-                              const ObservedMotion& motion,
-                              const ErrorDynamics& dynamics, const VectorXd& residual,
-                              const MatrixXd& sensitivities, int most) {
+std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
+                               double present, const ObservedMotion& motion,
+                               const ErrorDynamics& dynamics, const VectorXd& residual,
+                               const MatrixXd& sensitivities, int most) {
   const double duration =
       static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
-  const auto sweep = MakeSweep(problem.model, wave, motion, duration);
-  if (!sweep) return {};
   const Screener screener(problem, dynamics, residual, sensitivities);
-  const std::vector<Trial> trials =
-      screener.BestOf(*sweep, wave, screener.Gains(*sweep, wave));
+  double gain = 0.0;
+  std::vector<Trial> trials;
+  if (const auto sweep = MakeSweep(problem.model, wave, motion, duration)) {
+    constexpr std::size_t kPeaks = 40;
+    const auto now = screener.Judge({sweep->make(present)}, wave).front();
+    gain = now ? now->gain : 0.0;
+    for (const double place : screener.Peaks(*sweep, wave, kPeaks)) {
+      trials.push_back(sweep->make(screener.ValueAt(*sweep, place)));
+    }
+  } else {
+    trials = MakeTrials(*problem.plant, problem.model, wave, motion);
+  }
   std::vector<Start> starts;
   for (auto& start : screener.Judge(trials, wave)) {
-    if (start) starts.push_back(std::move(*start));
+    if (start && start->gain > gain) starts.push_back(std::move(*start));
   }
-  KeepBest(starts, static_cast<std::size_t>(most));
-  return starts;
+  KeepBest(starts, starts.size());
+  // Neighbours climb the same peak.
+  const std::string name = starts.empty() ? "" : SweptName(starts.front());
+  std::vector<Start> distinct;
+  for (Start& start : starts) {
+    const bool known = std::ranges::any_of(distinct, [&](const Start& other) {
+      constexpr double kSame = 0.01;
+      return std::abs(start.parameters.at(name) / other.parameters.at(name) - 1.0) <
+             kSame;
+    });
+    if (!known) distinct.push_back(std::move(start));
+    if (static_cast<int>(distinct.size()) == most) break;
+  }
+  return distinct;
 }
 
 }  // namespace mjdiag

@@ -50,13 +50,15 @@ Screening Screen(const DiscoveryProblem& problem,
                  const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
                  const Eigen::MatrixXd& sensitivities, int starts_each);
 
-/// The best starts of one wave (a candidate with a sweep), every value of its sweep
-/// judged exactly: Screen, which has many candidates to look at, only estimates the
-/// size of most of them. `candidate` of the starts is not set.
-std::vector<Start> ScreenWave(const DiscoveryProblem& problem, const Candidate& wave,
-                              const ObservedMotion& motion,
-                              const ErrorDynamics& dynamics,
-                              const Eigen::VectorXd& residual,
-                              const Eigen::MatrixXd& sensitivities, int most);
+/// Starts of one wave (a candidate with a sweep) that promise more than its present
+/// period or frequency, best first. Every value of the sweep is judged exactly: Screen,
+/// which has many candidates to look at, only estimates the size of most of them. Of a
+/// candidate with a frequency but no sweep the best starts. `candidate` of the starts
+/// is not set.
+std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
+                               double present, const ObservedMotion& motion,
+                               const ErrorDynamics& dynamics,
+                               const Eigen::VectorXd& residual,
+                               const Eigen::MatrixXd& sensitivities, int most);
 
 }  // namespace mjdiag

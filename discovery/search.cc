@@ -54,6 +54,7 @@ class Search {
     if (options_.progress) options_.progress(what, fraction);
   }
   Screening ScreenRest() const;
+  double Inflation() const;
   bool IsSignificant(double gain, int freedom, int trials) const;
   bool IsSignificant(const CauseFit& after, int trials) const;
   /// Squared innovations of the train part if noise is all there is.
@@ -109,14 +110,16 @@ Screening Search::ScreenRest() const {
                 dynamics, result_.fit.residual, result_.fit.sensitivities, 6);
 }
 
+/// By how much chance gains are larger than with white noise alone: what is left may be
+/// more than sensor noise, and coloured.
+double Search::Inflation() const {
+  return std::max(1.0, result_.fit.train) / std::min(1.0, independent_.minCoeff());
+}
+
 /// Whether to take away so much of the squared innovations, with the best of so many
 /// trials, is more than chance.
 bool Search::IsSignificant(double gain, int freedom, int trials) const {
-  // What is left may be more than sensor noise, and coloured; both make chance gains
-  // larger.
-  const double inflation =
-      std::max(1.0, result_.fit.train) / std::min(1.0, independent_.minCoeff());
-  return gain / inflation - unsteadiness_ >
+  return (gain - unsteadiness_) / Inflation() >
          GainByChance(options_.false_alarm, trials, freedom);
 }
 
@@ -227,17 +230,14 @@ std::string Search::NamesOf(const std::vector<Entry>& entries) const {
 Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
   constexpr double kHopeless = 200.0;  // behind the best, in units of the criterion
   constexpr std::size_t kFinalists = 6;
-  // Several starts of one candidate must not crowd out a simpler one; waves have many
-  // maxima of nearly the same height.
+  // Several starts of one candidate must not crowd out a simpler one.
   constexpr int kStarts = 2;
-  constexpr int kWaves = 4;
   std::vector<Entry> finalists;
   std::vector<Entry> others;
   std::map<std::size_t, int> starts;
   for (Entry& entry : Preview(shortlist)) {
     const std::size_t candidate = entry.causes.back().candidate;
-    if (starts[candidate]++ >= (IsWave(candidates_[candidate]) ? kWaves : kStarts))
-      continue;
+    if (starts[candidate]++ >= kStarts) continue;
     const bool hopeless =
         !finalists.empty() && entry.criterion - finalists.front().criterion > kHopeless;
     (finalists.size() < kFinalists && !hopeless ? finalists : others)
@@ -385,7 +385,7 @@ void Search::ChangePeriods() {
   while (changed) {
     changed = false;
     for (std::size_t i = 0; i < result_.fit.causes.size(); ++i) {
-      if (!IsWave(candidates_[result_.fit.causes[i].candidate])) continue;
+      if (!HasPeriod(candidates_[result_.fit.causes[i].candidate])) continue;
       for (CauseFit& other : FitOtherPeriods(problem_, candidates_, result_.fit, i)) {
         if (CriterionOf(other) > CriterionOf(result_.fit) - kBetter) continue;
         result_.fit = std::move(other);
@@ -398,10 +398,10 @@ void Search::ChangePeriods() {
 /// If the course of the machine depends on the last digit, the fit is looked for around
 /// where slopes led it, and further causes have to be worth more.
 void Search::MeetUnsteadiness() {
-  constexpr double kUnsteady = 30.0;  // of chi-squared
+  constexpr double kUnsteady = 30.0;  // of a gain, as chance has it
   constexpr int kRounds = 6;
   unsteadiness_ = Unsteadiness(problem_, candidates_, result_.fit);
-  for (int i = 0; i < kRounds && unsteadiness_ > kUnsteady; ++i) {
+  for (int i = 0; i < kRounds && unsteadiness_ > kUnsteady * Inflation(); ++i) {
     auto better = LookAround(problem_, candidates_, result_.fit, unsteadiness_);
     if (!better) break;
     result_.fit = std::move(*better);

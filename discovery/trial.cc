@@ -203,7 +203,7 @@ void TrialMaker::MakeStructure() {
               {"mass"});
   } else if (effect == "flexible_mode") {
     const double highest = 0.2 / motion_.sample_time;
-    for (const double frequency : LogGrid(2e-3 * highest, highest, 20)) {
+    for (const double frequency : LogGrid(2e-3 * highest, highest, 40)) {
       for (const double ratio : {0.01, 0.05, 0.2}) {
         trials_.push_back(
             {AppendagePull(q(), frequency, ratio, motion_.sample_time), JointEntry(1),

@@ -15,12 +15,12 @@
 
 namespace mjdiag {
 
-/// Whether a candidate is a wave over position or time: amplitude, phase, and a period
-/// or a frequency.
-bool IsWave(const Candidate& candidate);
+/// Whether a candidate has a period or a frequency: a wave over position or time, or a
+/// resonance, whose mass is its amplitude.
+bool HasPeriod(const Candidate& candidate);
 
-/// Fits with other periods (or frequencies) of cause i, a wave, the most promising
-/// ones; those that diverge are left out.
+/// Fits with other periods (or frequencies) of cause i that promise more than
+/// the present one; those that diverge are left out.
 std::vector<CauseFit> FitOtherPeriods(const DiscoveryProblem& problem,
                                       const std::vector<Candidate>& candidates,
                                       const CauseFit& fit, std::size_t i);

@@ -14,7 +14,7 @@ TEST(WavePeriod, LeavesAWrongPeriodThatAFitCannotLeave) {
   const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
   std::size_t place = 0;
   while (Describe(candidates.at(place)) != "force_ripple@load") ++place;
-  ASSERT_TRUE(IsWave(candidates[place]));
+  ASSERT_TRUE(HasPeriod(candidates[place]));
   ASSERT_EQ(candidates[place].parameters[1].name, "period");
   const CauseFit wrong =
       FitCauses(problem, candidates, {{place, Eigen::Vector3d(0.05, 0.012, 0.0)}}, {});
