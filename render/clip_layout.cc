@@ -76,7 +76,7 @@ PanelLayout LayOutPanel(const cv::Rect& view, std::size_t traces,
   if (traces > 0) {
     const int height = static_cast<int>(traces) * layout.line_height + m;
     panel.readout = {view.x + m, bottom + m / 2,
-                     std::min(inner, Round(11.5 * layout.body.em)), height};
+                     std::min(inner, Round(12.2 * layout.body.em)), height};
   }
   return panel;
 }
@@ -98,7 +98,7 @@ ChartLayout LayOutChart(const cv::Rect& area, const ClipLayout& layout) {
 
 // The residual's chart, with room on the right for the names of its limits.
 ChartLayout LayOutResidual(const cv::Rect& area, const ClipLayout& layout) {
-  const int labels_width = Round(4.2 * layout.small.em);
+  const int labels_width = Round(6.2 * layout.small.em);
   ChartLayout chart = LayOutChart(area, layout);
   chart.plot.width -= labels_width;
   chart.time_labels.width -= labels_width;

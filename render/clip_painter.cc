@@ -114,12 +114,12 @@ struct ClipPainter::State {
     const Trace trace{"residual", "residual", residual.unit, {residual.samples}};
     const std::array<const Record*, 1> record{&diagnosis->residual};
     const StripMarks marks{
-        {{diagnosis->limit_high, "limit"}, {diagnosis->limit_low, "limit"}},
+        {{diagnosis->limit_high, "upper limit"}, {diagnosis->limit_low, "lower limit"}},
         diagnosis->detection,
         "detected at " + DetectionText(*diagnosis),
         diagnosis->run};
     charts.emplace_back(layout, *layout.residual, trace, record, range, marks);
-    estimates.emplace(layout, *diagnosis);
+    estimates.emplace(layout, *diagnosis, type);
   }
 
   EngineeringFormat ReadoutFormat(const Trace& trace) const {

@@ -15,11 +15,10 @@
 namespace mjdiag {
 namespace {
 
-constexpr double kNamesShare = 0.25;    // of the width of the panel
-constexpr double kNumbersShare = 0.25;  // the same
-constexpr double kHeadroom = 0.25;      // of the axis, beyond the largest deviation
-constexpr double kRow = 1.25;           // least height of a row [em]
-constexpr double kLeastReach = 1e-3;    // of the axis, if nothing deviates
+constexpr double kMostNamesShare = 0.4;  // of the width of the panel
+constexpr double kHeadroom = 0.25;       // of the axis, beyond the largest deviation
+constexpr double kRow = 1.25;            // least height of a row [em]
+constexpr double kLeastReach = 1e-3;     // of the axis, if nothing deviates
 
 int Round(double value) { return static_cast<int>(std::lround(value)); }
 
@@ -50,16 +49,26 @@ std::vector<std::size_t> Strongest(const std::vector<EstimateHistory>& estimates
   return order;
 }
 
-// Reaches what lies off healthy at the end: the wide intervals of the beginning and of
-// faults that the motion hardly excites would leave nothing to see.
-ValueRange Axis(const std::vector<EstimateHistory>& estimates) {
+// Reaches what is clearly off healthy since the detection. The wide intervals of the
+// beginning, and of faults that the motion hardly excites, would leave nothing to see.
+ValueRange Axis(const DiagnosisOverlay& overlay) {
+  constexpr double kClearly = 2.0;   // half-widths
+  constexpr double kFarthest = 3.0;  // times the estimate at the end
   ValueRange axis;
-  for (const EstimateHistory& history : estimates) {
+  for (const EstimateHistory& history : overlay.estimates) {
     const Eigen::Index last = history.value.size() - 1;
     if (last < 0 || !IsOff(history, last)) continue;
-    const double deviation = history.value[last] - history.healthy;
-    axis.low = std::min(axis.low, deviation);
-    axis.high = std::max(axis.high, deviation);
+    const double at_end = std::abs(history.value[last] - history.healthy);
+    for (Eigen::Index at = 0; at <= last; ++at) {
+      const double deviation = history.value[at] - history.healthy;
+      const bool counts =
+          at == last || (overlay.estimate_time[at] >= overlay.detection.value_or(0.0) &&
+                         std::abs(deviation) > kClearly * history.half_width[at] &&
+                         std::abs(deviation) < kFarthest * at_end);
+      if (!counts) continue;
+      axis.low = std::min(axis.low, deviation);
+      axis.high = std::max(axis.high, deviation);
+    }
   }
   const double headroom = kHeadroom * std::max(axis.high - axis.low, kLeastReach);
   return {axis.low - headroom, axis.high + headroom};
@@ -75,19 +84,25 @@ std::string ValueText(double value) {
 
 }  // namespace
 
-EstimatePanel::EstimatePanel(const ClipLayout& layout, const DiagnosisOverlay& overlay)
+EstimatePanel::EstimatePanel(const ClipLayout& layout, const DiagnosisOverlay& overlay,
+                             Typesetter& type)
     : place_(*layout.diagnosis),
       title_(layout.title),
       body_(layout.body),
       small_(layout.small),
       margin_(layout.margin),
       overlay_(&overlay),
-      axis_(Axis(overlay.estimates)) {
+      axis_(Axis(overlay)) {
   const cv::Rect& rows = place_.rows;
   const int most = std::max(1, Round(std::floor(rows.height / (kRow * body_.em))));
   shown_ = Strongest(overlay.estimates, static_cast<std::size_t>(most));
-  const int names = Round(kNamesShare * rows.width);
-  const int numbers = Round(kNumbersShare * rows.width);
+  int names = 0;
+  for (const std::size_t index : shown_) {
+    names = std::max(names, type.Width(overlay.estimates[index].name, body_));
+  }
+  const int gap = Round(0.5 * body_.em);
+  names = std::min(names, Round(kMostNamesShare * rows.width)) + gap;
+  const int numbers = type.Width("\u22120.000", {body_.em, Weight::kBold}) + gap;
   plot_ = {rows.x + names, rows.y, rows.width - names - numbers, rows.height};
 }
 
@@ -112,11 +127,15 @@ void EstimatePanel::DrawBackground(Typesetter& type, cv::Mat& picture) const {
             BaselineIn(place_.heading, small_), small_, palette::kInk, picture);
 
   const int most = std::clamp(Round(plot_.width / (3.6 * small_.em)), 2, 5);
-  const std::vector<double> ticks =
-      RoundTicks(100.0 * axis_.low, 100.0 * axis_.high, most);
+  std::vector<double> ticks = RoundTicks(100.0 * axis_.low, 100.0 * axis_.high, most);
+  // One number alone gives no scale.
+  if (ticks.size() < 2) {
+    ticks = RoundTicks(100.0 * axis_.low, 100.0 * axis_.high, 4);
+  }
   const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
   const EngineeringFormat format{
       "%", 1.0, std::max(0, Round(std::ceil(-std::log10(step) - 1e-6)))};
+  int free_from = place_.rows.x;  // numbers that would run into another are left out
   for (const double tick : ticks) {
     const int x = Round(Place(tick / 100.0));
     cv::line(picture, {x, plot_.y}, {x, plot_.br().y - 1}, palette::kGrid);
@@ -124,6 +143,8 @@ void EstimatePanel::DrawBackground(Typesetter& type, cv::Mat& picture) const {
     const int width = type.Width(text, small_);
     cv::Point origin = BaselineIn(place_.axis_labels, small_);
     origin.x = std::clamp(x - width / 2, place_.rows.x, place_.rows.br().x - width);
+    if (origin.x < free_from) continue;
+    free_from = origin.x + width + Round(0.5 * small_.em);
     type.Draw(text, origin, small_, palette::kQuietInk, picture);
   }
   const std::string quantity =
@@ -139,8 +160,8 @@ void EstimatePanel::DrawBackground(Typesetter& type, cv::Mat& picture) const {
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     const cv::Rect row = Row(i);
     const std::string& name = overlay_->estimates[shown_[i]].name;
-    type.Draw(type.Fit(name, plot_.x - row.x, body_), BaselineIn(row, body_), body_,
-              palette::kInk, picture);
+    type.Draw(type.Fit(name, plot_.x - row.x - Round(0.5 * body_.em), body_),
+              BaselineIn(row, body_), body_, palette::kInk, picture);
   }
 }
 
@@ -191,7 +212,7 @@ void EstimatePanel::DrawEstimate(const EstimateHistory& history, Eigen::Index at
   const double y = row.y + 0.5 * row.height;
   const double left_end = plot_.x + 1.0;
   const double right_end = plot_.br().x - 2.0;
-  const double cap = 0.22 * body_.em;
+  const double cap = 0.28 * body_.em;
   const double thickness = std::max(1.0, body_.em / 9.0);
   const auto whisker = [&](double value) {
     const double x = Place(value);
@@ -211,14 +232,14 @@ void EstimatePanel::DrawEstimate(const EstimateHistory& history, Eigen::Index at
   whisker(deviation + half);
   const double x = Place(deviation);
   if (x >= left_end && x <= right_end) {
-    DrawDot({x, y}, 0.25 * body_.em, rgb, picture);
-    if (!off) DrawDot({x, y}, 0.14 * body_.em, palette::kPaper, picture);
+    DrawDot({x, y}, 0.2 * body_.em, rgb, picture);
+    if (!off) DrawDot({x, y}, 0.11 * body_.em, palette::kPaper, picture);
   }
+  const Font font{body_.em, off ? Weight::kBold : Weight::kRegular};
   const std::string number = ValueText(history.value[at]);
-  cv::Point origin = BaselineIn(row, body_);
-  origin.x = row.br().x - type.Width(number, body_);
-  type.Draw(number, origin, {body_.em, off ? Weight::kBold : Weight::kRegular},
-            palette::kInk, picture);
+  cv::Point origin = BaselineIn(row, font);
+  origin.x = row.br().x - type.Width(number, font);
+  type.Draw(number, origin, font, palette::kInk, picture);
 }
 
 void EstimatePanel::DrawAt(double time, Typesetter& type, cv::Mat& picture) const {

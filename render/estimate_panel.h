@@ -16,7 +16,8 @@ namespace mjdiag {
 class EstimatePanel {
  public:
   /// The overlay must outlive the panel.
-  EstimatePanel(const ClipLayout& layout, const DiagnosisOverlay& overlay);
+  EstimatePanel(const ClipLayout& layout, const DiagnosisOverlay& overlay,
+                Typesetter& type);
 
   /// Heading, names and axis: what stays the same in all frames.
   void DrawBackground(Typesetter& type, cv::Mat& picture) const;

@@ -30,10 +30,17 @@ void MakeTranslucent(const Ghost& ghost, mjvGeom& geom) {
   geom.texid = -1;
   std::copy(ghost.rgb.begin(), ghost.rgb.end(), geom.rgba);
   geom.rgba[3] = ghost.opacity;
-  geom.emission = 0.4F;  // its colour must read in the shade, too
+  geom.emission = 0.1F;  // its colour must read in the shade, too
   geom.specular = 0.0F;
   geom.reflectance = 0.0F;
   geom.transparent = 1;
+}
+
+// A hair away from the eye, along the line of sight: faces that both machines share are
+// the machine's then, instead of flickering between the two.
+void MoveBack(const mjvGLCamera& eye, mjvGeom& geom) {
+  constexpr float kHair = 2e-3F;  // of the distance
+  for (int i = 0; i < 3; ++i) geom.pos[i] += kHair * (geom.pos[i] - eye.pos[i]);
 }
 
 }  // namespace
@@ -64,8 +71,11 @@ void AddGhost(const mjModel& model, mjData& data, const mjvOption& visual,
       std::remove_if(scene.geoms + machine, scene.geoms + scene.ngeom,
                      [&](const mjvGeom& geom) { return !IsShown(model, ghost, geom); });
   scene.ngeom = static_cast<int>(shown - scene.geoms);
-  std::for_each(scene.geoms + machine, shown,
-                [&](mjvGeom& geom) { MakeTranslucent(ghost, geom); });
+  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+  std::for_each(scene.geoms + machine, shown, [&](mjvGeom& geom) {
+    MakeTranslucent(ghost, geom);
+    MoveBack(eye, geom);
+  });
 }
 
 }  // namespace mjdiag

@@ -143,9 +143,18 @@ void MachineViews::DrawLegend(const PanelLayout& panel,
   std::vector<std::string> texts;
   int width = 0;
   for (const std::size_t run : runs) {
-    std::string text = "path of " + site_ + ", enlarged as the motion";
-    if (runs.size() > 1) text = "path of " + site_ + ", " + runs_[run].title;
-    texts.push_back(type.Fit(text, panel.legend.width - text_x - pad, font));
+    const std::string name = "path of " + site_;
+    const std::vector<std::string> wordings =
+        runs.size() > 1
+            ? std::vector{name + ", " + runs_[run].title,
+                          site_ + ", " + runs_[run].title}
+            : std::vector{name + ", enlarged as the motion", name + ", enlarged", name};
+    std::string text;
+    for (const std::string& wording : wordings) {
+      text = type.Fit(wording, panel.legend.width - text_x - pad, font);
+      if (text == wording) break;
+    }
+    texts.push_back(text);
     width = std::max(width, type.Width(texts.back(), font));
   }
   DrawBox({panel.legend.x, panel.legend.y, text_x + width + pad, panel.legend.height},

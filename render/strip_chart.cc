@@ -18,6 +18,18 @@ double Spacing(const std::vector<double>& ticks, double otherwise) {
   return ticks.size() > 1 ? ticks[1] - ticks[0] : otherwise;
 }
 
+// Pure numbers have no prefix: the unit says how many of them one on the axis is.
+void ScaleByThousands(double peak, EngineeringFormat& format) {
+  format.unit = "1";
+  constexpr double kFewDigits = 10'000.0;
+  for (double thousands = 1e3; thousands <= 1e12; thousands *= 1e3) {
+    if (peak < kFewDigits * thousands / 1e3) return;
+    format.factor = 1.0 / thousands;
+    format.decimals = std::max(0, format.decimals);
+    format.unit = "\u00d7" + GroupedNumber(thousands);
+  }
+}
+
 ValueRange WithHeadroom(ValueRange values) {
   const double span = std::max(values.high - values.low, kLeastSpan);
   return {values.low - kHeadroom * span, values.high + kHeadroom * span};
@@ -43,7 +55,11 @@ StripChart::StripChart(const ClipLayout& layout, const ChartLayout& place,
   value_ticks_ = RoundTicks(values_.low, values_.high, most);
   value_format_ = FormatForResolution(trace.unit, std::max(-data.low, data.high),
                                       Spacing(value_ticks_, data.high - data.low));
-  caption_ = trace.caption + " [" + value_format_.unit + "]";
+  if (trace.unit == "1")
+    ScaleByThousands(std::max(-data.low, data.high), value_format_);
+  unit_ = " [" + value_format_.unit + "]";
+  caption_ = trace.caption;
+  short_caption_ = trace.name;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     curves_.push_back(MakeCurve(*runs[i], trace.runs[i]));
   }
@@ -126,11 +142,17 @@ void StripChart::DrawTimeAxis(Typesetter& type, cv::Mat& picture) const {
   }
 }
 
+std::string StripChart::Caption(Typesetter& type) const {
+  const int width = place_.plot.width;
+  const std::string full = caption_ + unit_;
+  if (type.Width(full, font_) <= width) return full;
+  return type.Fit(short_caption_ + unit_, width, font_);
+}
+
 void StripChart::DrawBackground(Typesetter& type, cv::Mat& picture) const {
   cv::Point origin = BaselineIn(place_.caption, font_);
   origin.x = place_.plot.x;
-  const std::string caption = type.Fit(caption_, place_.plot.width, font_);
-  type.Draw(caption, origin, font_, palette::kInk, picture);
+  type.Draw(Caption(type), origin, font_, palette::kInk, picture);
   DrawTimeAxis(type, picture);
   DrawValueAxis(type, picture);
   for (std::size_t i = curves_.size(); i-- > 0;) {  // the reference run on top
@@ -169,13 +191,14 @@ void StripChart::DrawLevels(Typesetter& type, cv::Mat& picture) const {
 void StripChart::DrawMoment(Typesetter& type, cv::Mat& picture) const {
   const cv::Rect& plot = place_.plot;
   const double x = Place(*marks_.moment, 0.0).x;
-  const int width = 1 + static_cast<int>(line_width_);
+  const int width = static_cast<int>(line_width_);
   cv::line(picture, {static_cast<int>(std::lround(x)), plot.y + 1},
            {static_cast<int>(std::lround(x)), plot.br().y - 2}, palette::kInk, width);
   const int right =
       place_.level_labels.empty() ? plot.br().x : place_.level_labels.br().x;
   cv::Point origin = BaselineIn(place_.caption, font_);
-  const int from = plot.x + type.Width(caption_, font_) + static_cast<int>(font_.em);
+  const int from =
+      plot.x + type.Width(Caption(type), font_) + static_cast<int>(font_.em);
   const std::string name = type.Fit(marks_.moment_name, right - from, font_);
   origin.x = right - type.Width(name, font_);
   type.Draw(name, origin, {font_.em, Weight::kBold}, palette::kInk, picture);

@@ -49,6 +49,7 @@ class StripChart {
   cv::Point2d Place(double time, double value) const;
   void DrawValueAxis(Typesetter& type, cv::Mat& picture) const;
   void DrawTimeAxis(Typesetter& type, cv::Mat& picture) const;
+  std::string Caption(Typesetter& type) const;
   void DrawLevels(Typesetter& type, cv::Mat& picture) const;
   void DrawMoment(Typesetter& type, cv::Mat& picture) const;
 
@@ -56,6 +57,8 @@ class StripChart {
   Font font_;
   double line_width_ = 1.0;  // [px]
   std::string caption_;
+  std::string short_caption_;  // where the long one does not fit
+  std::string unit_;           // "[...]", behind either
   TimeRange range_;
   ValueRange values_;
   std::vector<double> value_ticks_;

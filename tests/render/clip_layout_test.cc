@@ -115,10 +115,11 @@ TEST(ClipLayout, KeepsTheDiagnosisBesideTheViewsAndItsResidualReadable) {
     }
     Typesetter type;
     const ChartLayout& residual = *layout.residual;
-    EXPECT_LE(type.Width("residual [1]", layout.small) + layout.small.em +
+    EXPECT_LE(type.Width("residual [\u00d71000]", layout.small) + layout.small.em +
                   type.Width("detected at 0.0123 s", {layout.small.em, Weight::kBold}),
               residual.plot.width + residual.level_labels.width);
-    EXPECT_LE(type.Width("\u22122500", layout.small), residual.level_labels.width);
+    EXPECT_LE(type.Width("upper limit", layout.small) + 0.3 * layout.small.em,
+              residual.level_labels.width);
     // Eight faults, a line each.
     EXPECT_GE(layout.diagnosis->rows.height, 8 * 1.25 * layout.body.em);
   }

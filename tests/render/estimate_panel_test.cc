@@ -13,7 +13,7 @@ namespace {
 class EstimatePanelAt : public ::testing::TestWithParam<cv::Size> {
  protected:
   cv::Mat Paint(const DiagnosisOverlay& overlay, double time) {
-    const EstimatePanel panel(layout_, overlay);
+    const EstimatePanel panel(layout_, overlay, type_);
     cv::Mat picture(layout_.size, CV_8UC3, palette::kPaper);
     panel.DrawBackground(type_, picture);
     panel.DrawAt(time, type_, picture);
