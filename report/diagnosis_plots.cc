@@ -91,12 +91,20 @@ VectorXd AtEveryEstimate(const Bound& bound, Index row, Index estimates) {
   return sd;
 }
 
+/// The first estimate that is shown: after a tenth of the run, and where the bound has
+/// come near to its end, within the first half. What is before would set the scale.
+Index FirstShown(const VectorXd& half) {
+  constexpr double kNear = 10.0;
+  const Index count = half.size();
+  Index first = count / 2;
+  while (first > count / 10 && half[first - 1] <= kNear * half[count - 1]) --first;
+  return first;
+}
+
 /// @param sd  from the noise of the sensors, of every estimate of this fault
 TimePlot EstimatePlot(const DiagnosisDesign& design, const DiagnosisResult& result,
                       const MonitorLog& log, Index row, const VectorXd& sd) {
   const FaultVerdict& fault = result.faults[static_cast<std::size_t>(row)];
-  const Index first = log.estimates.cols() / 10;
-  const Index shown = log.estimates.cols() - first;
   Interval usual;  // of healthy runs, as the verdict takes it
   if (!design.limits.estimates.empty()) {
     usual = design.limits.estimates[static_cast<std::size_t>(row)];
@@ -104,8 +112,11 @@ TimePlot EstimatePlot(const DiagnosisDesign& design, const DiagnosisResult& resu
   const double middle = 0.5 * (usual.min + usual.max);
   const double spread =
       0.5 * (usual.max - usual.min) / TwoSidedQuantile(kOutsideLimits);
-  const VectorXd half = TwoSidedQuantile(0.05) *
-                        (sd.tail(shown).array().square() + spread * spread).sqrt();
+  const VectorXd whole =
+      TwoSidedQuantile(0.05) * (sd.array().square() + spread * spread).sqrt();
+  const Index first = FirstShown(whole);
+  const Index shown = whole.size() - first;
+  const VectorXd half = whole.tail(shown);
   const VectorXd estimate =
       log.estimates.row(row).tail(shown).transpose().array() - middle;
   const bool large = estimate.cwiseAbs().maxCoeff() > kLargeDeviation;
