@@ -47,8 +47,8 @@ TEST(ProfileInterval, IsTheNormalOneWhereTheLikelihoodIsQuadratic) {
 TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
   const test::Stage stage;
   const Fitted f =
-      FitOf(stage, "stribeck_friction@load:coulomb=0.002,breakaway=0.002,velocity=0.02",
-            "stribeck_friction@load", Eigen::Vector3d(0.002, 0.002, 0.02));
+      FitOf(stage, "stribeck_friction@load:coulomb=0.0002,breakaway=0.0004,velocity=0.02",
+            "stribeck_friction@load", Eigen::Vector3d(0.0002, 0.0004, 0.02));
   const DiscoveryProblem seen = Beginning(f.problem, f.problem.train);
   const Eigen::MatrixXd J =
       f.fit.sensitivities.bottomRows(f.problem.train - f.problem.skip);
@@ -64,6 +64,7 @@ TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
     EXPECT_NEAR(n * (held.train - f.fit.train), 3.841 * colour, 0.5 * colour) << end;
   }
   const double value = f.fit.causes[0].value[2];
+  ASSERT_GT(std::sqrt(f.covariance(2, 2)), 0.05 * value);  // else none is followed
   const double up = f.intervals[2].high - value;
   const double down = value - f.intervals[2].low;
   EXPECT_GT(std::max(up, down), 1.1 * std::min(up, down));
