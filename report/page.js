@@ -125,7 +125,6 @@
   // on another.
   function drawNames(canvas, area, graph, plot, scheme) {
     canvas.font = '12px system-ui, "DejaVu Sans", sans-serif';
-    canvas.fillStyle = color('ink', scheme);
     const ends = [];
     for (const mark of plot.marks.slice().sort((a, b) => a.value - b.value)) {
       const x = area.x + graph.toPercentXCoord(mark.value) * area.w;
@@ -135,6 +134,10 @@
       let row = ends.findIndex((end) => end < left);
       if (row < 0) row = ends.length;
       ends[row] = left + width + 6;
+      // The line of a neighbour does not strike the name through.
+      canvas.fillStyle = color('paper', scheme);
+      canvas.fillRect(left - 1, area.y + 1 + 14 * row, width + 2, 14);
+      canvas.fillStyle = color('ink', scheme);
       canvas.fillText(mark.label, left, area.y + 12 + 14 * row);
     }
   }
