@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "mjdiag/signals/quantity.h"
 
@@ -40,6 +41,25 @@ EngineeringFormat FormatForResolution(std::string_view si_unit, double peak,
     // The slack keeps 0.1 one decimal when it arrives as 0.0999999.
     const double needed = std::ceil(-std::log10(step) - 1e-6);
     format.decimals = std::clamp(static_cast<int>(needed), 0, kMostDecimals);
+  }
+  return format;
+}
+
+EngineeringFormat FormatForPureNumber(double peak, double resolution) {
+  constexpr double kLargest = 1e4;
+  constexpr double kSmallest = 1e-2;
+  int exponent = 0;
+  if (peak >= kLargest || (peak > 0.0 && peak < kSmallest)) {
+    exponent = 3 * static_cast<int>(std::floor(std::log10(peak) / 3.0));
+  }
+  const double factor = std::pow(10.0, -exponent);
+  EngineeringFormat format =
+      FormatForResolution("", peak * factor, resolution * factor);
+  format.factor = factor;
+  format.unit = "1";
+  if (exponent != 0) {
+    format.unit = std::string("\u00d710^") + (exponent < 0 ? "\u2212" : "") +
+                  std::to_string(std::abs(exponent));
   }
   return format;
 }

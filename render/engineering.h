@@ -25,6 +25,10 @@ EngineeringFormat FormatForPeak(std::string_view si_unit, double peak);
 EngineeringFormat FormatForResolution(std::string_view si_unit, double peak,
                                       double resolution);
 
+/// For a pure number, which takes no prefix: the unit is "1", or "×10^3" where the
+/// axis counts thousands, and so on for peaks of 10 000 and more or below 0.01.
+EngineeringFormat FormatForPureNumber(double peak, double resolution);
+
 /// Multiples of 1, 2 or 5 times 10^n inside low .. high, at most `most` (>= 2) of them.
 /// low < high
 std::vector<double> RoundTicks(double low, double high, int most);

@@ -18,18 +18,6 @@ double Spacing(const std::vector<double>& ticks, double otherwise) {
   return ticks.size() > 1 ? ticks[1] - ticks[0] : otherwise;
 }
 
-// Pure numbers have no prefix: the unit says how many of them one on the axis is.
-void ScaleByThousands(double peak, EngineeringFormat& format) {
-  format.unit = "1";
-  constexpr double kFewDigits = 10'000.0;
-  for (double thousands = 1e3; thousands <= 1e12; thousands *= 1e3) {
-    if (peak < kFewDigits * thousands / 1e3) return;
-    format.factor = 1.0 / thousands;
-    format.decimals = std::max(0, format.decimals);
-    format.unit = "\u00d7" + GroupedNumber(thousands);
-  }
-}
-
 ValueRange WithHeadroom(ValueRange values) {
   const double span = std::max(values.high - values.low, kLeastSpan);
   return {values.low - kHeadroom * span, values.high + kHeadroom * span};
@@ -53,10 +41,10 @@ StripChart::StripChart(const ClipLayout& layout, const ChartLayout& place,
   const int most =
       std::clamp(static_cast<int>(place.plot.height / (1.9 * font_.em)), 3, 6);
   value_ticks_ = RoundTicks(values_.low, values_.high, most);
-  value_format_ = FormatForResolution(trace.unit, std::max(-data.low, data.high),
-                                      Spacing(value_ticks_, data.high - data.low));
-  if (trace.unit == "1")
-    ScaleByThousands(std::max(-data.low, data.high), value_format_);
+  const double peak = std::max(-data.low, data.high);
+  const double step = Spacing(value_ticks_, data.high - data.low);
+  value_format_ = trace.unit == "1" ? FormatForPureNumber(peak, step)
+                                    : FormatForResolution(trace.unit, peak, step);
   unit_ = " [" + value_format_.unit + "]";
   caption_ = trace.caption;
   short_caption_ = trace.name;

@@ -115,7 +115,8 @@ TEST(ClipLayout, KeepsTheDiagnosisBesideTheViewsAndItsResidualReadable) {
     }
     Typesetter type;
     const ChartLayout& residual = *layout.residual;
-    EXPECT_LE(type.Width("residual [\u00d71000]", layout.small) + layout.small.em +
+    EXPECT_LE(type.Width("residual [\u00d710^\u22126]", layout.small) +
+                  layout.small.em +
                   type.Width("detected at 0.0123 s", {layout.small.em, Weight::kBold}),
               residual.plot.width + residual.level_labels.width);
     EXPECT_LE(type.Width("upper limit", layout.small) + 0.3 * layout.small.em,

@@ -80,5 +80,18 @@ TEST(Typesetter, StaysWithinTheWidthItAnnounces) {
   EXPECT_GT(right, end - 8);
 }
 
+TEST(FormatForPureNumber, CountsThousandsInsteadOfPrefixes) {
+  const EngineeringFormat plain = FormatForPureNumber(12.0, 5.0);
+  EXPECT_EQ(plain.unit, "1");
+  EXPECT_EQ(plain.Number(10.0), "10");
+  const EngineeringFormat large = FormatForPureNumber(21'000.0, 20'000.0);
+  EXPECT_EQ(large.unit, "\u00d710^3");
+  EXPECT_EQ(large.Number(-20'000.0), "\u221220");
+  const EngineeringFormat small = FormatForPureNumber(1.4e-6, 5e-7);
+  EXPECT_EQ(small.unit, "\u00d710^\u22126");
+  EXPECT_EQ(small.Number(5e-7), "0.5");
+  EXPECT_EQ(FormatForPureNumber(0.0, 1.0).unit, "1");
+}
+
 }  // namespace
 }  // namespace mjdiag
