@@ -126,7 +126,7 @@
   function drawNames(canvas, area, graph, plot, scheme) {
     canvas.font = '12px system-ui, "DejaVu Sans", sans-serif';
     const ends = [];
-    for (const mark of plot.marks.slice().sort((a, b) => a.value - b.value)) {
+    for (const mark of (plot.marks || []).slice().sort((a, b) => a.value - b.value)) {
       const x = area.x + graph.toPercentXCoord(mark.value) * area.w;
       if (!(x >= area.x && x <= area.x + area.w)) continue;
       const width = canvas.measureText(mark.label).width;
@@ -316,7 +316,8 @@
     return {
       labels: ['x'].concat(plot.curves.map((curve) => curve.label)),
       series: series,
-      yRangePad: 8,
+      // Room above the data for the names of marks: two rows of them.
+      yRangePad: plot.kind === 'spectrum' && (plot.marks || []).length > 0 ? 36 : 8,
       highlightCircleSize: 3,
     };
   }
