@@ -46,9 +46,9 @@ TEST(ProfileInterval, IsTheNormalOneWhereTheLikelihoodIsQuadratic) {
 // A weak Stribeck law: its velocity is known to a factor, and the interval is skew.
 TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
   const test::Stage stage;
-  const Fitted f =
-      FitOf(stage, "stribeck_friction@load:coulomb=0.0002,breakaway=0.0004,velocity=0.02",
-            "stribeck_friction@load", Eigen::Vector3d(0.0002, 0.0004, 0.02));
+  const Fitted f = FitOf(
+      stage, "stribeck_friction@load:coulomb=0.0002,breakaway=0.0004,velocity=0.02",
+      "stribeck_friction@load", Eigen::Vector3d(0.0002, 0.0004, 0.02));
   const DiscoveryProblem seen = Beginning(f.problem, f.problem.train);
   const Eigen::MatrixXd J =
       f.fit.sensitivities.bottomRows(f.problem.train - f.problem.skip);
