@@ -133,7 +133,7 @@ struct ClipPainter::State {
     type.Draw(speed, BaselineIn(layout.speed, layout.small), layout.small,
               palette::kQuietInk, background);
     DrawAmplification();
-    for (const StripChart& chart : charts) chart.DrawBackground(type, background);
+    for (StripChart& chart : charts) chart.DrawBackground(type, background);
     if (estimates) estimates->DrawBackground(type, background);
   }
 

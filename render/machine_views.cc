@@ -119,12 +119,19 @@ void MachineViews::DrawTitle(const cv::Rect& place, std::size_t run, bool is_gho
 void MachineViews::DrawPath(const cv::Rect& view, std::size_t run, double time,
                             cv::Mat& picture) const {
   const SitePath& path = paths_[run];
+  constexpr double kLeastStep = 0.7;  // [px]; shorter ones cost time and show nothing
   std::vector<cv::Point2d> points;
+  cv::Point2d end;
   for (std::size_t i = 0; i < path.times.size() && path.times[i] <= time; ++i) {
     const auto pixel = scene_.Project(path.positions[i]);
-    if (pixel) points.emplace_back(pixel->x(), pixel->y());
+    if (!pixel) continue;
+    end = {pixel->x(), pixel->y()};
+    if (points.empty() || cv::norm(end - points.back()) > kLeastStep) {
+      points.push_back(end);
+    }
   }
   if (points.empty()) return;
+  points.push_back(end);
   cv::Mat part = picture(view);
   const double width = std::max(1.0, std::round(layout_.small.em / 8.0));
   DrawCurve(points, palette::kPaper, width + 2.0, part);

@@ -137,19 +137,28 @@ std::string StripChart::Caption(Typesetter& type) const {
   return type.Fit(short_caption_ + unit_, width, font_);
 }
 
-void StripChart::DrawBackground(Typesetter& type, cv::Mat& picture) const {
+void StripChart::DrawBackground(Typesetter& type, cv::Mat& picture) {
   cv::Point origin = BaselineIn(place_.caption, font_);
   origin.x = place_.plot.x;
   type.Draw(Caption(type), origin, font_, palette::kInk, picture);
   DrawTimeAxis(type, picture);
   DrawValueAxis(type, picture);
+  cv::Mat past = picture.clone();
+  DrawCurves(1.0, past);
+  DrawCurves(kFaint, picture);
+  for (cv::Mat* part : {&past, &picture}) {
+    DrawLevels(type, *part);
+    cv::rectangle(*part, place_.plot, palette::kRule);
+  }
+  past_ = past(place_.plot).clone();
+}
+
+void StripChart::DrawCurves(double share, cv::Mat& picture) const {
   for (std::size_t i = curves_.size(); i-- > 0;) {  // the reference run on top
     const cv::Scalar rgb =
-        palette::Tint(palette::OfRun(marks_.first_colour + i), kFaint);
+        palette::Tint(palette::OfRun(marks_.first_colour + i), share);
     DrawCurve(curves_[i].points, rgb, line_width_, picture);
   }
-  DrawLevels(type, picture);
-  cv::rectangle(picture, place_.plot, palette::kRule);
 }
 
 void StripChart::DrawLevels(Typesetter& type, cv::Mat& picture) const {
@@ -193,21 +202,22 @@ void StripChart::DrawMoment(Typesetter& type, cv::Mat& picture) const {
 }
 
 void StripChart::DrawUpTo(double time, Typesetter& type, cv::Mat& picture) const {
+  // What is past lies ready: only the part left of the present is copied.
+  const cv::Rect& plot = place_.plot;
+  const int x = static_cast<int>(std::lround(Place(time, 0.0).x));
+  const cv::Rect past(0, 0, std::clamp(x - plot.x, 0, plot.width), plot.height);
+  if (!past.empty()) past_(past).copyTo(picture(past + plot.tl()));
   if (marks_.moment && *marks_.moment >= range_.begin && *marks_.moment <= time) {
     DrawMoment(type, picture);
   }
-  const int x = static_cast<int>(std::lround(Place(time, 0.0).x));
-  cv::line(picture, {x, place_.plot.y + 1}, {x, place_.plot.br().y - 2},
-           palette::kQuietInk);
+  cv::line(picture, {x, plot.y + 1}, {x, plot.br().y - 2}, palette::kQuietInk);
   for (std::size_t i = curves_.size(); i-- > 0;) {
     const Curve& curve = curves_[i];
-    const auto end = std::upper_bound(curve.times.begin(), curve.times.end(), time);
-    const std::vector<cv::Point2d> past(
-        curve.points.begin(), curve.points.begin() + (end - curve.times.begin()));
-    if (past.empty()) continue;
-    const cv::Scalar rgb = palette::OfRun(marks_.first_colour + i);
-    DrawCurve(past, rgb, line_width_, picture);
-    DrawDot(past.back(), 1.6 * line_width_, rgb, picture);
+    const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), time);
+    if (after == curve.times.begin()) continue;
+    const auto last = static_cast<std::size_t>(after - curve.times.begin()) - 1;
+    DrawDot(curve.points[last], 1.6 * line_width_,
+            palette::OfRun(marks_.first_colour + i), picture);
   }
 }
 

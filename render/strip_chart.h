@@ -34,8 +34,9 @@ class StripChart {
              const StripMarks& marks = {});
 
   /// Caption, axes, grid and the faint traces: what stays the same in all frames.
-  void DrawBackground(Typesetter& type, cv::Mat& picture) const;
-  /// The traces up to `time`, a cursor there, and the marked moment if it is past.
+  void DrawBackground(Typesetter& type, cv::Mat& picture);
+  /// Call after DrawBackground: the traces up to `time`, a cursor there, and the marked
+  /// moment if it is past.
   void DrawUpTo(double time, Typesetter& type, cv::Mat& picture) const;
 
  private:
@@ -50,6 +51,7 @@ class StripChart {
   void DrawValueAxis(Typesetter& type, cv::Mat& picture) const;
   void DrawTimeAxis(Typesetter& type, cv::Mat& picture) const;
   std::string Caption(Typesetter& type) const;
+  void DrawCurves(double share, cv::Mat& picture) const;
   void DrawLevels(Typesetter& type, cv::Mat& picture) const;
   void DrawMoment(Typesetter& type, cv::Mat& picture) const;
 
@@ -65,6 +67,7 @@ class StripChart {
   EngineeringFormat value_format_;
   std::vector<Curve> curves_;
   StripMarks marks_;
+  cv::Mat past_;  // the plot as it looks when all is past
 };
 
 }  // namespace mjdiag

@@ -20,7 +20,7 @@ class Strip : public ::testing::TestWithParam<cv::Size> {
     return {layout_, *layout_.residual, trace, runs, {0.0, 0.1}, marks};
   }
   cv::Mat Paint(const StripMarks& marks, double time) {
-    const StripChart chart = Make(marks);
+    StripChart chart = Make(marks);
     cv::Mat picture(layout_.size, CV_8UC3, palette::kPaper);
     chart.DrawBackground(type_, picture);
     chart.DrawUpTo(time, type_, picture);
