@@ -1,6 +1,5 @@
-# What nearly every file includes, parsed once a library. The files still include what
-# they use; MJDIAG_PRECOMPILE=OFF shows whether they do. Not for the tests: with
-# precompiled headers GCC 12 raises false alarms on their string literals.
+# What nearly every file includes, parsed once a target. The files still include what
+# they use; MJDIAG_PRECOMPILE=OFF shows whether they do.
 option(MJDIAG_PRECOMPILE "Precompile the common headers" ON)
 function(mjdiag_precompile target)
   if(MJDIAG_PRECOMPILE)

@@ -221,6 +221,7 @@ VectorXd CleanResidual(const DiscoveryProblem& problem, const Cause& cause) {
 /// amplitudes of all others explain.
 double LeastOwnShare(const Eigen::MatrixXd& columns) {
   double least = std::numeric_limits<double>::infinity();
+  if (columns.cols() < 2) return least;
   for (Index i = 0; i < columns.cols(); ++i) {
     Eigen::MatrixXd others(columns.rows(), columns.cols() - 1);
     others << columns.leftCols(i), columns.rightCols(columns.cols() - 1 - i);
