@@ -19,8 +19,8 @@ std::string Fixed(double value, int decimals) {
 
 }  // namespace
 
-std::string EngineeringFormat::Number(double si_value) const {
-  const double shown = si_value * factor;
+std::string EngineeringFormat::Number(double value_si) const {
+  const double shown = value_si * factor;
   const std::string digits = Fixed(std::abs(shown), decimals);
   const bool is_zero = digits.find_first_not_of("0.") == std::string::npos;
   return (shown < 0.0 && !is_zero ? "\u2212" : "") + digits;

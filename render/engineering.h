@@ -15,7 +15,7 @@ struct EngineeringFormat {
   int decimals = 0;
 
   /// "12.3", with a true minus sign
-  std::string Number(double si_value) const;
+  std::string Number(double value_si) const;
 };
 
 /// The prefix of ChooseDisplayUnit for `peak`, with three significant digits there.
