@@ -214,6 +214,7 @@ void Render(RenderOptions options) {
       summary = RenderClip(*machine.plant, runs, options.clip, folder / "clip.mp4");
     }
     document["clip"] = "clip.mp4";
+    document["speed"] = options.clip.speed;
     document["frames"] = summary.frames;
     document["codec"] = summary.codec;
     text = "clip: " + (folder / "clip.mp4").string() + " (" +
