@@ -105,14 +105,10 @@ void NoteEstimate(const DiagnosisDesign& design, const DiagnosisMonitor& monitor
     history.value[column] = std::numeric_limits<double>::quiet_NaN();
     history.half_width[column] = std::numeric_limits<double>::quiet_NaN();
     if (!estimate) continue;
-    Interval usual;
-    if (!design.limits.estimates.empty()) usual = design.limits.estimates[i];
-    const double spread =
-        0.5 * (usual.max - usual.min) / TwoSidedQuantile(kOutsideLimits);
-    const double sd = std::hypot(std::sqrt(estimate->covariance(at, at)), spread);
-    history.value[column] =
-        history.healthy + estimate->value[at] - 0.5 * (usual.min + usual.max);
-    history.half_width[column] = TwoSidedQuantile(0.05) * sd;
+    const CalibratedEstimate calibrated = Calibrate(
+        design, at, estimate->value[at], std::sqrt(estimate->covariance(at, at)));
+    history.value[column] = history.healthy + calibrated.deviation;
+    history.half_width[column] = TwoSidedQuantile(0.05) * calibrated.sd;
   }
 }
 

@@ -15,24 +15,6 @@ std::optional<double> TimeOf(const std::optional<Index>& sample, double sample_t
   return static_cast<double>(*sample) * sample_time;
 }
 
-/// An estimate as healthy runs have it: without the part that they show, too, and not
-/// surer than they agree on.
-struct Calibrated {
-  double deviation = 0.0;
-  double sd = 0.0;
-  bool usual = false;  ///< within the limits of healthy runs
-};
-
-Calibrated Calibrate(const DiagnosisDesign& design, Index fault, double deviation,
-                     double sd) {
-  if (design.limits.estimates.empty()) return {deviation, sd, false};
-  const Interval& limits = design.limits.estimates[static_cast<std::size_t>(fault)];
-  const double middle = 0.5 * (limits.min + limits.max);
-  const double spread =
-      0.5 * (limits.max - limits.min) / TwoSidedQuantile(kOutsideLimits);
-  return {deviation - middle, std::hypot(sd, spread), limits.Holds(deviation)};
-}
-
 std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
                                 const FaultEstimate& estimate) {
   const std::vector<std::string> names = design.FaultNames();
@@ -93,6 +75,16 @@ void RequireSeparableFaults(const DiagnosisDesign& design,
 }
 
 }  // namespace
+
+CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
+                             double deviation, double sd) {
+  if (design.limits.estimates.empty()) return {deviation, sd, false};
+  const Interval& limits = design.limits.estimates[static_cast<std::size_t>(fault)];
+  const double middle = 0.5 * (limits.min + limits.max);
+  const double spread =
+      0.5 * (limits.max - limits.min) / TwoSidedQuantile(kOutsideLimits);
+  return {deviation - middle, std::hypot(sd, spread), limits.Holds(deviation)};
+}
 
 DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
                          const FaultEstimate& estimate) {

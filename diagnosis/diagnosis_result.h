@@ -37,6 +37,17 @@ struct DiagnosisResult {
 /// that nominal runs gave it.
 inline constexpr double kFalseFault = 1e-4;
 
+/// An estimate as healthy runs have it (DiagnosisLimits::estimates): without the part
+/// that they show, too, and not surer than they agree on.
+struct CalibratedEstimate {
+  double deviation = 0.0;  ///< from healthy
+  double sd = 0.0;
+  bool usual = false;  ///< within the limits of healthy runs
+};
+/// @param sd  of the estimate of that fault, from the noise of the sensors
+CalibratedEstimate Calibrate(const DiagnosisDesign& design, Eigen::Index fault,
+                             double deviation, double sd);
+
 /// From a monitor at the end of its run. InputError names the faults that the motion
 /// does not tell apart.
 DiagnosisResult Conclude(const DiagnosisDesign& design,

@@ -1,8 +1,8 @@
 #include "mjdiag/report/design_page.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "mjdiag/report/normal_density.h"
 #include "mjdiag/report/page.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -125,9 +125,8 @@ HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds) {
   const double last = plot.edges[bins];
   const double area = plot.counts.sum() * (last - first) / static_cast<double>(bins);
   const VectorXd x = VectorXd::LinSpaced(kCurvePoints, first, last);
-  const VectorXd density = (-0.5 * ((x.array() - fit.mean) / fit.sd).square()).exp() /
-                           (fit.sd * std::sqrt(2.0 * std::numbers::pi));
-  plot.curves = {{"normal distribution", CurveRole::kSimulated, x, area * density}};
+  plot.curves = {
+      {"normal distribution", CurveRole::kSimulated, x, area * NormalDensity(fit, x)}};
   plot.marks = {{thresholds.limits.min, "threshold"},
                 {thresholds.limits.max, "threshold"}};
   return plot;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "mjdiag/report/normal_density.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -105,20 +105,18 @@ Index FirstShown(const VectorXd& half) {
 TimePlot EstimatePlot(const DiagnosisDesign& design, const DiagnosisResult& result,
                       const MonitorLog& log, Index row, const VectorXd& sd) {
   const FaultVerdict& fault = result.faults[static_cast<std::size_t>(row)];
-  Interval usual;  // of healthy runs, as the verdict takes it
-  if (!design.limits.estimates.empty()) {
-    usual = design.limits.estimates[static_cast<std::size_t>(row)];
+  VectorXd deviation(sd.size());
+  VectorXd half_width(sd.size());
+  for (Index k = 0; k < sd.size(); ++k) {
+    const CalibratedEstimate calibrated =
+        Calibrate(design, row, log.estimates(row, k), sd[k]);
+    deviation[k] = calibrated.deviation;
+    half_width[k] = TwoSidedQuantile(0.05) * calibrated.sd;
   }
-  const double middle = 0.5 * (usual.min + usual.max);
-  const double spread =
-      0.5 * (usual.max - usual.min) / TwoSidedQuantile(kOutsideLimits);
-  const VectorXd whole =
-      TwoSidedQuantile(0.05) * (sd.array().square() + spread * spread).sqrt();
-  const Index first = FirstShown(whole);
-  const Index shown = whole.size() - first;
-  const VectorXd half = whole.tail(shown);
-  const VectorXd estimate =
-      log.estimates.row(row).tail(shown).transpose().array() - middle;
+  const Index first = FirstShown(half_width);
+  const Index shown = sd.size() - first;
+  const VectorXd half = half_width.tail(shown);
+  const VectorXd estimate = deviation.tail(shown);
   const bool large = estimate.cwiseAbs().maxCoeff() > kLargeDeviation;
   const double factor = large ? 1e2 : 1e6;
   TimePlot plot;
@@ -191,8 +189,7 @@ HistogramPlot RunHistogram(const DiagnosisDesign& design, const DiagnosisResult&
   // Its own samples: in bins of a large residual it is a spike.
   const VectorXd x =
       VectorXd::LinSpaced(201, fit.mean - 4.0 * fit.sd, fit.mean + 4.0 * fit.sd);
-  const VectorXd density = (-0.5 * ((x.array() - fit.mean) / fit.sd).square()).exp() /
-                           (fit.sd * std::sqrt(2.0 * std::numbers::pi));
+  const VectorXd density = NormalDensity(fit, x);
   // A bin wider than the distribution holds all of it.
   const double samples = static_cast<double>(log.residual.size());
   plot.curves = {{"healthy runs, normal distribution", CurveRole::kSimulated, x,
