@@ -64,8 +64,9 @@ void Compare(const CompareOptions& options) {
   const std::string text = ComparisonVerdict(comparison) + "\n\n" +
                            ChannelTable(comparison) + DerivedTable(comparison);
   const RunDescription run{CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
-  Publish(options.output, "compare", document, text,
-          NamedPage{"compare", ComparisonPage(comparison, run)});
+  Publish(options.output, "compare", document, text, [&] {
+    return NamedPage{"compare", ComparisonPage(comparison, run)};
+  });
 }
 
 }  // namespace

@@ -94,13 +94,12 @@ std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
   return text;
 }
 
-/// The page of a design; none without a folder for it.
-std::optional<NamedPage> PageOf(const OutputOptions& output, const Machine& machine,
-                                const DiagnosisDesign& design, DesignFacts facts) {
-  if (output.folder.empty()) return std::nullopt;
+/// The page of a design.
+NamedPage PageOf(const Machine& machine, const DiagnosisDesign& design,
+                 DesignFacts facts) {
   facts.changed = WithoutStiffness(machine);
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
-  return NamedPage{"design", DesignPage(design, facts, run)};
+  return {"design", DesignPage(design, facts, run)};
 }
 
 void Design(const DesignOptions& options) {
@@ -123,7 +122,7 @@ void Design(const DesignOptions& options) {
             "\n";
   }
   Publish(options.output, "filters", document, text,
-          PageOf(options.output, machine, ready.design, facts));
+          [&] { return PageOf(machine, ready.design, facts); });
 }
 
 }  // namespace

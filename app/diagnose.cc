@@ -73,7 +73,7 @@ void Diagnose(const DiagnoseOptions& options) {
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
   Publish(options.output, "diagnosis", document, Describe(result),
-          PageOf(ready.design, monitor, result, document["record"]));
+          [&] { return PageOf(ready.design, monitor, result, document["record"]); });
 }
 
 }  // namespace

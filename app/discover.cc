@@ -88,8 +88,9 @@ void Discover(const DiscoverCommand& command) {
   if (!run.extended_plant.empty()) {
     text += "\nextended plant: " + run.extended_plant + "\n";
   }
-  Publish(command.output, "discovery", document, text,
-          NamedPage{"discovery", DiscoveryPage(discovery, run)});
+  Publish(command.output, "discovery", document, text, [&] {
+    return NamedPage{"discovery", DiscoveryPage(discovery, run)};
+  });
   if (discovery.verdict == DiscoveryVerdict::kUnexplained) throw NegativeAnswer{};
 }
 

@@ -44,13 +44,13 @@ std::string WritePageAndReport(const OutputOptions& options, const NamedPage& pa
 
 void Publish(const OutputOptions& options, const std::string& name,
              const nlohmann::json& document, const std::string& text,
-             const std::optional<NamedPage>& page) {
+             const std::function<NamedPage()>& page) {
   const std::string dump =
       document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   std::string made;
   if (!options.folder.empty()) {
     WriteTextFile(std::filesystem::path(options.folder) / (name + ".json"), dump);
-    if (page) made = WritePageAndReport(options, *page);
+    if (page) made = WritePageAndReport(options, page());
   }
   if (std::fputs(options.json ? dump.c_str() : (text + made).c_str(), stdout) < 0 ||
       std::fflush(stdout) != 0) {

@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "mjdiag/report/page.h"
@@ -37,9 +37,10 @@ void PrepareOutput(const OutputOptions& options);
 /// Writes `<folder>/<name>.json` and the page, if there is a folder, then the report if
 /// one is wanted, and prints either the document or the text. The results are on disk
 /// before the report is made, which other files of the folder may spoil.
+/// @param page  makes the page, asked only if there is a folder; none: no page
 void Publish(const OutputOptions& options, const std::string& name,
              const nlohmann::json& document, const std::string& text,
-             const std::optional<NamedPage>& page = std::nullopt);
+             const std::function<NamedPage()>& page = {});
 
 /// "csv", "mat" (v5) or "mat73" to format and file extension.
 RecordFormat ParseRecordFormat(const std::string& name);

@@ -101,7 +101,7 @@ void Simulate(const SimulateOptions& options) {
     document["record"] = file.filename().string();
     text += "\nrecord: " + file.string() + "\n";
   }
-  std::optional<NamedPage> page;
+  std::function<NamedPage()> page;
   if (options.diagnose) {
     const DiagnosisResult result = Conclude(ready->design, *monitor);
     document["diagnosis"] = ToJson(result);
@@ -110,8 +110,10 @@ void Simulate(const SimulateOptions& options) {
       WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
                     document["diagnosis"].dump(2) + "\n");
     }
-    page = PageOf(ready->design, *monitor, result,
-                  "simulated: " + Describe(machine.options));
+    page = [&, result] {
+      return PageOf(ready->design, *monitor, result,
+                    "simulated: " + Describe(machine.options));
+    };
   }
   Publish(options.output, "simulate", document, text, page);
 }

@@ -120,7 +120,7 @@ void RunStudy(const StudyCommand& command) {
     text += ToText(table);
   }
   Publish(command.output, "study", document, text,
-          PageOf(command, machine.setup.name, tables));
+          [&] { return PageOf(command, machine.setup.name, tables); });
 }
 
 }  // namespace
