@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
 #include "mjdiag/report/run_folder.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -46,25 +46,19 @@ void ReportOfADiagnosis(benchmark::State& state) {
   Run(monitor, design, record);
   const DiagnosisResult result = Conclude(design, monitor);
 
-  std::string name = (fs::temp_directory_path() / "mjdiag-bench-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    state.SkipWithError("no temporary folder");
-    return;
-  }
-  const fs::path folder = name;
+  const test::TemporaryFolder folder;
   std::vector<double> seconds;
   for (auto _ : state) {
     const auto start = Clock::now();
-    WritePage(folder, "diagnosis",
+    WritePage(folder.path(), "diagnosis",
               DiagnosisPage(design, result, monitor.Log(), {"cmd", "record.csv", {}}));
-    WriteReport(folder);
+    WriteReport(folder.path());
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }
   state.counters["samples"] = static_cast<double>(record.samples());
   state.counters["s_report"] = Median(seconds);
   state.counters["MB_report"] =
       1e-6 * static_cast<double>(fs::file_size(folder / "report.html"));
-  fs::remove_all(folder);
 }
 
 BENCHMARK(ReportOfADiagnosis)->Unit(benchmark::kMillisecond)->Iterations(11);

@@ -2,19 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
 
-std::size_t Place(const std::vector<Candidate>& candidates, const std::string& name) {
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (Describe(candidates[i]) == name) return i;
-  }
-  ADD_FAILURE() << "no candidate " << name;
-  return 0;
-}
+using test::Place;
 
 // 40 draws of noise: the 95 % interval covers at least 32 (the binomial chance of fewer
 // is 1e-4).

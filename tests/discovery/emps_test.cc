@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "discovery/candidate_place.h"
 #include "mjdiag/discovery/candidate.h"
 #include "mjdiag/discovery/cause_fit.h"
 #include "mjdiag/discovery/comparison.h"
@@ -86,14 +87,6 @@ TEST_F(Emps, IncompletePlantIsVisiblyWorseAndSaidToBe) {
   EXPECT_TRUE(incomplete.exceeds_noise());
 }
 
-std::size_t Place(const std::vector<Candidate>& candidates, const std::string& name) {
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (Describe(candidates[i]) == name) return i;
-  }
-  ADD_FAILURE() << "no candidate " << name;
-  return 0;
-}
-
 // The model class of the authors' asymmetric friction, fitted to the innovations of the
 // observer that discovery ends with (20 Hz): mass, Coulomb force, viscous coefficients
 // of both directions and the offset that their two Coulomb forces are. Both have an
@@ -106,11 +99,13 @@ TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
                   ReadRecord(DataFolder() / "DATA_EMPS.mat", setup.record), 1.0, 20.0);
   const auto candidates = ListCandidates(setup, *plant, problem.model);
   const std::vector<FittedCause> start = {
-      {Place(candidates, "coulomb_friction@load"), Eigen::VectorXd::Constant(1, 15.0)},
-      {Place(candidates, "asymmetric_viscous_friction@load"),
+      {test::Place(candidates, "coulomb_friction@load"),
+       Eigen::VectorXd::Constant(1, 15.0)},
+      {test::Place(candidates, "asymmetric_viscous_friction@load"),
        Eigen::Vector2d(-10.0, 10.0)},
-      {Place(candidates, "added_mass@load"), Eigen::VectorXd::Constant(1, 0.5)},
-      {Place(candidates, "force_offset@load"), Eigen::VectorXd::Constant(1, 0.1)}};
+      {test::Place(candidates, "added_mass@load"), Eigen::VectorXd::Constant(1, 0.5)},
+      {test::Place(candidates, "force_offset@load"),
+       Eigen::VectorXd::Constant(1, 0.1)}};
   const CauseFit fit =
       FitCauses(problem, candidates, start, {.iterations = 30, .tolerance = 1e-8});
   Eigen::VectorXd authors(5);

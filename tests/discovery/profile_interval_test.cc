@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
 
 namespace mjdiag {
@@ -25,8 +26,7 @@ Fitted FitOf(const test::Stage& stage, const std::string& effect,
   Fitted f;
   f.problem = stage.Pose(stage.Measure({effect}));
   f.candidates = ListCandidates(stage.setup, *stage.plant, f.problem.model);
-  std::size_t place = 0;
-  while (Describe(f.candidates.at(place)) != site) ++place;
+  const std::size_t place = test::Place(f.candidates, site);
   f.fit = FitCauses(f.problem, f.candidates, {{place, start}},
                     {.iterations = 30, .tolerance = 1e-10});
   f.covariance = ParameterCovariance(f.problem, f.fit);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
 #include "mjdiag/discovery/hidden_effect.h"
 
@@ -12,10 +13,10 @@ namespace {
 CauseFit FitAt(const DiscoveryProblem& problem,
                const std::vector<Candidate>& candidates, const std::string& site,
                double value) {
-  std::size_t place = 0;
-  while (Describe(candidates.at(place)) != site) ++place;
-  return FitCauses(problem, candidates, {{place, Eigen::VectorXd::Constant(1, value)}},
-                   {.iterations = 0, .sensitivities = false});
+  return FitCauses(
+      problem, candidates,
+      {{test::Place(candidates, site), Eigen::VectorXd::Constant(1, value)}},
+      {.iterations = 0, .sensitivities = false});
 }
 
 TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {

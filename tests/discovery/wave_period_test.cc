@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
 
 namespace mjdiag {
@@ -12,8 +13,7 @@ TEST(WavePeriod, LeavesAWrongPeriodThatAFitCannotLeave) {
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"force_ripple@load:amplitude=0.3,period=0.02,phase=0.4"}));
   const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
-  std::size_t place = 0;
-  while (Describe(candidates.at(place)) != "force_ripple@load") ++place;
+  const std::size_t place = test::Place(candidates, "force_ripple@load");
   ASSERT_TRUE(HasPeriod(candidates[place]));
   ASSERT_EQ(candidates[place].parameters[1].name, "period");
   const CauseFit wrong =
