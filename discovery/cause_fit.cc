@@ -227,6 +227,11 @@ std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
   return parameters;
 }
 
+double FittedValues(const DiscoveryProblem& problem) {
+  return static_cast<double>(problem.run.outputs.rows() *
+                             (problem.train - problem.skip));
+}
+
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted) {
   const Candidate& candidate = candidates[fitted.candidate];
   Cause cause = candidate.cause;

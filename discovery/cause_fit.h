@@ -60,6 +60,10 @@ std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
 std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
                                        const std::vector<FittedCause>& causes);
 
+/// Innovations that a fit sees, all channels: the sum of squares of noise alone, and of
+/// a fit over its mean square `train`.
+double FittedValues(const DiscoveryProblem& problem);
+
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted);
 /// Changes to the plant that the causes are.
 Changes ChangesOf(const std::vector<Candidate>& candidates,

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "mjdiag/plugin/parallel.h"
-#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -30,8 +29,7 @@ class Profile {
         fit_(fit),
         index_(index),
         direction_(std::move(direction)),
-        crossing_(crossing),
-        least_(fit.train) {}
+        crossing_(crossing) {}
 
   /// @param step  to where a quadratic one crosses, with its sign
   /// @param bound of the parameter on that side
@@ -53,36 +51,22 @@ class Profile {
   Index index_;
   VectorXd direction_;
   double crossing_;
-  double least_;
 };
 
 double Profile::Lost(double step) const {
-  const Index channels = problem_.run.outputs.rows();
   VectorXd theta = Flatten(fit_.causes) + step * direction_;
   const std::vector<FitParameter> parameters = ParametersOf(candidates_, fit_.causes);
   for (Index i = 0; i < theta.size(); ++i) {
     const FitParameter& parameter = parameters[static_cast<std::size_t>(i)];
     theta[i] = std::clamp(theta[i], parameter.lower, parameter.upper);
   }
-  FitOptions options;
-  options.iterations = 4;
-  options.tolerance = 1e-5;
-  options.sensitivities = false;
-  options.known = &fit_.sensitivities;
-  options.secant = true;
+  FitOptions options = CompareFrom(&fit_.sensitivities, 4, 1e-5);
   options.held = index_;
-  try {
-    const double train =
-        FitCauses(problem_, candidates_, WithValues(fit_.causes, theta), options).train;
-    const double lost =
-        static_cast<double>(channels * (problem_.train - problem_.skip)) *
-        (train - least_);
-    return std::sqrt(std::max(lost, 0.0) / crossing_);
-  } catch (const NumericalError&) {
-    return std::numeric_limits<double>::infinity();
-  } catch (const InputError&) {
-    return std::numeric_limits<double>::infinity();
-  }
+  const auto held =
+      TryFit(problem_, candidates_, WithValues(fit_.causes, theta), options);
+  if (!held) return std::numeric_limits<double>::infinity();
+  const double lost = FittedValues(problem_) * (held->train - fit_.train);
+  return std::sqrt(std::max(lost, 0.0) / crossing_);
 }
 
 double Profile::End(double step, double bound) const {

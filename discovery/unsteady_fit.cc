@@ -12,12 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Squared innovations of the train part for a mean square.
-double Sum(const DiscoveryProblem& problem, double mean_square) {
-  return mean_square * static_cast<double>(problem.run.outputs.rows() *
-                                           (problem.train - problem.skip));
-}
-
 /// Mean square of the train part with those values; infinite where they cannot be run.
 double Left(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
             const std::vector<FittedCause>& causes) {
@@ -41,7 +35,7 @@ double Unsteadiness(const DiscoveryProblem& problem,
                    WithValues(fit.causes, kChanges[i] * Flatten(fit.causes)));
   });
   const auto [least, most] = std::minmax({left[0], left[1], fit.train});
-  return kSpreads * Sum(problem, most - least);
+  return kSpreads * FittedValues(problem) * (most - least);
 }
 
 std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
@@ -64,7 +58,7 @@ std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
     left[k] = Left(seen, candidates, WithValues(fit.causes, places[k]));
   });
   const auto best = std::ranges::min_element(left);
-  if (Sum(problem, fit.train - *best) <= least_gain) return std::nullopt;
+  if (FittedValues(problem) * (fit.train - *best) <= least_gain) return std::nullopt;
   const auto place = static_cast<std::size_t>(best - left.begin());
   return FitCauses(problem, candidates, WithValues(fit.causes, places[place]),
                    {.iterations = 0});
