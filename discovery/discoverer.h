@@ -41,7 +41,8 @@ class Discoverer {
   ObservedMotion MotionOf(const Track& track) const {
     return ObserveMotion(plant_, problem_.run, track);
   }
-  bool IsColoured() const;
+  bool IsColoured(const CauseFit& fit) const;
+  void Search(SearchOptions options);
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
                                                  const Eigen::MatrixXd& covariance,

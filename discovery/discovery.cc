@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mjdiag/discovery/candidate_bounds.h"
+#include "mjdiag/discovery/coarse_problem.h"
 #include "mjdiag/discovery/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/model_choice.h"
@@ -65,9 +66,23 @@ std::vector<Alternative> Discoverer::AlternativesOf(
 // What a real machine does beside all models is no white noise: behind a slow observer
 // it piles up, and few of its values are independent of each other. A fast observer
 // takes it away as it comes, and smaller causes show.
-bool Discoverer::IsColoured() const {
-  return search_.fit.train > kMuch &&
-         IndependentShare(problem_, search_.fit.residual).minCoeff() < 0.5;
+bool Discoverer::IsColoured(const CauseFit& fit) const {
+  return fit.train > kMuch && IndependentShare(problem_, fit.residual).minCoeff() < 0.5;
+}
+
+/// Goes on from the causes found so far, behind the present observer: in long steps
+/// where these are near enough, then in those of the setup.
+void Discoverer::Search(SearchOptions options) {
+  const auto before = static_cast<int>(search_.fit.causes.size());
+  if (const auto coarse =
+          Coarsen(problem_, ChangesOf(candidates_, search_.fit.causes))) {
+    SearchOptions rough = options;
+    rough.last_fit = false;
+    search_ = SearchCauses(coarse->problem, candidates_, rough, &search_);
+    if (options.preliminary(search_.fit)) return;
+    options.most_causes -= static_cast<int>(search_.fit.causes.size()) - before;
+  }
+  search_ = SearchCauses(problem_, candidates_, options, &search_);
 }
 
 void Discoverer::NameCauses() {
@@ -216,13 +231,17 @@ Discovery Discoverer::Run() {
     unseen = ToMeasuredRun(setup_, *validation_);
     search.unseen = &*unseen;
   }
-  search_ = SearchCauses(problem_, candidates_, search);
-  if (options_.bandwidth == 0.0 && IsColoured()) {
+  search.preliminary = [this](const CauseFit& fit) {
+    return options_.bandwidth == 0.0 && IsColoured(fit);
+  };
+  Search(search);
+  if (search.preliminary(search_.fit)) {
     problem_ = PoseProblem(setup_, plant_, measured_, options_.train_share,
                            kFastShare * setup_.control_rate);
     // Every further one takes longer than all before it.
     search.most_causes = std::min(search.most_causes, kFurtherCauses);
-    search_ = SearchCauses(problem_, candidates_, search, &search_);
+    search.preliminary = [](const CauseFit&) { return false; };
+    Search(search);
   }
   NameCauses();
   const Track found = FollowWith(ChangesOf(candidates_, search_.fit.causes));

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
 #include "mjdiag/discovery/replay_error.h"
 #include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/parallel.h"
 
 namespace mjdiag {
 namespace {
@@ -161,9 +163,18 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
 /// Every rung behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
   const Index channels = problem_.run.outputs.rows();
-  const auto step = [&](const std::string& added, const Changes& changes) {
+  std::vector<std::pair<std::string, Changes>> steps = {{"nothing", {}}};
+  for (const Rung& rung : search_.ladder) {
+    steps.emplace_back(Describe(candidates_[rung.fit.causes.back().candidate]),
+                       ChangesOf(candidates_, rung.fit.causes));
+  }
+  if (!discovery_.causes.empty()) steps.emplace_back("all, fitted together", changes_);
+  discovery_.ladder.resize(steps.size());
+  ParallelFor(static_cast<int>(steps.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    const auto& [added, changes] = steps[i];
     const VectorXd rest = problem_.Residual(changes);
-    LadderStep entry;
+    LadderStep& entry = discovery_.ladder[i];
     entry.added = added;
     entry.train = std::sqrt(MeanSquare(rest, channels, problem_.skip, problem_.train));
     entry.held_out =
@@ -172,14 +183,7 @@ void Discoverer::AddLadder() {
     if (validation_ != nullptr) {
       entry.validation_percent = ReplayErrors(setup_, plant_, changes, *validation_);
     }
-    discovery_.ladder.push_back(std::move(entry));
-  };
-  step("nothing", {});
-  for (const Rung& rung : search_.ladder) {
-    step(Describe(candidates_[rung.fit.causes.back().candidate]),
-         ChangesOf(candidates_, rung.fit.causes));
-  }
-  if (!discovery_.causes.empty()) step("all, fitted together", changes_);
+  });
 }
 
 void Discoverer::AddComparisons() {

@@ -60,7 +60,9 @@ double Profile::Lost(double step) const {
     const FitParameter& parameter = parameters[static_cast<std::size_t>(i)];
     theta[i] = std::clamp(theta[i], parameter.lower, parameter.upper);
   }
-  FitOptions options = CompareFrom(&fit_.sensitivities, 4, 1e-5);
+  // To a tenth of what a crossing is.
+  const double tolerance = 0.1 * crossing_ / (FittedValues(problem_) * fit_.train);
+  FitOptions options = CompareFrom(&fit_.sensitivities, 4, tolerance);
   options.held = index_;
   const auto held =
       TryFit(problem_, candidates_, WithValues(fit_.causes, theta), options);

@@ -54,6 +54,8 @@ class Screener {
     adjoint_ = dynamics_.AdjointOf(padded);
   }
 
+  /// Squared residual, as far as what has been found cannot take it away.
+  double Rest() const { return full_.squaredNorm(); }
   /// The start that every trial of one candidate gives; those that are not physical or
   /// do not show give none.
   std::vector<std::optional<Start>> Judge(const std::vector<Trial>& trials,
@@ -421,12 +423,23 @@ Screening Screen(const DiscoveryProblem& problem,
     KeepBest(found[c], static_cast<std::size_t>(starts_each));
   });
   Screening screening;
+  screening.rest = screener.Rest();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     screening.trials += tried[c];
     screening.starts.insert(screening.starts.end(), found[c].begin(), found[c].end());
   }
   KeepBest(screening.starts, screening.starts.size());
   return screening;
+}
+
+Screening ScreenBeside(const DiscoveryProblem& problem,
+                       const std::vector<Candidate>& candidates,
+                       const std::vector<FittedCause>& causes,
+                       const MatrixXd& sensitivities, int starts_each) {
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, causes));
+  return Screen(seen, candidates, ObserveMotion(*seen.plant, seen.run, track), dynamics,
+                seen.Scaled(track), sensitivities, starts_each);
 }
 
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,

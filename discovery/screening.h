@@ -38,6 +38,8 @@ struct Screening {
   /// The best starts of every candidate that is excited, best first.
   std::vector<Start> starts;
   int trials = 0;  ///< how many were looked at, for the chance of the best
+  /// Squared residual that no change of what has been found would take away.
+  double rest = 0.0;
 };
 
 /// @param dynamics       of the train part at least, in blocks
@@ -49,6 +51,13 @@ Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
                  const Eigen::MatrixXd& sensitivities, int starts_each);
+
+/// The same beside the plant with those causes in it, on what they leave.
+/// @param sensitivities  J of the causes
+Screening ScreenBeside(const DiscoveryProblem& problem,
+                       const std::vector<Candidate>& candidates,
+                       const std::vector<FittedCause>& causes,
+                       const Eigen::MatrixXd& sensitivities, int starts_each);
 
 /// Starts of one wave (a candidate with a sweep) that promise more than its present
 /// period or frequency, best first. Every value of the sweep is judged exactly: Screen,

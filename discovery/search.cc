@@ -10,7 +10,6 @@
 
 #include "mjdiag/discovery/model_choice.h"
 #include "mjdiag/discovery/unsteady_fit.h"
-#include "mjdiag/discovery/wave_period.h"
 #include "mjdiag/plugin/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -29,7 +28,8 @@ class Search {
       : problem_(problem),
         candidates_(candidates),
         options_(options),
-        beginning_(Beginning(problem, BeginningLength(problem))) {
+        beginning_(Beginning(problem, BeginningLength(problem))),
+        refinement_(problem, beginning_, candidates) {
     if (options.unseen != nullptr) {
       unseen_ = problem;
       unseen_->run = *options.unseen;
@@ -39,6 +39,7 @@ class Search {
     result_.contenders = before->contenders;
     result_.ladder = before->ladder;
     result_.refuted = before->refuted;
+    result_.exchanged = before->exchanged;
   }
 
   SearchResult Run();
@@ -58,10 +59,7 @@ class Search {
   bool IsSignificant(double gain, int freedom, int trials) const;
   bool IsSignificant(const CauseFit& after, int trials) const;
   /// Squared innovations of the train part if noise is all there is.
-  double Noise() const {
-    return static_cast<double>(problem_.run.outputs.rows() *
-                               (problem_.train - problem_.skip));
-  }
+  double Noise() const { return FittedValues(problem_); }
   double RestOf(const Start& start) const;
   double MostRest(const Screening& screening) const;
   std::vector<Start> Shortlist(const Screening& screening) const;
@@ -88,26 +86,27 @@ class Search {
   }
   VectorXd UnseenResidual(const CauseFit& fit) const;
   double UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const;
-  bool Prune();
-  void ChangePeriods();
   void MeetUnsteadiness();
+  bool AddCause();
+  void Settle();
+  bool Exchange();
 
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const SearchOptions& options_;
   DiscoveryProblem beginning_;
+  Refinement refinement_;
   std::optional<DiscoveryProblem> unseen_;  // the other record
   SearchResult result_;
   VectorXd independent_;
   double unsteadiness_ = 0.0;
+  int rounds_ = 0;
 };
 
 Screening Search::ScreenRest() const {
-  const DiscoveryProblem seen = Beginning(problem_, problem_.train);
-  const auto [track, dynamics] =
-      seen.Linearised(ChangesOf(candidates_, result_.fit.causes));
-  return Screen(problem_, candidates_, ObserveMotion(*problem_.plant, seen.run, track),
-                dynamics, result_.fit.residual, result_.fit.sensitivities, 6);
+  constexpr int kStarts = 6;
+  return ScreenBeside(problem_, candidates_, result_.fit.causes,
+                      result_.fit.sensitivities, kStarts);
 }
 
 /// By how much chance gains are larger than with white noise alone: what is left may be
@@ -272,28 +271,6 @@ Search::Round Search::Compete(const std::vector<Start>& shortlist) const {
   return round;
 }
 
-/// Of several starts of one candidate the best.
-void KeepOneEach(std::vector<Contender>& contenders) {
-  std::ranges::stable_sort(contenders, std::less<>(), &Contender::criterion);
-  std::vector<Contender> kept;
-  for (const Contender& c : contenders) {
-    const bool seen = std::ranges::any_of(kept, [&](const Contender& k) {
-      return k.cause.candidate == c.cause.candidate;
-    });
-    if (!seen) kept.push_back(c);
-  }
-  contenders = std::move(kept);
-}
-
-void SetProbabilities(std::vector<Contender>& contenders) {
-  double sum = 0.0;
-  for (Contender& c : contenders) {
-    c.probability = std::exp(-0.5 * (c.criterion - contenders.front().criterion));
-    sum += c.probability;
-  }
-  for (Contender& c : contenders) c.probability /= sum;
-}
-
 /// What the other record leaves with those causes; nothing without one or where it
 /// diverges.
 VectorXd Search::UnseenResidual(const CauseFit& fit) const {
@@ -333,66 +310,13 @@ bool Search::Keep(Round round, int trials) {
     }
     round.contenders.erase(round.contenders.begin(),
                            round.contenders.begin() + static_cast<std::ptrdiff_t>(i));
-    KeepOneEach(round.contenders);
-    SetProbabilities(round.contenders);
+    Rank(round.contenders);
     result_.ladder.push_back({round.contenders, round.fits[i]});
     result_.contenders.push_back(round.contenders);
     result_.fit = std::move(round.fits[i]);
     return true;
   }
   return false;
-}
-
-/// Drops the cause whose loss the criterion likes best; true if there was one.
-bool Search::Prune() {
-  if (result_.fit.causes.size() < 2) return false;
-  constexpr double kFar = 60.0;  // in units of the deviance
-  const double before =
-      Deviance(result_.fit.residual, independent_, problem_.skip, beginning_.train);
-  std::vector<std::optional<CauseFit>> fits(result_.fit.causes.size());
-  ParallelFor(static_cast<int>(fits.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    std::vector<FittedCause> causes = result_.fit.causes;
-    causes.erase(causes.begin() + number);
-    const MatrixXd known = SensitivitiesWithout(result_.fit, i);
-    // If it is far from superfluous the beginning says so.
-    const auto early =
-        TryFit(beginning_, candidates_, causes, CompareFrom(&known, 4, 1e-3));
-    if (!early) return;
-    const double now =
-        Deviance(early->residual, independent_, problem_.skip, beginning_.train);
-    if (now - before > kFar) return;
-    fits[i] = TryFit(problem_, candidates_, causes, CompareFrom(&known, 8, 1e-5));
-  });
-  double criterion = CriterionOf(result_.fit);
-  std::optional<std::size_t> dropped;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i] || CriterionOf(*fits[i]) >= criterion) continue;
-    criterion = CriterionOf(*fits[i]);
-    dropped = i;
-  }
-  if (!dropped) return false;
-  result_.fit = std::move(*fits[*dropped]);
-  result_.contenders.erase(result_.contenders.begin() +
-                           static_cast<std::ptrdiff_t>(*dropped));
-  return true;
-}
-
-/// Gives waves of the fit other periods while that explains more.
-void Search::ChangePeriods() {
-  constexpr double kBetter = 1.0;  // in units of the criterion
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (std::size_t i = 0; i < result_.fit.causes.size(); ++i) {
-      if (!HasPeriod(candidates_[result_.fit.causes[i].candidate])) continue;
-      for (CauseFit& other : FitOtherPeriods(problem_, candidates_, result_.fit, i)) {
-        if (CriterionOf(other) > CriterionOf(result_.fit) - kBetter) continue;
-        result_.fit = std::move(other);
-        changed = true;
-      }
-    }
-  }
 }
 
 /// If the course of the machine depends on the last digit, the fit is looked for around
@@ -408,7 +332,46 @@ void Search::MeetUnsteadiness() {
   }
 }
 
+/// One round; false if it found no further cause.
+bool Search::AddCause() {
+  Report("screening", 0.0);
+  const Screening screening = ScreenRest();
+  const std::vector<Start> shortlist = Shortlist(screening);
+  result_.significant_rest = !shortlist.empty();
+  if (shortlist.empty() || rounds_++ >= options_.most_causes) return false;
+  Round contest = Compete(shortlist);
+  result_.significant_rest =
+      contest.fits.empty() ||
+      std::ranges::any_of(contest.fits, [&](const CauseFit& after) {
+        return IsSignificant(after, screening.trials);
+      });
+  if (!Keep(std::move(contest), screening.trials)) return false;
+  result_.exchanged = false;
+  return true;
+}
+
+/// After a change of the causes.
+void Search::Settle() {
+  refinement_.set_independent(independent_);
+  Report("other periods", 0.7);
+  refinement_.ChangePeriods(result_);
+  Report("whether every cause is needed", 0.8);
+  while (refinement_.Prune(result_)) {
+  }
+  Report("whether the course is steady", 0.9);
+  MeetUnsteadiness();
+}
+
+/// True if another candidate came into the place of a cause.
+bool Search::Exchange() {
+  if (result_.fit.causes.empty()) return false;
+  Report("other causes in the place of those found", 0.9);
+  refinement_.set_independent(independent_);
+  return refinement_.Exchange(result_);
+}
+
 SearchResult Search::Run() {
+  Report("fit of what is known", 0.0);
   result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
                           {.iterations = 10, .tolerance = 1e-5, .secant = true});
   // Before anything is found all of the mismatch may be one cause, which has any
@@ -417,30 +380,21 @@ SearchResult Search::Run() {
   if (!result_.fit.causes.empty()) {
     independent_ = IndependentShare(problem_, result_.fit.residual);
   }
-  for (int round = 0;; ++round) {
-    Report("screening", 0.0);
-    const Screening screening = ScreenRest();
-    const std::vector<Start> shortlist = Shortlist(screening);
-    result_.significant_rest = !shortlist.empty();
-    if (shortlist.empty() || round >= options_.most_causes) break;
-    Round contest = Compete(shortlist);
-    result_.significant_rest =
-        contest.fits.empty() ||
-        std::ranges::any_of(contest.fits, [&](const CauseFit& after) {
-          return IsSignificant(after, screening.trials);
-        });
-    if (!Keep(std::move(contest), screening.trials)) break;
-    ChangePeriods();
-    while (Prune()) {
-    }
-    MeetUnsteadiness();
+  while (AddCause()) Settle();
+  if (options_.preliminary && options_.preliminary(result_.fit)) {
+    return std::move(result_);
   }
-  if (!result_.fit.causes.empty()) {
-    // Near the optimum by secants, the rest by differences.
+  constexpr int kExchanges = 4;
+  for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
+    result_.exchanged = !Exchange();
+    if (result_.exchanged) break;
+    Settle();
+    while (AddCause()) Settle();
+  }
+  if (options_.last_fit && !result_.fit.causes.empty()) {
+    Report("last fit", 0.9);
     result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
-                            CompareFrom(Known(), 12, 1e-8));
-    result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
-                            {.iterations = 4, .tolerance = 1e-8});
+                            {.iterations = 8, .tolerance = 1e-8});
   }
   return std::move(result_);
 }

@@ -9,8 +9,8 @@
 // raise the deviance on the part held out and on another record, if there is one; else
 // the next is asked.
 //
-// Causes that a later one has made superfluous are dropped again. Probabilities of
-// competing causes are exp(-BIC / 2) over their sum.
+// Causes that a later one has made superfluous are dropped again, and exchanged where
+// with all others known another one is better (refinement.h).
 
 #include <Eigen/Core>
 #include <functional>
@@ -19,7 +19,9 @@
 
 #include "mjdiag/discovery/candidate.h"
 #include "mjdiag/discovery/cause_fit.h"
+#include "mjdiag/discovery/contender.h"
 #include "mjdiag/discovery/problem.h"
+#include "mjdiag/discovery/refinement.h"
 #include "mjdiag/discovery/screening.h"
 
 namespace mjdiag {
@@ -32,14 +34,12 @@ struct SearchOptions {
   const MeasuredRun* unseen = nullptr;
   /// Chance to claim a cause where there is noise only, per round.
   double false_alarm = 1e-4;
+  /// Whether another search goes on from such a fit: then no causes are exchanged, and
+  /// the fit is left as it is. May be empty: none does.
+  std::function<bool(const CauseFit& fit)> preliminary;
+  /// Whether to fit the causes once more in the end, as closely as possible.
+  bool last_fit = true;
   std::function<void(const std::string& what, double fraction)> progress;
-};
-
-/// A candidate that was in the race for a place.
-struct Contender {
-  FittedCause cause;
-  double criterion = 0.0;  ///< BIC with it in place
-  double probability = 0.0;
 };
 
 /// One round.
@@ -48,19 +48,18 @@ struct Rung {
   CauseFit fit;                       ///< with the one that was kept
 };
 
-struct SearchResult {
-  CauseFit fit;  ///< of all causes that are kept
-  /// Of every cause of the fit, who else could have been in its place, itself included.
-  std::vector<std::vector<Contender>> contenders;
+struct SearchResult : CauseSet {
   std::vector<Rung> ladder;
   /// Those that explained the train part best but not what a fit did not see.
   std::vector<FittedCause> refuted;
+  /// Whether other causes have been tried in the place of each.
+  bool exchanged = false;
   /// Whether a screening of what is left shows any candidate to be significant.
   bool significant_rest = false;
 };
 
-/// @param before  a search of the same record with another observer to go on from, or
-///                null
+/// @param before  a search of the same record, with another observer or other physics
+///                steps, to go on from; or null
 SearchResult SearchCauses(const DiscoveryProblem& problem,
                           const std::vector<Candidate>& candidates,
                           const SearchOptions& options,

@@ -1,13 +1,31 @@
 #include "mjdiag/discovery/sensor_noise.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "mjdiag/signals/spectrum.h"
+
 namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Rms that white noise has which is as strong as `signal` is in the upper half of the
+/// band: there the observer follows nothing, and innovations are the noise itself.
+double UpperRms(const VectorXd& signal, double sample_time) {
+  constexpr Index kSegment = 256;
+  if (signal.size() < kSegment) return 0.0;
+  const Spectrum spectrum = WelchDensity(signal, sample_time, kSegment);
+  const double highest = 0.5 / sample_time;
+  return std::sqrt(2.0 * BandPower(spectrum, 0.5 * highest, highest));
+}
+
+}  // namespace
 
 std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& observer,
                                          const Eigen::MatrixXd& innovations,
                                          double share) {
-  using Eigen::Index;
   constexpr double kSigmas = 5.0;
   constexpr double kLeast = 0.02;
   const auto n = static_cast<Index>(share * static_cast<double>(innovations.cols()));
@@ -25,6 +43,11 @@ std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& obs
         colouring;
     const double error = rms / std::sqrt(2.0 * static_cast<double>(n));
     if (rms - expected < std::max(kSigmas * error, kLeast * expected)) continue;
+    // The mean square of half of the band is less certain by sqrt(2), that of their
+    // difference as that of the whole.
+    const double upper =
+        UpperRms(innovations.row(row).head(n).transpose(), setup.sample_time());
+    if (rms - upper > std::max(kSigmas * error, kLeast * rms)) continue;
     const double raised = std::sqrt(rms * rms - expected * expected);
     found.push_back({sensor.element, sensor.unit, raised, error * rms / raised});
   }

@@ -46,6 +46,7 @@ class TrialMaker {
 
   void MakeFriction();
   void MakeSprings();
+  void AddOtherSprings(double stiffness, const VectorXd& strain);
   void MakeDrives();
   void MakeStructure();
   void MakeEncoder();
@@ -141,6 +142,7 @@ void TrialMaker::MakeSprings() {
     const VectorXd strain = q().array() - rest;
     if (effect == "structural_stiffness") {
       AddLinear(-stiffness * strain, JointEntry(1), {"factor"}, 1.0, true);
+      AddOtherSprings(stiffness, strain);
       return;
     }
     // The force within a gap is proportional to it as long as it is small.
@@ -153,6 +155,21 @@ void TrialMaker::MakeSprings() {
              return Shape{{"gap", 2.0 * half * std::min(a[0], 3.0)}};
            }});
     }
+  }
+}
+
+/// A spring that is much softer or stiffer moves a resonance away from where the motion
+/// of the present plant has it: that is no first order.
+void TrialMaker::AddOtherSprings(double stiffness, const VectorXd& strain) {
+  for (const double factor : LogGrid(0.4, 2.5, 16)) {
+    const VectorXd moved =
+        MotionWithSpring(model_, candidate_.joint, (factor - 1.0) * stiffness, strain,
+                         motion_.sample_time, plant_.opt.timestep);
+    trials_.push_back({-stiffness * moved, JointEntry(1),
+                       [factor](const Amplitudes& a) -> Parameters {
+                         if (a[0] * (factor - 1.0) <= 0.0) return std::nullopt;
+                         return Shape{{"factor", factor}};
+                       }});
   }
 }
 

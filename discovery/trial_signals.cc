@@ -82,6 +82,26 @@ VectorXd AppendagePull(const VectorXd& q, double frequency, double damping_ratio
   return pull;
 }
 
+VectorXd MotionWithSpring(MechanicalModel model, Index joint, double added,
+                          const VectorXd& q, double sample_time, double step) {
+  const VectorXd entry = VectorXd::Unit(model.M.rows(), joint);
+  model.K(joint, joint) += added;
+  model.Gamma = entry;
+  model.b = entry;
+  const StateSpace tick =
+      TickModel(model, step, static_cast<int>(std::lround(sample_time / step)));
+  const VectorXd push = -added * tick.B.col(0);
+  VectorXd moved(q.size());
+  VectorXd state = VectorXd::Zero(tick.A.rows());
+  VectorXd next = state;
+  for (Index k = 0; k < q.size(); ++k) {
+    moved[k] = q[k] + state[joint];
+    next.noalias() = tick.A * state;
+    state = next + push * q[k];
+  }
+  return moved;
+}
+
 Eigen::MatrixXd CentralDifferences(const Eigen::MatrixXd& x, double sample_time) {
   const Index n = x.cols();
   Eigen::MatrixXd slope(x.rows(), n);

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mjdiag/diagnosis/mechanical_model.h"
+
 namespace mjdiag {
 
 /// max - min
@@ -28,6 +30,14 @@ Eigen::VectorXd Lagged(const Eigen::VectorXd& u, double time_constant);
 /// Force of a mass of 1 that hangs on q by a spring and a damper.
 Eigen::VectorXd AppendagePull(const Eigen::VectorXd& q, double frequency,
                               double damping_ratio, double sample_time);
+
+/// How joint `joint` of a linear plant moves if its spring is stiffer by `added` [N/m],
+/// where it moves as q with the spring it has: q + d with
+///   M d'' + D d' + (K + added e e^T) d = -added q e
+/// @param step  of the physics, by semi-implicit Euler [s]
+Eigen::VectorXd MotionWithSpring(MechanicalModel model, Eigen::Index joint,
+                                 double added, const Eigen::VectorXd& q,
+                                 double sample_time, double step);
 
 /// (x[k+1] - x[k-1]) / 2 T along rows, one-sided at the ends.
 Eigen::MatrixXd CentralDifferences(const Eigen::MatrixXd& x, double sample_time);

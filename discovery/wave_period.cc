@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "mjdiag/discovery/screening.h"
-#include "mjdiag/plugin/parallel.h"
 
 namespace mjdiag {
 namespace {
@@ -24,25 +22,6 @@ Index PlaceOf(const Candidate& wave, const std::vector<std::string>& names) {
   return found - wave.parameters.begin();
 }
 
-std::vector<Start> ScreenAgain(const DiscoveryProblem& problem,
-                               const std::vector<Candidate>& candidates,
-                               const CauseFit& fit, std::size_t i) {
-  constexpr double kStep = 1e-3;
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
-  std::vector<FittedCause> causes = fit.causes;
-  const Candidate& wave = candidates[causes[i].candidate];
-  causes[i].value[PlaceOf(wave, {"amplitude", "mass"})] *= 1.0 + kStep;
-  const VectorXd left = fit.residual.head(seen.run.outputs.size());
-  const VectorXd moved = seen.Residual(ChangesOf(candidates, causes));
-  const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, fit.causes));
-  const double present = causes[i].value[PlaceOf(wave, {"period", "frequency"})];
-  std::vector<Start> starts = BetterWaves(
-      seen, wave, present, ObserveMotion(*seen.plant, seen.run, track), dynamics,
-      left - (moved - left) / kStep, SensitivitiesWithout(fit, i), kMostPeriods);
-  for (Start& start : starts) start.candidate = causes[i].candidate;
-  return starts;
-}
-
 }  // namespace
 
 bool HasPeriod(const Candidate& candidate) {
@@ -51,34 +30,32 @@ bool HasPeriod(const Candidate& candidate) {
   });
 }
 
-std::vector<CauseFit> FitOtherPeriods(const DiscoveryProblem& problem,
+std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
                                       const std::vector<Candidate>& candidates,
                                       const CauseFit& fit, std::size_t i) {
   // Where nothing but noise is left no resonance is better; of waves, which are sharp,
   // the right one may still be.
   constexpr double kLeft = 1.005;
-  const Candidate& candidate = candidates[fit.causes[i].candidate];
-  const bool wave =
-      PlaceOf(candidate, {"phase"}) < static_cast<Index>(candidate.parameters.size());
-  if (!wave && fit.train < kLeft) return {};
-  const std::vector<Start> starts = ScreenAgain(problem, candidates, fit, i);
-  std::vector<std::optional<CauseFit>> tried(starts.size());
-  // Sensitivities of the others are known, if they come first.
-  const Eigen::MatrixXd others = SensitivitiesWithout(fit, i);
-  const bool last = i + 1 == fit.causes.size();
-  ParallelFor(static_cast<int>(starts.size()), [&](int number) {
-    const auto k = static_cast<std::size_t>(number);
-    std::vector<FittedCause> causes = fit.causes;
-    causes[i] = FittedFrom(candidates, starts[k]);
-    tried[k] =
-        TryFit(problem, candidates, causes,
-               CompareFrom(last && others.cols() > 0 ? &others : nullptr, 8, 1e-4));
-  });
-  std::vector<CauseFit> fits;
-  for (auto& other : tried) {
-    if (other) fits.push_back(std::move(*other));
+  constexpr double kStep = 1e-3;
+  std::vector<FittedCause> causes = fit.causes;
+  const Candidate& wave = candidates[causes[i].candidate];
+  const bool sharp =
+      PlaceOf(wave, {"phase"}) < static_cast<Index>(wave.parameters.size());
+  if (!sharp && fit.train < kLeft) return {};
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const double present = causes[i].value[PlaceOf(wave, {"period", "frequency"})];
+  causes[i].value[PlaceOf(wave, {"amplitude", "mass"})] *= 1.0 + kStep;
+  const VectorXd left = fit.residual.head(seen.run.outputs.size());
+  const VectorXd moved = seen.Residual(ChangesOf(candidates, causes));
+  const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, fit.causes));
+  std::vector<FittedCause> others;
+  for (Start& start : BetterWaves(
+           seen, wave, present, ObserveMotion(*seen.plant, seen.run, track), dynamics,
+           left - (moved - left) / kStep, SensitivitiesWithout(fit, i), kMostPeriods)) {
+    start.candidate = causes[i].candidate;
+    others.push_back(FittedFrom(candidates, start));
   }
-  return fits;
+  return others;
 }
 
 }  // namespace mjdiag

@@ -19,9 +19,9 @@ namespace mjdiag {
 /// resonance, whose mass is its amplitude.
 bool HasPeriod(const Candidate& candidate);
 
-/// Fits with other periods (or frequencies) of cause i that promise more than
-/// the present one; those that diverge are left out.
-std::vector<CauseFit> FitOtherPeriods(const DiscoveryProblem& problem,
+/// Cause i with other periods (or frequencies) that promise more than the present one,
+/// best first.
+std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
                                       const std::vector<Candidate>& candidates,
                                       const CauseFit& fit, std::size_t i);
 

@@ -21,7 +21,8 @@ TEST(WavePeriod, LeavesAWrongPeriodThatAFitCannotLeave) {
   ASSERT_GT(std::abs(wrong.causes[0].value[1] - 0.02), 0.002);
   double least = wrong.train;
   double period = wrong.causes[0].value[1];
-  for (const CauseFit& fit : FitOtherPeriods(problem, candidates, wrong, 0)) {
+  for (const FittedCause& other : OtherPeriods(problem, candidates, wrong, 0)) {
+    const CauseFit fit = FitCauses(problem, candidates, {other}, {});
     if (fit.train > least) continue;
     least = fit.train;
     period = fit.causes[0].value[1];

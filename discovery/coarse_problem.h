@@ -1,0 +1,26 @@
+#pragma once
+// The same problem with fewer, longer physics steps a control tick: a search takes its
+// time nearly in proportion to the number of steps. What it finds is where a search
+// with all of them goes on from.
+
+#include <memory>
+
+#include "mjdiag/discovery/problem.h"
+#include "mjdiag/plugin/mujoco_model.h"
+
+namespace mjdiag {
+
+struct CoarseProblem {
+  Setup setup;
+  ModelPtr plant;
+  DiscoveryProblem problem;  ///< refers to the two above
+};
+
+/// The problem with one substep a tick, or two, if the innovations beside those changes
+/// differ by less from those of `problem` than a cause would have to explain to be
+/// significant; null if neither is near enough, or has fewer. The observer, which is
+/// designed on whole ticks, stays.
+std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
+                                       const Changes& changes);
+
+}  // namespace mjdiag
