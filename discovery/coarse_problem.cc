@@ -1,7 +1,6 @@
 #include "mjdiag/discovery/coarse_problem.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "mjdiag/discovery/model_choice.h"
 #include "mjdiag/signals/error.h"
@@ -20,21 +19,21 @@ double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) 
          IndependentShare(problem, residual).minCoeff();
 }
 
-double Difference(const DiscoveryProblem& coarse, const VectorXd& exact,
-                  const Changes& changes) {
+}  // namespace
+
+bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
+            const Changes& changes) {
+  const VectorXd exact = problem.Residual(changes);
   try {
-    return (coarse.Residual(changes) - exact).squaredNorm();
+    return (coarse.problem.Residual(changes) - exact).squaredNorm() <
+           Insignificant(problem, exact);
   } catch (const NumericalError&) {
-    return std::numeric_limits<double>::infinity();
+    return false;
   }
 }
 
-}  // namespace
-
 std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
                                        const Changes& changes) {
-  const VectorXd exact = problem.Residual(changes);
-  const double most = Insignificant(problem, exact);
   const int substeps = problem.setup->substeps;
   for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
     auto coarse = std::make_unique<CoarseProblem>();
@@ -45,7 +44,7 @@ std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
     coarse->problem = problem;
     coarse->problem.setup = &coarse->setup;
     coarse->problem.plant = coarse->plant.get();
-    if (Difference(coarse->problem, exact, changes) < most) return coarse;
+    if (IsNear(*coarse, problem, changes)) return coarse;
   }
   return nullptr;
 }

@@ -16,10 +16,15 @@ struct CoarseProblem {
   DiscoveryProblem problem;  ///< refers to the two above
 };
 
-/// The problem with one substep a tick, or two, if the innovations beside those changes
-/// differ by less from those of `problem` than a cause would have to explain to be
-/// significant; null if neither is near enough, or has fewer. The observer, which is
-/// designed on whole ticks, stays.
+/// Whether the innovations beside those changes differ by less from those of `problem`
+/// than a cause would have to explain to be significant. The more has been explained,
+/// the less that is.
+bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
+            const Changes& changes);
+
+/// The problem with one substep a tick, or two, if that is near beside those changes;
+/// null if it is not, or has no more. The observer, which is designed on whole ticks,
+/// stays.
 std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
                                        const Changes& changes);
 

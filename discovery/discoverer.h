@@ -42,7 +42,7 @@ class Discoverer {
     return ObserveMotion(plant_, problem_.run, track);
   }
   bool IsColoured(const CauseFit& fit) const;
-  void Search(SearchOptions options);
+  void Search(SearchOptions options, bool down_to_noise);
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
                                                  const Eigen::MatrixXd& covariance,

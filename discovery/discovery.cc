@@ -71,15 +71,20 @@ bool Discoverer::IsColoured(const CauseFit& fit) const {
 }
 
 /// Goes on from the causes found so far, behind the present observer: in long steps
-/// where these are near enough, then in those of the setup.
-void Discoverer::Search(SearchOptions options) {
+/// where these are near enough, then in those of the setup. Down to the noise the long
+/// steps have to stay near; beside a rest that is far above it anyway they need not.
+void Discoverer::Search(SearchOptions options, bool down_to_noise) {
   const auto before = static_cast<int>(search_.fit.causes.size());
   if (const auto coarse =
           Coarsen(problem_, ChangesOf(candidates_, search_.fit.causes))) {
     SearchOptions rough = options;
     rough.last_fit = false;
+    rough.serves = [&](const CauseFit& fit) {
+      return !down_to_noise ||
+             IsNear(*coarse, problem_, ChangesOf(candidates_, fit.causes));
+    };
     search_ = SearchCauses(coarse->problem, candidates_, rough, &search_);
-    if (options.preliminary(search_.fit)) return;
+    if (rough.serves(search_.fit) && options.preliminary(search_.fit)) return;
     options.most_causes -= static_cast<int>(search_.fit.causes.size()) - before;
   }
   search_ = SearchCauses(problem_, candidates_, options, &search_);
@@ -234,14 +239,14 @@ Discovery Discoverer::Run() {
   search.preliminary = [this](const CauseFit& fit) {
     return options_.bandwidth == 0.0 && IsColoured(fit);
   };
-  Search(search);
+  Search(search, true);
   if (search.preliminary(search_.fit)) {
     problem_ = PoseProblem(setup_, plant_, measured_, options_.train_share,
                            kFastShare * setup_.control_rate);
     // Every further one takes longer than all before it.
     search.most_causes = std::min(search.most_causes, kFurtherCauses);
     search.preliminary = [](const CauseFit&) { return false; };
-    Search(search);
+    Search(search, false);
   }
   NameCauses();
   const Track found = FollowWith(ChangesOf(candidates_, search_.fit.causes));

@@ -87,7 +87,9 @@ class Search {
   VectorXd UnseenResidual(const CauseFit& fit) const;
   double UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const;
   void MeetUnsteadiness();
+  bool Serves() const { return !options_.serves || options_.serves(result_.fit); }
   bool AddCause();
+  void AddCauses();
   void Settle();
   bool Exchange();
 
@@ -362,6 +364,10 @@ void Search::Settle() {
   MeetUnsteadiness();
 }
 
+void Search::AddCauses() {
+  while (Serves() && AddCause()) Settle();
+}
+
 /// True if another candidate came into the place of a cause.
 bool Search::Exchange() {
   if (result_.fit.causes.empty()) return false;
@@ -380,7 +386,8 @@ SearchResult Search::Run() {
   if (!result_.fit.causes.empty()) {
     independent_ = IndependentShare(problem_, result_.fit.residual);
   }
-  while (AddCause()) Settle();
+  AddCauses();
+  if (!Serves()) return std::move(result_);
   if (options_.preliminary && options_.preliminary(result_.fit)) {
     return std::move(result_);
   }
@@ -389,7 +396,7 @@ SearchResult Search::Run() {
     result_.exchanged = !Exchange();
     if (result_.exchanged) break;
     Settle();
-    while (AddCause()) Settle();
+    AddCauses();
   }
   if (options_.last_fit && !result_.fit.causes.empty()) {
     Report("last fit", 0.9);

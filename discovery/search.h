@@ -37,6 +37,9 @@ struct SearchOptions {
   /// Whether another search goes on from such a fit: then no causes are exchanged, and
   /// the fit is left as it is. May be empty: none does.
   std::function<bool(const CauseFit& fit)> preliminary;
+  /// Whether the problem still serves beside such a fit: a search ends where it does
+  /// not, with what it has found up to there. May be empty: it does.
+  std::function<bool(const CauseFit& fit)> serves;
   /// Whether to fit the causes once more in the end, as closely as possible.
   bool last_fit = true;
   std::function<void(const std::string& what, double fraction)> progress;
