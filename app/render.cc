@@ -1,10 +1,12 @@
 // mjdiag render: a clip of the machine, the healthy one beside the faulty one.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/command.h"
@@ -13,6 +15,7 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "app/progress.h"
+#include "mjdiag/discovery/observed_joints.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/signals/error.h"
 
@@ -82,10 +85,17 @@ std::vector<TitledRecord> SimulateRuns(const Machine& machine,
   return runs;
 }
 
-std::vector<TitledRecord> ReadRuns(const std::vector<std::string>& files) {
+/// Of a measurement, which has encoders but no joints, the joints are estimated.
+std::vector<TitledRecord> ReadRuns(const Machine& machine,
+                                   const std::vector<std::string>& files) {
   std::vector<TitledRecord> runs;
   for (const std::string& file : files) {
-    runs.push_back({std::filesystem::path(file).stem().string(), ReadRecord(file)});
+    Record record = ReadRecord(file, machine.setup.record);
+    const bool logged = std::ranges::any_of(
+        record.channels(),
+        [](const Channel& channel) { return channel.name.starts_with("joint."); });
+    if (!logged) record = WithObservedJoints(machine.setup, *machine.plant, record);
+    runs.push_back({std::filesystem::path(file).stem().string(), std::move(record)});
   }
   return runs;
 }
@@ -172,8 +182,9 @@ void Render(RenderOptions options) {
   for (const std::string& text : options.amplify) {
     ParseAmplification(text, options.clip.picture);
   }
-  const std::vector<TitledRecord> titled =
-      options.records.empty() ? std::vector<TitledRecord>() : ReadRuns(options.records);
+  const std::vector<TitledRecord> titled = options.records.empty()
+                                               ? std::vector<TitledRecord>()
+                                               : ReadRuns(machine, options.records);
   PrepareOutput(options.output);
   CheckPicture(*machine.plant, options.clip.picture);
   const std::vector<TitledRecord> records =
@@ -232,7 +243,7 @@ void AddRender(CLI::App& app) {
   AddOutputOptions(*command, options->output, true);
   CLI::Option* records = command->add_option(
       "--record", options->records,
-      "Show these records (with joints logged) instead of simulating");
+      "Show these records, simulated or measured, instead of simulating");
   for (const char* name : {"--fault", "--effect", "--trajectory", "--replay"}) {
     records->excludes(name);
   }
