@@ -15,8 +15,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-// Contenders that were judged beside all other causes and are less probable than that
-// are not asked again.
+// Contenders that are less probable beside all other causes are no alternatives.
 constexpr double kConsidered = 1e-3;
 
 std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i) {
