@@ -54,11 +54,11 @@ std::optional<CauseFit> Refinement::FitUnlessFar(const CauseFit& present,
   return TryFit(problem_, candidates_, causes, CompareFrom(slopes, 8, 1e-5));
 }
 
-/// Fits with others in place i, made by `fit` from causes and J of the first of them.
-/// The new one comes last, for J of those before it is known.
+/// Fits with others in place i; none for those that are far worse. The new one comes
+/// last, for J of those before it is known.
 std::vector<std::optional<CauseFit>> Refinement::FitInPlace(
-    const CauseFit& present, std::size_t i, const std::vector<FittedCause>& others,
-    const Fitter& fit) const {
+    const CauseFit& present, std::size_t i,
+    const std::vector<FittedCause>& others) const {
   const std::vector<FittedCause> rest = Without(present.causes, i);
   const MatrixXd known = SensitivitiesWithout(present, i);
   std::vector<std::optional<CauseFit>> fits(others.size());
@@ -66,7 +66,7 @@ std::vector<std::optional<CauseFit>> Refinement::FitInPlace(
     const auto k = static_cast<std::size_t>(number);
     std::vector<FittedCause> causes = rest;
     causes.push_back(others[k]);
-    fits[k] = fit(causes, known);
+    fits[k] = FitUnlessFar(present, causes, known);
   });
   return fits;
 }
@@ -76,14 +76,7 @@ bool Refinement::ChangePeriod(CauseSet& set, std::size_t i) const {
   if (!HasPeriod(candidates_[set.fit.causes[i].candidate])) return false;
   bool changed = false;
   const auto others = OtherPeriods(problem_, candidates_, set.fit, i);
-  // Not by their beginning: a resonance needs more steps to where it fits, and aliases
-  // are alike there.
-  const Fitter fit = [this](const std::vector<FittedCause>& causes,
-                            const MatrixXd& known) {
-    return TryFit(problem_, candidates_, causes,
-                  CompareFrom(known.cols() > 0 ? &known : nullptr, 8, 1e-4));
-  };
-  for (auto& other : FitInPlace(set.fit, i, others, fit)) {
+  for (auto& other : FitInPlace(set.fit, i, others)) {
     if (!other || CriterionOf(*other) > CriterionOf(set.fit) - kBetter) continue;
     set.fit = std::move(*other);
     changed = true;
@@ -151,11 +144,7 @@ std::vector<FittedCause> Refinement::Challengers(const CauseFit& fit,
 
 bool Refinement::ExchangeAt(CauseSet& set, std::size_t i) const {
   const std::vector<FittedCause> challengers = Challengers(set.fit, i);
-  const Fitter fit = [&](const std::vector<FittedCause>& causes,
-                         const MatrixXd& known) {
-    return FitUnlessFar(set.fit, causes, known);
-  };
-  auto fits = FitInPlace(set.fit, i, challengers, fit);
+  auto fits = FitInPlace(set.fit, i, challengers);
   std::vector<Contender>& contenders = set.contenders[i];
   const double present = CriterionOf(set.fit);
   const auto of = [](std::size_t candidate) {

@@ -46,16 +46,14 @@ class Refinement {
   bool Exchange(CauseSet& set) const;
 
  private:
-  using Fitter = std::function<std::optional<CauseFit>(
-      const std::vector<FittedCause>& causes, const Eigen::MatrixXd& known)>;
   double CriterionOf(const CauseFit& fit) const;
   double EarlyDeviance(const CauseFit& fit) const;
   std::optional<CauseFit> FitUnlessFar(const CauseFit& present,
                                        const std::vector<FittedCause>& causes,
                                        const Eigen::MatrixXd& known) const;
   std::vector<std::optional<CauseFit>> FitInPlace(
-      const CauseFit& present, std::size_t i, const std::vector<FittedCause>& others,
-      const Fitter& fit) const;
+      const CauseFit& present, std::size_t i,
+      const std::vector<FittedCause>& others) const;
   bool ChangePeriod(CauseSet& set, std::size_t i) const;
   std::vector<FittedCause> Challengers(const CauseFit& fit, std::size_t i) const;
   bool ExchangeAt(CauseSet& set, std::size_t i) const;
