@@ -1,9 +1,9 @@
 #include "mjdiag/discovery/observed_joints.h"
 
-#include <string>
+#include <utility>
 
 #include "mjdiag/discovery/problem.h"
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/channels.h"
 
 namespace mjdiag {
 namespace {
@@ -20,10 +20,9 @@ Record WithObservedJoints(const Setup& setup, const mjModel& plant,
   const Track track = FollowRun(setup, plant, {}, problem.run, problem.observer, true);
   Record seen = measured;
   for (int joint = 0; joint < plant.njnt; ++joint) {
-    const std::string name = "joint." + ElementName(plant, mjOBJ_JOINT, joint);
-    if (seen.Find(name)) continue;
-    const std::string unit = plant.jnt_type[joint] == mjJNT_HINGE ? "rad" : "m";
-    seen.Add({name, unit, track.position.row(plant.jnt_dofadr[joint])});
+    Channel channel =
+        JointChannel(plant, joint, track.position.row(plant.jnt_dofadr[joint]));
+    if (!seen.Find(channel.name)) seen.Add(std::move(channel));
   }
   return seen;
 }

@@ -1,6 +1,7 @@
 #include "mjdiag/plugin/channels.h"
 
 #include <string>
+#include <utility>
 
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/signals/error.h"
@@ -28,6 +29,11 @@ std::vector<int> ActuatorAddresses(const Setup& setup, const mjModel& model) {
     addresses.push_back(FindElement(model, mjOBJ_ACTUATOR, actuator.element));
   }
   return addresses;
+}
+
+Channel JointChannel(const mjModel& model, int joint, Eigen::VectorXd samples) {
+  return {"joint." + ElementName(model, mjOBJ_JOINT, joint),
+          model.jnt_type[joint] == mjJNT_SLIDE ? "m" : "rad", std::move(samples)};
 }
 
 }  // namespace mjdiag

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/setup.h"
+#include "mjdiag/signals/record.h"
 
 namespace mjdiag {
 
@@ -14,5 +15,8 @@ namespace mjdiag {
 std::vector<int> SensorAddresses(const Setup& setup, const mjModel& model);
 /// Index into mjData.ctrl of every actuator channel of the setup.
 std::vector<int> ActuatorAddresses(const Setup& setup, const mjModel& model);
+
+/// What a record has of a joint: "joint.<name>" in m or rad.
+Channel JointChannel(const mjModel& model, int joint, Eigen::VectorXd samples);
 
 }  // namespace mjdiag

@@ -94,9 +94,8 @@ Record Instance::ToRecord(const mjModel& model) const {
   for (int joint = 0; joint < model.njnt; ++joint) {
     const int type = model.jnt_type[joint];
     if (type != mjJNT_SLIDE && type != mjJNT_HINGE) continue;
-    record.Add({"joint." + ElementName(model, mjOBJ_JOINT, joint),
-                type == mjJNT_SLIDE ? "m" : "rad",
-                joints_.row(model.jnt_qposadr[joint]).head(record.samples())});
+    record.Add(JointChannel(
+        model, joint, joints_.row(model.jnt_qposadr[joint]).head(record.samples())));
   }
   return record;
 }

@@ -188,8 +188,7 @@ Record SimulateLinear(const Setup& setup, const mjModel& plant,
   }
   Record record = loop.ToRecord();
   for (Eigen::Index j = 0; j < joints.rows(); ++j) {
-    record.Add({"joint." + machine.coordinates[j],
-                model->jnt_type[j] == mjJNT_SLIDE ? "m" : "rad", joints.row(j)});
+    record.Add(JointChannel(*model, static_cast<int>(j), joints.row(j)));
   }
   return record;
 }
