@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "mjdiag/discovery/trial_signals.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -162,9 +163,13 @@ void TrialMaker::MakeSprings() {
 /// of the present plant has it: that is no first order.
 void TrialMaker::AddOtherSprings(double stiffness, const VectorXd& strain) {
   for (const double factor : LogGrid(0.4, 2.5, 16)) {
-    const VectorXd moved =
-        MotionWithSpring(model_, candidate_.joint, (factor - 1.0) * stiffness, strain,
-                         motion_.sample_time, plant_.opt.timestep);
+    VectorXd moved;
+    try {
+      moved = MotionWithSpring(model_, candidate_.joint, (factor - 1.0) * stiffness,
+                               strain, motion_.sample_time, plant_.opt.timestep);
+    } catch (const NumericalError&) {
+      continue;
+    }
     trials_.push_back({-stiffness * moved, JointEntry(1),
                        [factor](const Amplitudes& a) -> Parameters {
                          if (a[0] * (factor - 1.0) <= 0.0) return std::nullopt;

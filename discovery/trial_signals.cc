@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjdiag/signals/simulate_lti.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
@@ -90,16 +92,7 @@ VectorXd MotionWithSpring(MechanicalModel model, Index joint, double added,
   model.b = entry;
   const StateSpace tick =
       TickModel(model, step, static_cast<int>(std::lround(sample_time / step)));
-  const VectorXd push = -added * tick.B.col(0);
-  VectorXd moved(q.size());
-  VectorXd state = VectorXd::Zero(tick.A.rows());
-  VectorXd next = state;
-  for (Index k = 0; k < q.size(); ++k) {
-    moved[k] = q[k] + state[joint];
-    next.noalias() = tick.A * state;
-    state = next + push * q[k];
-  }
-  return moved;
+  return q + SimulateLti(tick, -added * q.transpose()).row(0).transpose();
 }
 
 Eigen::MatrixXd CentralDifferences(const Eigen::MatrixXd& x, double sample_time) {

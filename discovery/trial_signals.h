@@ -35,6 +35,7 @@ Eigen::VectorXd AppendagePull(const Eigen::VectorXd& q, double frequency,
 /// where it moves as q with the spring it has: q + d with
 ///   M d'' + D d' + (K + added e e^T) d = -added q e
 /// @param step  of the physics, by semi-implicit Euler [s]
+/// NumericalError if the plant with that spring falls over.
 Eigen::VectorXd MotionWithSpring(MechanicalModel model, Eigen::Index joint,
                                  double added, const Eigen::VectorXd& q,
                                  double sample_time, double step);
