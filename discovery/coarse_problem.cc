@@ -19,11 +19,9 @@ double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) 
          IndependentShare(problem, residual).minCoeff();
 }
 
-}  // namespace
-
-bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
-            const Changes& changes) {
-  const VectorXd exact = problem.Residual(changes);
+/// @param exact  innovations of the problem
+bool IsNearTo(const VectorXd& exact, const CoarseProblem& coarse,
+              const DiscoveryProblem& problem, const Changes& changes) {
   try {
     return (coarse.problem.Residual(changes) - exact).squaredNorm() <
            Insignificant(problem, exact);
@@ -32,9 +30,18 @@ bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
   }
 }
 
+}  // namespace
+
+bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
+            const Changes& changes) {
+  return IsNearTo(problem.Residual(changes), coarse, problem, changes);
+}
+
 std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
                                        const Changes& changes) {
   const int substeps = problem.setup->substeps;
+  if (substeps < 2) return nullptr;
+  const VectorXd exact = problem.Residual(changes);
   for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
     auto coarse = std::make_unique<CoarseProblem>();
     coarse->setup = *problem.setup;
@@ -44,7 +51,7 @@ std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
     coarse->problem = problem;
     coarse->problem.setup = &coarse->setup;
     coarse->problem.plant = coarse->plant.get();
-    if (IsNear(*coarse, problem, changes)) return coarse;
+    if (IsNearTo(exact, *coarse, problem, changes)) return coarse;
   }
   return nullptr;
 }

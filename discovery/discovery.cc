@@ -84,7 +84,8 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
              IsNear(*coarse, problem_, ChangesOf(candidates_, fit.causes));
     };
     search_ = SearchCauses(coarse->problem, candidates_, rough, &search_);
-    if (rough.serves(search_.fit) && options.preliminary(search_.fit)) return;
+    const bool another = options.preliminary && options.preliminary(search_.fit);
+    if (search_.served && another) return;
     options.most_causes -= static_cast<int>(search_.fit.causes.size()) - before;
   }
   search_ = SearchCauses(problem_, candidates_, options, &search_);
@@ -245,7 +246,7 @@ Discovery Discoverer::Run() {
                            kFastShare * setup_.control_rate);
     // Every further one takes longer than all before it.
     search.most_causes = std::min(search.most_causes, kFurtherCauses);
-    search.preliminary = [](const CauseFit&) { return false; };
+    search.preliminary = nullptr;
     Search(search, false);
   }
   NameCauses();

@@ -8,9 +8,7 @@
 //   effects at once is a mere mass once the other one is known.
 
 #include <Eigen/Core>
-#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "mjdiag/discovery/candidate.h"
@@ -29,13 +27,15 @@ struct CauseSet {
 
 class Refinement {
  public:
-  /// @param beginning  of the problem, for what shows early
+  /// @param beginning    of the problem, for what shows early
+  /// @param independent  share of the samples of every sensor that the criterion counts
   Refinement(const DiscoveryProblem& problem, const DiscoveryProblem& beginning,
-             const std::vector<Candidate>& candidates)
-      : problem_(problem), beginning_(beginning), candidates_(candidates) {}
-
-  /// Share of the samples that is independent, which the criterion judges by.
-  void set_independent(const Eigen::VectorXd& share) { independent_ = share; }
+             const std::vector<Candidate>& candidates,
+             const Eigen::VectorXd& independent)
+      : problem_(problem),
+        beginning_(beginning),
+        candidates_(candidates),
+        independent_(independent) {}
 
   /// Gives waves of the set other periods while that explains more.
   void ChangePeriods(CauseSet& set) const;
@@ -61,7 +61,7 @@ class Refinement {
   const DiscoveryProblem& problem_;
   const DiscoveryProblem& beginning_;
   const std::vector<Candidate>& candidates_;
-  Eigen::VectorXd independent_;
+  const Eigen::VectorXd& independent_;
 };
 
 }  // namespace mjdiag

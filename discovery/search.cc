@@ -1,7 +1,6 @@
 #include "mjdiag/discovery/search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -28,8 +27,7 @@ class Search {
       : problem_(problem),
         candidates_(candidates),
         options_(options),
-        beginning_(Beginning(problem, BeginningLength(problem))),
-        refinement_(problem, beginning_, candidates) {
+        beginning_(Beginning(problem, BeginningLength(problem))) {
     if (options.unseen != nullptr) {
       unseen_ = problem;
       unseen_->run = *options.unseen;
@@ -86,8 +84,10 @@ class Search {
   }
   VectorXd UnseenResidual(const CauseFit& fit) const;
   double UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const;
+  Refinement Refine() const {
+    return {problem_, beginning_, candidates_, independent_};
+  }
   void MeetUnsteadiness();
-  bool Serves() const { return !options_.serves || options_.serves(result_.fit); }
   bool AddCause();
   void AddCauses();
   void Settle();
@@ -97,7 +97,6 @@ class Search {
   const std::vector<Candidate>& candidates_;
   const SearchOptions& options_;
   DiscoveryProblem beginning_;
-  Refinement refinement_;
   std::optional<DiscoveryProblem> unseen_;  // the other record
   SearchResult result_;
   VectorXd independent_;
@@ -354,26 +353,29 @@ bool Search::AddCause() {
 
 /// After a change of the causes.
 void Search::Settle() {
-  refinement_.set_independent(independent_);
+  const Refinement refinement = Refine();
   Report("other periods", 0.7);
-  refinement_.ChangePeriods(result_);
+  refinement.ChangePeriods(result_);
   Report("whether every cause is needed", 0.8);
-  while (refinement_.Prune(result_)) {
+  while (refinement.Prune(result_)) {
   }
   Report("whether the course is steady", 0.9);
   MeetUnsteadiness();
 }
 
 void Search::AddCauses() {
-  while (Serves() && AddCause()) Settle();
+  const auto serves = [this] {
+    result_.served = !options_.serves || options_.serves(result_.fit);
+    return result_.served;
+  };
+  while (serves() && AddCause()) Settle();
 }
 
 /// True if another candidate came into the place of a cause.
 bool Search::Exchange() {
   if (result_.fit.causes.empty()) return false;
   Report("other causes in the place of those found", 0.9);
-  refinement_.set_independent(independent_);
-  return refinement_.Exchange(result_);
+  return Refine().Exchange(result_);
 }
 
 SearchResult Search::Run() {
@@ -387,16 +389,18 @@ SearchResult Search::Run() {
     independent_ = IndependentShare(problem_, result_.fit.residual);
   }
   AddCauses();
-  if (!Serves()) return std::move(result_);
+  if (!result_.served) return std::move(result_);
   if (options_.preliminary && options_.preliminary(result_.fit)) {
     return std::move(result_);
   }
   constexpr int kExchanges = 4;
   for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
-    result_.exchanged = !Exchange();
-    if (result_.exchanged) break;
-    Settle();
-    AddCauses();
+    if (Exchange()) {
+      Settle();
+      AddCauses();
+    } else {
+      result_.exchanged = true;
+    }
   }
   if (options_.last_fit && !result_.fit.causes.empty()) {
     Report("last fit", 0.9);

@@ -55,6 +55,8 @@ struct SearchResult : CauseSet {
   std::vector<Rung> ladder;
   /// Those that explained the train part best but not what a fit did not see.
   std::vector<FittedCause> refuted;
+  /// Whether the problem served to the end (SearchOptions::serves).
+  bool served = true;
   /// Whether other causes have been tried in the place of each.
   bool exchanged = false;
   /// Whether a screening of what is left shows any candidate to be significant.

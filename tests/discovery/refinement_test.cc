@@ -14,6 +14,7 @@ struct Found {
   DiscoveryProblem problem;
   DiscoveryProblem beginning;
   std::vector<Candidate> candidates;
+  Eigen::VectorXd independent = Eigen::VectorXd::Ones(1);
   CauseSet set;
 
   Found(const std::vector<std::string>& hidden,
@@ -28,11 +29,7 @@ struct Found {
     }
     set.fit = FitCauses(problem, candidates, causes, {});
   }
-  Refinement Refine() const {
-    Refinement refinement(problem, beginning, candidates);
-    refinement.set_independent(Eigen::VectorXd::Ones(1));
-    return refinement;
-  }
+  Refinement Refine() const { return {problem, beginning, candidates, independent}; }
   std::string Name(std::size_t i) const {
     return Describe(candidates[set.fit.causes[i].candidate]);
   }
