@@ -47,7 +47,7 @@ std::optional<CauseFit> Refinement::FitUnlessFar(const CauseFit& present,
   constexpr double kFar = 60.0;  // in units of the deviance
   const MatrixXd* slopes = known.cols() > 0 ? &known : nullptr;
   const auto early =
-      TryFit(beginning_, candidates_, causes, CompareFrom(slopes, 4, 1e-3));
+      TryFit(beginning_, candidates_, causes, CompareFrom(slopes, 8, 1e-3));
   if (!early || EarlyDeviance(*early) - EarlyDeviance(present) > kFar) {
     return std::nullopt;
   }
