@@ -157,15 +157,16 @@ bool Refinement::ExchangeAt(CauseSet& set, std::size_t i) const {
   for (Contender& contender : contenders) contender.criterion += shift;
   std::erase_if(contenders, of(occupant.candidate));
   contenders.push_back({occupant, present, 0.0});
-  double least = present;
+  double least = present + unseen_(set.fit);
   std::optional<std::size_t> better;
   for (std::size_t k = 0; k < challengers.size(); ++k) {
     std::erase_if(contenders, of(challengers[k].candidate));
     if (!fits[k]) continue;
     const double criterion = CriterionOf(*fits[k]);
     contenders.push_back({fits[k]->causes.back(), criterion, 0.0});
-    if (criterion >= least) continue;
-    least = criterion;
+    const double with_unseen = criterion + unseen_(*fits[k]);
+    if (with_unseen >= least) continue;
+    least = with_unseen;
     better = k;
   }
   Rank(contenders);

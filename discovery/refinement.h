@@ -8,7 +8,9 @@
 //   effects at once is a mere mass once the other one is known.
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/discovery/candidate.h"
@@ -29,20 +31,25 @@ class Refinement {
  public:
   /// @param beginning    of the problem, for what shows early
   /// @param independent  share of the samples of every sensor that the criterion counts
+  /// @param unseen       deviance of data that a fit did not see, which votes with the
+  ///                     criterion on an exchange
   Refinement(const DiscoveryProblem& problem, const DiscoveryProblem& beginning,
              const std::vector<Candidate>& candidates,
-             const Eigen::VectorXd& independent)
+             const Eigen::VectorXd& independent,
+             std::function<double(const CauseFit&)> unseen)
       : problem_(problem),
         beginning_(beginning),
         candidates_(candidates),
-        independent_(independent) {}
+        independent_(independent),
+        unseen_(std::move(unseen)) {}
 
   /// Gives waves of the set other periods while that explains more.
   void ChangePeriods(CauseSet& set) const;
   /// Drops the cause whose loss the criterion likes best; true if there was one.
   bool Prune(CauseSet& set) const;
-  /// Puts another contender for it in the place of a cause, if the criterion likes
-  /// that; true if there was one. Contenders are judged anew in any case.
+  /// Puts another contender for it in the place of a cause, if the criterion and unseen
+  /// data together like that; true if there was one. Contenders are judged anew in any
+  /// case.
   bool Exchange(CauseSet& set) const;
 
  private:
@@ -62,6 +69,7 @@ class Refinement {
   const DiscoveryProblem& beginning_;
   const std::vector<Candidate>& candidates_;
   const Eigen::VectorXd& independent_;
+  std::function<double(const CauseFit&)> unseen_;
 };
 
 }  // namespace mjdiag

@@ -85,7 +85,10 @@ class Search {
   VectorXd UnseenResidual(const CauseFit& fit) const;
   double UnseenDeviance(const CauseFit& fit, const VectorXd& unseen) const;
   Refinement Refine() const {
-    return {problem_, beginning_, candidates_, independent_};
+    return {problem_, beginning_, candidates_, independent_,
+            [this](const CauseFit& fit) {
+              return UnseenDeviance(fit, UnseenResidual(fit));
+            }};
   }
   void MeetUnsteadiness();
   bool AddCause();

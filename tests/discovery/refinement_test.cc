@@ -29,7 +29,10 @@ struct Found {
     }
     set.fit = FitCauses(problem, candidates, causes, {});
   }
-  Refinement Refine() const { return {problem, beginning, candidates, independent}; }
+  using Deviance = std::function<double(const CauseFit&)>;
+  Refinement Refine(Deviance unseen = [](const CauseFit&) { return 0.0; }) const {
+    return {problem, beginning, candidates, independent, std::move(unseen)};
+  }
   std::string Name(std::size_t i) const {
     return Describe(candidates[set.fit.causes[i].candidate]);
   }
@@ -45,6 +48,17 @@ TEST(Refinement, PutsTheSimplerLawInThePlaceOfOneThatExplainsNoMore) {
   EXPECT_EQ(found.set.contenders[0].front().cause.candidate,
             test::Place(found.candidates, "added_mass@load"));
   EXPECT_FALSE(found.Refine().Exchange(found.set));
+}
+
+TEST(Refinement, DoesNotPutInThePlaceOfACauseWhatUnseenDataSpeakAgainst) {
+  Found found({"added_mass@load:mass=0.05"},
+              {{"flexible_mode@load", Eigen::Vector3d(0.05, 400.0, 0.1)}});
+  const std::size_t mass = test::Place(found.candidates, "added_mass@load");
+  const auto against_the_mass = [mass](const CauseFit& fit) {
+    return fit.causes[0].candidate == mass ? 1e4 : 0.0;
+  };
+  EXPECT_FALSE(found.Refine(against_the_mass).Exchange(found.set));
+  EXPECT_EQ(found.Name(0), "flexible_mode@load");
 }
 
 TEST(Refinement, PutsTheRightLawInThePlaceOfAnotherKind) {
