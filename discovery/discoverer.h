@@ -54,8 +54,10 @@ class Discoverer {
   void Judge();
   void NoteQuietAxes(const ObservedMotion& motion);
   void NoteTwins(std::size_t cause, const std::vector<Contender>& contenders);
+  std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
   void FindWhere(const Track& nominal, const Track& final);
   void SignRest(const ObservedMotion& motion);
+  LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;
   void AddLaws(const ObservedMotion& motion);
   void AddLadder();
   void AddComparisons();

@@ -61,8 +61,8 @@ struct LadderStep {
   std::map<std::string, double> validation_percent;  ///< empty without such a record
 };
 
-/// A found law over what it depends on: the unexplained signal of the plant as it was
-/// given, as points, and the law as a curve.
+/// A found law over what it depends on: the force that the plant with all other causes
+/// leaves unexplained (partial residuals), as points, and the law as a curve.
 struct LawPlot {
   std::string cause;
   std::string site;

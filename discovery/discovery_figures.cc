@@ -9,6 +9,7 @@
 #include "mjdiag/discovery/replay_error.h"
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/plugin/parallel.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -55,7 +56,7 @@ double Gain(const std::map<std::string, double>& before,
 
 }  // namespace
 
-void Discoverer::FindWhere(const Track& nominal, const Track& final) {
+std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
   std::vector<std::string> joints = DrivenNames(problem_.model);
   joints.resize(std::min<std::size_t>(
       joints.size(), static_cast<std::size_t>(problem_.run.outputs.rows())));
@@ -64,13 +65,14 @@ void Discoverer::FindWhere(const Track& nominal, const Track& final) {
     const int id = FindElement(plant_, mjOBJ_JOINT, joint);
     units.push_back(plant_.jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
   }
-  const auto estimate = [&](const Track& track) {
-    return UnexplainedForces(problem_.model, problem_.observer, problem_.step(),
-                             setup_.substeps, track.innovations, joints, units);
-  };
-  discovery_.forces_before = estimate(nominal);
+  return UnexplainedForces(problem_.model, problem_.observer, problem_.step(),
+                           setup_.substeps, track.innovations, joints, units);
+}
+
+void Discoverer::FindWhere(const Track& nominal, const Track& final) {
+  discovery_.forces_before = UnexplainedIn(nominal);
   discovery_.forces_after =
-      discovery_.causes.empty() ? discovery_.forces_before : estimate(final);
+      discovery_.causes.empty() ? discovery_.forces_before : UnexplainedIn(final);
 }
 
 void Discoverer::SignRest(const ObservedMotion& motion) {
@@ -118,46 +120,55 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
   discovery_.unexplained_site = worst->site;
 }
 
+/// Partial residuals: with several causes at a joint, the force that all of them
+/// explain lies on the law of none.
+LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) const {
+  const Candidate& candidate = candidates_[search_.fit.causes[cause].candidate];
+  LawPlot plot;
+  plot.cause = Describe(candidate);
+  plot.site = problem_.model.coordinates[static_cast<std::size_t>(candidate.joint)];
+  const auto at = [&](const std::vector<UnknownSignal>& forces) {
+    return std::ranges::find(forces, plot.site, &UnknownSignal::site);
+  };
+  if (at(discovery_.forces_before) == discovery_.forces_before.end()) return plot;
+  std::vector<FittedCause> others = search_.fit.causes;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(cause));
+  const auto forces = others.empty()
+                          ? discovery_.forces_before
+                          : UnexplainedIn(FollowWith(ChangesOf(candidates_, others)));
+  const UnknownSignal& without = *at(forces);
+  const VectorXd explained = without.value - at(discovery_.forces_after)->value;
+
+  const bool hinge = plant_.jnt_type[plant_.dof_jntid[candidate.joint]] == mjJNT_HINGE;
+  const auto channel = static_cast<std::size_t>(
+      std::clamp<Index>(candidate.channel, 0, problem_.run.inputs.rows() - 1));
+  const Cause& named = discovery_.causes[cause].cause;
+  const LawAxis axis = AxisOf(VariableOf(named), candidate, motion, hinge,
+                              setup_.actuators[channel].unit);
+  plot.x_name = axis.name;
+  plot.x_unit = axis.unit;
+  plot.y_unit = without.unit;
+  const Index stride = std::max<Index>(1, axis.x.size() / kLawPoints);
+  const auto every = Eigen::seqN(0, axis.x.size() / stride, stride);
+  plot.x = axis.x(every);
+  plot.y = without.value(every);
+  const Eigen::MatrixX2d curve = LawCurve(named, axis.x, explained);
+  plot.law_x = curve.col(0);
+  plot.law_y = curve.col(1);
+  return plot;
+}
+
 void Discoverer::AddLaws(const ObservedMotion& motion) {
-  for (std::size_t i = 0; i < search_.fit.causes.size() && i < discovery_.causes.size();
-       ++i) {
-    const Candidate& candidate = candidates_[search_.fit.causes[i].candidate];
-    const std::string& joint =
-        problem_.model.coordinates[static_cast<std::size_t>(candidate.joint)];
-    const auto before =
-        std::ranges::find(discovery_.forces_before, joint, &UnknownSignal::site);
-    const auto after =
-        std::ranges::find(discovery_.forces_after, joint, &UnknownSignal::site);
-    if (before == discovery_.forces_before.end()) continue;
-    const bool hinge =
-        plant_.jnt_type[plant_.dof_jntid[candidate.joint]] == mjJNT_HINGE;
-    const std::string input_unit =
-        setup_
-            .actuators[static_cast<std::size_t>(std::clamp<Index>(
-                candidate.channel, 0, problem_.run.inputs.rows() - 1))]
-            .unit;
-    const LawAxis axis = AxisOf(VariableOf(discovery_.causes[i].cause), candidate,
-                                motion, hinge, input_unit);
-    LawPlot plot;
-    plot.cause = Describe(candidate);
-    plot.site = joint;
-    plot.x_name = axis.name;
-    plot.x_unit = axis.unit;
-    plot.y_unit = before->unit;
-    const Index stride = std::max<Index>(1, axis.x.size() / kLawPoints);
-    const Index count = axis.x.size() / stride;
-    plot.x.resize(count);
-    plot.y.resize(count);
-    for (Index k = 0; k < count; ++k) {
-      plot.x[k] = axis.x[k * stride];
-      plot.y[k] = before->value[k * stride];
+  discovery_.laws.resize(std::min(search_.fit.causes.size(), discovery_.causes.size()));
+  ParallelFor(static_cast<int>(discovery_.laws.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    try {
+      discovery_.laws[i] = PlotLaw(motion, i);
+    } catch (const NumericalError&) {
+      // The plant diverges without this cause: there is nothing to draw.
     }
-    const Eigen::MatrixX2d curve =
-        LawCurve(discovery_.causes[i].cause, axis.x, before->value - after->value);
-    plot.law_x = curve.col(0);
-    plot.law_y = curve.col(1);
-    discovery_.laws.push_back(std::move(plot));
-  }
+  });
+  std::erase_if(discovery_.laws, [](const LawPlot& law) { return law.x.size() == 0; });
 }
 
 /// Every rung behind the same observer, or they would not compare.

@@ -1,6 +1,6 @@
 #pragma once
-// A found cause as a law over what it depends on, for people: the force that the plant
-// as given does not explain, as points, and the cause's own force as a curve.
+// A found cause as a law over what it depends on, for people: the force that the other
+// causes do not explain, as points, and the cause's own force as a curve.
 
 #include <Eigen/Core>
 #include <string>

@@ -141,8 +141,9 @@ void AddLaws(Page& page, const Discovery& discovery) {
   if (discovery.laws.empty()) return;
   page.AddHeading("Why: the laws that were found");
   page.AddParagraph(
-      "Dots: the unexplained signal of the plant as it was given, over what the cause "
-      "depends on. Line: the law with the fitted parameters.");
+      "Dots: the force that the plant with all other causes does not explain, over "
+      "what "
+      "the cause depends on. Line: the law with the fitted parameters.");
   for (const LawPlot& law : discovery.laws) page.AddPlot(PlotOf(law));
 }
 

@@ -149,7 +149,7 @@ XyPlot PlotOf(const LawPlot& law) {
   plot.y_quantity = "unexplained";
   plot.y_unit = law.y_unit;
   plot.points = {
-      {"plant as given", CurveRole::kMeasured, Thinned(law.x), Thinned(law.y)}};
+      {"without this cause", CurveRole::kMeasured, Thinned(law.x), Thinned(law.y)}};
   plot.curves = {{"found law", CurveRole::kSimulated, law.law_x, law.law_y}};
   return plot;
 }

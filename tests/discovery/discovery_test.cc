@@ -102,6 +102,38 @@ TEST(Discovery, FindsTwoCausesAtOnce) {
   }
 }
 
+/// Median distance of the dots from the law.
+double MedianMiss(const LawPlot& plot) {
+  std::vector<double> misses;
+  for (Eigen::Index i = 0; i < plot.x.size(); ++i) {
+    const auto after = std::ranges::upper_bound(plot.law_x, plot.x[i]);
+    const auto k =
+        std::clamp<Eigen::Index>(after - plot.law_x.begin(), 1, plot.law_x.size() - 1);
+    const double share =
+        (plot.x[i] - plot.law_x[k - 1]) / (plot.law_x[k] - plot.law_x[k - 1]);
+    const double law = std::lerp(plot.law_y[k - 1], plot.law_y[k], share);
+    misses.push_back(std::abs(plot.y[i] - law));
+  }
+  std::ranges::nth_element(misses, misses.begin() + misses.size() / 2);
+  return misses[misses.size() / 2];
+}
+
+// Of all that the plant as given lacks, the friction is twelve times the ripple.
+TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
+  constexpr double kRipple = 1.5;
+  const test::Stage stage;
+  const Discovery answer =
+      Discover(stage.setup, *stage.plant,
+               stage.Measure({"coulomb_friction@load:force=18",
+                              "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}),
+               nullptr, {});
+  const auto ripple =
+      std::ranges::find(answer.laws, "force_ripple@load", &LawPlot::cause);
+  ASSERT_NE(ripple, answer.laws.end());
+  EXPECT_NEAR(ripple->law_y.maxCoeff(), kRipple, 0.02 * kRipple);
+  EXPECT_LT(MedianMiss(*ripple), 0.1 * kRipple);
+}
+
 TEST(Discovery, NamesRaisedEncoderNoise) {
   const test::Stage stage;
   const Discovery answer = Discover(
