@@ -25,7 +25,8 @@ endfunction()
 # Debian's MuJoCo config names an include folder that does not exist, and its
 # libopencv-*-dev packages carry no config unless the whole of OpenCV is installed.
 mjdiag_library(mjdiag::mujoco_library HEADER mujoco/mujoco.h LIBRARIES mujoco)
-mjdiag_library(mjdiag::osmesa_library HEADER GL/osmesa.h LIBRARIES OSMesa)
+# Loaded when a picture is asked for, not linked.
+mjdiag_library(mjdiag::osmesa_headers HEADER GL/osmesa.h LIBRARIES)
 mjdiag_library(mjdiag::opencv_library HEADER opencv2/core.hpp SUFFIXES opencv4
                LIBRARIES opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio)
 mjdiag_library(mjdiag::opencv_ml_library HEADER opencv2/ml.hpp SUFFIXES opencv4

@@ -1,5 +1,6 @@
 #include "mjdiag/render/offscreen_context.h"
 
+#include "mjdiag/render/osmesa_library.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -16,16 +17,16 @@ constexpr int kStencilBits = 8;
 
 OffscreenContext::OffscreenContext()
     : context_(
-          OSMesaCreateContextExt(OSMESA_RGBA, kDepthBits, kStencilBits, 0, nullptr)) {
+          OsMesa().create_context(OSMESA_RGBA, kDepthBits, kStencilBits, 0, nullptr)) {
   if (context_ == nullptr) Refused("cannot create an OpenGL context");
   MakeCurrent();
 }
 
-OffscreenContext::~OffscreenContext() { OSMesaDestroyContext(context_); }
+OffscreenContext::~OffscreenContext() { OsMesa().destroy_context(context_); }
 
 void OffscreenContext::MakeCurrent() {
-  if (OSMesaMakeCurrent(context_, default_framebuffer_.data(), GL_UNSIGNED_BYTE, kSide,
-                        kSide) != GL_TRUE) {
+  if (OsMesa().make_current(context_, default_framebuffer_.data(), GL_UNSIGNED_BYTE,
+                            kSide, kSide) != GL_TRUE) {
     Refused("cannot make its OpenGL context current");
   }
 }

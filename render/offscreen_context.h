@@ -3,7 +3,7 @@
 // need neither a display nor a graphics card, and come out the same everywhere.
 //
 // MuJoCo looks its OpenGL functions up in whichever platform library the process has
-// loaded. This one links OSMesa and must be the only such library.
+// loaded. This one loads OSMesa, which must be the only such library.
 
 #include <GL/osmesa.h>
 
@@ -13,7 +13,8 @@ namespace mjdiag {
 
 class OffscreenContext {
  public:
-  /// Makes a context and makes it current. InputError if OSMesa refuses.
+  /// Makes a context and makes it current. InputError if OSMesa is not there
+  /// or refuses.
   OffscreenContext();
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;

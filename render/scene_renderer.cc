@@ -1,7 +1,5 @@
 #include "mjdiag/render/scene_renderer.h"
 
-#include <GL/gl.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
@@ -10,6 +8,7 @@
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/render/backdrop.h"
 #include "mjdiag/render/offscreen_context.h"
+#include "mjdiag/render/osmesa_library.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -115,9 +114,10 @@ class RenderContext {
     const GLenum target = context_.textureType[texture] == mjTEXTURE_2D
                               ? GL_TEXTURE_2D
                               : GL_TEXTURE_CUBE_MAP;
-    glBindTexture(target, context_.texture[texture]);
-    glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
-    glBindTexture(target, 0);
+    const OsMesaLibrary& gl = OsMesa();
+    gl.bind_texture(target, context_.texture[texture]);
+    gl.set_texture_parameter(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+    gl.bind_texture(target, 0);
   }
 
   mjrContext context_;
