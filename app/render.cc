@@ -208,8 +208,8 @@ void Render(RenderOptions options) {
   }
   std::string text;
   if (options.still) {
-    RenderStill(*machine.plant, runs, options.clip.picture, *options.still,
-                folder / "still.png");
+    document["amplification"] = RenderStill(*machine.plant, runs, options.clip.picture,
+                                            *options.still, folder / "still.png");
     document["still"] = "still.png";
     text = "picture: " + (folder / "still.png").string() + "\n";
   } else {
@@ -224,6 +224,7 @@ void Render(RenderOptions options) {
     document["speed"] = options.clip.speed;
     document["frames"] = summary.frames;
     document["codec"] = summary.codec;
+    document["amplification"] = summary.amplification;
     text = "clip: " + (folder / "clip.mp4").string() + " (" +
            std::to_string(summary.frames) + " frames, " + summary.codec + ")\n";
   }

@@ -50,12 +50,12 @@ ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
     if (options.progress) options.progress((n + 1.0) / frames);
   }
   writer.Finish();
-  return {frames, writer.codec()};
+  return {frames, writer.codec(), painter.amplification()};
 }
 
-void RenderStill(const mjModel& model, std::span<const ClipRun> runs,
-                 const PictureOptions& options, double time,
-                 const std::filesystem::path& file) {
+JointFactors RenderStill(const mjModel& model, std::span<const ClipRun> runs,
+                         const PictureOptions& options, double time,
+                         const std::filesystem::path& file) {
   ClipPainter painter(model, runs, options, 0.0, 1e-4);
   const TimeRange range = painter.range();
   if (!(time >= range.begin && time <= range.end)) {
@@ -65,6 +65,7 @@ void RenderStill(const mjModel& model, std::span<const ClipRun> runs,
   Image picture;
   painter.Paint(time, picture);
   WritePng(file, picture);
+  return painter.amplification();
 }
 
 }  // namespace mjdiag

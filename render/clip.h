@@ -29,6 +29,9 @@ struct ClipRun {
   const Record* record = nullptr;  ///< not owned; has "joint.<name>" of every joint
 };
 
+/// By how much the motion of every joint was enlarged, by its name.
+using JointFactors = std::map<std::string, double>;
+
 /// What a picture shows.
 struct PictureOptions {
   int width = 1280;         ///< [px], even
@@ -40,7 +43,7 @@ struct PictureOptions {
   /// has, as many as fit.
   std::vector<std::string> axes;
   /// Joint -> amplification factor; the others' follow from the data.
-  std::map<std::string, double> amplify;
+  JointFactors amplify;
   std::optional<double> amplify_all;  ///< one factor for all joints without an own one
   std::optional<double> begin;        ///< [s]; default: where all records have begun
   std::optional<double> end;          ///< [s]; default: where the first record ends
@@ -63,6 +66,7 @@ struct ClipOptions {
 struct ClipSummary {
   int frames = 0;
   std::string codec;  ///< "avc1" (H.264) or "mp4v"
+  JointFactors amplification;
 };
 
 /// Finds what is wrong with the options without any run: size, camera, site, or no
@@ -76,9 +80,9 @@ void CheckPicture(const mjModel& model, const PictureOptions& options);
 ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
                        const ClipOptions& options, const std::filesystem::path& file);
 
-/// Writes the picture of one moment as PNG.
-void RenderStill(const mjModel& model, std::span<const ClipRun> runs,
-                 const PictureOptions& options, double time,
-                 const std::filesystem::path& file);
+/// Writes the picture of one moment as PNG; returns the amplification.
+JointFactors RenderStill(const mjModel& model, std::span<const ClipRun> runs,
+                         const PictureOptions& options, double time,
+                         const std::filesystem::path& file);
 
 }  // namespace mjdiag

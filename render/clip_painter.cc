@@ -212,6 +212,15 @@ ClipPainter::~ClipPainter() = default;
 TimeRange ClipPainter::range() const { return state_->range; }
 const ClipLayout& ClipPainter::layout() const { return state_->layout; }
 
+JointFactors ClipPainter::amplification() const {
+  const Amplification& amplification = state_->views.amplification();
+  JointFactors factors;
+  for (std::size_t i = 0; i < amplification.joints().size(); ++i) {
+    factors[amplification.joints()[i].name] = amplification.factors()[i];
+  }
+  return factors;
+}
+
 void ClipPainter::Paint(double time, Image& picture) {
   State& s = *state_;
   picture.width = s.layout.size.width;

@@ -23,6 +23,7 @@ class ClipPainter {
   /// The part of the runs that is shown.
   TimeRange range() const;
   const ClipLayout& layout() const;
+  JointFactors amplification() const;
   /// Paints the moment `time` [s]; `picture` is resized as needed.
   void Paint(double time, Image& picture);
 

@@ -139,6 +139,17 @@ TEST_F(Clip, GhostShowsTheHealthyMachineInTheFaultyOnesView) {
   EXPECT_GT(ghostly(still(faulty_)), ghostly(still(healthy_)) + 100);
 }
 
+TEST_F(Clip, SaysByHowMuchTheMotionOfEveryJointIsEnlarged) {
+  options_.picture.amplify = {{"mount", 3000.0}};
+  const ClipSummary summary =
+      RenderClip(*model_, runs_, options_, folder_ / "clip.mp4");
+  EXPECT_EQ(summary.amplification.at("mount"), 3000.0);
+  EXPECT_GE(summary.amplification.at("stage"), 1.0);
+  EXPECT_EQ(summary.amplification.size(), static_cast<std::size_t>(model_->njnt));
+  EXPECT_EQ(RenderStill(*model_, runs_, options_.picture, 0.05, folder_ / "still.png"),
+            summary.amplification);
+}
+
 TEST_F(Clip, GhostNeedsTwoRuns) {
   options_.picture.ghost = true;
   const std::array alone{runs_[0]};
