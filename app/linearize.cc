@@ -14,6 +14,7 @@
 #include "mjdiag/plugin/closed_loop.h"
 #include "mjdiag/plugin/published_row.h"
 #include "mjdiag/plugin/transition.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 

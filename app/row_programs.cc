@@ -1,13 +1,13 @@
 #include "app/row_programs.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/diagnosis/linear_program_row.h"
 #include "mjdiag/plugin/fault_models.h"
 #include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
@@ -21,10 +21,10 @@ using Eigen::VectorXd;
 MatrixXd ColumnSpace(const MatrixXd& matrix) {
   // Above the rounding of differences of linearised models.
   constexpr double kNonzero = 1e-6;
-  const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeThinU);
-  const VectorXd& values = svd.singularValues();
+  const SingularValues svd = SingularValueDecomposition(matrix);
+  const VectorXd& values = svd.values;
   const Index rank = (values.array() > kNonzero * values[0]).count();
-  return svd.matrixU().leftCols(values[0] > 0.0 ? rank : 0);
+  return svd.U.leftCols(values[0] > 0.0 ? rank : 0);
 }
 
 /// Generalised forces that a turned knob makes, whatever the motion: damping, stiffness

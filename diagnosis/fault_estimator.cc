@@ -1,10 +1,9 @@
 #include "mjdiag/diagnosis/fault_estimator.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -73,13 +72,12 @@ ResidualNoise MakeResidualNoise(const FilterBank& bank, Index residuals,
 
   const MatrixXd equations = MatrixXd::Identity(order * order, order * order) -
                              Eigen::kroneckerProduct(chain, chain).eval();
-  const auto solver = equations.partialPivLu();
   const MatrixXd drive = B * B.transpose();
   MatrixXd state(A.rows(), A.cols());
   for (Index i = 0; i < residuals; ++i) {
     for (Index j = 0; j < residuals; ++j) {
       const MatrixXd block = drive.block(i * order, j * order, order, order);
-      const VectorXd solution = solver.solve(VectorXd(block.reshaped()));
+      const VectorXd solution = Solve(equations, block.reshaped());
       state.block(i * order, j * order, order, order) = solution.reshaped(order, order);
     }
   }
@@ -196,7 +194,7 @@ FaultEstimate FaultEstimator::Estimate() const {
   const VectorXd scale = InverseRoots(information_);
   const MatrixXd correlation = scale.asDiagonal() * information_ * scale.asDiagonal();
   const MatrixXd inverse =
-      scale.asDiagonal() * correlation.inverse() * scale.asDiagonal();
+      scale.asDiagonal() * Inverse(correlation) * scale.asDiagonal();
   const MatrixXd covariance = inverse * spread_ * inverse;
   return {inverse * right_, 0.5 * (covariance + covariance.transpose())};
 }
@@ -209,9 +207,9 @@ std::vector<Index> FaultEstimator::Inseparable() const {
   }
   if (!faults.empty() || scale.size() == 0) return faults;
   const MatrixXd correlation = scale.asDiagonal() * information_ * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(correlation);
-  if (eigen.eigenvalues()[0] > kRankTolerance) return {};
-  const VectorXd direction = eigen.eigenvectors().col(0).cwiseAbs();
+  const SymmetricEigenPairs eigen = SymmetricEigenDecomposition(correlation);
+  if (eigen.values[0] > kRankTolerance) return {};
+  const VectorXd direction = eigen.vectors.col(0).cwiseAbs();
   constexpr double kShare = 0.1;  // of the largest part
   for (Index i = 0; i < direction.size(); ++i) {
     if (direction[i] > kShare * direction.maxCoeff()) faults.push_back(i);

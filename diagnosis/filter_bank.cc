@@ -1,13 +1,12 @@
 #include "mjdiag/diagnosis/filter_bank.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "mjdiag/diagnosis/delta_form.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -62,7 +61,7 @@ MatrixXd OutputGramian(const FilterBank& bank) {
       MatrixXd::Identity(n * n, n * n) - Eigen::kroneckerProduct(chain, chain).eval();
   VectorXd right = VectorXd::Zero(n * n);
   right[n * n - 1] = 1.0;
-  const VectorXd solution = equations.partialPivLu().solve(right);
+  const VectorXd solution = Solve(equations, right);
   const MatrixXd gramian = solution.reshaped(n, n);
   return 0.5 * (gramian + gramian.transpose());
 }
@@ -142,24 +141,23 @@ Eigen::MatrixXcd FrequencyResponse(const FilterBank& bank, double frequency) {
   const Eigen::MatrixXcd resolvent =
       z * Eigen::MatrixXcd::Identity(n, n) - ChainMatrix(bank);
   const Eigen::VectorXcd weight =
-      resolvent.transpose().partialPivLu().solve(Eigen::VectorXcd::Unit(n, n - 1));
+      SolveComplex(resolvent.transpose(), Eigen::VectorXcd::Unit(n, n - 1));
   Eigen::MatrixXcd response = bank.D.cast<std::complex<double>>();
   for (Index k = 0; k < n; ++k) response += weight[k] * bank.B.middleRows(k * m, m);
   return response;
 }
 
 Index SettlingSamples(const FilterBank& bank, double fraction) {
-  const Eigen::EigenSolver<MatrixXd> eigen(ChainMatrix(bank), false);
-  const double radius = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  return static_cast<Index>(std::ceil(std::log(fraction) / std::log(radius)));
+  return static_cast<Index>(
+      std::ceil(std::log(fraction) / std::log(SpectralRadius(ChainMatrix(bank)))));
 }
 
 RunningBank::RunningBank(FilterBank bank)
     : bank_(std::move(bank)),
       states_(MatrixXd::Zero(bank_.outputs(), bank_.order())),
-      settle_((MatrixXd::Identity(bank_.order(), bank_.order()) - ChainMatrix(bank_))
-                  .inverse()
-                  .transpose()),
+      settle_(
+          Inverse(MatrixXd::Identity(bank_.order(), bank_.order()) - ChainMatrix(bank_))
+              .transpose()),
       drive_(bank_.B.rows()),
       output_(bank_.outputs()) {}
 

@@ -1,10 +1,9 @@
 #include "mjdiag/diagnosis/left_null_space.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "mjdiag/diagnosis/equilibrate.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -24,8 +23,7 @@ int RankOf(const VectorXd& singular_values) {
 }
 
 int Rank(const MatrixXd& matrix) {
-  return RankOf(
-      Eigen::JacobiSVD<MatrixXd>(Equilibrate(matrix).matrix).singularValues());
+  return RankOf(SingularValueDecomposition(Equilibrate(matrix).matrix).values);
 }
 
 /// [C A^i | for every k: what N_x,k B_d + N_y,k D_d takes from N_y,i], i = 0 .. degree:
@@ -50,15 +48,16 @@ MatrixXd Equations(const StateSpace& system, const SignalEntry& unknown, int deg
 /// The one row p with p * equations = right_side.
 RowVectorXd SolveUnique(const MatrixXd& equations, const RowVectorXd& right_side) {
   const Equilibrated scaled = Equilibrate(equations);
-  const Eigen::JacobiSVD<MatrixXd> svd(scaled.matrix.transpose(),
-                                       Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& values = svd.singularValues();
+  const SingularValues svd = SingularValueDecomposition(scaled.matrix.transpose());
+  const VectorXd& values = svd.values;
   if (equations.rows() > equations.cols() ||
       values[values.size() - 1] <= kRankTolerance * values[0]) {
     throw NumericalError("the pins leave more than one residual row");
   }
   const VectorXd target = scaled.columns.asDiagonal() * right_side.transpose();
-  const VectorXd solution = svd.solve(target);
+  const VectorXd parts =
+      (svd.U.transpose() * target).head(values.size()).cwiseQuotient(values);
+  const VectorXd solution = svd.V * parts;
   const double misfit = (scaled.matrix.transpose() * solution - target).norm();
   if (misfit > 1e-8 * target.norm()) {
     throw NumericalError("no residual row has the pinned coefficients");
@@ -112,10 +111,10 @@ NullSpace LeftNullSpace(const StateSpace& system, const SignalEntry& unknown_inp
     throw InputError("residual", "degree " + std::to_string(degree), "0 or more");
   }
   const Equilibrated scaled = Equilibrate(Equations(system, unknown_inputs, degree));
-  const Eigen::JacobiSVD<MatrixXd> svd(scaled.matrix, Eigen::ComputeFullU);
-  const VectorXd& values = svd.singularValues();
+  const SingularValues svd = SingularValueDecomposition(scaled.matrix);
+  const VectorXd& values = svd.values;
   const int rank = RankOf(values);
-  const MatrixXd basis = svd.matrixU().rightCols(scaled.matrix.rows() - rank);
+  const MatrixXd basis = svd.U.rightCols(scaled.matrix.rows() - rank);
   return {degree, basis.transpose() * scaled.rows.asDiagonal(),
           values[rank - 1] / values[0]};
 }

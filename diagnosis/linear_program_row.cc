@@ -2,12 +2,12 @@
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
-#include <Eigen/SVD>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "mjdiag/diagnosis/equilibrate.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -31,15 +31,15 @@ constexpr double kTie = 1e-9;
 
 /// Orthonormal columns that span all v with v^T matrix = 0.
 MatrixXd LeftNullSpace(const MatrixXd& matrix) {
-  const Eigen::BDCSVD<MatrixXd> svd(matrix, Eigen::ComputeFullU);
-  const VectorXd parts = svd.singularValues() / svd.singularValues()[0];
+  const SingularValues svd = LeftSingularVectors(matrix);
+  const VectorXd parts = svd.values / svd.values[0];
   const Index rank = (parts.array() > kNonzero).count();
   if (rank < (parts.array() > kZero).count()) {
     throw NumericalError(
         "the rank of Hbar is lost in rounding: pose the model in a unit of time near "
         "its fastest mode");
   }
-  return svd.matrixU().rightCols(matrix.rows() - rank);
+  return svd.U.rightCols(matrix.rows() - rank);
 }
 
 CoinPackedMatrix Packed(const MatrixXd& dense) {

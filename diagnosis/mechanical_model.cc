@@ -1,13 +1,12 @@
 #include "mjdiag/diagnosis/mechanical_model.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -35,11 +34,11 @@ MatrixXd InUnitMass(const Eigen::LLT<MatrixXd>& mass, const MatrixXd& matrix) {
 /// One Euler step of length `step`, with the output at its start.
 StateSpace EulerStep(const MechanicalModel& model, double step) {
   const Index nq = model.M.rows();
-  const auto implicit_mass = (model.M + step * model.D).partialPivLu();
-  const MatrixXd from_q = -step * implicit_mass.solve(model.K);
+  const MatrixXd implicit_mass = model.M + step * model.D;
+  const MatrixXd from_q = -step * Solve(implicit_mass, model.K);
   const MatrixXd from_v =
-      MatrixXd::Identity(nq, nq) - step * implicit_mass.solve(model.D);
-  const MatrixXd from_u = step * implicit_mass.solve(model.Gamma);
+      MatrixXd::Identity(nq, nq) - step * Solve(implicit_mass, model.D);
+  const MatrixXd from_u = step * Solve(implicit_mass, model.Gamma);
   StateSpace result;
   result.A.resize(2 * nq, 2 * nq);
   result.A << MatrixXd::Identity(nq, nq) + step * from_q, step * from_v, from_q, from_v;
@@ -57,10 +56,7 @@ StateSpace EulerStep(const MechanicalModel& model, double step) {
 std::vector<Mode> Modes(const MechanicalModel& model) {
   const Index nq = model.M.rows();
   const double time_unit = FastTimeUnit(model);
-  const Eigen::EigenSolver<MatrixXd> eigen(UnitMassStateSpace(model, time_unit).A);
-  if (eigen.info() != Eigen::Success) {
-    throw NumericalError("the eigenvalues of the model did not converge");
-  }
+  const EigenPairs eigen = EigenDecomposition(UnitMassStateSpace(model, time_unit).A);
   const MatrixXd to_joints =
       FactorMass(model.M).matrixU().solve(MatrixXd::Identity(nq, nq));
   // An undamped rigid body has a double pole at zero, which rounding splits to the
@@ -68,10 +64,10 @@ std::vector<Mode> Modes(const MechanicalModel& model) {
   constexpr double kRigid = 1e-7;
   std::vector<Mode> modes;
   for (Index i = 0; i < 2 * nq; ++i) {
-    const std::complex<double> pole = eigen.eigenvalues()[i];
+    const std::complex<double> pole = eigen.values[i];
     if (std::abs(pole) < kRigid || pole.imag() < 0.0) continue;
     const VectorXd shape =
-        (to_joints.cast<std::complex<double>>() * eigen.eigenvectors().col(i).head(nq))
+        (to_joints.cast<std::complex<double>>() * eigen.vectors.col(i).head(nq))
             .cwiseAbs();
     modes.push_back({std::abs(pole) / (2.0 * std::numbers::pi * time_unit),
                      -pole.real() / std::abs(pole), shape / shape.maxCoeff()});

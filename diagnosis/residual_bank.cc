@@ -1,10 +1,10 @@
 #include "mjdiag/diagnosis/residual_bank.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -78,13 +78,11 @@ Numerators Orthonormalised(Numerators rows, const SynthesisOptions& options) {
   for (int pass = 0; pass < kPasses; ++pass) {
     const MatrixXd covariance = Covariance(rows, options);
     const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+    const SymmetricEigenPairs eigen = SymmetricEigenDecomposition(
         scale.asDiagonal() * covariance * scale.asDiagonal());
-    const VectorXd root =
-        eigen.eigenvalues().cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
-    rows = Combine(
-        root.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal(),
-        rows);
+    const VectorXd root = eigen.values.cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
+    rows = Combine(root.asDiagonal() * eigen.vectors.transpose() * scale.asDiagonal(),
+                   rows);
   }
   const MatrixXd covariance = Covariance(rows, options);
   if (!covariance.isIdentity(1e-3)) {

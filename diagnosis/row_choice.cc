@@ -1,11 +1,10 @@
 #include "mjdiag/diagnosis/row_choice.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -16,8 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 VectorXd TopEigenvector(const MatrixXd& symmetric) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(symmetric);
-  return eigen.eigenvectors().col(symmetric.rows() - 1);
+  return SymmetricEigenDecomposition(symmetric).vectors.col(symmetric.rows() - 1);
 }
 
 MatrixXd NormalisedSum(const std::vector<MatrixXd>& matrices) {
@@ -122,8 +120,7 @@ VectorXd BestRatioRow(const std::vector<MatrixXd>& energies,
 MatrixXd CompleteBasis(const VectorXd& first, int n) {
   const Index size = first.size();
   const Index rows = n == 0 ? size : std::min<Index>(n, size);
-  MatrixXd basis =
-      MatrixXd(first.householderQr().householderQ()).leftCols(rows).transpose();
+  MatrixXd basis = OrthonormalBasis(first).leftCols(rows).transpose();
   basis.row(0) = first.transpose();
   return basis;
 }

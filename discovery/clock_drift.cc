@@ -1,7 +1,6 @@
 #include "mjdiag/discovery/clock_drift.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -71,7 +71,7 @@ std::optional<WindowLag> FindLag(const VectorXd& m, const VectorXd& s, Index fir
     window.weight = design.col(3).squaredNorm();
     if (!(about.squaredNorm() > 0.0) || !(window.weight > 0.0)) return std::nullopt;
     window.period = std::sqrt(about.squaredNorm() / window.weight);
-    const VectorXd solution = design.colPivHouseholderQr().solve(measured);
+    const VectorXd solution = LeastSquares(design, measured);
     const VectorXd trend = design.leftCols(2) * solution.head(2);
     const double rest = (measured - design * solution).squaredNorm();
     const double all = (measured - trend).squaredNorm();
@@ -143,7 +143,7 @@ std::optional<LagTrend> FindLagTrend(const VectorXd& measured,
     if (unknowns == 3) design(i, 2) = root * window.period / longest.period;
     lag[i] = root * window.lag;
   }
-  const VectorXd solution = design.colPivHouseholderQr().solve(lag);
+  const VectorXd solution = LeastSquares(design, lag);
   LagTrend trend;
   trend.drift = solution[1];
   trend.freedom = static_cast<double>(n - unknowns);

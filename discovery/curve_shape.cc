@@ -1,6 +1,5 @@
 #include "mjdiag/discovery/curve_shape.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,6 +8,8 @@
 #include <sstream>
 #include <utility>
 #include <vector>
+
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -69,7 +70,7 @@ class Chooser {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       design.col(static_cast<Index>(i) + 1) = columns[i] * weight_.array();
     }
-    return (y_ - design * design.colPivHouseholderQr().solve(y_)).squaredNorm();
+    return (y_ - design * LeastSquares(design, y_)).squaredNorm();
   }
 
   ArrayXd x_;

@@ -1,6 +1,5 @@
 #include "mjdiag/discovery/hidden_effect.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +11,7 @@
 #include "mjdiag/discovery/candidate.h"
 #include "mjdiag/discovery/problem.h"
 #include "mjdiag/plugin/simulation.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -225,8 +225,7 @@ double LeastOwnShare(const Eigen::MatrixXd& columns) {
   for (Index i = 0; i < columns.cols(); ++i) {
     Eigen::MatrixXd others(columns.rows(), columns.cols() - 1);
     others << columns.leftCols(i), columns.rightCols(columns.cols() - 1 - i);
-    const VectorXd explained =
-        others * others.colPivHouseholderQr().solve(columns.col(i));
+    const VectorXd explained = others * LeastSquares(others, columns.col(i));
     least = std::min(least, (columns.col(i) - explained).squaredNorm());
   }
   return least;

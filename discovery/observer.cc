@@ -1,13 +1,11 @@
 #include "mjdiag/discovery/observer.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "mjdiag/discovery/riccati.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -22,7 +20,7 @@ VectorXd ForceNoise(const MechanicalModel& model, const VectorXd& noise_sd,
                     double bandwidth) {
   const double omega = 2.0 * std::numbers::pi * bandwidth;
   // Acceleration of every sensor by a unit of every actuator.
-  const MatrixXd gain = model.b.transpose() * model.M.ldlt().solve(model.Gamma);
+  const MatrixXd gain = model.b.transpose() * Solve(model.M, model.Gamma);
   const MatrixXd seen = noise_sd.cwiseInverse().asDiagonal() * gain.cwiseAbs();
   VectorXd sd(gain.cols());
   for (Index u = 0; u < gain.cols(); ++u) {
@@ -83,13 +81,12 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
       "observer: no stable one exists; a motion that nothing holds is not seen by any "
       "sensor");
   const MatrixXd S = C * P * C.transpose() + MatrixXd::Identity(C.rows(), C.rows());
-  const MatrixXd gain = S.ldlt().solve(C * P * A.transpose()).transpose();
+  const MatrixXd gain = Solve(S, C * P * A.transpose()).transpose();
   observer.L = scale.asDiagonal() * gain * noise_sd.cwiseInverse().asDiagonal();
-  const VectorXd poles =
-      (observer.tick.A - observer.L * observer.tick.C).eval().eigenvalues().cwiseAbs();
-  if (!(poles.maxCoeff() < 1.0)) {
+  const double radius = SpectralRadius(observer.tick.A - observer.L * observer.tick.C);
+  if (!(radius < 1.0)) {
     throw NumericalError("observer: not stable, largest pole " +
-                         std::to_string(poles.maxCoeff()));
+                         std::to_string(radius));
   }
   observer.innovation_sd = InnovationSd(observer.tick, observer.L, noise_sd);
   return observer;

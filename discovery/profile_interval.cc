@@ -1,12 +1,12 @@
 #include "mjdiag/discovery/profile_interval.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "mjdiag/plugin/parallel.h"
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -148,9 +148,8 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
       channels * problem.skip, channels * (problem.train - problem.skip));
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();
-  const MatrixXd C = scale.asDiagonal() *
-                     MatrixXd((scaled.transpose() * scaled).inverse()) *
-                     scale.asDiagonal();
+  const MatrixXd C =
+      scale.asDiagonal() * Inverse(scaled.transpose() * scaled) * scale.asDiagonal();
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
   const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
   const DiscoveryProblem seen = Beginning(problem, problem.train);

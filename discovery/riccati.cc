@@ -1,7 +1,6 @@
 #include "mjdiag/discovery/riccati.h"
 
-#include <Eigen/LU>
-
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -11,15 +10,18 @@ using Eigen::MatrixXd;
 MatrixXd SolveRiccati(const MatrixXd& A, const MatrixXd& C, const MatrixXd& Q,
                       double tolerance, const std::string& failure) {
   constexpr int kDoublings = 60;
-  const MatrixXd identity = MatrixXd::Identity(A.rows(), A.rows());
+  const Eigen::Index n = A.rows();
+  const MatrixXd identity = MatrixXd::Identity(n, n);
+  MatrixXd both(n, 2 * n);
   MatrixXd a = A.transpose();
   MatrixXd g = C.transpose() * C;
   MatrixXd h = Q;
   for (int i = 0; i < kDoublings; ++i) {
-    const Eigen::PartialPivLU<MatrixXd> w(identity + g * h);
-    const MatrixXd wa = w.solve(a);
+    both << a, g;
+    both = Solve(identity + g * h, both);
+    const auto wa = both.leftCols(n);
     const MatrixXd step = a.transpose() * h * wa;
-    g += a * w.solve(g) * a.transpose();
+    g += a * both.rightCols(n) * a.transpose();
     a = a * wa;
     h += step;
     h = 0.5 * (h + h.transpose()).eval();

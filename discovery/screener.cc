@@ -1,11 +1,12 @@
 #include "mjdiag/discovery/screener.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
+
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -17,11 +18,6 @@ using Eigen::VectorXd;
 // Columns that are filtered together: enough to keep the processor busy, few enough to
 // stay in memory.
 constexpr Index kBatch = 48;
-
-MatrixXd Orthonormal(const MatrixXd& columns) {
-  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() *
-         MatrixXd::Identity(columns.rows(), columns.cols());
-}
 
 }  // namespace
 
@@ -38,9 +34,9 @@ Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamic
   if (sensitivities.cols() > 0) {
     const MatrixXd J = sensitivities.middleRows(channels_ * block_ * skip_,
                                                 channels_ * block_ * blocks_);
-    const MatrixXd all = Orthonormal(J);
+    const MatrixXd all = OrthonormalColumns(J);
     full_ -= all * (all.transpose() * full_);
-    found_ = Orthonormal(Averaged(J, channels_, block_));
+    found_ = OrthonormalColumns(Averaged(J, channels_, block_));
   }
   residual_ = Averaged(full_, channels_, block_);
   if (found_.cols() > 0) residual_ -= found_ * (found_.transpose() * residual_);

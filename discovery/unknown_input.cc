@@ -1,7 +1,6 @@
 #include "mjdiag/discovery/unknown_input.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +8,7 @@
 #include <numbers>
 
 #include "mjdiag/discovery/riccati.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -258,8 +258,7 @@ VectorXd ForceUnits(const Scaled& scaled, const MatrixXd& B) {
   Eigen::MatrixXcd pencil = -scaled.A.cast<std::complex<double>>();
   pencil.diagonal().array() += std::polar(1.0, kAt);
   const MatrixXd gain =
-      (scaled.C * pencil.partialPivLu().solve(B.cast<std::complex<double>>()))
-          .cwiseAbs();
+      (scaled.C * SolveComplex(pencil, B.cast<std::complex<double>>())).cwiseAbs();
   VectorXd unit = VectorXd::Zero(B.cols());
   for (Index j = 0; j < B.cols(); ++j) {
     const double strongest = kAt * kAt * gain.col(j).maxCoeff();

@@ -1,6 +1,5 @@
 #include "mjdiag/plugin/closed_loop.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <vector>
 
@@ -38,10 +37,6 @@ Eigen::MatrixXd ClosedLoopMatrix(const StateSpace& plant, const Setup& setup) {
     closed = std::move(next);
   }
   return closed;
-}
-
-double SpectralRadius(const Eigen::MatrixXd& matrix) {
-  return matrix.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace mjdiag

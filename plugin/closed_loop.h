@@ -16,7 +16,4 @@ namespace mjdiag {
 ///               are the setup's actuators and sensors in its order (TickModel)
 Eigen::MatrixXd ClosedLoopMatrix(const StateSpace& plant, const Setup& setup);
 
-/// Largest magnitude of its eigenvalues.
-double SpectralRadius(const Eigen::MatrixXd& matrix);
-
 }  // namespace mjdiag

@@ -1,11 +1,11 @@
 #include "mjdiag/plugin/linearize.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <functional>
 
 #include "mjdiag/plugin/channels.h"
 #include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -186,8 +186,7 @@ VectorXd NewtonStep(const MatrixXd& stiffness, const VectorXd& mass,
                     const VectorXd& force) {
   const VectorXd scale = mass.cwiseSqrt().cwiseInverse();
   const MatrixXd scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
-  return scale.asDiagonal() *
-         scaled.completeOrthogonalDecomposition().solve(scale.asDiagonal() * force);
+  return scale.asDiagonal() * LeastNorm(scaled, scale.asDiagonal() * force);
 }
 
 /// A joint that nothing holds is at rest only without force.

@@ -1,11 +1,11 @@
 #include "mjdiag/plugin/start_state.h"
 
-#include <Eigen/Dense>
 #include <vector>
 
 #include "mjdiag/plugin/channels.h"
 #include "mjdiag/plugin/linearize.h"
 #include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -63,8 +63,7 @@ Eigen::VectorXd StartPosition(const Setup& setup, const mjModel& model,
     weight[dof] = 1.0 / (1.0 + model.jnt_stiffness[model.dof_jntid[dof]]);
   }
   const Eigen::MatrixXd weighted = weight.asDiagonal() * rows.transpose();
-  const Eigen::MatrixXd step =
-      weighted * (rows * weighted).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd step = weighted * PseudoInverse(rows * weighted);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::VectorXd error = target - SensorReadings(placed, model, qpos);
     if (LargestError(error, target) <= 1.0) return qpos;

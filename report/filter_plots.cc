@@ -1,11 +1,11 @@
 #include "mjdiag/report/filter_plots.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <complex>
 #include <functional>
 #include <numbers>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -64,7 +64,7 @@ MatrixXcd Response(const MechanicalModel& model, double frequency) {
   const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency);
   const MatrixXcd stiffness = model.K + s * model.D + s * s * model.M;
   return model.b.transpose() *
-         stiffness.partialPivLu().solve(model.Gamma.cast<std::complex<double>>());
+         SolveComplex(stiffness, model.Gamma.cast<std::complex<double>>());
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
 #include "diagnosis/test_stage.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -97,12 +97,11 @@ TEST(OutputResponse, IsTheMachinesOwn) {
 /// Faults that fit the readings best: output error, Gauss and Newton from healthy.
 Eigen::Vector3d MaximumLikelihood(const MatrixXd& readings, const MatrixXd& commands,
                                   const MatrixXd& sensitivity) {
-  const auto solver = sensitivity.colPivHouseholderQr();
   Eigen::Vector3d fault = Eigen::Vector3d::Zero();
   for (int iteration = 0; iteration < 4; ++iteration) {
     const MatrixXd misfit =
         readings - test::Motion(test::Stage(test::Moved(fault)), commands).topRows(2);
-    fault += solver.solve(VectorXd(misfit.reshaped()));
+    fault += LeastSquares(sensitivity, misfit.reshaped());
   }
   return fault;
 }

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
 #include "diagnosis/test_stage.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -84,9 +84,8 @@ TEST_P(Weightings, EstimateIsWeightedLeastSquares) {
   const VectorXd residuals =
       regressors * Vector3d(1.0, -2.0, 0.1) + test::WhiteNoise(400, 1, 1.0, 2);
   const VectorXd weights = RootWeights(residuals.size(), GetParam().forgetting);
-  const VectorXd expected = (weights.asDiagonal() * regressors)
-                                .colPivHouseholderQr()
-                                .solve(weights.cwiseProduct(residuals));
+  const VectorXd expected =
+      LeastSquares(weights.asDiagonal() * regressors, weights.cwiseProduct(residuals));
   FaultEstimator estimator = Regressed(regressors, residuals, 1, GetParam().forgetting);
   EXPECT_EQ(estimator.samples(), 200);
   EXPECT_TRUE(estimator.Estimate().value.isApprox(expected, 1e-10));

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -87,10 +87,10 @@ RowVectorXd Coefficients(const PolynomialMatrix& row) {
 /// Rows that span the left null space of Hbar, by a decomposition without scaling.
 MatrixXd NullSpaceRows(const DaeModel& dae, int degree) {
   const MatrixXd hbar = BarMatrix(dae.H, degree);
-  const Eigen::JacobiSVD<MatrixXd> svd(hbar, Eigen::ComputeFullU);
-  const VectorXd& values = svd.singularValues();
+  const SingularValues svd = SingularValueDecomposition(hbar);
+  const VectorXd& values = svd.values;
   const Index rank = (values.array() > 1e-12 * values[0]).count();
-  return svd.matrixU().rightCols(hbar.rows() - rank).transpose();
+  return svd.U.rightCols(hbar.rows() - rank).transpose();
 }
 
 /// The columns of Fbar that some row of the null space sees.

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
-
 #include "diagnosis/test_stage.h"
 #include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 
@@ -198,11 +197,10 @@ TEST(ResidualBank, PhiIsEquation24UpToRowsThatAreBlind) {
   };
   const MatrixXd H = bar_H(test::Stage());
   const MatrixXd L = bar_L(test::Stage());
-  const MatrixXd H_plus = H.completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd H_plus = PseudoInverse(H);
   const MatrixXd blind = filters_of(N * L);
   const auto beyond_blind = [&](const MatrixXd& rows) -> MatrixXd {
-    return rows -
-           rows * blind.completeOrthogonalDecomposition().pseudoInverse() * blind;
+    return rows - rows * PseudoInverse(blind) * blind;
   };
 
   // The same N in both: the bank's residuals are combinations of N L.
@@ -211,8 +209,7 @@ TEST(ResidualBank, PhiIsEquation24UpToRowsThatAreBlind) {
   const ResidualBank bank = SynthesiseBank(space, MatrixXd::Identity(n, n),
                                            test::TurnedStages(kStep), options);
   const MatrixXd all = Coefficients(bank.filters);
-  const MatrixXd mixing =
-      all.topRows(n) * blind.completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd mixing = all.topRows(n) * PseudoInverse(blind);
   ASSERT_LT((mixing * blind - all.topRows(n)).norm(), 1e-9 * all.topRows(n).norm());
 
   Index row = n;

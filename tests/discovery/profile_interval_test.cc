@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -52,7 +52,7 @@ TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
   const DiscoveryProblem seen = Beginning(f.problem, f.problem.train);
   const Eigen::MatrixXd J =
       f.fit.sensitivities.bottomRows(f.problem.train - f.problem.skip);
-  const Eigen::MatrixXd C = (J.transpose() * J).inverse();
+  const Eigen::MatrixXd C = Inverse(J.transpose() * J);
   const auto n = static_cast<double>(f.problem.train - f.problem.skip);
   for (const double end : {f.intervals[2].low, f.intervals[2].high}) {
     std::vector<FittedCause> causes = f.fit.causes;

@@ -5,6 +5,7 @@
 #include "mjdiag/controllers/realisation.h"
 #include "mjdiag/plugin/linearize.h"
 #include "mjdiag/plugin/simulation.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/discretize.h"
 
 namespace mjdiag {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -27,7 +27,7 @@ StateSpace Oscillator(double w, double z) {
 std::complex<double> Response(const StateSpace& system, std::complex<double> point) {
   const Eigen::MatrixXcd resolvent =
       point * MatrixXd::Identity(system.states(), system.states()) - system.A;
-  return (system.C * resolvent.inverse() * system.B + system.D)(0, 0);
+  return (system.C * SolveComplex(resolvent, system.B) + system.D)(0, 0);
 }
 
 TEST(DiscretizeZoh, IsTheExactSolutionOfAnOscillator) {

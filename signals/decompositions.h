@@ -1,0 +1,58 @@
+#pragma once
+// Eigen's decompositions of dense matrices. They are large templates: translated here
+// once, not in every file that solves a system of equations.
+
+#include <Eigen/Core>
+
+namespace mjdiag {
+
+/// X with A X = B, A square and regular (LU, partial pivoting).
+Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+Eigen::MatrixXcd SolveComplex(const Eigen::MatrixXcd& A, const Eigen::MatrixXcd& B);
+
+/// A^-1, A regular (LU, partial pivoting).
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A);
+
+/// X that minimises |A X - B| (QR, pivoting of columns).
+Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// The smallest of the X that minimise |A X - B| (complete orthogonal decomposition).
+Eigen::MatrixXd LeastNorm(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// A^+ (complete orthogonal decomposition).
+Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& A);
+
+/// Q of A = Q R, as many columns as A has (Householder).
+Eigen::MatrixXd OrthonormalColumns(const Eigen::MatrixXd& A);
+
+/// Q of A = Q R, square: its first columns span those of A, the others the rest.
+Eigen::MatrixXd OrthonormalBasis(const Eigen::MatrixXd& A);
+
+struct EigenPairs {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;  ///< in columns
+};
+/// NumericalError if the iteration does not converge.
+EigenPairs EigenDecomposition(const Eigen::MatrixXd& A);
+
+/// The largest modulus of an eigenvalue of A: below 1 where x+ = A x is stable.
+double SpectralRadius(const Eigen::MatrixXd& A);
+
+struct SymmetricEigenPairs {
+  Eigen::VectorXd values;   ///< increasing
+  Eigen::MatrixXd vectors;  ///< orthonormal, in columns
+};
+SymmetricEigenPairs SymmetricEigenDecomposition(const Eigen::MatrixXd& A);
+
+/// A = U S V^T.
+struct SingularValues {
+  Eigen::VectorXd values;  ///< decreasing, as many as the shorter side of A
+  Eigen::MatrixXd U;       ///< square
+  Eigen::MatrixXd V;       ///< as many columns as values; empty if not asked for
+};
+/// By Jacobi's rotations: small singular values have small relative errors.
+SingularValues SingularValueDecomposition(const Eigen::MatrixXd& A);
+/// By divide and conquer, without V: for large matrices.
+SingularValues LeftSingularVectors(const Eigen::MatrixXd& A);
+
+}  // namespace mjdiag
