@@ -73,12 +73,19 @@ ResidualNoise MakeResidualNoise(const FilterBank& bank, Index residuals,
   const MatrixXd equations = MatrixXd::Identity(order * order, order * order) -
                              Eigen::kroneckerProduct(chain, chain).eval();
   const MatrixXd drive = B * B.transpose();
+  MatrixXd blocks(order * order, residuals * residuals);
+  for (Index i = 0; i < residuals; ++i) {
+    for (Index j = 0; j < residuals; ++j) {
+      blocks.col(i * residuals + j) =
+          drive.block(i * order, j * order, order, order).reshaped();
+    }
+  }
+  blocks = Solve(equations, blocks);
   MatrixXd state(A.rows(), A.cols());
   for (Index i = 0; i < residuals; ++i) {
     for (Index j = 0; j < residuals; ++j) {
-      const MatrixXd block = drive.block(i * order, j * order, order, order);
-      const VectorXd solution = Solve(equations, block.reshaped());
-      state.block(i * order, j * order, order, order) = solution.reshaped(order, order);
+      state.block(i * order, j * order, order, order) =
+          blocks.col(i * residuals + j).reshaped(order, order);
     }
   }
   MatrixXd power = MatrixXd::Identity(A.rows(), A.cols());
