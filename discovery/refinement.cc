@@ -164,6 +164,7 @@ bool Refinement::ExchangeAt(CauseSet& set, std::size_t i) const {
     if (!fits[k]) continue;
     const double criterion = CriterionOf(*fits[k]);
     contenders.push_back({fits[k]->causes.back(), criterion, 0.0});
+    if (criterion >= present) continue;
     const double with_unseen = criterion + unseen_(*fits[k]);
     if (with_unseen >= least) continue;
     least = with_unseen;

@@ -31,8 +31,8 @@ class Refinement {
  public:
   /// @param beginning    of the problem, for what shows early
   /// @param independent  share of the samples of every sensor that the criterion counts
-  /// @param unseen       deviance of data that a fit did not see, which votes with the
-  ///                     criterion on an exchange
+  /// @param unseen       deviance of data that a fit did not see, which has a say in an
+  ///                     exchange
   Refinement(const DiscoveryProblem& problem, const DiscoveryProblem& beginning,
              const std::vector<Candidate>& candidates,
              const Eigen::VectorXd& independent,
@@ -47,9 +47,9 @@ class Refinement {
   void ChangePeriods(CauseSet& set) const;
   /// Drops the cause whose loss the criterion likes best; true if there was one.
   bool Prune(CauseSet& set) const;
-  /// Puts another contender for it in the place of a cause, if the criterion and unseen
-  /// data together like that; true if there was one. Contenders are judged anew in any
-  /// case.
+  /// Puts another contender for it in the place of a cause, if the criterion likes that
+  /// and still does together with unseen data; true if there was one. Contenders are
+  /// judged anew in any case.
   bool Exchange(CauseSet& set) const;
 
  private:

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -109,20 +111,21 @@ std::string SpeedText(const json& description) {
                      : "; " + FormatNumber(times) + " times faster than real";
 }
 
-/// One factor for all, or one for each joint.
+/// "amplified 5000 times: r1, u3; 10 times: X".
 std::string AmplificationText(const json& description) {
   const auto found = description.find("amplification");
-  if (found == description.end()) return "";
-  if (found->is_number()) {
-    return "; small motion amplified " + Plain(*found) + " times";
-  }
-  if (!found->is_object()) return "";
-  std::string text;
+  if (found == description.end() || !found->is_object()) return "";
+  std::map<double, std::string, std::greater<>> joints;
   for (const auto& [joint, factor] : found->items()) {
     if (!factor.is_number() || factor == 1.0) continue;
-    text += (text.empty() ? "" : ", ") + joint + " " + Plain(factor) + " times";
+    std::string& names = joints[factor];
+    names += (names.empty() ? "" : ", ") + joint;
   }
-  return text.empty() ? "" : "; amplified: " + text;
+  std::string text;
+  for (const auto& [factor, names] : joints) {
+    text += (text.empty() ? "; amplified " : "; ") + Plain(factor) + " times: " + names;
+  }
+  return text;
 }
 
 std::string Caption(const json& description) {

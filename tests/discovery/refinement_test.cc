@@ -61,6 +61,17 @@ TEST(Refinement, DoesNotPutInThePlaceOfACauseWhatUnseenDataSpeakAgainst) {
   EXPECT_EQ(found.Name(0), "flexible_mode@load");
 }
 
+TEST(Refinement, DoesNotPutInThePlaceOfACauseWhatUnseenDataAloneSpeakFor) {
+  Found found({"added_mass@load:mass=0.05"},
+              {{"added_mass@load", Eigen::VectorXd::Constant(1, 0.05)}});
+  const std::size_t mass = test::Place(found.candidates, "added_mass@load");
+  const auto against_the_mass = [mass](const CauseFit& fit) {
+    return fit.causes[0].candidate == mass ? 1e4 : 0.0;
+  };
+  EXPECT_FALSE(found.Refine(against_the_mass).Exchange(found.set));
+  EXPECT_EQ(found.Name(0), "added_mass@load");
+}
+
 TEST(Refinement, PutsTheRightLawInThePlaceOfAnotherKind) {
   Found found({"quadratic_drag@load:coefficient=20", "force_offset@load:force=0.05"},
               {{"asymmetric_viscous_friction@load", Eigen::Vector2d(1.0, 1.0)},

@@ -86,7 +86,7 @@ TEST_F(RunFolder, HoldsTheClipWithItsCaptionAndCommand) {
   folder_.Write("render.json",
                 R"({"setup": "slide", "faults": [{"name": "zeta", "value": 1.2}],
                     "effects": [{"effect": "backlash", "site": "X"}],
-                    "speed": 0.01, "amplification": {"u3": 5000, "X": 1},
+                    "speed": 0.01, "amplification": {"u3": 5000, "X": 1, "Y": 20, "r1": 5000},
                     "command": "mjdiag render y"})");
   const std::string html = Html();
   EXPECT_THAT(html, HasSubstr("src=\"data:video/mp4;base64,AAAADGZ0eXBpc29t"));
@@ -94,7 +94,7 @@ TEST_F(RunFolder, HoldsTheClipWithItsCaptionAndCommand) {
       html,
       HasSubstr(
           "slide, healthy and with zeta = 1.2, backlash at X; 100 times slower than "
-          "real; amplified: u3 5000 times."));
+          "real; amplified 5000 times: r1, u3; 20 times: Y."));
   EXPECT_THAT(html, HasSubstr("mjdiag x\nmjdiag render y"));
 }
 
