@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/signals/error.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {
@@ -11,22 +12,14 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string RefusalOf(const std::vector<std::string>& names) {
-  try {
-    LoadOsMesa(names);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
-}
-
 TEST(OsMesaLibrary, ThatIsMissingIsNamedWithThePackageThatHasIt) {
-  EXPECT_THAT(RefusalOf({"libThereIsNone.so"}),
+  EXPECT_THAT(test::MessageOf<InputError>([] { LoadOsMesa({"libThereIsNone.so"}); }),
               AllOf(HasSubstr("libThereIsNone.so"), HasSubstr("libosmesa6")));
 }
 
 TEST(OsMesaLibrary, ThatIsSomethingElseIsRefused) {
-  EXPECT_THAT(RefusalOf({"libm.so.6"}), HasSubstr("OSMesaCreateContextExt"));
+  EXPECT_THAT(test::MessageOf<InputError>([] { LoadOsMesa({"libm.so.6"}); }),
+              HasSubstr("OSMesaCreateContextExt"));
 }
 
 TEST(OsMesaLibrary, IsLookedForByEveryName) {
