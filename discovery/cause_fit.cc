@@ -331,6 +331,11 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
   }
 }
 
+std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i) {
+  causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
+  return causes;
+}
+
 MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i) {
   const MatrixXd& all = fit.sensitivities;
   Index first = 0;

@@ -86,6 +86,9 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const std::vector<FittedCause>& start,
                                const FitOptions& options);
 
+/// All causes but number i.
+std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i);
+
 /// J of a fit but for cause i.
 Eigen::MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i);
 

@@ -84,8 +84,9 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
              IsNear(*coarse, problem_, ChangesOf(candidates_, fit.causes));
     };
     search_ = SearchCauses(coarse->problem, candidates_, rough, &search_);
-    const bool another = options.preliminary && options.preliminary(search_.fit);
-    if (search_.served && another) return;
+    if (search_.served && options.preliminary && options.preliminary(search_.fit)) {
+      return;
+    }
     options.most_causes -= static_cast<int>(search_.fit.causes.size()) - before;
   }
   search_ = SearchCauses(problem_, candidates_, options, &search_);

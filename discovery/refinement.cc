@@ -18,11 +18,6 @@ namespace {
 // Contenders that are less probable beside all other causes are no alternatives.
 constexpr double kConsidered = 1e-3;
 
-std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i) {
-  causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
-  return causes;
-}
-
 void MoveToEnd(std::vector<std::vector<Contender>>& contenders, std::size_t i) {
   const auto place = contenders.begin() + static_cast<std::ptrdiff_t>(i);
   std::rotate(place, place + 1, contenders.end());
@@ -157,7 +152,8 @@ bool Refinement::ExchangeAt(CauseSet& set, std::size_t i) const {
   for (Contender& contender : contenders) contender.criterion += shift;
   std::erase_if(contenders, of(occupant.candidate));
   contenders.push_back({occupant, present, 0.0});
-  double least = present + unseen_(set.fit);
+  // Unseen data are replayed only if the criterion likes another.
+  std::optional<double> least;
   std::optional<std::size_t> better;
   for (std::size_t k = 0; k < challengers.size(); ++k) {
     std::erase_if(contenders, of(challengers[k].candidate));
@@ -165,8 +161,9 @@ bool Refinement::ExchangeAt(CauseSet& set, std::size_t i) const {
     const double criterion = CriterionOf(*fits[k]);
     contenders.push_back({fits[k]->causes.back(), criterion, 0.0});
     if (criterion >= present) continue;
+    if (!least) least = present + unseen_(set.fit);
     const double with_unseen = criterion + unseen_(*fits[k]);
-    if (with_unseen >= least) continue;
+    if (with_unseen >= *least) continue;
     least = with_unseen;
     better = k;
   }

@@ -33,6 +33,12 @@ struct Found {
   Refinement Refine(Deviance unseen = [](const CauseFit&) { return 0.0; }) const {
     return {problem, beginning, candidates, independent, std::move(unseen)};
   }
+  /// Unseen data that speak against this as the first cause.
+  Deviance Against(const std::string& name) const {
+    return [place = test::Place(candidates, name)](const CauseFit& fit) {
+      return fit.causes[0].candidate == place ? 1e4 : 0.0;
+    };
+  }
   std::string Name(std::size_t i) const {
     return Describe(candidates[set.fit.causes[i].candidate]);
   }
@@ -53,22 +59,14 @@ TEST(Refinement, PutsTheSimplerLawInThePlaceOfOneThatExplainsNoMore) {
 TEST(Refinement, DoesNotPutInThePlaceOfACauseWhatUnseenDataSpeakAgainst) {
   Found found({"added_mass@load:mass=0.05"},
               {{"flexible_mode@load", Eigen::Vector3d(0.05, 400.0, 0.1)}});
-  const std::size_t mass = test::Place(found.candidates, "added_mass@load");
-  const auto against_the_mass = [mass](const CauseFit& fit) {
-    return fit.causes[0].candidate == mass ? 1e4 : 0.0;
-  };
-  EXPECT_FALSE(found.Refine(against_the_mass).Exchange(found.set));
+  EXPECT_FALSE(found.Refine(found.Against("added_mass@load")).Exchange(found.set));
   EXPECT_EQ(found.Name(0), "flexible_mode@load");
 }
 
 TEST(Refinement, DoesNotPutInThePlaceOfACauseWhatUnseenDataAloneSpeakFor) {
   Found found({"added_mass@load:mass=0.05"},
               {{"added_mass@load", Eigen::VectorXd::Constant(1, 0.05)}});
-  const std::size_t mass = test::Place(found.candidates, "added_mass@load");
-  const auto against_the_mass = [mass](const CauseFit& fit) {
-    return fit.causes[0].candidate == mass ? 1e4 : 0.0;
-  };
-  EXPECT_FALSE(found.Refine(against_the_mass).Exchange(found.set));
+  EXPECT_FALSE(found.Refine(found.Against("added_mass@load")).Exchange(found.set));
   EXPECT_EQ(found.Name(0), "added_mass@load");
 }
 
