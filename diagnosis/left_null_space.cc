@@ -23,7 +23,7 @@ int RankOf(const VectorXd& singular_values) {
 }
 
 int Rank(const MatrixXd& matrix) {
-  return RankOf(SingularValueDecomposition(Equilibrate(matrix).matrix).values);
+  return RankOf(SingularValuesOf(Equilibrate(matrix).matrix));
 }
 
 /// [C A^i | for every k: what N_x,k B_d + N_y,k D_d takes from N_y,i], i = 0 .. degree:

@@ -67,6 +67,10 @@ SingularValues SingularValueDecomposition(const MatrixXd& A) {
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
+Eigen::VectorXd SingularValuesOf(const MatrixXd& A) {
+  return Eigen::JacobiSVD<MatrixXd>(A).singularValues();
+}
+
 SingularValues LeftSingularVectors(const MatrixXd& A) {
   const Eigen::BDCSVD<MatrixXd> svd(A, Eigen::ComputeFullU);
   return {svd.singularValues(), svd.matrixU(), {}};

@@ -52,6 +52,8 @@ struct SingularValues {
 };
 /// By Jacobi's rotations: small singular values have small relative errors.
 SingularValues SingularValueDecomposition(const Eigen::MatrixXd& A);
+/// The same values alone, where vectors are not asked for.
+Eigen::VectorXd SingularValuesOf(const Eigen::MatrixXd& A);
 /// By divide and conquer, without V: for large matrices.
 SingularValues LeftSingularVectors(const Eigen::MatrixXd& A);
 

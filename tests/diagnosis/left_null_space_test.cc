@@ -136,7 +136,7 @@ TEST(LeftNullSpace, AnnihilatesHAtEveryDegreeAndIsAllOfIt) {
     EXPECT_EQ(null.degree, degree);
     if (expected == 0) continue;
     EXPECT_LT(Violation(system, NoSignal(system), null.rows), 1e-13) << degree;
-    const VectorXd singular = SingularValueDecomposition(null.rows).values;
+    const VectorXd singular = SingularValuesOf(null.rows);
     EXPECT_GT(singular[expected - 1], 1e-12 * singular[0]) << degree;
     // Ten decades apart from the rank tolerance is the delta form's promise.
     EXPECT_GT(null.separation, 1e-6) << degree;
