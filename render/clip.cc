@@ -6,10 +6,13 @@
 #include "mjdiag/render/clip_painter.h"
 #include "mjdiag/render/clip_writer.h"
 #include "mjdiag/render/site_path.h"
+#include "mjdiag/render/stage.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
+
+constexpr std::size_t kMostWaiting = 4;  // pictures that are rendered, not yet painted
 
 void CheckPositive(const char* name, double value) {
   if (std::isfinite(value) && value > 0.0) return;
@@ -44,11 +47,18 @@ ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
   const TimeRange range = painter.range();
   const int frames = 1 + static_cast<int>((range.end - range.begin) / step + 1e-6);
   Image picture;
-  for (int n = 0; n < frames; ++n) {
-    painter.Paint(range.begin + n * step, picture);
+  // OpenGL stays in this thread; painting and encoding go on beside it.
+  Stage<ClipView> finishing(kMostWaiting, [&](ClipView& view) {
+    painter.Paint(view, picture);
     writer.Write(picture);
+  });
+  ClipView view;
+  for (int n = 0; n < frames; ++n) {
+    painter.Render(range.begin + n * step, view);
+    finishing.Push(view);
     if (options.progress) options.progress((n + 1.0) / frames);
   }
+  finishing.Finish();
   writer.Finish();
   return {frames, writer.codec(), painter.amplification()};
 }
@@ -62,8 +72,10 @@ JointFactors RenderStill(const mjModel& model, std::span<const ClipRun> runs,
     throw InputError("time of the still", std::to_string(time) + " s",
                      std::to_string(range.begin) + " to " + std::to_string(range.end));
   }
+  ClipView view;
+  painter.Render(time, view);
   Image picture;
-  painter.Paint(time, picture);
+  painter.Paint(view, picture);
   WritePng(file, picture);
   return painter.amplification();
 }

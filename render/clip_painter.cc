@@ -8,12 +8,12 @@
 #include "mjdiag/render/amplification_label.h"
 #include "mjdiag/render/engineering.h"
 #include "mjdiag/render/estimate_panel.h"
-#include "mjdiag/render/machine_views.h"
 #include "mjdiag/render/palette.h"
 #include "mjdiag/render/site_path.h"
 #include "mjdiag/render/strip_chart.h"
 #include "mjdiag/render/strokes.h"
 #include "mjdiag/render/trace.h"
+#include "mjdiag/render/view_painter.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -96,7 +96,8 @@ struct ClipPainter::State {
         layout(LayOutClip({options.width, options.height},
                           options.ghost ? 1 : runs.size(), traces.size(),
                           Extras(source, options, runs.size()))),
-        views(source, runs, records, range, options, layout),
+        views(source, records, range, options, layout),
+        view_painter(runs, layout, views),
         speed(SpeedText(clip_speed)),
         clock(FormatForResolution(
             "s", std::max(std::abs(range.begin), std::abs(range.end)), time_step)) {
@@ -194,6 +195,7 @@ struct ClipPainter::State {
   std::optional<DiagnosisOverlay> diagnosis;
   ClipLayout layout;
   MachineViews views;
+  ViewPainter view_painter;
   std::string speed;
   EngineeringFormat clock;
   std::vector<EngineeringFormat> readout_formats;
@@ -221,20 +223,28 @@ JointFactors ClipPainter::amplification() const {
   return factors;
 }
 
-void ClipPainter::Paint(double time, Image& picture) {
+void ClipPainter::Render(double time, ClipView& view) {
+  view.time = time;
+  view.panels.resize(state_->layout.panels.size());
+  for (std::size_t panel = 0; panel < view.panels.size(); ++panel) {
+    state_->views.Render(panel, time, view.panels[panel]);
+  }
+}
+
+void ClipPainter::Paint(const ClipView& view, Image& picture) {
   State& s = *state_;
   picture.width = s.layout.size.width;
   picture.height = s.layout.size.height;
   picture.rgb.resize(3 * static_cast<std::size_t>(picture.width) * picture.height);
   cv::Mat canvas(picture.height, picture.width, CV_8UC3, picture.rgb.data());
   s.background.copyTo(canvas);
-  s.DrawClock(time, canvas);
-  for (std::size_t panel = 0; panel < s.layout.panels.size(); ++panel) {
-    s.views.Draw(panel, time, s.type, canvas);
-    s.DrawReadout(panel, time, canvas);
+  s.DrawClock(view.time, canvas);
+  for (std::size_t panel = 0; panel < view.panels.size(); ++panel) {
+    s.view_painter.Paint(panel, view.time, view.panels[panel], s.type, canvas);
+    s.DrawReadout(panel, view.time, canvas);
   }
-  for (const StripChart& chart : s.charts) chart.DrawUpTo(time, s.type, canvas);
-  if (s.estimates) s.estimates->DrawAt(time, s.type, canvas);
+  for (const StripChart& chart : s.charts) chart.DrawUpTo(view.time, s.type, canvas);
+  if (s.estimates) s.estimates->DrawAt(view.time, s.type, canvas);
 }
 
 }  // namespace mjdiag

@@ -1,11 +1,9 @@
 #include "mjdiag/render/clip_writer.h"
 
-#include <array>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <optional>
-#include <utility>
 
 #include "mjdiag/render/frame_folder.h"
 #include "mjdiag/signals/error.h"
@@ -13,8 +11,6 @@
 
 namespace mjdiag {
 namespace {
-
-constexpr std::size_t kQueueLength = 4;
 
 const std::filesystem::path& CheckName(const std::filesystem::path& file) {
   if (file.extension() == ".mp4") return file;
@@ -59,109 +55,46 @@ void CheckComplete(const std::filesystem::path& file, int frames) {
 
 }  // namespace
 
-class ClipWriter::Output {
- public:
-  Output(const std::filesystem::path& file, int width, int height, double fps,
-         const std::filesystem::path& frames)
-      : replacement_(CheckName(file)) {
-    if (!frames.empty()) frames_.emplace(frames);
-    codec_ = OpenEncoder(replacement_.temporary(), fps, {width, height}, video_);
+struct ClipWriter::State {
+  State(const std::filesystem::path& file, int width, int height, double fps,
+        const std::filesystem::path& folder)
+      : replacement(CheckName(file)) {
+    if (!folder.empty()) frames.emplace(folder);
+    codec = OpenEncoder(replacement.temporary(), fps, {width, height}, video);
   }
 
-  void Add(const Image& picture) {
-    const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
-                      const_cast<std::uint8_t*>(picture.rgb.data()));
-    cv::cvtColor(rgb, bgr_, cv::COLOR_RGB2BGR);
-    video_.write(bgr_);
-    if (frames_) frames_->Add(picture);
-    ++count_;
-  }
-
-  void Commit() {
-    video_.release();
-    CheckComplete(replacement_.temporary(), count_);
-    if (frames_) frames_->Commit();
-    replacement_.Commit();
-  }
-
-  const std::string& codec() const { return codec_; }
-
- private:
   // The video must be closed before its temporary file is removed: it stands last.
-  FileReplacement replacement_;
-  std::optional<FrameFolder> frames_;
-  std::string codec_;
-  cv::Mat bgr_;
-  int count_ = 0;
-  cv::VideoWriter video_;
+  FileReplacement replacement;
+  std::optional<FrameFolder> frames;
+  std::string codec;
+  cv::Mat bgr;
+  int count = 0;
+  cv::VideoWriter video;
 };
 
 ClipWriter::ClipWriter(const std::filesystem::path& file, int width, int height,
                        double fps, const std::filesystem::path& frames)
-    : output_(std::make_unique<Output>(file, width, height, fps, frames)),
-      thread_([this] { Run(); }) {}
+    : state_(std::make_unique<State>(file, width, height, fps, frames)) {}
 
-ClipWriter::~ClipWriter() {
-  {
-    const std::lock_guard lock(mutex_);
-    queue_.clear();
-  }
-  Join();
-}
+ClipWriter::~ClipWriter() = default;
 
-const std::string& ClipWriter::codec() const { return output_->codec(); }
+const std::string& ClipWriter::codec() const { return state_->codec; }
 
-void ClipWriter::Write(Image& picture) {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return queue_.size() < kQueueLength || failure_; });
-  if (failure_) std::rethrow_exception(failure_);
-  queue_.push_back(std::move(picture));
-  picture = {};
-  if (!spare_.empty()) {
-    picture = std::move(spare_.back());
-    spare_.pop_back();
-  }
-  changed_.notify_all();
+void ClipWriter::Write(const Image& picture) {
+  // OpenCV has no const view of foreign pixels; cvtColor only reads them.
+  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
+                    const_cast<std::uint8_t*>(picture.rgb.data()));
+  cv::cvtColor(rgb, state_->bgr, cv::COLOR_RGB2BGR);
+  state_->video.write(state_->bgr);
+  if (state_->frames) state_->frames->Add(picture);
+  ++state_->count;
 }
 
 void ClipWriter::Finish() {
-  Join();
-  if (failure_) std::rethrow_exception(failure_);
-  output_->Commit();
-}
-
-void ClipWriter::Join() {
-  {
-    const std::lock_guard lock(mutex_);
-    closing_ = true;
-    changed_.notify_all();
-  }
-  if (thread_.joinable()) thread_.join();
-}
-
-void ClipWriter::Run() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [this] { return !queue_.empty() || closing_; });
-    if (queue_.empty()) return;
-    Image picture = std::move(queue_.front());
-    queue_.pop_front();
-    changed_.notify_all();
-    lock.unlock();
-    std::exception_ptr failure;
-    try {
-      output_->Add(picture);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    lock.lock();
-    if (failure) {
-      failure_ = failure;
-      changed_.notify_all();
-      return;
-    }
-    spare_.push_back(std::move(picture));
-  }
+  state_->video.release();
+  CheckComplete(state_->replacement.temporary(), state_->count);
+  if (state_->frames) state_->frames->Commit();
+  state_->replacement.Commit();
 }
 
 }  // namespace mjdiag

@@ -1,14 +1,15 @@
 #include "mjdiag/render/scene_renderer.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "mjdiag/plugin/mujoco_model.h"
 #include "mjdiag/render/backdrop.h"
+#include "mjdiag/render/facets.h"
 #include "mjdiag/render/offscreen_context.h"
 #include "mjdiag/render/osmesa_library.h"
+#include "mjdiag/render/posed_scene.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -16,8 +17,7 @@ namespace {
 
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 4096;
-constexpr float kBackground = 1.0F;    // in the depth buffer
-constexpr int kMaxDecorations = 1000;  // geoms beside those of the model and its ghost
+constexpr float kBackground = 1.0F;  // in the depth buffer
 
 void CheckSide(const char* name, int side) {
   if (side < kMinSide || side > kMaxSide) {
@@ -30,70 +30,22 @@ int Oversampling(Smoothing smoothing) {
   return smoothing == Smoothing::kSupersample2 ? 2 : 1;
 }
 
-// Curved geoms need no more facets than this at the size of a clip, and a processor
-// that draws them one by one feels every one.
-void CapFacets(mjModel& model) {
-  auto& quality = model.vis.quality;
-  quality.numslices = std::min(quality.numslices, 20);
-  quality.numstacks = std::min(quality.numstacks, 12);
-  quality.numquads = std::min(quality.numquads, 1);
-}
-
 // The model with an off-screen buffer as large as the picture.
-ModelPtr SizedModel(const mjModel& model, const SceneOptions& options) {
+ModelPtr SizedModel(const mjModel& model, const SceneOptions& options,
+                    const PosedScene& scene) {
   ModelPtr sized = CopyModel(model);
   sized->vis.global.offwidth = options.width * Oversampling(options.smoothing);
   sized->vis.global.offheight = options.height * Oversampling(options.smoothing);
-  sized->vis.quality.offsamples = options.smoothing == Smoothing::kMultisample4 ? 4 : 0;
-  CapFacets(*sized);
-  if (!options.shadows) sized->vis.quality.shadowsize = 0;
+  auto& quality = sized->vis.quality;
+  quality.offsamples = options.smoothing == Smoothing::kMultisample4 ? 4 : 0;
+  if (!options.shadows) quality.shadowsize = 0;
+  const Facets facets = FacetsThatShow(scene.get(), options.height,
+                                       {quality.numslices, quality.numstacks});
+  quality.numslices = facets.slices;
+  quality.numstacks = facets.stacks;
+  quality.numquads = 1;  // light falls evenly on what is flat
   return sized;
 }
-
-std::string CameraNames(const mjModel& model) {
-  std::string names;
-  for (int id = 0; id < model.ncam; ++id) {
-    const char* name = mj_id2name(&model, mjOBJ_CAMERA, id);
-    if (name == nullptr) continue;
-    names += (names.empty() ? "one of: " : ", ") + std::string(name);
-  }
-  return names.empty() ? "no camera name, as the model has none" : names;
-}
-
-mjvCamera ChooseCamera(const mjModel& model, const std::string& name) {
-  mjvCamera camera;
-  mjv_defaultFreeCamera(&model, &camera);
-  if (name.empty()) return camera;
-  camera.type = mjCAMERA_FIXED;
-  camera.fixedcamid = mj_name2id(&model, mjOBJ_CAMERA, name.c_str());
-  if (camera.fixedcamid < 0) {
-    throw InputError("camera", "no camera named \"" + name + "\"", CameraNames(model));
-  }
-  return camera;
-}
-
-// What drawing needs from a pose. mj_forward would also run the control callback.
-void UpdatePose(const mjModel& model, mjData& data) {
-  mj_kinematics(&model, &data);
-  mj_comPos(&model, &data);
-  mj_camlight(&model, &data);
-  mj_tendon(&model, &data);
-}
-
-class Scene {
- public:
-  explicit Scene(const mjModel& model) {
-    mjv_defaultScene(&scene_);
-    mjv_makeScene(&model, &scene_, 2 * model.ngeom + model.nsite + kMaxDecorations);
-  }
-  ~Scene() { mjv_freeScene(&scene_); }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
-  mjvScene* get() { return &scene_; }
-
- private:
-  mjvScene scene_;
-};
 
 class RenderContext {
  public:
@@ -128,15 +80,13 @@ class RenderContext {
 struct SceneRenderer::State {
   State(const mjModel& source, const SceneOptions& wanted)
       : options(wanted),
-        camera(ChooseCamera(source, wanted.camera)),
-        model(SizedModel(source, wanted)),
-        scene(*model),
+        scene(source, wanted.camera),
+        model(SizedModel(source, wanted, scene)),
         context(Backdrop(*model).model()),
         viewport{0, 0, wanted.width * Oversampling(wanted.smoothing),
                  wanted.height * Oversampling(wanted.smoothing)},
         pixels(3 * static_cast<std::size_t>(viewport.width) * viewport.height) {
-    mjv_defaultOption(&visual);
-    scene.get()->flags[mjRND_SHADOW] = options.shadows;
+    scene.get().flags[mjRND_SHADOW] = options.shadows;
   }
   // The context must be current while its objects are freed.
   ~State() { offscreen.MakeCurrent(); }
@@ -144,14 +94,9 @@ struct SceneRenderer::State {
   void Draw(mjData& data, mjData* ghost_data = nullptr, const Ghost& ghost = {}) {
     offscreen.MakeCurrent();
     mjr_setBuffer(mjFB_OFFSCREEN, context.get());
-    UpdatePose(*model, data);
-    mjv_updateScene(model.get(), &data, &visual, nullptr, &camera, mjCAT_ALL,
-                    scene.get());
-    if (ghost_data != nullptr) {
-      UpdatePose(*model, *ghost_data);
-      AddGhost(*model, *ghost_data, visual, ghost, *scene.get());
-    }
-    mjr_render(viewport, scene.get(), context.get());
+    scene.Show(data);
+    if (ghost_data != nullptr) scene.AddGhost(*ghost_data, ghost);
+    mjr_render(viewport, &scene.get(), context.get());
   }
 
   // The picture in the framebuffer, turned upright and averaged down to its size.
@@ -183,12 +128,10 @@ struct SceneRenderer::State {
   }
 
   SceneOptions options;
-  mjvCamera camera;
+  PosedScene scene;
   ModelPtr model;
   OffscreenContext offscreen;
-  Scene scene;
   RenderContext context;
-  mjvOption visual;
   mjrRect viewport;
   std::vector<std::uint8_t> pixels;  // as OpenGL gives them: rows from the bottom
 };
@@ -212,39 +155,22 @@ void SceneRenderer::Render(mjData& data, mjData& ghost_data, const Ghost& ghost,
   state_->Read(image);
 }
 
-// The perspective projection of the fixed pipeline: the frustum at its near plane.
-std::optional<Eigen::Vector2d> SceneRenderer::Project(
-    const Eigen::Vector3d& point) const {
-  const mjvScene& scene = *state_->scene.get();
-  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
-  const auto vector = [](const float* v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
-  const Eigen::Vector3d forward = vector(eye.forward);
-  const Eigen::Vector3d up = vector(eye.up);
-  const Eigen::Vector3d offset = point - vector(eye.pos);
-  const double distance = forward.dot(offset);
-  if (distance < eye.frustum_near) return std::nullopt;
-  const double scale = eye.frustum_near / distance;
-  const double x = forward.cross(up).dot(offset) * scale - eye.frustum_center;
-  const double y = up.dot(offset) * scale;
-  const double height = eye.frustum_top - eye.frustum_bottom;
-  const double per_unit = state_->options.height / height;
-  return Eigen::Vector2d(0.5 * state_->options.width + x * per_unit,
-                         (eye.frustum_top - y) * per_unit);
+Projection SceneRenderer::projection() const {
+  return {state_->scene.eye(), state_->options.width, state_->options.height};
 }
 
 double SceneRenderer::ViewHeight(mjData& data) {
   State& s = *state_;
-  s.scene.get()->flags[mjRND_SKYBOX] = 0;  // it would count as a distant thing
+  s.scene.get().flags[mjRND_SKYBOX] = 0;  // it would count as a distant thing
   s.Draw(data);
-  s.scene.get()->flags[mjRND_SKYBOX] = 1;
+  s.scene.get().flags[mjRND_SKYBOX] = 1;
   const auto& v = s.viewport;
   float depth = s.MedianDepth({v.width / 3, v.height / 3, v.width / 3, v.height / 3});
   if (depth == kBackground) depth = s.MedianDepth(v);
   if (depth == kBackground) return s.model->stat.extent;
 
   // Depth buffer d of the perspective projection: z = n f / (f - d (f - n)).
-  const mjvGLCamera eye =
-      mjv_averageCamera(&s.scene.get()->camera[0], &s.scene.get()->camera[1]);
+  const mjvGLCamera eye = s.scene.eye();
   const double near = eye.frustum_near;
   const double far = eye.frustum_far;
   const double distance =

@@ -3,13 +3,12 @@
 
 #include <mujoco/mujoco.h>
 
-#include <Eigen/Core>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "mjdiag/render/ghost.h"
 #include "mjdiag/render/image.h"
+#include "mjdiag/render/projection.h"
 
 namespace mjdiag {
 
@@ -42,9 +41,8 @@ class SceneRenderer {
   /// The same with the ghost of a second pose; with the same ghost the same bytes.
   void Render(mjData& data, mjData& ghost_data, const Ghost& ghost, Image& image);
 
-  /// Where the last picture shows a point [m] of the world, in pixels from its left
-  /// top; nothing for points behind the camera.
-  std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& point) const;
+  /// Where the last picture shows what.
+  Projection projection() const;
 
   /// Height of the picture [m] at the distance of what its middle shows in that pose
   /// (median of what is not background).

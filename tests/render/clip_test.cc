@@ -280,8 +280,7 @@ TEST(ClipWriter, LeavesNothingWithoutFinish) {
   {
     ClipWriter writer(folder / "clip.mp4", 320, 240, 30.0, folder / "frames");
     for (int i = 0; i < 20; ++i) {
-      Image picture{320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)};
-      writer.Write(picture);
+      writer.Write({320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)});
     }
   }
   EXPECT_EQ(folder.size(), 0);

@@ -78,7 +78,7 @@ TEST(SitePath, LiesWhereThePictureShowsTheSite) {
       }
     }
     ASSERT_GT(count, 10.0) << camera;
-    const auto pixel = renderer.Project(Eigen::Map<const Eigen::Vector3d>(
+    const auto pixel = renderer.projection()(Eigen::Map<const Eigen::Vector3d>(
         data->site_xpos + 3 * mj_name2id(model.get(), mjOBJ_SITE, "tip")));
     ASSERT_TRUE(pixel.has_value());
     EXPECT_LT((*pixel - centre / count).norm(), 3.0) << camera;
