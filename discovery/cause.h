@@ -23,6 +23,8 @@ struct Cause {
 struct Changes {
   std::vector<Fault> faults;
   std::vector<EffectSpec> effects;
+
+  bool operator==(const Changes&) const = default;
 };
 Changes ChangesOf(const std::vector<Cause>& causes);
 

@@ -52,14 +52,13 @@ class Simulator {
 
   /// J at theta for a step of the fit, all samples.
   const MatrixXd& Slope(const VectorXd& theta) {
-    if (slope_.size() > 0 && theta == slope_theta_) return slope_;
-    if (secant_ && slope_.size() > 0) {
-      Broyden(theta);
-    } else {
-      slope_ = Sensitivities(theta);
+    if (slope_.size() == 0) {
+      SetSlope(theta, Differences(theta, known_));
+      exact_ = known_ == nullptr;
+    } else if (theta != slope_theta_) {
+      SetSlope(theta, secant_ ? Broyden(theta) : Differences(theta, nullptr));
+      exact_ = !secant_;
     }
-    slope_theta_ = theta;
-    slope_residual_ = Residual(theta);
     return slope_;
   }
 
@@ -67,13 +66,29 @@ class Simulator {
   const MatrixXd& slope() const { return slope_; }
 
   /// J at theta by differences, all samples.
-  MatrixXd Sensitivities(const VectorXd& theta) {
+  const MatrixXd& Sensitivities(const VectorXd& theta) {
+    if (!exact_ || theta != slope_theta_) {
+      SetSlope(theta, Differences(theta, nullptr));
+      exact_ = true;
+    }
+    return slope_;
+  }
+
+ private:
+  void SetSlope(const VectorXd& theta, MatrixXd slope) {
+    slope_ = std::move(slope);
+    slope_theta_ = theta;
+    slope_residual_ = Residual(theta);
+  }
+
+  /// J with its first columns from `known`, if any.
+  MatrixXd Differences(const VectorXd& theta, const MatrixXd* known) {
     const VectorXd base = Residual(theta);
     const double duration =
         static_cast<double>(problem_.run.samples()) * problem_.run.sample_time;
     MatrixXd J(base.size(), theta.size());
-    const Index kept = known_ != nullptr ? known_->cols() : 0;
-    if (kept > 0) J.leftCols(kept) = known_->topRows(base.size());
+    const Index kept = known != nullptr ? known->cols() : 0;
+    if (kept > 0) J.leftCols(kept) = known->topRows(base.size());
     ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
       const Index i = kept + number;
       J.col(i) = Difference(theta, base, i, duration);
@@ -81,18 +96,18 @@ class Simulator {
     return J;
   }
 
- private:
-  /// J += (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
+  /// J + (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
   /// squared norms of its columns: parameters of all units count alike.
-  void Broyden(const VectorXd& theta) {
+  MatrixXd Broyden(const VectorXd& theta) {
     const VectorXd step = theta - slope_theta_;
     const VectorXd metric =
         slope_.colwise().squaredNorm().transpose().cwiseProduct(step);
     const double length = step.dot(metric);
-    if (!(length > 0.0)) return;
+    if (!(length > 0.0)) return slope_;
     const VectorXd missed = Residual(theta) - slope_residual_ - slope_ * step;
-    slope_ += missed * (metric / length).transpose();
+    return slope_ + missed * (metric / length).transpose();
   }
+
   /// Column i of J. A machine that sticks and slips may answer to any change, however
   /// small, with a course of its own: a difference that a step ten times as large does
   /// not raise. Then only large steps show the slope.
@@ -137,7 +152,8 @@ class Simulator {
   std::vector<FitParameter> parameters_;
   VectorXd theta_;
   VectorXd residual_;
-  MatrixXd slope_;  // of the last step of the fit, with where it was taken
+  bool exact_ = false;  // slope_ is all of differences
+  MatrixXd slope_;      // of the last step of the fit, with where it was taken
   VectorXd slope_theta_;
   VectorXd slope_residual_;
 };
@@ -298,6 +314,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.causes = WithValues(start, theta);
   }
   if (theta.size() > 0) {
+    fit.exact = options.sensitivities;
     fit.sensitivities =
         options.sensitivities ? simulator.Sensitivities(theta) : simulator.slope();
   }

@@ -32,6 +32,7 @@ struct CauseFit {
   std::vector<FittedCause> causes;
   Eigen::VectorXd residual;       ///< scaled innovations of all samples
   Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of the train part
+  bool exact = false;             ///< J by differences at theta, not by secants
   double train = 0.0;             ///< mean square of the train part
   double held_out = 0.0;          ///< of the rest; 0 without
 };

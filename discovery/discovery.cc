@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/discovery.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "mjdiag/discovery/profile_interval.h"
 #include "mjdiag/discovery/sensor_noise.h"
 #include "mjdiag/discovery/telling_motion.h"
+#include "mjdiag/plugin/parallel.h"
 
 namespace mjdiag {
 namespace {
@@ -251,12 +253,19 @@ Discovery Discoverer::Run() {
     Search(search, false);
   }
   NameCauses();
-  const Track found = FollowWith(ChangesOf(candidates_, search_.fit.causes));
+  const std::array plants{Changes{}, ChangesOf(candidates_, search_.fit.causes)};
+  std::array<Track, 2> tracks;
+  ParallelFor(2, [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    tracks[i] = FollowWith(plants[i]);
+  });
+  const auto& [nominal, found] = tracks;
   if (!search_.significant_rest) AddNoiseCauses(found.innovations);
   Judge();
 
-  const Track nominal = FollowWith({});
-  const Track final = discovery_.causes.empty() ? nominal : FollowWith(changes_);
+  const Track final = discovery_.causes.empty() ? nominal
+                      : changes_ == plants[1]   ? found
+                                                : FollowWith(changes_);
   const ObservedMotion motion = MotionOf(final);
   NoteQuietAxes(motion);
   for (std::size_t i = 0; i < search_.contenders.size() && i < discovery_.causes.size();

@@ -180,17 +180,24 @@ void Discoverer::AddLadder() {
   }
   if (!discovery_.causes.empty()) steps.emplace_back("all, fitted together", changes_);
   discovery_.ladder.resize(steps.size());
-  ParallelFor(static_cast<int>(steps.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    const auto& [added, changes] = steps[i];
-    const VectorXd rest = problem_.Residual(changes);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    discovery_.ladder[i].added = steps[i].first;
+  }
+  // One replay each: the cores come to their end together.
+  const int replays = validation_ != nullptr ? 3 : 2;
+  ParallelFor(replays * static_cast<int>(steps.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number / replays);
+    const Changes& changes = steps[i].second;
     LadderStep& entry = discovery_.ladder[i];
-    entry.added = added;
-    entry.train = std::sqrt(MeanSquare(rest, channels, problem_.skip, problem_.train));
-    entry.held_out =
-        std::sqrt(MeanSquare(rest, channels, problem_.train, problem_.run.samples()));
-    entry.error_percent = ReplayErrors(setup_, plant_, changes, measured_);
-    if (validation_ != nullptr) {
+    if (number % replays == 0) {
+      const VectorXd rest = problem_.Residual(changes);
+      entry.train =
+          std::sqrt(MeanSquare(rest, channels, problem_.skip, problem_.train));
+      entry.held_out =
+          std::sqrt(MeanSquare(rest, channels, problem_.train, problem_.run.samples()));
+    } else if (number % replays == 1) {
+      entry.error_percent = ReplayErrors(setup_, plant_, changes, measured_);
+    } else {
       entry.validation_percent = ReplayErrors(setup_, plant_, changes, *validation_);
     }
   });
@@ -202,15 +209,26 @@ void Discoverer::AddComparisons() {
   RunOptions extended = nominal;
   extended.faults = changes_.faults;
   extended.effects = changes_.effects;
-  discovery_.before = Compare(setup_, plant_, measured_, nominal);
-  discovery_.after = Compare(setup_, plant_, measured_, extended);
+  struct Task {
+    const Record* measured;
+    const RunOptions& options;
+    Comparison& result;
+  };
+  std::vector<Task> tasks{{&measured_, nominal, discovery_.before},
+                          {&measured_, extended, discovery_.after}};
+  if (validation_ != nullptr) {
+    tasks.push_back({validation_, nominal, discovery_.validation_before.emplace()});
+    tasks.push_back({validation_, extended, discovery_.validation_after.emplace()});
+  }
+  ParallelFor(static_cast<int>(tasks.size()), [&](int number) {
+    const Task& task = tasks[static_cast<std::size_t>(number)];
+    task.result = Compare(setup_, plant_, *task.measured, task.options);
+  });
   const Index skip = problem_.skip;
   discovery_.mismatch_before.train =
       MismatchRms(discovery_.before, skip, problem_.train);
   discovery_.mismatch_after.train = MismatchRms(discovery_.after, skip, problem_.train);
   if (validation_ != nullptr) {
-    discovery_.validation_before = Compare(setup_, plant_, *validation_, nominal);
-    discovery_.validation_after = Compare(setup_, plant_, *validation_, extended);
     const Index n = validation_->samples();
     discovery_.mismatch_before.validation =
         MismatchRms(*discovery_.validation_before, skip, n);

@@ -407,8 +407,11 @@ SearchResult Search::Run() {
   }
   if (options_.last_fit && !result_.fit.causes.empty()) {
     Report("last fit", 0.9);
-    result_.fit = FitCauses(problem_, candidates_, result_.fit.causes,
-                            {.iterations = 8, .tolerance = 1e-8});
+    const CauseFit& fit = result_.fit;
+    result_.fit = FitCauses(problem_, candidates_, fit.causes,
+                            {.iterations = 8,
+                             .tolerance = 1e-8,
+                             .known = fit.exact ? &fit.sensitivities : nullptr});
   }
   return std::move(result_);
 }

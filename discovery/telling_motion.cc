@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/telling_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -56,23 +57,30 @@ std::optional<TellingMotion> FindTellingMotion(const Setup& setup, const mjModel
                                                const Changes& one,
                                                const Changes& other) {
   if (setup.axes.empty()) return std::nullopt;
+  // The slowest, which take longest, first.
   std::vector<TellingMotion> motions;
-  for (const Trajectory& trajectory : setup.trajectories) {
-    for (const double slower : {1.0, 2.0, 5.0}) {
+  for (const double slower : {5.0, 2.0, 1.0}) {
+    for (const Trajectory& trajectory : setup.trajectories) {
       motions.push_back({trajectory.name, slower, 0.0});
     }
   }
-  ParallelFor(static_cast<int>(motions.size()), [&](int i) {
-    TellingMotion& motion = motions[static_cast<std::size_t>(i)];
+  std::vector<std::array<std::optional<Record>, 2>> runs(motions.size());
+  ParallelFor(2 * static_cast<int>(motions.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number / 2);
+    const auto which = static_cast<std::size_t>(number % 2);
+    const TellingMotion& motion = motions[i];
     try {
       const Excitation excitation = FollowTrajectory(
           setup, Slower(setup.FindTrajectory(motion.trajectory), motion.slower));
-      motion.separation = Separation(setup, RunOf(setup, plant, excitation, one),
-                                     RunOf(setup, plant, excitation, other));
+      runs[i][which] = RunOf(setup, plant, excitation, which == 0 ? one : other);
     } catch (const std::exception&) {
-      motion.separation = 0.0;  // a motion that cannot be run is not proposed
+      // A motion that cannot be run is not proposed.
     }
   });
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto& [a, b] = runs[i];
+    if (a && b) motions[i].separation = Separation(setup, *a, *b);
+  }
   const auto best =
       std::ranges::max_element(motions, std::less<>(), &TellingMotion::separation);
   if (best == motions.end() || best->separation <= 0.0) return std::nullopt;

@@ -53,6 +53,8 @@ struct EffectSpec {
 
   /// A parameter that CheckEffect has passed, or its fallback.
   double Value(std::string_view parameter) const;
+
+  bool operator==(const EffectSpec&) const = default;
 };
 
 /// All effects of design and documentation, in their order.

@@ -24,6 +24,8 @@ struct FaultKnob {
 struct Fault {
   std::string name;
   double value = 1.0;
+
+  bool operator==(const Fault&) const = default;
 };
 
 /// The knobs that the plant declares, in the order of the file. InputError names an
