@@ -39,10 +39,8 @@ Eigen::Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
          static_cast<Eigen::Index>(horizon / record.sample_time() + 0.5);
 }
 
-DiagnosisResult ConcludeRecord(const DiagnoseOptions& options, const Machine& machine,
-                               const DiagnosisDesign& design,
-                               const DiagnosisMonitor& monitor, const Record& record) {
-  if (!options.refine) return Conclude(design, monitor);
+DiagnosisResult Refined(const Machine& machine, const DiagnosisDesign& design,
+                        const DiagnosisMonitor& monitor, const Record& record) {
   const MechanicalModel healthy = Linearize(*machine.plant, machine.setup);
   const RefinedEstimate refined = RefineEstimate(
       design, SynthesisOf(machine.setup, healthy),
@@ -67,8 +65,9 @@ void Diagnose(const DiagnoseOptions& options) {
   DiagnosisMonitor monitor(ready.design, record.samples(), ready.baseline);
   monitor.RegressFrom(HorizonStart(ready.design, record));
   Run(monitor, ready.design, record);
-  const DiagnosisResult result =
-      ConcludeRecord(options, machine, ready.design, monitor, record);
+  const DiagnosisResult result = options.refine
+                                     ? Refined(machine, ready.design, monitor, record)
+                                     : Conclude(ready, machine, excitation, monitor);
   nlohmann::json document = ToJson(result);
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();

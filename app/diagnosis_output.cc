@@ -3,7 +3,7 @@
 #include "app/command.h"
 #include "app/format.h"
 #include "app/progress.h"
-#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/cross_terms.h"
 #include "mjdiag/plugin/robust_design.h"
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/diagnosis_verdict.h"
@@ -81,9 +81,9 @@ ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& ma
     ready.design = DesignFilters(setup, *machine.plant);
   }
   ProgressBar bar("healthy runs");
-  NominalRuns runs;
-  runs.linear = linear;
-  runs.runs = source.runs;
+  ready.runs.linear = linear;
+  ready.runs.runs = source.runs;
+  NominalRuns runs = ready.runs;
   runs.progress = [&bar](double fraction) { bar.Show(fraction); };
   if (source.baseline) {
     ready.baseline =
@@ -95,6 +95,18 @@ ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& ma
     ready.design.limits = CalibrateLimits(ready.design, setup, *machine.plant, runs);
   }
   return ready;
+}
+
+DiagnosisResult Conclude(const ReadyDiagnosis& ready, const Machine& machine,
+                         const Excitation& excitation,
+                         const DiagnosisMonitor& monitor) {
+  DiagnosisResult result = Conclude(ready.design, monitor);
+  if (ready.baseline.size() > 0) {
+    RemoveCrossTerms(
+        result, ready.design, machine.setup, *machine.plant,
+        {excitation, ready.baseline, monitor.first_regressed(), ready.runs});
+  }
+  return result;
 }
 
 NamedPage PageOf(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
@@ -114,7 +126,7 @@ std::string Describe(const DiagnosisResult& result) {
   Table table({"fault", "value", "from healthy", "sd", "detected"});
   for (const FaultVerdict& fault : RankedFaults(result)) {
     table.Add({fault.name, Short(fault.value), Short(fault.deviation), Short(fault.sd),
-               fault.detected ? "yes" : "no"});
+               DetectionText(fault)});
   }
   return text + table.ToString();
 }

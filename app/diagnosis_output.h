@@ -8,6 +8,7 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "mjdiag/diagnosis/diagnosis_result.h"
+#include "mjdiag/plugin/filter_design.h"
 
 namespace mjdiag::app {
 
@@ -24,12 +25,18 @@ void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source);
 struct ReadyDiagnosis {
   DiagnosisDesign design;
   Eigen::MatrixXd baseline;
+  NominalRuns runs;  ///< what healthy runs of this motion are made with
 };
 
 /// From the file or designed, with limits; for this motion if a baseline is wanted.
 /// InputError if the file belongs to other channels or another rate than the setup.
 ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
                                 const Excitation& excitation, bool linear);
+
+/// What the monitor says at the end of its run; against a baseline, without the cross
+/// terms of large faults.
+DiagnosisResult Conclude(const ReadyDiagnosis& ready, const Machine& machine,
+                         const Excitation& excitation, const DiagnosisMonitor& monitor);
 
 /// The page of a diagnosis.
 NamedPage PageOf(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,

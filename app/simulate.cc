@@ -103,7 +103,7 @@ void Simulate(const SimulateOptions& options) {
   }
   std::function<NamedPage()> page;
   if (options.diagnose) {
-    const DiagnosisResult result = Conclude(ready->design, *monitor);
+    const DiagnosisResult result = Conclude(*ready, machine, excitation, *monitor);
     document["diagnosis"] = ToJson(result);
     text += "\n" + Describe(result);
     if (!options.output.folder.empty()) {

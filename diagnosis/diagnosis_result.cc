@@ -32,7 +32,8 @@ std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
                         deviation,
                         sd,
                         {value - half * sd, value + half * sd},
-                        std::abs(deviation) > reach * sd && !usual});
+                        std::abs(deviation) > reach * sd && !usual,
+                        false});
   }
   return verdicts;
 }

@@ -16,6 +16,8 @@ struct FaultVerdict {
   double sd = 0.0;
   Interval ci95;
   bool detected = false;
+  /// Far from healthy, but no farther than the faults that are detected put it.
+  bool cross_term = false;
 };
 
 struct DiagnosisResult {

@@ -38,6 +38,7 @@ class DiagnosisMonitor {
 
   /// Samples before this one are filtered but not regressed: the horizon of Eq. 25.
   void RegressFrom(Eigen::Index sample) { first_regressed_ = sample; }
+  Eigen::Index first_regressed() const { return first_regressed_; }
 
   Eigen::Index samples() const { return samples_; }
   /// Residuals of the last sample, n.

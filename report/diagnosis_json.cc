@@ -15,7 +15,8 @@ nlohmann::json Faults(const std::vector<FaultVerdict>& verdicts) {
                       {"deviation", fault.deviation},
                       {"sd", fault.sd},
                       {"ci95", {fault.ci95.min, fault.ci95.max}},
-                      {"detected", fault.detected}});
+                      {"detected", fault.detected},
+                      {"cross_term", fault.cross_term}});
   }
   return faults;
 }

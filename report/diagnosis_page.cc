@@ -33,7 +33,7 @@ void AddFaultTable(Page& page, const DiagnosisResult& result) {
   for (const FaultVerdict& fault : RankedFaults(result)) {
     table.rows.push_back({fault.name, KnobText(fault.value),
                           FormatNumber(fault.deviation), FormatNumber(fault.sd),
-                          fault.detected ? "yes" : "no"});
+                          DetectionText(fault)});
   }
   page.AddTable(table);
 }

@@ -62,6 +62,11 @@ std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result) {
   return faults;
 }
 
+std::string DetectionText(const FaultVerdict& fault) {
+  if (fault.cross_term) return "cross term";
+  return fault.detected ? "yes" : "no";
+}
+
 std::string DiagnosisVerdict(const DiagnosisResult& result) {
   if (!result.detected) return "Nothing is wrong that this run shows.";
   const std::string faults = NamedFaults(RankedFaults(result));

@@ -20,6 +20,9 @@ inline constexpr double kNamedSignificance = 0.05;
 /// Detected faults first, by falling significance; the others keep their order.
 std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result);
 
+/// "yes", "no", or "cross term" of a fault that others put far from healthy.
+std::string DetectionText(const FaultVerdict& fault);
+
 /// The answer in one sentence. Besides the dwarfed faults it leaves out those whose
 /// value reads as healthy in five digits, unless none is left: then the strongest is
 /// named by its deviation, "eta_z = 1 - 4.00e-07".

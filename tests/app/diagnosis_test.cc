@@ -162,6 +162,28 @@ TEST_F(Diagnosis, NamesALargeFaultWithoutWhatLeaksIntoTheOthers) {
               ::testing::ContainsRegex("Detected: zeta_x = 1\\.199[0-9]*\\.<"));
 }
 
+// On the nonlinear plant the linear estimate of eta_y alone would be off by more than
+// the deviation, and four other knobs would be named.
+TEST_F(Diagnosis, AgainstABaselineLargeFaultsAreNamedAloneAndAtTheirValues) {
+  const std::string out = Path("run");
+  const json document = JsonOf(
+      "simulate --setup mjcf/ab383 --fault zeta_x=1.2 --fault eta_y=0.98 "
+      "--diagnose --baseline --report --filters " +
+      Filters() + " --out " + out)["diagnosis"];
+  std::vector<std::string> detected;
+  std::vector<std::string> cross_terms;
+  for (const json& fault : document["faults"]) {
+    if (fault["detected"]) detected.push_back(fault["name"]);
+    if (fault["cross_term"]) cross_terms.push_back(fault["name"]);
+  }
+  EXPECT_THAT(detected, ::testing::UnorderedElementsAre("zeta_x", "eta_y"));
+  EXPECT_THAT(cross_terms, ::testing::IsSupersetOf({"eta_x", "zeta_y"}));
+  // Five standard deviations of healthy runs.
+  EXPECT_NEAR(ValueOf(document, "zeta_x"), 1.2, 5e-3);
+  EXPECT_NEAR(ValueOf(document, "eta_y"), 0.98, 3e-4);
+  EXPECT_THAT(ReadAll(out + "/report.html"), HasSubstr("cross term"));
+}
+
 TEST_F(Diagnosis, WritesThePageOfADesignBesideItsFilters) {
   const std::string page =
       ReadAll(fs::path(Filters()).parent_path() / "design.page.json");
