@@ -3,8 +3,8 @@
 // amplified (amplification.h), with time, tracking errors and strip charts in step, and
 // what a diagnosis said at the time (diagnosis_overlay.h).
 //
-// Frame n shows time t_n = begin + n * speed / fps. Rendering and encoding overlap; the
-// frames are the same bytes every time.
+// Frame n shows time t_n = begin + n * speed / fps. OpenGL renders the next picture
+// while the last is painted and encoded; the frames are the same bytes every time.
 
 #include <mujoco/mujoco.h>
 

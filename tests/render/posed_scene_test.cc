@@ -2,66 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <string>
 #include <vector>
 
-#include "mjdiag/plugin/mujoco_model.h"
-#include "mjdiag/render/facets.h"
-#include "support/temporary_folder.h"
+#include "test_machine.h"
 
 namespace mjdiag {
 namespace {
-
-// A camera at y = -1 that looks along y, with a field of view of 2 atan(1/2): at a
-// distance d [m] a picture h pixels high is d [m] high.
-ModelPtr ModelOf(const std::string& bodies) {
-  const test::TemporaryFolder folder;
-  return LoadModel(
-      folder.Write("model.xml",
-                   "<mujoco><worldbody>"
-                   "<camera name='front' pos='0 -1 0' xyaxes='1 0 0 0 0 1' "
-                   "fovy='53.13010235415598'/>" +
-                       bodies + "</worldbody></mujoco>"));
-}
-
-constexpr Facets kMany{1000, 1000};
-
-double OutlineError(double radius, int pieces) {
-  return radius * (1.0 - std::cos(std::numbers::pi / pieces));
-}
-
-TEST(Facets, KeepTheOutlineWithinHalfAPixelWithTheFewest) {
-  for (const int height : {500, 2000}) {
-    const ModelPtr model = ModelOf(
-        "<geom type='sphere' size='0.02'/>"
-        "<geom type='cylinder' size='0.1 0.3' pos='0 1 0'/>");
-    const PosedScene scene(*model, "front");
-    const Facets facets = FacetsThatShow(scene.get(), height, kMany);
-    const double sphere = 0.02 * height;
-    const double cylinder = 0.1 * height / 2.0;
-    EXPECT_LE(OutlineError(cylinder, facets.slices), 0.5) << height;
-    EXPECT_GT(OutlineError(cylinder, facets.slices - 2), 0.5) << height;
-    EXPECT_LE(OutlineError(sphere, 2 * facets.stacks), 0.5) << height;
-    EXPECT_GT(OutlineError(sphere, 2 * (facets.stacks - 1)), 0.5) << height;
-  }
-}
-
-TEST(Facets, AreNeverMoreThanTheModelHas) {
-  const ModelPtr model = ModelOf("<geom type='ellipsoid' size='0.1 0.1 0.4'/>");
-  const PosedScene scene(*model, "front");
-  const Facets facets = FacetsThatShow(scene.get(), 2000, {28, 16});
-  EXPECT_EQ(facets.slices, 28);
-  EXPECT_EQ(facets.stacks, 16);
-}
-
-TEST(Facets, AreNotSpentOnWhatTheCameraDoesNotSee) {
-  const ModelPtr model = ModelOf("<geom type='sphere' size='0.4' pos='0 -3 0'/>");
-  const PosedScene scene(*model, "front");
-  EXPECT_LT(FacetsThatShow(scene.get(), 2000, kMany).slices, 10);
-}
 
 std::vector<int> GeomsOf(const PosedScene& scene) {
   std::vector<int> geoms;
@@ -78,7 +24,7 @@ const char* const kThreeInARow =
     "<geom type='box' size='0.1 0.1 0.1'/>";
 
 TEST(PosedScene, IsDrawnFromNearToFarPlanesLast) {
-  const ModelPtr model = ModelOf(kThreeInARow);
+  const ModelPtr model = test::ModelInView(kThreeInARow);
   const DataPtr data = MakeData(*model);
   PosedScene scene(*model, "front");
   scene.Show(*data);
@@ -87,7 +33,7 @@ TEST(PosedScene, IsDrawnFromNearToFarPlanesLast) {
 }
 
 TEST(PosedScene, KeepsItsOrderWhileTheMachineMoves) {
-  const ModelPtr model = ModelOf(kThreeInARow);
+  const ModelPtr model = test::ModelInView(kThreeInARow);
   const DataPtr data = MakeData(*model);
   PosedScene scene(*model, "front");
   scene.Show(*data);

@@ -1,6 +1,7 @@
 #pragma once
 // A small machine for the tests of render/: a driven slide on a compliant one and a
-// driven hinge that has a soft spring of its own, with records of its joints.
+// driven hinge that has a soft spring of its own, with records of its joints; and
+// scenes of a few bodies.
 
 #include <cmath>
 #include <numbers>
@@ -53,6 +54,18 @@ inline constexpr const char* kMachine = R"(<mujoco>
 inline ModelPtr Machine() {
   const TemporaryFolder folder;
   return LoadModel(folder.Write("machine.xml", kMachine));
+}
+
+/// Bodies and a camera "front" at y = -1 that looks along y, with a field of view of 2
+/// atan(1/2): at a distance d [m] a picture h pixels high is d [m] high.
+inline ModelPtr ModelInView(const std::string& bodies) {
+  const TemporaryFolder folder;
+  return LoadModel(
+      folder.Write("model.xml",
+                   "<mujoco><worldbody>"
+                   "<camera name='front' pos='0 -1 0' xyaxes='1 0 0 0 0 1' "
+                   "fovy='53.13010235415598'/>" +
+                       bodies + "</worldbody></mujoco>"));
 }
 
 /// A run of `samples` at 1 kHz: joints with the given peak deviations, and axis "x"
