@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <limits>
 
+#include "mjdiag/render/projection.h"
+
 namespace mjdiag {
 namespace {
 
-// Along the line of sight [m]. Planes are drawn last: their middle says nothing.
+// Planes are drawn last: their middle says nothing.
 double Distance(const mjvGLCamera& eye, const mjvGeom& geom) {
-  if (geom.type == mjGEOM_PLANE) return std::numeric_limits<double>::infinity();
-  double distance = 0.0;
-  for (int i = 0; i < 3; ++i) distance += eye.forward[i] * (geom.pos[i] - eye.pos[i]);
-  return distance;
+  return geom.type == mjGEOM_PLANE ? std::numeric_limits<double>::infinity()
+                                   : DistanceAhead(eye, geom);
 }
 
 bool IsOfModel(const mjvGeom& geom) {
@@ -22,7 +22,7 @@ bool IsOfModel(const mjvGeom& geom) {
 
 DrawingOrder::DrawingOrder(const mjModel& model, const mjvScene& scene)
     : ranks_(static_cast<std::size_t>(model.ngeom), model.ngeom) {
-  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+  const mjvGLCamera eye = EyeOf(scene);
   std::vector<mjvGeom> geoms(scene.geoms, scene.geoms + scene.ngeom);
   std::ranges::stable_sort(geoms, {},
                            [&eye](const mjvGeom& geom) { return Distance(eye, geom); });

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjdiag/render/projection.h"
+
 namespace mjdiag {
 namespace {
 
@@ -18,8 +20,7 @@ bool IsRound(const mjvGeom& geom) {
 
 // Of its widest circle [px]; 0 behind the camera.
 double Radius(const mjvGeom& geom, const mjvGLCamera& eye, int height) {
-  double distance = 0.0;
-  for (int i = 0; i < 3; ++i) distance += eye.forward[i] * (geom.pos[i] - eye.pos[i]);
+  const double distance = DistanceAhead(eye, geom);
   if (distance < eye.frustum_near) return 0.0;
   double radius = std::max(geom.size[0], geom.size[1]);
   if (geom.type == mjGEOM_ELLIPSOID) radius = std::max<double>(radius, geom.size[2]);
@@ -36,7 +37,7 @@ int PiecesOfHalfCircle(double radius) {
 }  // namespace
 
 Facets FacetsThatShow(const mjvScene& scene, int height, const Facets& most) {
-  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+  const mjvGLCamera eye = EyeOf(scene);
   Facets facets = kFewest;
   for (int i = 0; i < scene.ngeom; ++i) {
     const mjvGeom& geom = scene.geoms[i];

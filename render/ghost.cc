@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/render/projection.h"
+
 namespace mjdiag {
 namespace {
 
@@ -71,7 +73,7 @@ void AddGhost(const mjModel& model, mjData& data, const mjvOption& visual,
       std::remove_if(scene.geoms + machine, scene.geoms + scene.ngeom,
                      [&](const mjvGeom& geom) { return !IsShown(model, ghost, geom); });
   scene.ngeom = static_cast<int>(shown - scene.geoms);
-  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+  const mjvGLCamera eye = EyeOf(scene);
   std::for_each(scene.geoms + machine, shown, [&](mjvGeom& geom) {
     MakeTranslucent(ghost, geom);
     MoveBack(eye, geom);

@@ -63,8 +63,4 @@ void PosedScene::AddGhost(mjData& data, const Ghost& ghost) {
   mjdiag::AddGhost(model_, data, visual_, ghost, scene_);
 }
 
-mjvGLCamera PosedScene::eye() const {
-  return mjv_averageCamera(&scene_.camera[0], &scene_.camera[1]);
-}
-
 }  // namespace mjdiag

@@ -27,7 +27,6 @@ class PosedScene {
 
   mjvScene& get() { return scene_; }
   const mjvScene& get() const { return scene_; }
-  mjvGLCamera eye() const;
 
  private:
   const mjModel& model_;

@@ -4,6 +4,16 @@
 
 namespace mjdiag {
 
+mjvGLCamera EyeOf(const mjvScene& scene) {
+  return mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+}
+
+double DistanceAhead(const mjvGLCamera& eye, const mjvGeom& geom) {
+  double distance = 0.0;
+  for (int i = 0; i < 3; ++i) distance += eye.forward[i] * (geom.pos[i] - eye.pos[i]);
+  return distance;
+}
+
 Projection::Projection(const mjvGLCamera& eye, int width, int height)
     : eye_(eye), width_(width), height_(height) {}
 

@@ -8,6 +8,12 @@
 
 namespace mjdiag {
 
+/// The eye of a scene, which MuJoCo keeps as a pair.
+mjvGLCamera EyeOf(const mjvScene& scene);
+
+/// How far the middle of a geom lies along the line of sight [m]; negative behind.
+double DistanceAhead(const mjvGLCamera& eye, const mjvGeom& geom);
+
 /// The perspective projection of the fixed pipeline: with z = forward . (p - eye), near
 /// plane n and the frustum's centre c and top t there,
 ///   x = w / 2 + k (right . (p - eye) n / z - c),  y = k (t - up . (p - eye) n / z)

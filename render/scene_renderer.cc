@@ -156,7 +156,7 @@ void SceneRenderer::Render(mjData& data, mjData& ghost_data, const Ghost& ghost,
 }
 
 Projection SceneRenderer::projection() const {
-  return {state_->scene.eye(), state_->options.width, state_->options.height};
+  return {EyeOf(state_->scene.get()), state_->options.width, state_->options.height};
 }
 
 double SceneRenderer::ViewHeight(mjData& data) {
@@ -170,7 +170,7 @@ double SceneRenderer::ViewHeight(mjData& data) {
   if (depth == kBackground) return s.model->stat.extent;
 
   // Depth buffer d of the perspective projection: z = n f / (f - d (f - n)).
-  const mjvGLCamera eye = s.scene.eye();
+  const mjvGLCamera eye = EyeOf(s.scene.get());
   const double near = eye.frustum_near;
   const double far = eye.frustum_far;
   const double distance =
