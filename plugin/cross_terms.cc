@@ -50,16 +50,13 @@ class Simulator {
   VectorXd Estimates(const std::vector<Named>& named) const {
     DiagnosisMonitor monitor(design_, motion_.excitation.samples(), motion_.baseline);
     monitor.RegressFrom(motion_.first_regressed);
-    MonitorObserver observer(monitor);
     RunOptions options;
     options.seed = motion_.runs.seed;
-    options.observer = &observer;
     for (const Named& fault : named) {
       options.faults.push_back(
           {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
     }
-    motion_.runs.linear ? SimulateLinear(setup_, plant_, motion_.excitation, options)
-                        : Simulate(setup_, plant_, motion_.excitation, options);
+    RunWith(monitor, setup_, plant_, motion_.excitation, options, motion_.runs.linear);
     return monitor.estimator().Estimate().value;
   }
 
@@ -120,12 +117,12 @@ class CrossTerms {
       place[k] = fault.deviation / seen.sd;
       missed[k] = (Leak(fault.knob) - seen.deviation) / seen.sd;
     }
-    if (place_.size() == count) {
+    if (place_.size() != count) {
+      slope_ = MatrixXd::Identity(count, count);
+    } else if (place != place_) {  // a knob at its least may not have moved
       const VectorXd step = place - place_;
       slope_ +=
           (missed - missed_ - slope_ * step) * step.transpose() / step.squaredNorm();
-    } else {
-      slope_ = MatrixXd::Identity(count, count);
     }
     place_ = place;
     missed_ = missed;

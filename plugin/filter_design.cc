@@ -154,12 +154,9 @@ NominalLog RunNominal(const DiagnosisDesign& design, const Setup& setup,
                       const mjModel& plant, const Excitation& excitation,
                       const MatrixXd& baseline, std::uint64_t seed, bool linear) {
   DiagnosisMonitor monitor(design, excitation.samples(), baseline);
-  MonitorObserver observer(monitor);
   RunOptions options;
   options.seed = seed;
-  options.observer = &observer;
-  linear ? SimulateLinear(setup, plant, excitation, options)
-         : Simulate(setup, plant, excitation, options);
+  RunWith(monitor, setup, plant, excitation, options, linear);
   return {monitor.Log(), monitor.estimate(), monitor.ResidualRows()};
 }
 

@@ -20,4 +20,13 @@ class MonitorObserver : public TickObserver {
   DiagnosisMonitor& monitor_;
 };
 
+/// A run that the monitor watches, of the plant or of its linear model.
+inline void RunWith(DiagnosisMonitor& monitor, const Setup& setup, const mjModel& plant,
+                    const Excitation& excitation, RunOptions options, bool linear) {
+  MonitorObserver observer(monitor);
+  options.observer = &observer;
+  linear ? SimulateLinear(setup, plant, excitation, options)
+         : Simulate(setup, plant, excitation, options);
+}
+
 }  // namespace mjdiag
