@@ -53,11 +53,13 @@ class Simulator {
   /// J at theta for a step of the fit, all samples.
   const MatrixXd& Slope(const VectorXd& theta) {
     if (slope_.size() == 0) {
-      SetSlope(theta, Differences(theta, known_));
-      exact_ = known_ == nullptr;
+      slope_ = Differences(theta, known_);
+      NoteSlope(theta, known_ == nullptr);
+    } else if (theta != slope_theta_ && secant_) {
+      Broyden(theta);
+      NoteSlope(theta, false);
     } else if (theta != slope_theta_) {
-      SetSlope(theta, secant_ ? Broyden(theta) : Differences(theta, nullptr));
-      exact_ = !secant_;
+      return Sensitivities(theta);
     }
     return slope_;
   }
@@ -68,15 +70,15 @@ class Simulator {
   /// J at theta by differences, all samples.
   const MatrixXd& Sensitivities(const VectorXd& theta) {
     if (!exact_ || theta != slope_theta_) {
-      SetSlope(theta, Differences(theta, nullptr));
-      exact_ = true;
+      slope_ = Differences(theta, nullptr);
+      NoteSlope(theta, true);
     }
     return slope_;
   }
 
  private:
-  void SetSlope(const VectorXd& theta, MatrixXd slope) {
-    slope_ = std::move(slope);
+  void NoteSlope(const VectorXd& theta, bool exact) {
+    exact_ = exact;
     slope_theta_ = theta;
     slope_residual_ = Residual(theta);
   }
@@ -96,16 +98,16 @@ class Simulator {
     return J;
   }
 
-  /// J + (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
+  /// J += (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
   /// squared norms of its columns: parameters of all units count alike.
-  MatrixXd Broyden(const VectorXd& theta) {
+  void Broyden(const VectorXd& theta) {
     const VectorXd step = theta - slope_theta_;
     const VectorXd metric =
         slope_.colwise().squaredNorm().transpose().cwiseProduct(step);
     const double length = step.dot(metric);
-    if (!(length > 0.0)) return slope_;
+    if (!(length > 0.0)) return;
     const VectorXd missed = Residual(theta) - slope_residual_ - slope_ * step;
-    return slope_ + missed * (metric / length).transpose();
+    slope_ += missed * (metric / length).transpose();
   }
 
   /// Column i of J. A machine that sticks and slips may answer to any change, however
