@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mjdiag/render/frame_folder.h"
+#include "mjdiag/render/image_pixels.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/file_replacement.h"
 
@@ -81,10 +82,7 @@ ClipWriter::~ClipWriter() = default;
 const std::string& ClipWriter::codec() const { return state_->codec; }
 
 void ClipWriter::Write(const Image& picture) {
-  // OpenCV has no const view of foreign pixels; cvtColor only reads them.
-  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
-                    const_cast<std::uint8_t*>(picture.rgb.data()));
-  cv::cvtColor(rgb, state_->bgr, cv::COLOR_RGB2BGR);
+  cv::cvtColor(PixelsOf(picture), state_->bgr, cv::COLOR_RGB2BGR);
   state_->video.write(state_->bgr);
   if (state_->frames) state_->frames->Add(picture);
   ++state_->count;

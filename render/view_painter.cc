@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "mjdiag/render/image_pixels.h"
 #include "mjdiag/render/palette.h"
 #include "mjdiag/render/strokes.h"
 
@@ -104,10 +105,8 @@ void ViewPainter::Paint(std::size_t panel, double time, const RenderedView& rend
                         Typesetter& type, cv::Mat& picture) const {
   const PanelLayout& place = layout_.panels[panel];
   const cv::Rect& view = place.view;
-  // OpenCV has no const view of foreign pixels; copyTo only reads them.
-  const cv::Mat pixels(rendered.picture.height, rendered.picture.width, CV_8UC3,
-                       const_cast<std::uint8_t*>(rendered.picture.rgb.data()));
-  pixels(cv::Rect(0, 0, view.width, view.height)).copyTo(picture(view));
+  PixelsOf(rendered.picture)(cv::Rect(0, 0, view.width, view.height))
+      .copyTo(picture(view));
 
   const std::size_t run = views_.RunOf(panel);
   std::vector<std::size_t> drawn{run};
