@@ -7,7 +7,7 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "app/progress.h"
-#include "mjdiag/discovery/comparison.h"
+#include "mjdiag/comparison/comparison.h"
 #include "mjdiag/report/comparison_json.h"
 #include "mjdiag/report/comparison_page.h"
 #include "mjdiag/signals/quantity.h"

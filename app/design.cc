@@ -10,9 +10,9 @@
 #include "app/row_programs.h"
 #include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/plugin/fault_models.h"
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/linearize.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/report/design_page.h"
 #include "mjdiag/report/filters_file.h"
 

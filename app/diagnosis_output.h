@@ -8,7 +8,7 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "mjdiag/diagnosis/diagnosis_result.h"
-#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/design/filter_design.h"
 
 namespace mjdiag::app {
 

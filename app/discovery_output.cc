@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "app/format.h"
-#include "mjdiag/discovery/extended_plant.h"
+#include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/signals/text_file.h"
 

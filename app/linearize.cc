@@ -1,6 +1,6 @@
 // mjdiag linearize: the linear equations of motion of a machine.
 
-#include "mjdiag/plugin/linearize.h"
+#include "mjdiag/plugin/plant/linearize.h"
 
 #include <Eigen/Core>
 #include <memory>
@@ -10,10 +10,10 @@
 #include "app/format.h"
 #include "app/machine.h"
 #include "app/output.h"
-#include "mjdiag/plugin/chain_file.h"
-#include "mjdiag/plugin/closed_loop.h"
-#include "mjdiag/plugin/published_row.h"
-#include "mjdiag/plugin/transition.h"
+#include "mjdiag/plugin/setup/chain_file.h"
+#include "mjdiag/plugin/runtime/closed_loop.h"
+#include "mjdiag/plugin/setup/published_row_file.h"
+#include "mjdiag/plugin/plant/transition.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag::app {
 

@@ -15,7 +15,7 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "app/progress.h"
-#include "mjdiag/discovery/observed_joints.h"
+#include "mjdiag/discovery/hypotheses/observed_joints.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/signals/error.h"
 

@@ -5,8 +5,8 @@
 
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/diagnosis/linear_program_row.h"
-#include "mjdiag/plugin/fault_models.h"
-#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 

@@ -10,7 +10,7 @@
 #include "app/format.h"
 #include "app/machine.h"
 #include "app/output.h"
-#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/report/diagnosis_json.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"

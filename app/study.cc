@@ -10,7 +10,7 @@
 #include "app/machine.h"
 #include "app/output.h"
 #include "app/progress.h"
-#include "mjdiag/discovery/hidden_table.h"
+#include "mjdiag/studies/hidden_table.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"

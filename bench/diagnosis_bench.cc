@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/monitor.h"
-#include "mjdiag/plugin/fault_models.h"
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/instance.h"
-#include "mjdiag/plugin/linearize.h"
-#include "mjdiag/plugin/monitor_observer.h"
-#include "mjdiag/plugin/scenery.h"
-#include "mjdiag/plugin/start_state.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/runtime/instance.h"
+#include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/plant/scenery.h"
+#include "mjdiag/plugin/plant/start_state.h"
 
 namespace mjdiag {
 namespace {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/discovery/problem.h"
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
 namespace {

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/render/offscreen_context.h"

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
 #include "mjdiag/report/run_folder.h"

@@ -8,19 +8,26 @@ function(mjdiag_precompile target)
   endif()
 endfunction()
 
-# mjdiag_folder(<name> LINKS <targets...> [PRIVATE_LINKS <targets...>])
+# mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>])
 #
-# Makes the library target mjdiag_<name> (alias mjdiag::<name>) from the .cc files
-# of the folder <name>. Its headers are reachable as "mjdiag/<name>/..." only by
-# targets that link it: each folder has an include root of its own that holds
-# nothing but a link to the folder. A folder that includes upwards in the table of
-# the design therefore does not compile.
-function(mjdiag_folder name)
+# Makes a library target from the .cc files directly in the folder <path>: for
+# plugin/plant mjdiag_plugin_plant (alias mjdiag::plugin_plant). Its headers are
+# reachable as "mjdiag/plugin/plant/..." only by targets that link it: each folder has
+# an include root of its own that holds nothing but links to its headers. A folder that
+# includes upwards in the table of the design therefore does not compile.
+function(mjdiag_folder path)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  set(source ${PROJECT_SOURCE_DIR}/${path})
+  file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cc)
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${source} ${source}/*.h)
+  string(REPLACE "/" "_" name ${path})
   set(root ${PROJECT_BINARY_DIR}/include/${name})
-  file(MAKE_DIRECTORY ${root}/mjdiag)
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${root}/mjdiag/${name} SYMBOLIC)
+  # Headers that are gone must not be found any more.
+  file(REMOVE_RECURSE ${root})
+  file(MAKE_DIRECTORY ${root}/mjdiag/${path})
+  foreach(header IN LISTS headers)
+    file(CREATE_LINK ${source}/${header} ${root}/mjdiag/${path}/${header} SYMBOLIC)
+  endforeach()
   set(target mjdiag_${name})
   add_library(${target} STATIC ${sources})
   add_library(mjdiag::${name} ALIAS ${target})
@@ -33,6 +40,6 @@ function(mjdiag_folder name)
                                          $<BUILD_INTERFACE:mjdiag_warnings>)
   mjdiag_precompile(${target} <Eigen/Core>)
   install(TARGETS ${target} EXPORT mjdiagTargets)
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION include/mjdiag/${name}
+  install(DIRECTORY ${source}/ DESTINATION include/mjdiag/${path}
           FILES_MATCHING PATTERN "*.h")
 endfunction()

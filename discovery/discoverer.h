@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/candidate.h"
-#include "mjdiag/discovery/cause_fit.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/discovery/problem.h"
-#include "mjdiag/discovery/profile_interval.h"
-#include "mjdiag/discovery/search.h"
-#include "mjdiag/discovery/trial.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/discovery/fitting/profile_interval.h"
+#include "mjdiag/discovery/selection/search.h"
+#include "mjdiag/discovery/screening/trial.h"
 
 namespace mjdiag {
 

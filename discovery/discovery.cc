@@ -5,15 +5,15 @@
 #include <cmath>
 #include <optional>
 
-#include "mjdiag/discovery/candidate_bounds.h"
-#include "mjdiag/discovery/coarse_problem.h"
-#include "mjdiag/discovery/data_check.h"
+#include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+#include "mjdiag/discovery/selection/coarse_problem.h"
+#include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
-#include "mjdiag/discovery/model_choice.h"
-#include "mjdiag/discovery/profile_interval.h"
-#include "mjdiag/discovery/sensor_noise.h"
-#include "mjdiag/discovery/telling_motion.h"
-#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/discovery/fitting/profile_interval.h"
+#include "mjdiag/discovery/unexplained/sensor_noise.h"
+#include "mjdiag/discovery/selection/telling_motion.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
 namespace {

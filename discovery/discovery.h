@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/cause.h"
-#include "mjdiag/discovery/comparison.h"
-#include "mjdiag/discovery/signature.h"
-#include "mjdiag/discovery/unknown_input.h"
-#include "mjdiag/plugin/setup.h"
+#include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/unexplained/signature.h"
+#include "mjdiag/discovery/unexplained/unknown_input.h"
+#include "mjdiag/plugin/setup/setup.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {

@@ -6,9 +6,9 @@
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
-#include "mjdiag/discovery/replay_error.h"
-#include "mjdiag/plugin/mujoco_model.h"
-#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/comparison/replay_error.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

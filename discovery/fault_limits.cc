@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/discovery/error_dynamics.h"
-#include "mjdiag/discovery/trial.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
+#include "mjdiag/discovery/screening/trial.h"
 
 namespace mjdiag {
 namespace {

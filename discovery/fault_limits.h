@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/candidate.h"
-#include "mjdiag/discovery/problem.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
 
 namespace mjdiag {
 

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "mjdiag/discovery/candidate.h"
-#include "mjdiag/discovery/trial.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/screening/trial.h"
 
 namespace mjdiag {
 

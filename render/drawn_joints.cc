@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/render/amplification.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/render/clip_layout.h"

@@ -1,6 +1,6 @@
 #include "mjdiag/render/posed_scene.h"
 
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/render/backdrop.h"
 #include "mjdiag/render/facets.h"
 #include "mjdiag/render/offscreen_context.h"

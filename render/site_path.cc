@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/signals/error.h"
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mjdiag/discovery/comparison.h"
+#include "mjdiag/comparison/comparison.h"
 
 namespace mjdiag {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "mjdiag/discovery/comparison.h"
+#include "mjdiag/comparison/comparison.h"
 #include "mjdiag/report/page.h"
 #include "mjdiag/report/run_description.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/fault_models.h"
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/linearize.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/studies/features.h"
 #include "mjdiag/studies/svm_classifier.h"

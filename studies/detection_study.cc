@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/parallel.h"
-#include "mjdiag/plugin/robust_design.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/plugin/design/robust_design.h"
 #include "mjdiag/studies/bound_study.h"
 
 namespace mjdiag {

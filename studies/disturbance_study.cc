@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "mjdiag/diagnosis/refined_estimate.h"
-#include "mjdiag/plugin/fault_models.h"
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/parallel.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/bound_study.h"
 
 namespace mjdiag {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/diagnosis_result.h"
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "mjdiag/plugin/instance.h"
-#include "mjdiag/plugin/start_state.h"
+#include "mjdiag/plugin/runtime/instance.h"
+#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 

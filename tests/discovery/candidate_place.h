@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/candidate.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 
 namespace mjdiag::test {
 

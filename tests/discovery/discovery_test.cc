@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "discovery/stage_under_test.h"
-#include "mjdiag/discovery/hidden_study.h"
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/studies/hidden_study.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
 namespace {

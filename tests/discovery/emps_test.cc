@@ -9,11 +9,11 @@
 #include <filesystem>
 
 #include "discovery/candidate_place.h"
-#include "mjdiag/discovery/candidate.h"
-#include "mjdiag/discovery/cause_fit.h"
-#include "mjdiag/discovery/comparison.h"
-#include "mjdiag/discovery/problem.h"
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record_file.h"
 
 namespace mjdiag {

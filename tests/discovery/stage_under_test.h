@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/problem.h"
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag::test {
 

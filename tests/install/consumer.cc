@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "mjdiag/plugin/simulation.h"
+#include "mjdiag/plugin/runtime/simulation.h"
 
 int main(int, char** argv) {
   const mjdiag::Setup setup = mjdiag::ReadSetup(argv[1]);

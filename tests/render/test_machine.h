@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "mjdiag/plugin/mujoco_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/render/diagnosis_overlay.h"
 #include "mjdiag/signals/record.h"
 #include "support/temporary_folder.h"

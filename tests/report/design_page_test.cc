@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mjdiag/plugin/filter_design.h"
-#include "mjdiag/plugin/linearize.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/report/report.h"
 
 namespace mjdiag {

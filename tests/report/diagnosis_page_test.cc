@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mjdiag/plugin/filter_design.h"
+#include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/report/diagnosis_json.h"
 #include "mjdiag/report/diagnosis_plots.h"
 #include "mjdiag/report/diagnosis_verdict.h"

@@ -1,0 +1,163 @@
+#include "mjdiag/comparison/mismatch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+// A window needs enough samples for its rms to mean something.
+constexpr Eigen::Index kShortestWindow = 16;
+
+void CheckComparable(const Record& measured, const Record& simulated,
+                     Eigen::Index skip) {
+  if (measured.samples() != simulated.samples()) {
+    throw InputError("comparison",
+                     "the records have " + std::to_string(measured.samples()) +
+                         " and " + std::to_string(simulated.samples()) + " samples",
+                     "equal lengths");
+  }
+  const double step = measured.sample_time();
+  if (std::abs(simulated.sample_time() - step) > 1e-4 * step) {
+    throw InputError("comparison",
+                     "the records are sampled every " + std::to_string(step) +
+                         " s and " + std::to_string(simulated.sample_time()) + " s",
+                     "equal sample times");
+  }
+  if (skip < 0 || measured.samples() - skip < 2) {
+    throw InputError("comparison",
+                     "a record of " + std::to_string(measured.samples()) +
+                         " samples of which " + std::to_string(skip) + " are left out",
+                     "at least two samples to compare");
+  }
+}
+
+Eigen::Index WindowLength(const MismatchOptions& options, double sample_time,
+                          Eigen::Index samples) {
+  const double wanted = options.window > 0.0 ? options.window / sample_time
+                                             : static_cast<double>(samples) / 50.0;
+  const auto length = static_cast<Eigen::Index>(
+      std::lround(std::min(wanted, static_cast<double>(samples))));
+  return std::clamp(length, std::min(kShortestWindow, samples), samples);
+}
+
+double FTail(double rms, const NoiseFloor& floor) {
+  // Paulson (1942): the cube roots of both chi-squares are nearly normal, so
+  // z = ((1 - b) F^(1/3) - (1 - a)) / sqrt(b F^(2/3) + a) is standard normal with
+  // a = 2 / (9 freedom of the numerator), b = 2 / (9 freedom of the denominator).
+  const double a = 2.0 / (9.0 * floor.mismatch_freedom);
+  const double b = 2.0 / (9.0 * floor.floor_freedom);
+  const double root = std::cbrt(rms * rms / (floor.rms * floor.rms));
+  const double z = ((1.0 - b) * root - (1.0 - a)) / std::sqrt(b * root * root + a);
+  return 0.5 * std::erfc(z / std::sqrt(2.0));
+}
+
+/// Upper tail of Student's t with n >= 1 degrees of freedom; Abramowitz and Stegun,
+/// 26.7.3 and 26.7.4.
+double StudentTail(double t, int n) {
+  const double angle = std::atan(t / std::sqrt(static_cast<double>(n)));
+  const double cosine = std::cos(angle);
+  const bool odd = n % 2 == 1;
+  double term = odd ? cosine : 1.0;
+  double sum = n == 1 ? 0.0 : term;
+  for (int k = odd ? 3 : 2; k <= n - 2; k += 2) {
+    term *= cosine * cosine * (k - 1) / k;
+    sum += term;
+  }
+  const double within = odd ? (angle + std::sin(angle) * sum) * 2.0 / std::numbers::pi
+                            : std::sin(angle) * sum;
+  return 0.5 * (1.0 - within);
+}
+
+double AnotherDrawTail(double rms, const std::vector<double>& draws) {
+  if (draws.size() < 3) return 0.0;
+  const Eigen::ArrayXd logs =
+      Eigen::ArrayXd::Map(draws.data(), static_cast<Eigen::Index>(draws.size())).log();
+  const auto n = static_cast<double>(logs.size());
+  const double spread = std::sqrt((logs - logs.mean()).square().sum() / (n - 1.0));
+  const double t = (std::log(rms) - logs.mean()) / (spread * std::sqrt(1.0 + 1.0 / n));
+  return StudentTail(t, static_cast<int>(n) - 1);
+}
+
+}  // namespace
+
+double Rms(const Eigen::VectorXd& x) {
+  return x.norm() / std::sqrt(static_cast<double>(x.size()));
+}
+
+Spectrum PowerSpectrum(const Eigen::VectorXd& x, double sample_time) {
+  constexpr Eigen::Index kShortest = 64;
+  constexpr Eigen::Index kLongest = 4096;
+  Eigen::Index segment = kLongest;
+  while (segment > kShortest && 8 * segment > x.size()) segment /= 2;
+  return WelchDensity(x, sample_time, std::min(segment, x.size()));
+}
+
+double RelativeErrorPercent(const Eigen::VectorXd& measured,
+                            const Eigen::VectorXd& simulated, Eigen::Index skip) {
+  const Eigen::Index count = measured.size() - skip;
+  const double error = (measured - simulated).tail(count).norm();
+  if (error == 0.0) return 0.0;
+  const double size = measured.tail(count).norm();
+  if (size == 0.0) return std::numeric_limits<double>::infinity();
+  return 100.0 * error / size;
+}
+
+WorstWindow FindWorstWindow(const Eigen::VectorXd& mismatch, double sample_time,
+                            double start_time, Eigen::Index length) {
+  double energy = mismatch.head(length).squaredNorm();
+  double largest = energy;
+  Eigen::Index first = 0;
+  for (Eigen::Index k = 1; k + length <= mismatch.size(); ++k) {
+    const double leaving = mismatch[k - 1];
+    const double entering = mismatch[k + length - 1];
+    energy += entering * entering - leaving * leaving;
+    if (energy > largest) {
+      largest = energy;
+      first = k;
+    }
+  }
+  WorstWindow worst;
+  worst.start = start_time + static_cast<double>(first) * sample_time;
+  worst.duration = static_cast<double>(length) * sample_time;
+  worst.rms = Rms(mismatch.segment(first, length));
+  return worst;
+}
+
+double NoiseProbability(double rms, const NoiseFloor& floor) {
+  if (floor.rms == 0.0) return rms > 0.0 ? 0.0 : 1.0;
+  return std::max(FTail(rms, floor), AnotherDrawTail(rms, floor.draws));
+}
+
+ChannelMismatch MeasureMismatch(const Record& measured, const Record& simulated,
+                                const std::string& name, const NoiseFloor& floor,
+                                const MismatchOptions& options) {
+  const Eigen::Index skip = options.skip_samples;
+  CheckComparable(measured, simulated, skip);
+  const Channel& y = measured.At(name);
+  const Channel& yhat = simulated.At(name);
+  const double step = measured.sample_time();
+  const Eigen::Index count = measured.samples() - skip;
+  const Eigen::VectorXd error = (y.samples - yhat.samples).tail(count);
+
+  ChannelMismatch result;
+  result.name = name;
+  result.unit = y.unit;
+  result.rms = Rms(error);
+  result.peak = error.cwiseAbs().maxCoeff();
+  result.relative_error_percent = RelativeErrorPercent(y.samples, yhat.samples, skip);
+  result.worst = FindWorstWindow(
+      error, step, measured.start_time() + static_cast<double>(skip) * step,
+      WindowLength(options, step, count));
+  result.spectrum = PowerSpectrum(error, step);
+  result.noise_floor = floor;
+  result.p_value = NoiseProbability(result.rms, floor);
+  result.exceeds_noise = result.p_value < options.level;
+  return result;
+}
+
+}  // namespace mjdiag

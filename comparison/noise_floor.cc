@@ -1,0 +1,114 @@
+#include "mjdiag/comparison/noise_floor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <future>
+#include <vector>
+
+#include "mjdiag/signals/noise_level.h"
+
+namespace mjdiag {
+namespace {
+
+// Enough to tell how much the power of the noise varies between runs.
+constexpr int kDraws = 8;
+
+/// Degrees of freedom of a variance that NoiseLevel estimates from n samples: its
+/// relative standard deviation r = 1.2 sqrt(order / n) is that of a chi-square with
+/// 1 / (2 r^2) of them.
+double NoiseLevelFreedom(Eigen::Index n) {
+  constexpr double kOrder = 6.0;
+  return static_cast<double>(n) / (2.0 * 1.2 * 1.2 * kOrder);
+}
+
+/// The floor by several draws of the noise, whose standard deviation is an estimate
+/// itself.
+NoiseFloor FloorOf(const std::vector<Eigen::VectorXd>& draws, double sample_time) {
+  NoiseFloor floor;
+  double square = 0.0;
+  for (const Eigen::VectorXd& noise : draws) {
+    floor.draws.push_back(Rms(noise));
+    square += floor.draws.back() * floor.draws.back();
+    const Spectrum spectrum = PowerSpectrum(noise, sample_time);
+    if (floor.spectrum.density.size() == 0) {
+      floor.spectrum = spectrum;
+    } else {
+      floor.spectrum.density += spectrum.density;
+    }
+  }
+  const auto count = static_cast<double>(draws.size());
+  floor.rms = std::sqrt(square / count);
+  floor.spectrum.density /= count;
+  const Eigen::Index samples = draws.front().size();
+  floor.mismatch_freedom = IndependentSamples(floor.spectrum, samples);
+  floor.floor_freedom =
+      1.0 / (1.0 / (count * floor.mismatch_freedom) + 1.0 / NoiseLevelFreedom(samples));
+  return floor;
+}
+
+/// Runs that differ in the seed of their noise only, in parallel.
+std::vector<Record> NoisyRuns(const Setup& setup, const mjModel& plant,
+                              const Excitation& excitation, const RunOptions& options) {
+  std::vector<std::future<Record>> runs;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    RunOptions noisy = options;
+    noisy.noise_scale = 1.0;
+    noisy.seed = options.seed + draw;
+    noisy.progress = nullptr;
+    runs.push_back(std::async(std::launch::async, [&, noisy] {
+      return Simulate(setup, plant, excitation, noisy);
+    }));
+  }
+  std::vector<Record> records;
+  for (std::future<Record>& run : runs) {
+    records.push_back(run.get());
+    if (options.progress) {
+      options.progress(static_cast<double>(records.size()) / kDraws);
+    }
+  }
+  return records;
+}
+
+}  // namespace
+
+double IndependentSamples(const Spectrum& spectrum, Eigen::Index n) {
+  const Eigen::VectorXd& density = spectrum.density;
+  const double squares = density.squaredNorm();
+  if (squares == 0.0) return static_cast<double>(n);
+  const double sum = density.sum();
+  const auto bins = static_cast<double>(density.size());
+  return std::max(1.0, static_cast<double>(n) * sum * sum / (bins * squares));
+}
+
+Setup WithMeasuredNoise(const Setup& setup, const Record& measured) {
+  Setup noisy = setup;
+  for (SensorSetup& sensor : noisy.sensors) {
+    if (const Channel* channel = measured.Find(sensor.channel)) {
+      const double quantisation = sensor.resolution / std::sqrt(12.0);
+      sensor.noise_sd = std::max(NoiseLevel(channel->samples), quantisation);
+    }
+  }
+  return noisy;
+}
+
+std::map<std::string, NoiseFloor> EstimateNoiseFloor(
+    const Setup& setup, const mjModel& plant, const Excitation& excitation,
+    const Record& clean, const RunOptions& options, Eigen::Index skip) {
+  const std::vector<Record> noisy = NoisyRuns(setup, plant, excitation, options);
+  std::map<std::string, NoiseFloor> floors;
+  const auto add = [&](const std::string& channel) {
+    const Eigen::VectorXd& quiet = clean.At(channel).samples;
+    std::vector<Eigen::VectorXd> draws;
+    for (const Record& run : noisy) {
+      const Eigen::VectorXd difference = run.At(channel).samples - quiet;
+      draws.push_back(difference.tail(difference.size() - skip));
+    }
+    floors[channel] = FloorOf(draws, clean.sample_time());
+  };
+  for (const SensorSetup& sensor : setup.sensors) add(sensor.channel);
+  for (const ActuatorSetup& actuator : setup.actuators) add(actuator.channel);
+  return floors;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,23 @@
+#pragma once
+// Relative errors of a replay without noise, for every channel and derived signal: the
+// figures by which a machine's models are compared in the literature.
+
+#include <mujoco/mujoco.h>
+
+#include <map>
+#include <string>
+
+#include "mjdiag/plugin/effects/changes.h"
+#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/signals/record.h"
+
+namespace mjdiag {
+
+/// Channel or derived signal -> 100 ||measured - simulated|| / ||measured|| [%], after
+/// setup.compare.skip_samples. Of a replay that diverges: infinity for the first
+/// sensor.
+std::map<std::string, double> ReplayErrors(const Setup& setup, const mjModel& plant,
+                                           const Changes& changes,
+                                           const Record& measured);
+
+}  // namespace mjdiag

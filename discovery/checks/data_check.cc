@@ -1,0 +1,398 @@
+#include "mjdiag/discovery/checks/data_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "mjdiag/discovery/checks/clock_drift.h"
+#include "mjdiag/plugin/replay/tracking.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/noise_level.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+std::string Digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string Quoted(const std::string& name) { return "'" + name + "'"; }
+
+/// Equal values from `first`, as many as `count`.
+struct Repeats {
+  Index first = 0;
+  Index count = 0;
+  Index end() const { return first + count; }
+};
+
+std::vector<Repeats> RepeatsIn(const VectorXd& x, Index least) {
+  std::vector<Repeats> runs;
+  for (Index k = 0; k < x.size();) {
+    Index end = k + 1;
+    while (end < x.size() && x[end] == x[k]) ++end;
+    if (end - k >= least) runs.push_back({k, end - k});
+    k = end;
+  }
+  return runs;
+}
+
+/// The smallest step between neighbours that is one: the quantum of a quantised sensor.
+double SmallestStep(const VectorXd& x) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index k = 1; k < x.size(); ++k) {
+    const double step = std::abs(x[k] - x[k - 1]);
+    if (step > 0.0) smallest = std::min(smallest, step);
+  }
+  return smallest;
+}
+
+class RecordCheck {
+ public:
+  RecordCheck(const Setup& setup, const mjModel& plant, const Record& measured)
+      : setup_(setup),
+        plant_(plant),
+        measured_(measured),
+        skip_(setup.compare.skip_samples) {}
+
+  std::vector<std::string> Check() {
+    CheckLength();
+    CheckFinite();
+    ToMeasuredRun(setup_, measured_);  // names what the replay lacks
+    for (const SensorSetup& sensor : setup_.sensors) CheckHeld(sensor);
+    CheckReadingUnits();
+    SimulateNominal(closed_loop());
+    if (simulated_) CheckUnits();
+    if (simulated_ && !closed_loop()) SimulateNominal(true);
+    for (const SensorSetup& sensor : setup_.sensors) CheckSaturation(sensor);
+    if (simulated_) CheckClocks(setup_, measured_, *simulated_);
+    return notes_;
+  }
+
+ private:
+  VectorXd Counted(const Record& record, const std::string& channel) const {
+    const VectorXd& samples = record.At(channel).samples;
+    return samples.tail(samples.size() - skip_);
+  }
+  VectorXd Reading(const std::string& channel) const {
+    return Counted(measured_, channel);
+  }
+  std::string Place(Index counted) const {
+    const double time = measured_.start_time() +
+                        static_cast<double>(counted + skip_) * measured_.sample_time();
+    return "sample " + std::to_string(counted + skip_) + " (" + Digits(time) + " s)";
+  }
+  bool closed_loop() const { return !setup_.axes.empty(); }
+
+  void CheckLength() const;
+  void CheckFinite() const;
+  void CheckHeld(const SensorSetup& sensor) const;
+  void CheckSaturation(const SensorSetup& sensor) const;
+  void CheckReadingUnits() const;
+  void CheckUnits() const;
+  /// @param start  from the first readings; else from rest at the equilibrium, for
+  ///               readings in wrong units would start far away
+  void SimulateNominal(bool start);
+  const VectorXd* Expected(const SensorSetup& sensor) const;
+
+  const Setup& setup_;
+  const mjModel& plant_;
+  const Record& measured_;
+  Index skip_;
+  std::optional<Record> simulated_;  ///< of the nominal plant, without noise
+  std::vector<std::string> notes_;
+};
+
+void RecordCheck::CheckLength() const {
+  constexpr Index kLeast = 500;
+  if (measured_.samples() - skip_ >= kLeast) return;
+  std::string what = std::to_string(measured_.samples()) + " samples";
+  if (skip_ > 0)
+    what += " of which the first " + std::to_string(skip_) + " are skipped";
+  throw InputError("record", "too short: " + what,
+                   "at least " + std::to_string(kLeast) + " that count");
+}
+
+void RecordCheck::CheckFinite() const {
+  std::set<std::string> needed;
+  for (const SensorSetup& sensor : setup_.sensors) needed.insert(sensor.channel);
+  for (const ActuatorSetup& actuator : setup_.actuators) {
+    needed.insert(actuator.channel);
+  }
+  for (const AxisSetup& axis : setup_.axes) {
+    for (const char* suffix : {"_ref", "_ref_velocity", "_ref_acceleration"}) {
+      needed.insert(axis.name + suffix);
+    }
+    needed.insert(axis.name + "_ref_snap");
+    needed.insert(axis.known_disturbance);
+  }
+  for (const std::string& name : needed) {
+    const Channel* channel = measured_.Find(name);
+    if (channel == nullptr) continue;
+    Index bad = 0;
+    Index first = 0;
+    for (Index k = channel->samples.size() - 1; k >= 0; --k) {
+      if (std::isfinite(channel->samples[k])) continue;
+      first = k;
+      ++bad;
+    }
+    if (bad == 0) continue;
+    throw InputError("record",
+                     std::to_string(bad) + " missing samples of " + Quoted(name) +
+                         ", the first at " + Place(first - skip_),
+                     "finite numbers");
+  }
+}
+
+void RecordCheck::CheckHeld(const SensorSetup& sensor) const {
+  constexpr Index kLeast = 5;
+  constexpr Index kAround = 5;
+  constexpr double kJump = 3.0;
+  constexpr double kSigmas = 6.0;
+  const VectorXd x = Reading(sensor.channel);
+  const double smallest = std::max(
+      {kJump * SmallestStep(x), kJump * sensor.resolution, kSigmas * sensor.noise_sd});
+  std::vector<Repeats> gaps;
+  for (const Repeats& run : RepeatsIn(x, kLeast)) {
+    // Where stiction or a stop lets go, the step after the first is as large.
+    if (run.end() + kAround >= x.size()) continue;
+    const double jump = std::abs(x[run.end()] - x[run.first]);
+    double around = 0.0;
+    for (Index k = 1; k <= kAround; ++k) {
+      around = std::max(around, std::abs(x[run.end() + k] - x[run.end() + k - 1]));
+      if (run.first < k) continue;
+      around = std::max(around, std::abs(x[run.first - k + 1] - x[run.first - k]));
+    }
+    if (jump > smallest && jump > kJump * around) gaps.push_back(run);
+  }
+  if (gaps.empty()) return;
+  throw InputError("record",
+                   "missing samples: " + Quoted(sensor.channel) +
+                       " repeats one value " + std::to_string(gaps.front().count) +
+                       " times from " + Place(gaps.front().first) +
+                       " and then jumps; " + std::to_string(gaps.size()) + " such gaps",
+                   "a sample of every tick");
+}
+
+/// What the sensor should read as far as the record tells: its reference, or the
+/// simulated plant; null if nothing tells.
+const VectorXd* RecordCheck::Expected(const SensorSetup& sensor) const {
+  for (const AxisSetup& axis : setup_.axes) {
+    if (axis.sensor == sensor.channel) {
+      return &measured_.At(axis.name + "_ref").samples;
+    }
+  }
+  return simulated_ ? &simulated_->At(sensor.channel).samples : nullptr;
+}
+
+/// Whether the signal has white noise of a quantum or more outside the runs. That of
+/// quantising alone is smaller, and the differences of a smooth signal do not
+/// alternate.
+bool IsNoisy(const VectorXd& x) {
+  constexpr Index kOrder = 6;
+  constexpr Index kLeast = 100;
+  constexpr double kAlternates = -0.5;  // white noise: -m / (m + 1)
+  constexpr Index kRepeats = 3;         // a quantised signal at rest
+  double power = 0.0;
+  double product = 0.0;
+  Index count = 0;
+  VectorXd free(x.size());
+  Index used = 0;
+  Index from = 0;
+  std::vector<Repeats> runs = RepeatsIn(x, kRepeats);
+  runs.push_back({x.size(), 0});
+  for (const Repeats& run : runs) {
+    VectorXd d = x.segment(from, run.first - from);
+    free.segment(used, d.size()) = d;
+    used += d.size();
+    from = run.end();
+    if (d.size() <= kOrder + 1) continue;
+    for (Index m = 0; m < kOrder; ++m) {
+      d = (d.tail(d.size() - 1) - d.head(d.size() - 1)).eval();
+    }
+    power += d.head(d.size() - 1).squaredNorm();
+    product += d.head(d.size() - 1).dot(d.tail(d.size() - 1));
+    count += d.size();
+  }
+  if (count < kLeast) return false;
+  const double level = NoiseLevel(free.head(used), kOrder);
+  return product < kAlternates * power && level >= SmallestStep(x) &&
+         level > 1e-9 * Range(x);
+}
+
+void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
+  constexpr Index kLeast = 10;
+  constexpr double kShare = 0.005;
+  constexpr double kShouldMove = 0.05;  // of the expected range, in one run
+  const VectorXd x = Reading(sensor.channel);
+  if (Range(x) == 0.0) return;
+  const VectorXd* expected = Expected(sensor);
+  const std::vector<Repeats> runs = RepeatsIn(x, kLeast);
+  for (const double extreme : {x.maxCoeff(), x.minCoeff()}) {
+    Index total = 0;
+    Index first = -1;
+    bool should_move = false;
+    for (const Repeats& run : runs) {
+      if (x[run.first] != extreme) continue;
+      if (first < 0) first = run.first;
+      total += run.count;
+      should_move |= expected != nullptr &&
+                     Range(expected->segment(run.first + skip_, run.count)) >
+                         kShouldMove * Range(*expected);
+    }
+    if (static_cast<double>(total) <= kShare * static_cast<double>(x.size())) continue;
+    if (!should_move && !IsNoisy(x)) continue;
+    throw InputError("record",
+                     "saturated: " + Quoted(sensor.channel) + " sits at exactly " +
+                         Digits(extreme) + " " + sensor.unit + " for " +
+                         std::to_string(total) + " samples, first at " + Place(first),
+                     "a sensor that sees the whole motion");
+  }
+}
+
+struct Likeness {
+  double factor = 1.0;       ///< measured over expected, of standard deviations
+  double correlation = 0.0;  ///< without the means
+};
+
+Likeness Liken(VectorXd measured, VectorXd expected) {
+  measured.array() -= measured.mean();
+  expected.array() -= expected.mean();
+  const double product = measured.norm() * expected.norm();
+  if (!(product > 0.0) || !std::isfinite(product)) return {};
+  return {measured.norm() / expected.norm(), measured.dot(expected) / product};
+}
+
+/// A factor by which units are mistaken.
+struct Mistake {
+  double factor = 1.0;
+  std::string name;  ///< of the factor
+  double tolerance = 1.0;
+  std::string prefix;  ///< of the unit in the record
+};
+
+std::optional<Mistake> FindMistake(double factor, bool angle) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  std::vector<Mistake> mistakes = {{1e3, "1000", 2.0, "m"},
+                                   {1e6, "1000000", 2.0, "u"},
+                                   {1e-3, "0.001", 2.0, "k"},
+                                   {1e-6, "0.000001", 2.0, "M"}};
+  if (angle) {
+    mistakes.push_back({kDegrees, "180 / pi", 1.1, ""});
+    mistakes.push_back({1.0 / kDegrees, "pi / 180", 1.1, ""});
+  }
+  for (const Mistake& mistake : mistakes) {
+    if (std::abs(std::log(factor / mistake.factor)) <= std::log(mistake.tolerance)) {
+      return mistake;
+    }
+  }
+  return std::nullopt;
+}
+
+/// @param against   what it is held against, for people
+/// @param otherwise  where else the mistake may lie, with its unit
+[[noreturn]] void RefuseUnit(const std::string& channel, const std::string& unit,
+                             const Mistake& mistake, const std::string& against,
+                             const std::string& otherwise) {
+  const std::string taken =
+      mistake.prefix.empty()
+          ? (mistake.factor > 1.0 ? std::string("degrees taken for rad")
+                                  : std::string("rad taken for degrees"))
+          : mistake.prefix + unit + " taken for " + unit;
+  throw InputError("record",
+                   "wrong units: " + Quoted(channel) + " reads " + mistake.name +
+                       " times " + against + ": " + taken + ", or " + otherwise +
+                       " the other way round?",
+                   "SI; a column under [record.channels] may give the unit");
+}
+
+bool IsAngle(const std::string& unit) { return unit.starts_with("rad"); }
+
+void RecordCheck::CheckReadingUnits() const {
+  constexpr double kLike = 0.9;
+  for (const AxisSetup& axis : setup_.axes) {
+    const SensorSetup& sensor = setup_.Sensor(axis.sensor);
+    const std::string reference = axis.name + "_ref";
+    const Likeness likeness = Liken(Reading(axis.sensor), Reading(reference));
+    const auto mistake = FindMistake(likeness.factor, IsAngle(sensor.unit));
+    if (mistake && likeness.correlation > kLike) {
+      RefuseUnit(axis.sensor, sensor.unit, *mistake,
+                 "what its reference " + Quoted(reference) + " does",
+                 Quoted(reference));
+    }
+  }
+}
+
+void RecordCheck::SimulateNominal(bool start) {
+  // A record in wrong units asks for far too much; limits would hide by how much.
+  Setup setup = setup_;
+  for (SensorSetup& sensor : setup.sensors) sensor.resolution = 0.0;
+  for (ActuatorSetup& actuator : setup.actuators) actuator.limit = 0.0;
+  for (AxisSetup& axis : setup.axes) {
+    if (axis.nested) axis.nested->saturation = 0.0;
+  }
+  RunOptions options;
+  options.noise_scale = 0.0;
+  try {
+    Excitation excitation = Replay(setup, measured_);
+    if (!start) excitation.start.clear();
+    simulated_ = Simulate(setup, plant_, excitation, options);
+  } catch (const NumericalError& error) {
+    simulated_.reset();
+    notes_.push_back("units and clocks of the record are not checked: the plant as " +
+                     std::string("given does not run along it (") + error.what() + ")");
+  }
+}
+
+void RecordCheck::CheckUnits() const {
+  constexpr double kInputLike = 0.5;
+  constexpr double kReadingLike = 0.7;
+  if (closed_loop()) {
+    for (const AxisSetup& axis : setup_.axes) {
+      const Likeness likeness =
+          Liken(Reading(axis.actuator), Counted(*simulated_, axis.actuator));
+      const auto mistake =
+          FindMistake(likeness.factor, IsAngle(setup_.Sensor(axis.sensor).unit));
+      if (!mistake || likeness.correlation < kInputLike) continue;
+      RefuseUnit(axis.actuator, setup_.Actuator(axis.actuator).unit, *mistake,
+                 "what the plant needs for that motion",
+                 Quoted(axis.sensor) + " and " + Quoted(axis.name + "_ref"));
+    }
+    return;
+  }
+  std::string inputs;
+  for (const ActuatorSetup& actuator : setup_.actuators) {
+    inputs += (inputs.empty() ? "" : ", ") + Quoted(actuator.channel);
+  }
+  for (const SensorSetup& sensor : setup_.sensors) {
+    // Differences: offsets of force let free axes drift away.
+    const VectorXd measured = Reading(sensor.channel);
+    const VectorXd simulated = Counted(*simulated_, sensor.channel);
+    const Index span = std::max<Index>(1, measured.size() / 500);
+    const Index count = measured.size() - span;
+    const Likeness likeness = Liken(measured.tail(count) - measured.head(count),
+                                    simulated.tail(count) - simulated.head(count));
+    const auto mistake = FindMistake(likeness.factor, IsAngle(sensor.unit));
+    if (!mistake || likeness.correlation < kReadingLike) continue;
+    RefuseUnit(sensor.channel, sensor.unit, *mistake, "what the plant does", inputs);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> CheckRecord(const Setup& setup, const mjModel& plant,
+                                     const Record& measured) {
+  return RecordCheck(setup, plant, measured).Check();
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,43 @@
+#pragma once
+// Can a measured record be judged at all? Bad data would be explained by causes that no
+// machine has, so it is refused before anything is fitted to it.
+//
+// Refused with InputError, with n samples left after setup.compare.skip_samples:
+//   too short     n < 500
+//   missing       a sample that is NaN or infinite; a sensor held: 5 equal values or
+//                 more, then a step larger than 3 times every step around, 3 times the
+//                 smallest step of the sensor and 6 standard deviations of its noise
+//   saturated     a sensor that stays at exactly its largest or smallest value, at
+//                 least 10 samples at a time, for more than 0.5 % of n, although it is
+//                 noisy elsewhere or should move there: by its reference in closed
+//                 loop, by the simulated plant in open loop
+//   wrong units   a channel of the shape of what it should be (correlation) but about
+//                 10^3, 10^6, 10^-3 or 10^-6 times it (within a factor of 2), for
+//                 angles also 180 / pi or pi / 180 times (within 10 %). In closed loop
+//                 readings are held against references, and inputs against those of
+//                 the simulated plant on the measured reference; in open loop readings
+//                 against the simulated plant under the measured input.
+//   clock drift   see clock_drift.h
+//
+// Whatever a physical cause does has to pass: stiction holds a reading, but does not
+// let it jump; a rest at the end of a stroke repeats a quantised reading, but not one
+// with noise; a cause does not change a force a thousandfold and keep its shape.
+
+#include <mujoco/mujoco.h>
+
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/signals/record.h"
+
+namespace mjdiag {
+
+/// @param plant  as LoadPlant gives it
+/// @return what one should know and can live with, sentences for people
+/// InputError names the channel and what is wrong with it; also if the record lacks
+/// what the replay needs (see ToMeasuredRun).
+std::vector<std::string> CheckRecord(const Setup& setup, const mjModel& plant,
+                                     const Record& measured);
+
+}  // namespace mjdiag

@@ -1,0 +1,290 @@
+#include "mjdiag/discovery/extension/extended_plant.h"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "mjdiag/discovery/extension/digits.h"
+#include "mjdiag/discovery/extension/mjcf_files.h"
+#include "mjdiag/discovery/extension/xml_text.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+/// `count` values of each element, those of one.
+std::span<const mjtNum> Row(const mjtNum* values, int element, std::size_t count = 1) {
+  return {values + static_cast<std::size_t>(element) * count, count};
+}
+
+/// Adds the attribute if its values, in the file and as they shall be, differ.
+void AddIfChanged(Attributes& attributes, const char* name,
+                  std::span<const mjtNum> before, std::span<const mjtNum> after) {
+  if (std::equal(before.begin(), before.end(), after.begin())) return;
+  attributes.emplace_back(name, AllDigits(after));
+}
+
+bool GoesIntoNumeric(const EffectSpec& effect) {
+  return !FindEffect(effect.effect).native && effect.effect != "encoder_noise";
+}
+
+/// The plant with everything in it that MJCF can say in attributes. Of Stribeck
+/// friction the model holds the constant part (native_effect.h); it leaves, for the
+/// whole of it comes back from the numeric.
+ModelPtr WithNativeChanges(const mjModel& plant, const std::vector<Fault>& faults,
+                           const std::vector<EffectSpec>& effects) {
+  ModelPtr extended = CopyModel(plant);
+  for (const EffectSpec& carried : EffectsOf(plant)) {
+    if (carried.effect != "stribeck_friction") continue;
+    const ModelPtr again = CopyModel(*extended);
+    ApplyNativeEffect(*again, carried);
+    for (int dof = 0; dof < plant.nv; ++dof) {
+      mjtNum& friction = extended->dof_frictionloss[dof];
+      const mjtNum added = again->dof_frictionloss[dof] - friction;
+      friction = std::max(0.0, friction - added);
+    }
+  }
+  for (const Fault& fault : faults) ApplyFault(*extended, fault);
+  for (const EffectSpec& effect : effects) {
+    if (effect.effect == "stribeck_friction") {
+      CheckEffect(*extended, effect);
+    } else {
+      ApplyNativeEffect(*extended, effect);
+    }
+  }
+  return extended;
+}
+
+/// Writes the differences between two models of the same file into its text.
+class MjcfEditor {
+ public:
+  MjcfEditor(const fs::path& mjcf, const fs::path& folder, const mjModel& before,
+             const mjModel& after)
+      : where_(mjcf.string()),
+        xml_(where_, MjcfForFolder(mjcf, folder)),
+        before_(before),
+        after_(after) {}
+
+  void WriteAttributes() {
+    for (int joint = 0; joint < before_.njnt; ++joint) EditJoint(joint);
+    for (int body = 1; body < before_.nbody; ++body) EditMass(body);
+    for (int actuator = 0; actuator < before_.nu; ++actuator) EditActuator(actuator);
+  }
+
+  void WriteNumerics(const std::vector<EffectSpec>& carried,
+                     const std::vector<EffectSpec>& added);
+
+  std::string Text() const { return xml_.Text(); }
+
+ private:
+  /// The element of one of the tags, directly in `parent`, with that name.
+  int Find(std::string_view parent, const std::string& name,
+           std::string_view tag = "") const;
+  int FindOrFail(std::string_view parent, mjtObj kind, int id,
+                 std::string_view tag = "") const;
+  /// The value that the last <compiler> gives; empty if none does.
+  std::string CompilerOption(std::string_view option) const;
+  void Set(int element, const Attributes& attributes) {
+    for (const auto& [name, value] : attributes)
+      xml_.SetAttribute(element, name, value);
+  }
+
+  void EditJoint(int joint);
+  void EditMass(int body);
+  void EditActuator(int actuator);
+  void RequireOwnMasses(int body) const;
+
+  std::string where_;
+  XmlText xml_;
+  const mjModel& before_;
+  const mjModel& after_;
+};
+
+int MjcfEditor::Find(std::string_view parent, const std::string& name,
+                     std::string_view tag) const {
+  for (std::size_t i = 0; i < xml_.elements().size(); ++i) {
+    const XmlElement& element = xml_.elements()[i];
+    const std::string* own = element.Find("name");
+    if (own != nullptr && *own == name && xml_.ParentTag(element) == parent &&
+        (tag.empty() || element.tag == tag)) {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+int MjcfEditor::FindOrFail(std::string_view parent, mjtObj kind, int id,
+                           std::string_view tag) const {
+  const std::string name = ElementName(before_, kind, id);
+  const int element = Find(parent, name, tag);
+  if (element >= 0) return element;
+  throw InputError(where_, "'" + name + "' is not written out under its own name",
+                   std::string("a ") + mju_type2Str(kind) + " with that name");
+}
+
+std::string MjcfEditor::CompilerOption(std::string_view option) const {
+  std::string value;
+  for (const XmlElement& element : xml_.elements()) {
+    if (element.tag != "compiler") continue;
+    if (const std::string* given = element.Find(option)) value = *given;
+  }
+  return value;
+}
+
+void MjcfEditor::EditJoint(int joint) {
+  const int dof = before_.jnt_dofadr[joint];
+  const int address = before_.jnt_qposadr[joint];
+  Attributes changed;
+  AddIfChanged(changed, "stiffness", Row(before_.jnt_stiffness, joint),
+               Row(after_.jnt_stiffness, joint));
+  AddIfChanged(changed, "damping", Row(before_.dof_damping, dof),
+               Row(after_.dof_damping, dof));
+  const bool springdamper = std::any_of(
+      xml_.elements().begin(), xml_.elements().end(), [](const XmlElement& element) {
+        return element.Find("springdamper") != nullptr;
+      });
+  if (!changed.empty() && springdamper) {
+    // It would derive both anew.
+    changed = {{"springdamper", "0 0"},
+               {"stiffness", AllDigits(after_.jnt_stiffness[joint])},
+               {"damping", AllDigits(after_.dof_damping[dof])}};
+  }
+  const mjtNum reference = after_.qpos_spring[address];
+  if (before_.jnt_type[joint] >= mjJNT_SLIDE &&
+      before_.qpos_spring[address] != reference) {
+    const bool degrees =
+        before_.jnt_type[joint] == mjJNT_HINGE && CompilerOption("angle") != "radian";
+    const double unit = degrees ? 180.0 / std::numbers::pi : 1.0;
+    changed.emplace_back("springref", AllDigits(reference * unit));
+  }
+  AddIfChanged(changed, "armature", Row(before_.dof_armature, dof),
+               Row(after_.dof_armature, dof));
+  AddIfChanged(changed, "frictionloss", Row(before_.dof_frictionloss, dof),
+               Row(after_.dof_frictionloss, dof));
+  if (after_.dof_frictionloss[dof] != 0.0) {
+    AddIfChanged(changed, "solreffriction", Row(before_.dof_solref, dof, mjNREF),
+                 Row(after_.dof_solref, dof, mjNREF));
+    AddIfChanged(changed, "solimpfriction", Row(before_.dof_solimp, dof, mjNIMP),
+                 Row(after_.dof_solimp, dof, mjNIMP));
+  }
+  if (!changed.empty()) Set(FindOrFail("body", mjOBJ_JOINT, joint), changed);
+}
+
+void MjcfEditor::RequireOwnMasses(int body) const {
+  const auto fail = [&](const std::string& option) {
+    throw InputError(where_,
+                     "compiler " + option + " derives the mass of '" +
+                         ElementName(before_, mjOBJ_BODY, body) + "' from other bodies",
+                     "masses that each body has by itself");
+  };
+  const std::string total = CompilerOption("settotalmass");
+  if (!total.empty() && total.front() != '-') fail("settotalmass");
+  if (CompilerOption("fusestatic") == "true") fail("fusestatic");
+  if (CompilerOption("inertiafromgeom") == "true") fail("inertiafromgeom");
+  if (CompilerOption("coordinate") == "global") fail("coordinate=\"global\"");
+}
+
+void MjcfEditor::EditMass(int body) {
+  const mjtNum mass = after_.body_mass[body];
+  if (before_.body_mass[body] == mass) return;
+  RequireOwnMasses(body);
+  const int joint = FindOrFail("body", mjOBJ_JOINT, before_.body_jntadr[body]);
+  const int element = xml_.At(joint).parent;
+  for (std::size_t i = 0; i < xml_.elements().size(); ++i) {
+    const XmlElement& child = xml_.elements()[i];
+    if (child.parent != element || child.tag != "inertial") continue;
+    xml_.SetAttribute(static_cast<int>(i), "mass", AllDigits(mass));
+    return;
+  }
+  xml_.InsertFirst(element,
+                   "<inertial pos=\"" + AllDigits(Row(after_.body_ipos, body, 3)) +
+                       "\" quat=\"" + AllDigits(Row(after_.body_iquat, body, 4)) +
+                       "\" mass=\"" + AllDigits(mass) + "\" diaginertia=\"" +
+                       AllDigits(Row(after_.body_inertia, body, 3)) + "\"/>");
+}
+
+void MjcfEditor::EditActuator(int actuator) {
+  Attributes changed;
+  AddIfChanged(changed, "forcerange", Row(before_.actuator_forcerange, actuator, 2),
+               Row(after_.actuator_forcerange, actuator, 2));
+  if (!changed.empty()) changed.emplace_back("forcelimited", "true");
+  AddIfChanged(changed, "gear", Row(before_.actuator_gear, actuator, 6),
+               Row(after_.actuator_gear, actuator, 6));
+  if (!changed.empty()) Set(FindOrFail("actuator", mjOBJ_ACTUATOR, actuator), changed);
+}
+
+void MjcfEditor::WriteNumerics(const std::vector<EffectSpec>& carried,
+                               const std::vector<EffectSpec>& added) {
+  std::map<std::string, std::string> data;  // of every numeric
+  std::vector<std::string> names;           // of those that change, in order
+  const auto append = [&](const EffectSpec& effect) {
+    std::string name = "effect." + effect.effect + "." + effect.site;
+    for (const EffectParameter& parameter : FindEffect(effect.effect).parameters) {
+      std::string& values = data[name];
+      values += (values.empty() ? "" : " ") + AllDigits(effect.Value(parameter.name));
+    }
+    return name;
+  };
+  int removed = -1;
+  for (const EffectSpec& effect : carried) {
+    const int element = Find("custom", append(effect), "numeric");
+    // Native ones are in the attributes by now. A numeric may hold several effects.
+    if (!FindEffect(effect.effect).native || element == removed) continue;
+    xml_.Remove(removed = element);
+  }
+  for (const EffectSpec& effect : added) {
+    if (!GoesIntoNumeric(effect)) continue;
+    const std::string name = append(effect);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(name);
+    }
+  }
+  std::vector<std::string> lines;
+  for (const std::string& name : names) {
+    const std::string& values = data[name];
+    const auto size = std::to_string(1 + std::count(values.begin(), values.end(), ' '));
+    if (const int element = Find("custom", name, "numeric"); element >= 0) {
+      Set(element, {{"size", size}, {"data", values}});
+    } else {
+      std::string line = "<numeric name=\"" + XmlEscape(name);
+      line.append("\" size=\"").append(size).append("\" data=\"").append(values);
+      lines.push_back(line.append("\"/>"));
+    }
+  }
+  if (lines.empty()) return;
+  for (std::size_t i = 0; i < xml_.elements().size(); ++i) {
+    const XmlElement& element = xml_.elements()[i];
+    if (element.tag != "custom" || element.parent != 0) continue;
+    return xml_.InsertLast(static_cast<int>(i), lines);
+  }
+  std::string section = "<custom>\n";
+  for (const std::string& line : lines) section.append("    ").append(line) += '\n';
+  xml_.InsertLast(0, {section.append("  </custom>")});
+}
+
+}  // namespace
+
+std::string ExtendMjcf(const fs::path& mjcf, const mjModel& plant,
+                       const std::vector<Fault>& faults,
+                       const std::vector<EffectSpec>& effects, const fs::path& folder) {
+  std::error_code ignored;
+  if (fs::equivalent(mjcf, folder / "plant.xml", ignored)) {
+    throw InputError(folder.string(), "holds the nominal plant", "another folder");
+  }
+  const ModelPtr before = LoadModel(mjcf);
+  const ModelPtr after = WithNativeChanges(plant, faults, effects);
+  MjcfEditor editor(mjcf, folder, *before, *after);
+  editor.WriteAttributes();
+  editor.WriteNumerics(EffectsOf(plant), effects);
+  return editor.Text();
+}
+
+}  // namespace mjdiag

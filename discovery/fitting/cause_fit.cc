@@ -1,0 +1,347 @@
+#include "mjdiag/discovery/fitting/cause_fit.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What a parameter is compared with: steps of differences are small beside it.
+double ScaleOf(const FitParameter& parameter, double value, double duration) {
+  if (parameter.name == "phase") return 1.0;
+  if (parameter.name == "frequency") return std::min(value, 10.0 / duration);
+  // Around 1: what counts is how far it is from there.
+  if (parameter.name == "factor" || parameter.name == "value") {
+    return std::max(std::abs(value - 1.0), 1e-3);
+  }
+  return std::max(std::abs(value), 1e-12);
+}
+
+/// The innovations as a function of theta, with the last run kept: Ceres asks for the
+/// value and then, at the same place, for the derivatives.
+class Simulator {
+ public:
+  Simulator(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+            const std::vector<FittedCause>& causes, const FitOptions& options)
+      : problem_(problem),
+        candidates_(candidates),
+        causes_(causes),
+        known_(options.known),
+        secant_(options.secant),
+        parameters_(ParametersOf(candidates, causes)) {}
+  const std::vector<FitParameter>& parameters() const { return parameters_; }
+
+  const VectorXd& Residual(const VectorXd& theta) {
+    if (theta != theta_ || residual_.size() == 0) {
+      residual_ = RunAt(theta);
+      theta_ = theta;
+    }
+    return residual_;
+  }
+
+  /// J at theta for a step of the fit, all samples.
+  const MatrixXd& Slope(const VectorXd& theta) {
+    if (slope_.size() == 0) {
+      slope_ = Differences(theta, known_);
+      NoteSlope(theta, known_ == nullptr);
+    } else if (theta != slope_theta_ && secant_) {
+      Broyden(theta);
+      NoteSlope(theta, false);
+    } else if (theta != slope_theta_) {
+      return Sensitivities(theta);
+    }
+    return slope_;
+  }
+
+  /// J of the last step of the fit.
+  const MatrixXd& slope() const { return slope_; }
+
+  /// J at theta by differences, all samples.
+  const MatrixXd& Sensitivities(const VectorXd& theta) {
+    if (!exact_ || theta != slope_theta_) {
+      slope_ = Differences(theta, nullptr);
+      NoteSlope(theta, true);
+    }
+    return slope_;
+  }
+
+ private:
+  void NoteSlope(const VectorXd& theta, bool exact) {
+    exact_ = exact;
+    slope_theta_ = theta;
+    slope_residual_ = Residual(theta);
+  }
+
+  /// J with its first columns from `known`, if any.
+  MatrixXd Differences(const VectorXd& theta, const MatrixXd* known) {
+    const VectorXd base = Residual(theta);
+    const double duration =
+        static_cast<double>(problem_.run.samples()) * problem_.run.sample_time;
+    MatrixXd J(base.size(), theta.size());
+    const Index kept = known != nullptr ? known->cols() : 0;
+    if (kept > 0) J.leftCols(kept) = known->topRows(base.size());
+    ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
+      const Index i = kept + number;
+      J.col(i) = Difference(theta, base, i, duration);
+    });
+    return J;
+  }
+
+  /// J += (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
+  /// squared norms of its columns: parameters of all units count alike.
+  void Broyden(const VectorXd& theta) {
+    const VectorXd step = theta - slope_theta_;
+    const VectorXd metric =
+        slope_.colwise().squaredNorm().transpose().cwiseProduct(step);
+    const double length = step.dot(metric);
+    if (!(length > 0.0)) return;
+    const VectorXd missed = Residual(theta) - slope_residual_ - slope_ * step;
+    slope_ += missed * (metric / length).transpose();
+  }
+
+  /// Column i of J. A machine that sticks and slips may answer to any change, however
+  /// small, with a course of its own: a difference that a step ten times as large does
+  /// not raise. Then only large steps show the slope.
+  VectorXd Difference(const VectorXd& theta, const VectorXd& base, Index i,
+                      double duration) const {
+    constexpr double kFirst = 1e-4;
+    constexpr double kLast = 0.1;
+    constexpr double kNoticed = 10.0;  // standard deviations of the noise
+    constexpr double kGrows = 5.0;
+    const FitParameter& parameter = parameters_[static_cast<std::size_t>(i)];
+    const double scale = ScaleOf(parameter, theta[i], duration);
+    const auto slope = [&](double step) {
+      if (theta[i] + step > parameter.upper) step = -step;
+      VectorXd moved = theta;
+      moved[i] += step;
+      return VectorXd((RunAt(moved) - base) / step);
+    };
+    VectorXd found = slope(kFirst * scale);
+    for (double part = kFirst; part < kLast; part *= 10.0) {
+      if (found.norm() * part * scale < kNoticed) break;
+      try {
+        VectorXd further = slope(10.0 * part * scale);
+        if (10.0 * further.norm() > kGrows * found.norm()) break;
+        found = std::move(further);
+      } catch (const NumericalError&) {
+        break;
+      } catch (const InputError&) {
+        break;
+      }
+    }
+    return found;
+  }
+  VectorXd RunAt(const VectorXd& theta) const {
+    return problem_.Residual(ChangesOf(candidates_, WithValues(causes_, theta)));
+  }
+
+  const DiscoveryProblem& problem_;
+  const std::vector<Candidate>& candidates_;
+  const std::vector<FittedCause>& causes_;
+  const MatrixXd* known_;
+  bool secant_;
+  std::vector<FitParameter> parameters_;
+  VectorXd theta_;
+  VectorXd residual_;
+  bool exact_ = false;  // slope_ is all of differences
+  MatrixXd slope_;      // of the last step of the fit, with where it was taken
+  VectorXd slope_theta_;
+  VectorXd slope_residual_;
+};
+
+class InnovationCost final : public ceres::CostFunction {
+ public:
+  InnovationCost(Simulator& simulator, Index first, Index count, Index parameters)
+      : simulator_(simulator), first_(first), count_(count) {
+    set_num_residuals(static_cast<int>(count));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
+  }
+  bool Evaluate(const double* const* blocks, double* residuals,
+                double** jacobians) const override {
+    const Index size = parameter_block_sizes()[0];
+    const VectorXd theta = Eigen::Map<const VectorXd>(blocks[0], size);
+    try {
+      Eigen::Map<VectorXd>(residuals, count_) =
+          simulator_.Residual(theta).segment(first_, count_);
+      if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+      using RowMajor =
+          Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      MatrixXd J = simulator_.Slope(theta).middleRows(first_, count_);
+      if (!J.allFinite()) return false;
+      if (size == 1) {
+        Eigen::Map<VectorXd>(jacobians[0], count_) = J.col(0);
+      } else {
+        Eigen::Map<RowMajor>(jacobians[0], count_, size) = J;
+      }
+      return true;
+    } catch (const NumericalError&) {
+      return false;  // diverged: a step that far is refused
+    } catch (const InputError&) {
+      return false;  // takes away more than there is
+    }
+  }
+
+ private:
+  Simulator& simulator_;
+  Index first_;
+  Index count_;
+};
+
+void SetBounds(ceres::Problem& problem, double* theta,
+               const std::vector<FitParameter>& parameters) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const int index = static_cast<int>(i);
+    if (std::isfinite(parameters[i].lower)) {
+      problem.SetParameterLowerBound(theta, index, parameters[i].lower);
+    }
+    if (std::isfinite(parameters[i].upper)) {
+      problem.SetParameterUpperBound(theta, index, parameters[i].upper);
+    }
+  }
+}
+
+}  // namespace
+
+double FittedValues(const DiscoveryProblem& problem) {
+  return static_cast<double>(problem.run.outputs.rows() *
+                             (problem.train - problem.skip));
+}
+
+CauseFit FitCauses(const DiscoveryProblem& problem,
+                   const std::vector<Candidate>& candidates,
+                   const std::vector<FittedCause>& start, const FitOptions& options) {
+  const Index channels = problem.run.outputs.rows();
+  const Index first = channels * problem.skip;
+  const Index count = channels * (problem.train - problem.skip);
+  CauseFit fit;
+  fit.causes = start;
+  // What is held out need not be run while the fit goes on.
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  Simulator simulator(seen, candidates, start, options);
+  VectorXd theta = Flatten(start);
+  if (theta.size() > 0) {
+    // Throws where the first values cannot be run; Ceres would write to stderr.
+    if (!simulator.Slope(theta).allFinite()) {
+      throw NumericalError("fit: the run with the first values diverges");
+    }
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    InnovationCost cost(simulator, first, count, theta.size());
+    ceres::Problem least_squares(ownership);
+    least_squares.AddResidualBlock(&cost, nullptr, theta.data());
+    SetBounds(least_squares, theta.data(), simulator.parameters());
+    const int size = static_cast<int>(theta.size());
+    if (options.held && size == 1) {
+      least_squares.SetParameterBlockConstant(theta.data());
+    } else if (options.held) {
+      const int held = static_cast<int>(*options.held);
+      least_squares.SetManifold(theta.data(), new ceres::SubsetManifold(size, {held}));
+    }
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.max_num_iterations = options.iterations;
+    solver.function_tolerance = options.tolerance;
+    solver.parameter_tolerance = 1e-9;
+    solver.logging_type = ceres::SILENT;
+    // With bounds Ceres searches along every step; a cubic would ask for J there.
+    solver.line_search_interpolation_type = ceres::BISECTION;
+    solver.max_num_line_search_step_size_iterations = 3;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &least_squares, &summary);
+    if (!summary.IsSolutionUsable()) {
+      throw NumericalError("fit: the run with the first values diverges");
+    }
+    fit.causes = WithValues(start, theta);
+  }
+  if (theta.size() > 0) {
+    fit.exact = options.sensitivities;
+    fit.sensitivities =
+        options.sensitivities ? simulator.Sensitivities(theta) : simulator.slope();
+  }
+  const Index samples = problem.run.samples();
+  fit.residual = problem.train == samples
+                     ? simulator.Residual(theta)
+                     : problem.Residual(ChangesOf(candidates, fit.causes));
+  fit.train = MeanSquare(fit.residual, channels, problem.skip, problem.train);
+  fit.held_out = MeanSquare(fit.residual, channels, problem.train, samples);
+  return fit;
+}
+
+FitOptions CompareFrom(const MatrixXd* known, int iterations, double tolerance) {
+  return {.iterations = iterations,
+          .tolerance = tolerance,
+          .sensitivities = false,
+          .known = known,
+          .secant = true};
+}
+
+std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
+                               const std::vector<Candidate>& candidates,
+                               const std::vector<FittedCause>& start,
+                               const FitOptions& options) {
+  try {
+    return FitCauses(problem, candidates, start, options);
+  } catch (const NumericalError&) {
+    return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i) {
+  const MatrixXd& all = fit.sensitivities;
+  Index first = 0;
+  for (std::size_t k = 0; k < i; ++k) first += fit.causes[k].value.size();
+  const Index count = fit.causes[i].value.size();
+  MatrixXd rest(all.rows(), all.cols() - count);
+  rest << all.leftCols(first), all.rightCols(all.cols() - first - count);
+  return rest;
+}
+
+MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
+  const Index channels = problem.run.outputs.rows();
+  const Index parameters = fit.sensitivities.cols();
+  const Index n = problem.train - problem.skip;
+  const MatrixXd J =
+      fit.sensitivities.middleRows(channels * problem.skip, channels * n);
+  const VectorXd e = fit.residual.segment(channels * problem.skip, channels * n);
+  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd scaled = J * scale.asDiagonal();
+  MatrixXd scores(n, parameters);
+  for (Index k = 0; k < n; ++k) {
+    scores.row(k) = e.segment(channels * k, channels).transpose() *
+                    scaled.middleRows(channels * k, channels);
+  }
+  // The colour of the innovations reaches over the memory of the observer; more than a
+  // twentieth of the record would be noise itself.
+  const auto lags = static_cast<Index>(std::min(
+      0.05 * static_cast<double>(n), 50.0 + std::sqrt(static_cast<double>(n))));
+  MatrixXd B = scores.transpose() * scores;
+  for (Index lag = 1; lag <= lags; ++lag) {
+    const MatrixXd product =
+        scores.topRows(n - lag).transpose() * scores.bottomRows(n - lag);
+    const double weight =
+        1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
+    B += weight * (product + product.transpose());
+  }
+  const Eigen::FullPivLU<MatrixXd> information(scaled.transpose() * scaled);
+  if (!information.isInvertible()) {
+    return MatrixXd::Identity(parameters, parameters) *
+           std::numeric_limits<double>::infinity();
+  }
+  const MatrixXd inverse = information.inverse();
+  return scale.asDiagonal() * (inverse * B * inverse) * scale.asDiagonal();
+}
+
+}  // namespace mjdiag

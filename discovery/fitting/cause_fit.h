@@ -1,0 +1,79 @@
+#pragma once
+// Parameters of causes by full simulation: the innovations of the nonlinear plant with
+// the causes in it are made as small as they get,
+//
+//   min over theta of  sum over train samples of |e_k(theta)|^2,   bounds on theta
+//
+// by Levenberg and Marquardt (Ceres), with e scaled to unit variance under sensor noise
+// alone. Derivatives are forward differences of whole runs, side by side.
+//
+// The covariance of theta holds for innovations of any colour (the "sandwich" of Huber
+// and White with the lags of Newey and West):
+//
+//   cov = (J^T J)^-1 B (J^T J)^-1,  B = sum over lags l of w_l sum_k s_k s_(k+l)^T,
+//   s_k = J_k^T e_k,   w_l = 1 - |l| / (m + 1)
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "mjdiag/discovery/hypotheses/fitted_cause.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+
+namespace mjdiag {
+
+struct CauseFit {
+  std::vector<FittedCause> causes;
+  Eigen::VectorXd residual;       ///< scaled innovations of all samples
+  Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of the train part
+  bool exact = false;             ///< J by differences at theta, not by secants
+  double train = 0.0;             ///< mean square of the train part
+  double held_out = 0.0;          ///< of the rest; 0 without
+};
+
+struct FitOptions {
+  int iterations = 12;
+  /// Of the sum of squares, relative: when to stop.
+  double tolerance = 1e-6;
+  /// Compute J at the solution; else it is that of the last step.
+  bool sensitivities = true;
+  /// J of the first parameters at the start, instead of differences: of causes that
+  /// have been fitted before. Not owned.
+  const Eigen::MatrixXd* known = nullptr;
+  /// J from differences at the start only, then by Broyden's updates: one run a step
+  /// instead of one for every parameter. Near enough to compare causes.
+  bool secant = false;
+  /// Place of a parameter that keeps its value.
+  std::optional<Eigen::Index> held = std::nullopt;
+};
+
+/// Innovations that a fit sees, all channels: the sum of squares of noise alone, and of
+/// a fit over its mean square `train`.
+double FittedValues(const DiscoveryProblem& problem);
+
+/// @param start  causes with values to start from, within their bounds
+/// @param run    of the problem, or the beginning of it: `problem.run` is what counts
+/// NumericalError if the run with the start diverges.
+CauseFit FitCauses(const DiscoveryProblem& problem,
+                   const std::vector<Candidate>& candidates,
+                   const std::vector<FittedCause>& start, const FitOptions& options);
+
+/// For fits that are compared: by secants, from what is known of J (or null), none
+/// computed at the end.
+FitOptions CompareFrom(const Eigen::MatrixXd* known, int iterations, double tolerance);
+
+/// The same; none where the start diverges or takes away more than there is.
+std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
+                               const std::vector<Candidate>& candidates,
+                               const std::vector<FittedCause>& start,
+                               const FitOptions& options);
+
+/// J of a fit but for cause i.
+Eigen::MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i);
+
+/// Covariance of all parameters of the fit, in order of the causes; infinite variance
+/// where the data say nothing.
+Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
+                                    const CauseFit& fit);
+
+}  // namespace mjdiag

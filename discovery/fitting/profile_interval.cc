@@ -1,0 +1,174 @@
+#include "mjdiag/discovery/fitting/profile_interval.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/decompositions.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kNormal95 = 1.959964;
+constexpr double kChiSquared95 = kNormal95 * kNormal95;
+
+/// Where the profile of one parameter crosses.
+class Profile {
+ public:
+  /// @param direction  how all others follow, per unit of parameter `index`
+  Profile(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+          const CauseFit& fit, Index index, VectorXd direction, double crossing)
+      : problem_(problem),
+        candidates_(candidates),
+        fit_(fit),
+        index_(index),
+        direction_(std::move(direction)),
+        crossing_(crossing) {}
+
+  /// @param step  to where a quadratic one crosses, with its sign
+  /// @param bound of the parameter on that side
+  double End(double step, double bound) const;
+
+ private:
+  double Value() const { return Flatten(fit_.causes)[index_]; }
+  /// Root of what is lost over the crossing, 1 at an end; infinite where the plant
+  /// cannot be run.
+  double Lost(double step) const;
+  double Clipped(double step, double bound) const {
+    return step < 0.0 ? std::max(step, bound - Value())
+                      : std::min(step, bound - Value());
+  }
+
+  const DiscoveryProblem& problem_;
+  const std::vector<Candidate>& candidates_;
+  const CauseFit& fit_;
+  Index index_;
+  VectorXd direction_;
+  double crossing_;
+};
+
+double Profile::Lost(double step) const {
+  VectorXd theta = Flatten(fit_.causes) + step * direction_;
+  const std::vector<FitParameter> parameters = ParametersOf(candidates_, fit_.causes);
+  for (Index i = 0; i < theta.size(); ++i) {
+    const FitParameter& parameter = parameters[static_cast<std::size_t>(i)];
+    theta[i] = std::clamp(theta[i], parameter.lower, parameter.upper);
+  }
+  // To a tenth of what a crossing is.
+  const double tolerance = 0.1 * crossing_ / (FittedValues(problem_) * fit_.train);
+  FitOptions options = CompareFrom(&fit_.sensitivities, 4, tolerance);
+  options.held = index_;
+  const auto held =
+      TryFit(problem_, candidates_, WithValues(fit_.causes, theta), options);
+  if (!held) return std::numeric_limits<double>::infinity();
+  const double lost = FittedValues(problem_) * (held->train - fit_.train);
+  return std::sqrt(std::max(lost, 0.0) / crossing_);
+}
+
+double Profile::End(double step, double bound) const {
+  constexpr double kNear = 0.05;
+  constexpr int kSteps = 6;
+  // The root of what is lost grows nearly in proportion: false position from 0 on.
+  double below = 0.0;
+  double lost_below = 0.0;
+  double above = 0.0;
+  double lost_above = std::numeric_limits<double>::infinity();
+  double next = Clipped(step, bound);
+  for (int i = 0; i < kSteps; ++i) {
+    const double lost = Lost(next);
+    if (std::abs(lost - 1.0) < kNear) return Value() + next;
+    if (lost < 1.0) {
+      if (next == Clipped(2.0 * next, bound)) return bound;
+      below = next;
+      lost_below = lost;
+    } else {
+      above = next;
+      lost_above = lost;
+    }
+    if (above == 0.0) {
+      next = Clipped(below * std::clamp(1.0 / std::max(lost_below, 1e-3), 1.2, 3.0),
+                     bound);
+    } else if (std::isfinite(lost_above)) {
+      const double part = (1.0 - lost_below) / (lost_above - lost_below);
+      next = below + std::clamp(part, 0.1, 0.9) * (above - below);
+    } else {
+      next = 0.5 * (below + above);
+    }
+  }
+  return Value() + next;
+}
+
+/// Whether parameters of a candidate say where or how its law bends, and not only how
+/// large its parts are: those enter the motion nearly linearly.
+bool HasShape(const Candidate& candidate) {
+  const std::string& effect = candidate.cause.spec.effect;
+  if (candidate.parameters.size() > 1) {
+    return effect != "asymmetric_viscous_friction" &&
+           effect != "position_dependent_motor_constant";
+  }
+  return effect == "force_saturation" || effect == "backlash";
+}
+
+/// For every parameter of the causes whether its profile has to be followed: of laws
+/// with a shape, where a parameter is not known to a small part of itself.
+std::vector<bool> NeedProfile(const std::vector<Candidate>& candidates,
+                              const std::vector<FittedCause>& causes,
+                              const MatrixXd& covariance) {
+  constexpr double kSharp = 0.05;
+  std::vector<bool> needed;
+  for (const FittedCause& cause : causes) {
+    const Candidate& candidate = candidates[cause.candidate];
+    for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
+      const auto i = static_cast<Index>(needed.size());
+      const double size = candidate.parameters[k].name == "phase"
+                              ? 1.0
+                              : std::abs(cause.value[static_cast<Index>(k)]);
+      const double sd = std::sqrt(covariance(i, i));
+      needed.push_back(HasShape(candidate) && std::isfinite(sd) && sd > kSharp * size);
+    }
+  }
+  return needed;
+}
+
+}  // namespace
+
+std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
+                                         const std::vector<Candidate>& candidates,
+                                         const CauseFit& fit,
+                                         const MatrixXd& covariance) {
+  const Index channels = problem.run.outputs.rows();
+  const VectorXd theta = Flatten(fit.causes);
+  const MatrixXd J = fit.sensitivities.middleRows(
+      channels * problem.skip, channels * (problem.train - problem.skip));
+  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd scaled = J * scale.asDiagonal();
+  const MatrixXd C =
+      scale.asDiagonal() * Inverse(scaled.transpose() * scaled) * scale.asDiagonal();
+  const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
+  const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  std::vector<Interval> intervals(parameters.size());
+  ParallelFor(2 * static_cast<int>(parameters.size()), [&](int number) {
+    const Index i = number / 2;
+    const double side = number % 2 == 0 ? -1.0 : 1.0;
+    const auto p = static_cast<std::size_t>(i);
+    double& end = side < 0.0 ? intervals[p].low : intervals[p].high;
+    const double sd = std::sqrt(covariance(i, i));
+    end = theta[i] + side * kNormal95 * sd;
+    if (!needed[p]) return;
+    const double colour = covariance(i, i) / C(i, i);
+    const Profile profile(seen, candidates, fit, i, C.col(i) / C(i, i),
+                          kChiSquared95 * colour);
+    end = profile.End(side * kNormal95 * sd,
+                      side < 0.0 ? parameters[p].lower : parameters[p].upper);
+  });
+  return intervals;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,46 @@
+#include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+
+#include <algorithm>
+
+#include "mjdiag/plugin/effects/trial_signals.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+void Narrow(FitParameter& parameter, double lower, double upper) {
+  if (!(upper > lower)) return;  // no motion
+  parameter.lower = std::max(parameter.lower, lower);
+  parameter.upper = std::min(parameter.upper, upper);
+}
+
+}  // namespace
+
+void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& motion) {
+  const double duration = motion.sample_time * static_cast<double>(motion.samples());
+  for (Candidate& candidate : candidates) {
+    if (candidate.cause.fault) continue;
+    const VectorXd q = motion.position.row(candidate.joint);
+    const double speed = motion.velocity.row(candidate.joint).cwiseAbs().maxCoeff();
+    for (FitParameter& parameter : candidate.parameters) {
+      if (parameter.name == "velocity") Narrow(parameter, 1e-3 * speed, 2.0 * speed);
+      if (parameter.name == "length") {
+        Narrow(parameter, 1e-5 * Range(q), 10.0 * Range(q));
+      }
+      if (parameter.name == "position") {
+        Narrow(parameter, q.minCoeff(), q.maxCoeff());
+      }
+      if (parameter.name == "frequency") {
+        Narrow(parameter, 1.0 / duration, 0.5 / motion.sample_time);
+      }
+      if (parameter.name == "limit") {
+        Narrow(parameter, 0.0,
+               motion.inputs.row(candidate.channel).cwiseAbs().maxCoeff());
+      }
+    }
+  }
+}
+
+}  // namespace mjdiag

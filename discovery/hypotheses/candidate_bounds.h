@@ -1,0 +1,19 @@
+#pragma once
+// What a record can say of the shapes of candidates: a law that changes at a speed, a
+// place or a command that the record never comes near is not one of that record.
+
+#include <vector>
+
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
+
+namespace mjdiag {
+
+/// Narrows the bounds of shape parameters to what the motion reaches and resolves: the
+/// velocity of Stribeck friction to 0.001 to 2 times the top speed of its joint, the
+/// length of a hysteresis to 1e-5 to 10 times the stroke, the place of an end stop to
+/// the stroke, the limit of a drive to the largest command, frequencies to between one
+/// period a record and half of the control rate. Joints that stand still keep theirs.
+void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& motion);
+
+}  // namespace mjdiag

@@ -1,0 +1,66 @@
+#include "mjdiag/discovery/hypotheses/fitted_cause.h"
+
+#include <utility>
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+VectorXd Flatten(const std::vector<FittedCause>& causes) {
+  Index size = 0;
+  for (const FittedCause& cause : causes) size += cause.value.size();
+  VectorXd all(size);
+  Index next = 0;
+  for (const FittedCause& cause : causes) {
+    all.segment(next, cause.value.size()) = cause.value;
+    next += cause.value.size();
+  }
+  return all;
+}
+
+std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
+                                    const VectorXd& all) {
+  Index next = 0;
+  for (FittedCause& cause : causes) {
+    cause.value = all.segment(next, cause.value.size());
+    next += cause.value.size();
+  }
+  return causes;
+}
+
+std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
+                                       const std::vector<FittedCause>& causes) {
+  std::vector<FitParameter> parameters;
+  for (const FittedCause& cause : causes) {
+    const auto& list = candidates[cause.candidate].parameters;
+    parameters.insert(parameters.end(), list.begin(), list.end());
+  }
+  return parameters;
+}
+
+Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted) {
+  const Candidate& candidate = candidates[fitted.candidate];
+  Cause cause = candidate.cause;
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    cause.spec.parameters[candidate.parameters[i].name] =
+        fitted.value[static_cast<Index>(i)];
+  }
+  return cause;
+}
+
+Changes ChangesOf(const std::vector<Candidate>& candidates,
+                  const std::vector<FittedCause>& causes) {
+  std::vector<Cause> list;
+  for (const FittedCause& fitted : causes) {
+    list.push_back(CauseOf(candidates, fitted));
+  }
+  return ChangesOf(list);
+}
+
+std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i) {
+  causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
+  return causes;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,33 @@
+#pragma once
+// Candidates with values, and the vector of all of them that a fit works on.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/discovery/hypotheses/candidate.h"
+
+namespace mjdiag {
+
+/// A candidate with values.
+struct FittedCause {
+  std::size_t candidate = 0;  ///< in the list of candidates
+  Eigen::VectorXd value;      ///< in the order of candidate.parameters
+};
+
+/// All parameters in one vector, in order of the causes, and back.
+Eigen::VectorXd Flatten(const std::vector<FittedCause>& causes);
+std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,
+                                    const Eigen::VectorXd& all);
+/// Names and bounds in the same order.
+std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
+                                       const std::vector<FittedCause>& causes);
+
+Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted);
+/// Changes to the plant that the causes are.
+Changes ChangesOf(const std::vector<Candidate>& candidates,
+                  const std::vector<FittedCause>& causes);
+
+/// All causes but number i.
+std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i);
+
+}  // namespace mjdiag

@@ -1,0 +1,130 @@
+#include "mjdiag/discovery/screening/screening.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "mjdiag/discovery/screening/screener.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::string SweptName(const Start& start) {
+  return start.parameters.contains("period") ? "period" : "frequency";
+}
+
+/// The largest first, `count` of them.
+void KeepBest(std::vector<Start>& starts, std::size_t count) {
+  std::ranges::stable_sort(starts, std::greater<>(), &Start::gain);
+  if (starts.size() > count) starts.resize(count);
+}
+
+}  // namespace
+
+FittedCause FittedFrom(const std::vector<Candidate>& candidates, const Start& start) {
+  const Candidate& candidate = candidates[start.candidate];
+  FittedCause cause;
+  cause.candidate = start.candidate;
+  cause.value.resize(static_cast<Index>(candidate.parameters.size()));
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    const FitParameter& parameter = candidate.parameters[i];
+    cause.value[static_cast<Index>(i)] = std::clamp(start.parameters.at(parameter.name),
+                                                    parameter.lower, parameter.upper);
+  }
+  return cause;
+}
+
+Screening Screen(const DiscoveryProblem& problem,
+                 const std::vector<Candidate>& candidates, const ObservedMotion& motion,
+                 const ErrorDynamics& dynamics, const VectorXd& residual,
+                 const MatrixXd& sensitivities, int starts_each) {
+  const Screener screener(problem, dynamics, residual, sensitivities);
+  std::vector<std::vector<Start>> found(candidates.size());
+  std::vector<int> tried(candidates.size());
+  ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
+    const auto c = static_cast<std::size_t>(number);
+    const Candidate& candidate = candidates[c];
+    const double duration =
+        static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+    std::vector<Trial> trials;
+    if (const auto sweep = MakeSweep(problem.model, candidate, motion, duration)) {
+      tried[c] = static_cast<int>(sweep->values.size());
+      trials =
+          screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
+    } else {
+      trials = MakeTrials(*problem.plant, problem.model, candidate, motion);
+      tried[c] = static_cast<int>(trials.size());
+    }
+    for (auto& start : screener.Judge(trials, candidate)) {
+      if (start) found[c].push_back(std::move(*start));
+    }
+    for (Start& start : found[c]) start.candidate = c;
+    KeepBest(found[c], static_cast<std::size_t>(starts_each));
+  });
+  Screening screening;
+  screening.rest = screener.Rest();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    screening.trials += tried[c];
+    screening.starts.insert(screening.starts.end(), found[c].begin(), found[c].end());
+  }
+  KeepBest(screening.starts, screening.starts.size());
+  return screening;
+}
+
+Screening ScreenBeside(const DiscoveryProblem& problem,
+                       const std::vector<Candidate>& candidates,
+                       const std::vector<FittedCause>& causes,
+                       const MatrixXd& sensitivities, int starts_each) {
+  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, causes));
+  return Screen(seen, candidates, ObserveMotion(*seen.plant, seen.run, track), dynamics,
+                seen.Scaled(track), sensitivities, starts_each);
+}
+
+std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
+                               double present, const ObservedMotion& motion,
+                               const ErrorDynamics& dynamics, const VectorXd& residual,
+                               const MatrixXd& sensitivities, int most) {
+  const double duration =
+      static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+  const Screener screener(problem, dynamics, residual, sensitivities);
+  double gain = 0.0;
+  std::vector<Trial> trials;
+  if (const auto sweep = MakeSweep(problem.model, wave, motion, duration)) {
+    constexpr std::size_t kPeaks = 40;
+    const auto now = screener.Judge({sweep->make(present)}, wave).front();
+    gain = now ? now->gain : 0.0;
+    for (const double place : screener.Peaks(*sweep, wave, kPeaks)) {
+      trials.push_back(sweep->make(screener.ValueAt(*sweep, place)));
+    }
+  } else {
+    trials = MakeTrials(*problem.plant, problem.model, wave, motion);
+  }
+  std::vector<Start> starts;
+  for (auto& start : screener.Judge(trials, wave)) {
+    if (start && start->gain > gain) starts.push_back(std::move(*start));
+  }
+  KeepBest(starts, starts.size());
+  // Neighbours climb the same peak.
+  const std::string name = starts.empty() ? "" : SweptName(starts.front());
+  std::vector<Start> distinct;
+  for (Start& start : starts) {
+    const bool known = std::ranges::any_of(distinct, [&](const Start& other) {
+      constexpr double kSame = 0.01;
+      return std::abs(start.parameters.at(name) / other.parameters.at(name) - 1.0) <
+             kSame;
+    });
+    if (!known) distinct.push_back(std::move(start));
+    if (static_cast<int>(distinct.size()) == most) break;
+  }
+  return distinct;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,59 @@
+#include "mjdiag/discovery/selection/coarse_problem.h"
+
+#include <algorithm>
+
+#include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Squared innovations that chance may well explain beside what is left anyway.
+double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) {
+  constexpr double kByChance = 20.0;  // of white noise
+  const double rest =
+      MeanSquare(residual, problem.run.outputs.rows(), problem.skip, problem.train);
+  return kByChance * std::max(1.0, rest) /
+         IndependentShare(problem, residual).minCoeff();
+}
+
+/// @param exact  innovations of the problem
+bool IsNearTo(const VectorXd& exact, const CoarseProblem& coarse,
+              const DiscoveryProblem& problem, const Changes& changes) {
+  try {
+    return (coarse.problem.Residual(changes) - exact).squaredNorm() <
+           Insignificant(problem, exact);
+  } catch (const NumericalError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
+            const Changes& changes) {
+  return IsNearTo(problem.Residual(changes), coarse, problem, changes);
+}
+
+std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
+                                       const Changes& changes) {
+  const int substeps = problem.setup->substeps;
+  if (substeps < 2) return nullptr;
+  const VectorXd exact = problem.Residual(changes);
+  for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
+    auto coarse = std::make_unique<CoarseProblem>();
+    coarse->setup = *problem.setup;
+    coarse->setup.substeps = fewer;
+    coarse->plant = CopyModel(*problem.plant);
+    coarse->plant->opt.timestep *= static_cast<double>(substeps) / fewer;
+    coarse->problem = problem;
+    coarse->problem.setup = &coarse->setup;
+    coarse->problem.plant = coarse->plant.get();
+    if (IsNearTo(exact, *coarse, problem, changes)) return coarse;
+  }
+  return nullptr;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,45 @@
+#pragma once
+// How models compare: by what they leave,
+//
+//   deviance = sum over sensors of n_c (log s_c^2 + m_c / s_c^2),  s_c^2 = max(1, m_c)
+//
+// m_c: mean square of the scaled innovations, 1 if sensor noise is all that is left;
+// n_c: number of independent values among them, fewer than samples if what is left is
+// coloured.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+
+namespace mjdiag {
+
+/// Deviance of samples first .. last - 1.
+/// @param independent  n_c over the number of samples, of every sensor
+double Deviance(const Eigen::VectorXd& residual, const Eigen::VectorXd& independent,
+                Eigen::Index first, Eigen::Index last);
+
+/// n_c over the number of samples of every sensor, from the spectra of the residual.
+Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
+                                 const Eigen::VectorXd& residual);
+
+/// Gain that the best of `trials` reaches by chance with that probability where there
+/// is noise only, of a trial with that many degrees of freedom.
+double GainByChance(double probability, int trials, int freedom);
+
+int ParameterCount(const std::vector<FittedCause>& causes);
+
+/// Bayesian information criterion of the train part, deviance + parameters log n.
+double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
+                 const Eigen::VectorXd& independent);
+
+/// Criteria of competing fits. How many independent values they are judged by is what
+/// the best of them leaves: beside all models a real machine does what is no white
+/// noise, and a law with many parameters must not win by that. A fit that failed, and
+/// is none, has infinity.
+std::vector<double> Criteria(const DiscoveryProblem& problem,
+                             const std::vector<std::optional<CauseFit>>& fits);
+
+}  // namespace mjdiag

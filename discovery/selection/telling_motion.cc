@@ -1,0 +1,90 @@
+#include "mjdiag/discovery/selection/telling_motion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+// Long enough for every move of a trajectory that repeats.
+constexpr double kLongest = 1.0;  // [s]
+
+/// The trajectory with time stretched.
+Trajectory Slower(Trajectory trajectory, double factor) {
+  trajectory.period *= factor;
+  for (Move& move : trajectory.moves) move.at *= factor;
+  for (auto& [axis, limits] : trajectory.limits) {
+    limits.velocity /= factor;
+    limits.acceleration /= std::pow(factor, 2);
+    limits.jerk /= std::pow(factor, 3);
+    limits.snap /= std::pow(factor, 4);
+  }
+  const double once = trajectory.period > 0.0 ? trajectory.period : trajectory.duration;
+  trajectory.duration =
+      std::min(trajectory.duration * factor, std::max(once, kLongest * factor));
+  return trajectory;
+}
+
+Record RunOf(const Setup& setup, const mjModel& plant, const Excitation& excitation,
+             const Changes& changes) {
+  RunOptions options;
+  options.faults = changes.faults;
+  options.effects = changes.effects;
+  options.noise_scale = 0.0;
+  return Simulate(setup, plant, excitation, options);
+}
+
+double Separation(const Setup& setup, const Record& a, const Record& b) {
+  double sum = 0.0;
+  for (const SensorSetup& sensor : setup.sensors) {
+    if (sensor.noise_sd <= 0.0) continue;
+    sum += ((a.At(sensor.channel).samples - b.At(sensor.channel).samples) /
+            sensor.noise_sd)
+               .squaredNorm();
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+std::optional<TellingMotion> FindTellingMotion(const Setup& setup, const mjModel& plant,
+                                               const Changes& one,
+                                               const Changes& other) {
+  if (setup.axes.empty()) return std::nullopt;
+  // The slowest, which take longest, first.
+  std::vector<TellingMotion> motions;
+  for (const double slower : {5.0, 2.0, 1.0}) {
+    for (const Trajectory& trajectory : setup.trajectories) {
+      motions.push_back({trajectory.name, slower, 0.0});
+    }
+  }
+  std::vector<std::array<std::optional<Record>, 2>> runs(motions.size());
+  ParallelFor(2 * static_cast<int>(motions.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number / 2);
+    const auto which = static_cast<std::size_t>(number % 2);
+    const TellingMotion& motion = motions[i];
+    try {
+      const Excitation excitation = FollowTrajectory(
+          setup, Slower(setup.FindTrajectory(motion.trajectory), motion.slower));
+      runs[i][which] = RunOf(setup, plant, excitation, which == 0 ? one : other);
+    } catch (const std::exception&) {
+      // A motion that cannot be run is not proposed.
+    }
+  });
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto& [a, b] = runs[i];
+    if (a && b) motions[i].separation = Separation(setup, *a, *b);
+  }
+  const auto best =
+      std::ranges::max_element(motions, std::less<>(), &TellingMotion::separation);
+  if (best == motions.end() || best->separation <= 0.0) return std::nullopt;
+  return *best;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,29 @@
+#pragma once
+// Which motion would tell two explanations apart? Both are run, without noise, along
+// the trajectories of the setup, as they are and slower, and the one is proposed in
+// which their readings differ most, in units of the sensor noise.
+
+#include <mujoco/mujoco.h>
+
+#include <optional>
+#include <string>
+
+#include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/plugin/setup/setup.h"
+
+namespace mjdiag {
+
+struct TellingMotion {
+  std::string trajectory;  ///< name in the setup
+  double slower = 1.0;     ///< times its limits of velocity (and powers of it above)
+  /// Root of the sum of squares of the readings' difference over the sensor noise.
+  double separation = 0.0;
+};
+
+/// None without controllers or trajectories in the setup, or if no run succeeds.
+/// @param setup  with the measured noise of its sensors
+std::optional<TellingMotion> FindTellingMotion(const Setup& setup, const mjModel& plant,
+                                               const Changes& one,
+                                               const Changes& other);
+
+}  // namespace mjdiag

@@ -1,0 +1,57 @@
+#include "mjdiag/discovery/unexplained/sensor_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/signals/spectrum.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Rms that white noise has which is as strong as `signal` is in the upper half of the
+/// band: there the observer follows nothing, and innovations are the noise itself.
+double UpperRms(const VectorXd& signal, double sample_time) {
+  constexpr Index kSegment = 256;
+  if (signal.size() < kSegment) return 0.0;
+  const Spectrum spectrum = WelchDensity(signal, sample_time, kSegment);
+  const double highest = 0.5 / sample_time;
+  return std::sqrt(2.0 * BandPower(spectrum, 0.5 * highest, highest));
+}
+
+}  // namespace
+
+std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& observer,
+                                         const Eigen::MatrixXd& innovations,
+                                         double share) {
+  constexpr double kSigmas = 5.0;
+  constexpr double kLeast = 0.02;
+  const auto n = static_cast<Index>(share * static_cast<double>(innovations.cols()));
+  std::vector<RaisedNoise> found;
+  for (std::size_t i = 0; i < setup.sensors.size(); ++i) {
+    const SensorSetup& sensor = setup.sensors[i];
+    const auto row = static_cast<Index>(i);
+    const double expected =
+        std::hypot(sensor.noise_sd, sensor.resolution / std::sqrt(12.0));
+    if (sensor.noise_sd <= 0.0 || n < 2) continue;
+    // What the observer makes of white noise of unit standard deviation.
+    const double colouring = observer.innovation_sd[row] / observer.noise_sd[row];
+    const double rms =
+        std::sqrt(innovations.row(row).head(n).squaredNorm() / static_cast<double>(n)) /
+        colouring;
+    const double error = rms / std::sqrt(2.0 * static_cast<double>(n));
+    if (rms - expected < std::max(kSigmas * error, kLeast * expected)) continue;
+    // The mean square of half of the band is less certain by sqrt(2), that of their
+    // difference as that of the whole.
+    const double upper =
+        UpperRms(innovations.row(row).head(n).transpose(), setup.sample_time());
+    if (rms - upper > std::max(kSigmas * error, kLeast * rms)) continue;
+    const double raised = std::sqrt(rms * rms - expected * expected);
+    found.push_back({sensor.element, sensor.unit, raised, error * rms / raised});
+  }
+  return found;
+}
+
+}  // namespace mjdiag

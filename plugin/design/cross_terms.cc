@@ -1,0 +1,195 @@
+#include "mjdiag/plugin/design/cross_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/signals/decompositions.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A leak is known to a tenth or so, as it goes with squares of deviations. One that is
+/// small beside the estimate explains nothing, however uncertain both are.
+bool Explains(double leak, const FaultVerdict& fault, double reach) {
+  constexpr double kShare = 0.1;
+  return std::abs(fault.deviation - leak) <=
+             reach * fault.sd + kShare * std::abs(leak) &&
+         std::abs(leak) > 0.5 * std::abs(fault.deviation);
+}
+
+/// Faults of the plant, by the place of their knob.
+struct Named {
+  std::size_t knob = 0;
+  double deviation = 0.0;  // from healthy
+};
+
+class Simulator {
+ public:
+  Simulator(const DiagnosisDesign& design, const Setup& setup, const mjModel& plant,
+            const DiagnosedMotion& motion)
+      : design_(design),
+        setup_(setup),
+        plant_(plant),
+        motion_(motion),
+        healthy_(Estimates({})) {}
+
+  /// D(f), a fault each.
+  VectorXd EstimatesOf(const std::vector<Named>& named) const {
+    return Estimates(named) - healthy_;
+  }
+
+ private:
+  VectorXd Estimates(const std::vector<Named>& named) const {
+    DiagnosisMonitor monitor(design_, motion_.excitation.samples(), motion_.baseline);
+    monitor.RegressFrom(motion_.first_regressed);
+    RunOptions options;
+    options.seed = motion_.runs.seed;
+    for (const Named& fault : named) {
+      options.faults.push_back(
+          {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
+    }
+    RunWith(monitor, setup_, plant_, motion_.excitation, options, motion_.runs.linear);
+    return monitor.estimator().Estimate().value;
+  }
+
+  const DiagnosisDesign& design_;
+  const Setup& setup_;
+  const mjModel& plant_;
+  const DiagnosedMotion& motion_;
+  VectorXd healthy_;
+};
+
+class CrossTerms {
+ public:
+  CrossTerms(const std::vector<FaultVerdict>& faults, std::size_t knobs)
+      : faults_(faults),
+        knobs_(knobs),
+        reach_(TwoSidedQuantile(kFalseFault / static_cast<double>(faults.size()))),
+        leaks_(VectorXd::Zero(static_cast<Index>(faults.size()))) {}
+
+  const std::vector<Named>& named() const { return named_; }
+
+  bool IsNamed(std::size_t i) const {
+    return std::ranges::find(named_, i, &Named::knob) != named_.end();
+  }
+
+  bool IsCrossTerm(std::size_t i) const {
+    return faults_[i].detected && !IsNamed(i) && Explains(Leak(i), faults_[i], reach_);
+  }
+
+  /// Of what cross terms do not explain, the strongest that a plant can have is named;
+  /// false if there is none. Disturbances, which come after the knobs, are not turned.
+  bool NameNext() {
+    std::optional<Named> next;
+    double most = 0.0;
+    for (std::size_t i = 0; i < knobs_; ++i) {
+      const double rest = faults_[i].deviation - Leak(i);
+      const double strength = std::abs(rest) / faults_[i].sd;
+      if (!faults_[i].detected || IsNamed(i) || IsCrossTerm(i) || rest <= -1.0 ||
+          strength <= most) {
+        continue;
+      }
+      most = strength;
+      next = Named{i, rest};
+    }
+    if (next) named_.push_back(*next);
+    return next.has_value();
+  }
+
+  /// Takes what a run with the named faults shows; true if these have settled. Their
+  /// estimates are matched by Broyden's method, in units of their standard deviations.
+  bool Learn(const VectorXd& estimates) {
+    leaks_ = estimates;
+    const auto count = static_cast<Index>(named_.size());
+    VectorXd place(count);
+    VectorXd missed(count);
+    for (Index k = 0; k < count; ++k) {
+      const Named& fault = named_[static_cast<std::size_t>(k)];
+      const FaultVerdict& seen = faults_[fault.knob];
+      place[k] = fault.deviation / seen.sd;
+      missed[k] = (Leak(fault.knob) - seen.deviation) / seen.sd;
+    }
+    if (place_.size() != count) {
+      slope_ = MatrixXd::Identity(count, count);
+    } else if (place != place_) {  // a knob at its least may not have moved
+      const VectorXd step = place - place_;
+      slope_ +=
+          (missed - missed_ - slope_ * step) * step.transpose() / step.squaredNorm();
+    }
+    place_ = place;
+    missed_ = missed;
+    const VectorXd change = -Solve(slope_, missed);
+    bool settled = true;
+    for (Index k = 0; k < count; ++k) {
+      Named& fault = named_[static_cast<std::size_t>(k)];
+      const double most = kLongest * std::abs(fault.deviation);
+      const double sd = faults_[fault.knob].sd;
+      const double step = std::clamp(sd * change[k], -most, most);
+      settled = settled && std::abs(step) < kSettled * sd;
+      fault.deviation = std::max(fault.deviation + step, kLeast - 1.0);
+    }
+    return settled;
+  }
+
+ private:
+  static constexpr double kSettled = 0.5;  // of the standard deviation
+  static constexpr double kLongest = 0.5;  // a step, of the deviation
+  static constexpr double kLeast = 0.01;   // of a knob
+
+  double Leak(std::size_t i) const { return leaks_[static_cast<Index>(i)]; }
+
+  const std::vector<FaultVerdict>& faults_;
+  std::size_t knobs_;
+  double reach_;
+  std::vector<Named> named_;
+  VectorXd leaks_;
+  // Of the last step: where it began, in standard deviations, what was missed there,
+  // and the derivative of what is missed as it has been learned.
+  VectorXd place_;
+  VectorXd missed_;
+  MatrixXd slope_;
+};
+
+}  // namespace
+
+void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
+                      const Setup& setup, const mjModel& plant,
+                      const DiagnosedMotion& motion) {
+  constexpr int kRuns = 16;
+  CrossTerms terms(result.faults, design.bank.faults.size());
+  if (!terms.NameNext()) return;
+  try {
+    const Simulator simulator(design, setup, plant, motion);
+    int left = kRuns;
+    // Before the strong ones have settled nobody knows what is left of the weak.
+    while (!terms.Learn(simulator.EstimatesOf(terms.named())) || terms.NameNext()) {
+      if (--left == 0) return;
+    }
+  } catch (const NumericalError&) {
+    return;  // a plant with such faults does not run
+  }
+  std::vector<FaultVerdict> faults = result.faults;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    if (!terms.IsCrossTerm(i)) continue;
+    faults[i].cross_term = true;
+    faults[i].detected = false;
+  }
+  for (const Named& named : terms.named()) {
+    FaultVerdict& fault = faults[named.knob];
+    const double shift = named.deviation - fault.deviation;
+    fault.deviation += shift;
+    fault.value += shift;
+    fault.ci95 = {fault.ci95.min + shift, fault.ci95.max + shift};
+  }
+  result.faults = faults;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,339 @@
+#include "mjdiag/plugin/design/filter_design.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "mjdiag/diagnosis/f_distribution.h"
+#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/row_choice.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/signals/butterworth.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kRandomRun = 2.0;  // s of excitation without a controller
+
+/// Unit generalised forces on the joints that the setup names.
+MatrixXd UnknownForces(const Setup& setup, const MechanicalModel& model) {
+  const auto& names = setup.diagnosis.unknown_forces;
+  MatrixXd forces = MatrixXd::Zero(model.M.rows(), static_cast<Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& joints = model.coordinates;
+    const auto found = std::find(joints.begin(), joints.end(), names[i]);
+    if (found == joints.end()) {
+      std::string known;
+      for (const auto& joint : joints) known += (known.empty() ? "" : ", ") + joint;
+      throw InputError("setup '" + setup.name + "': diagnosis.unknown_forces",
+                       "there is no joint '" + names[i] + "'", "one of " + known);
+    }
+    forces(found - joints.begin(), static_cast<Index>(i)) = 1.0;
+  }
+  return forces;
+}
+
+/// White noise of a unit on every actuator: any input that excites all modes serves to
+/// compare rows, and its size does not matter on the linear plant.
+Excitation RandomInputs(const Setup& setup) {
+  Excitation excitation;
+  excitation.inputs = Record(setup.sample_time());
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  const auto samples = static_cast<Index>(kRandomRun * setup.control_rate);
+  for (const ActuatorSetup& actuator : setup.actuators) {
+    const VectorXd values =
+        VectorXd::NullaryExpr(samples, [&](Index) { return normal(generator); });
+    excitation.inputs.Add({actuator.channel, actuator.unit, values});
+  }
+  return excitation;
+}
+
+Excitation DefaultExcitation(const Setup& setup) {
+  if (setup.axes.empty()) return RandomInputs(setup);
+  if (setup.default_trajectory.empty()) {
+    throw InputError("setup '" + setup.name + "'", "has no trajectory",
+                     "one under [trajectories], for the design of the diagnosis");
+  }
+  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+}
+
+/// Energies of the rows under unit white noise on the commands, for plants without
+/// knobs or disturbances.
+MatrixXd CommandEnergy(const FilterBank& rows, Index outputs) {
+  VectorXd noise = VectorXd::Ones(rows.inputs());
+  noise.head(outputs).setZero();
+  return OutputCovariance(rows, noise);
+}
+
+/// The row in which every tone of the disturbances stands out best from the noise at
+/// its own frequency, for that is where a spectrum looks for it.
+VectorXd RowForTones(const FilterBank& rows, const VectorXd& sensor_noise,
+                     const std::vector<Multisine>& sources) {
+  const Index ny = sensor_noise.size();
+  std::vector<MatrixXd> tones;
+  std::vector<MatrixXd> noises;
+  for (const Multisine& source : sources) {
+    for (const double frequency : source.frequencies) {
+      const Eigen::MatrixXcd response = FrequencyResponse(rows, frequency);
+      const Eigen::VectorXcd tone =
+          response.rightCols(rows.inputs() - ny) * source.amplitude;
+      const Eigen::MatrixXcd noise = response.leftCols(ny) * sensor_noise.asDiagonal();
+      tones.emplace_back((tone * tone.adjoint()).real());
+      noises.emplace_back((noise * noise.adjoint()).real());
+    }
+  }
+  if (!tones.empty() && sensor_noise.minCoeff() > 0.0) {
+    return BestRatioRow(tones, noises);
+  }
+  return MostSensitiveRow({CommandEnergy(rows, ny)});
+}
+
+DisturbanceFilter DesignDisturbanceFilter(const MechanicalModel& healthy,
+                                          const std::vector<TurnedModels>& turned,
+                                          const Setup& setup) {
+  const DiagnosisOptions& wanted = setup.diagnosis;
+  SynthesisOptions options = SynthesisOf(setup, healthy);
+  options.denominator = wanted.disturbance_denominator;
+  const ResidualSpace space = MakeResidualSpace(healthy, options);
+  const FilterBank all =
+      MakeFilterBank(space.rows, options.denominator, options.timing.tick());
+  const VectorXd row = RowForTones(all, options.sensor_noise, Multisines(setup));
+  const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
+  return {Outputs(bank.filters, 0, 1),
+          Outputs(bank.filters, 1, static_cast<Index>(turned.size())),
+          DigitalButterworth(FilterKind::kHighPass, wanted.high_pass_order,
+                             wanted.high_pass_cutoff, options.timing.tick())};
+}
+
+int Stride(const Setup& setup) {
+  const double ticks = setup.diagnosis.sampling * setup.control_rate;
+  const auto stride = static_cast<int>(std::lround(ticks));
+  if (stride < 1 || std::abs(ticks - stride) > 1e-6 * ticks) {
+    throw InputError("setup '" + setup.name + "': diagnosis.estimation.sampling",
+                     std::to_string(setup.diagnosis.sampling) + " s",
+                     "a multiple of the control tick");
+  }
+  return stride;
+}
+
+/// Rows of too high a degree under too low a cut-off lose their digits: they then leave
+/// a residual on the very machine they are made for.
+void RequireBlindness(const DiagnosisDesign& design, const MatrixXd& healthy_run) {
+  constexpr double kLeak = 0.3;  // of the noise of the residual
+  const MatrixXd residuals =
+      FilterSignals(design.bank.filters, healthy_run).topRows(design.bank.residuals);
+  const double leak = residuals.cwiseAbs().maxCoeff();
+  if (leak > kLeak) {
+    throw NumericalError("rows of degree " + std::to_string(design.options.degree) +
+                         " at " + std::to_string(design.options.denominator.cutoff) +
+                         " Hz lose their digits: a healthy run without noise leaves " +
+                         std::to_string(leak) +
+                         " times the noise; a lower degree or a higher cut-off "
+                         "helps");
+  }
+}
+
+/// What a nominal run leaves.
+struct NominalLog {
+  MonitorLog log;
+  VectorXd estimate;
+  MatrixXd rows;
+};
+
+NominalLog RunNominal(const DiagnosisDesign& design, const Setup& setup,
+                      const mjModel& plant, const Excitation& excitation,
+                      const MatrixXd& baseline, std::uint64_t seed, bool linear) {
+  DiagnosisMonitor monitor(design, excitation.samples(), baseline);
+  RunOptions options;
+  options.seed = seed;
+  RunWith(monitor, setup, plant, excitation, options, linear);
+  return {monitor.Log(), monitor.estimate(), monitor.ResidualRows()};
+}
+
+/// Runs of one motion that differ in their noise.
+std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Setup& setup,
+                                const mjModel& plant, const Excitation& excitation,
+                                const MatrixXd& baseline, const NominalRuns& options) {
+  std::vector<NominalLog> logs(static_cast<std::size_t>(options.runs));
+  ParallelFor(
+      options.runs,
+      [&](int i) {
+        logs[static_cast<std::size_t>(i)] =
+            RunNominal(design, setup, plant, excitation, baseline,
+                       options.seed + static_cast<std::uint64_t>(i), options.linear);
+      },
+      options.progress);
+  return logs;
+}
+
+/// Where the next value of a normal distribution lies, but for this probability, of
+/// which these were drawn: mean -+ t s sqrt(1 + 1/n).
+Interval PredictionInterval(const VectorXd& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = values.mean();
+  const double variance = (values.array() - mean).square().sum() / (n - 1.0);
+  const double reach =
+      std::sqrt(FQuantile(kOutsideLimits, 1.0, n - 1.0) * variance * (1.0 + 1.0 / n));
+  return {mean - reach, mean + reach};
+}
+
+/// The limits that these runs, all healthy, call for. Estimates are judged from those
+/// of `repeated` only, which are all of one motion.
+DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
+                         const std::vector<NominalLog>& repeated,
+                         const std::vector<NominalLog>& others, bool linear) {
+  const DiagnosisOptions& options = design.options;
+  std::vector<VectorXd> residuals;
+  std::vector<VectorXd> disturbances;
+  double integral = 0.0;
+  for (const auto* logs : {&repeated, &others}) {
+    for (const NominalLog& nominal : *logs) {
+      residuals.push_back(nominal.log.residual);
+      integral = std::max(integral, nominal.log.integral.maxCoeff());
+    }
+  }
+  for (const NominalLog& nominal : repeated) {
+    disturbances.push_back(nominal.log.disturbance);
+  }
+  DiagnosisLimits limits;
+  limits.residual =
+      options.false_alarms > 0.0
+          ? ThresholdsByFalseAlarms(residuals, options.false_alarms,
+                                    static_cast<double>(repeated[0].rows.cols()))
+          : ThresholdsByMargin(residuals, options.margin);
+  limits.integral = limits.residual.alpha * integral;
+  limits.disturbance = DesignDisturbanceThresholds(disturbances, design.sample_time(),
+                                                   options.disturbance);
+  // On the linear plant the noise explains what estimates do; on the nonlinear one
+  // friction does, too.
+  for (Index i = 0; i < design.faults() && !linear; ++i) {
+    VectorXd values(static_cast<Index>(repeated.size()));
+    for (Index k = 0; k < values.size(); ++k) {
+      values[k] = repeated[static_cast<std::size_t>(k)].estimate[i];
+    }
+    limits.estimates.push_back(PredictionInterval(values));
+  }
+  limits.known = true;
+  return limits;
+}
+
+}  // namespace
+
+SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy) {
+  SynthesisOptions options;
+  options.timing = {setup.sample_time() / setup.substeps, setup.substeps};
+  options.degree = setup.diagnosis.degree;
+  options.denominator = setup.diagnosis.denominator;
+  options.sensor_noise.resize(static_cast<Index>(setup.sensors.size()));
+  for (std::size_t i = 0; i < setup.sensors.size(); ++i) {
+    options.sensor_noise[static_cast<Index>(i)] = setup.sensors[i].noise_sd;
+  }
+  options.unknown_inputs.forces = UnknownForces(setup, healthy);
+  return options;
+}
+
+MatrixXd Signals(const DiagnosisDesign& design, const Record& record) {
+  const auto ny = static_cast<Index>(design.outputs.size());
+  MatrixXd signals(ny + static_cast<Index>(design.inputs.size()), record.samples());
+  for (Index i = 0; i < ny; ++i) {
+    signals.row(i) =
+        record.At(design.outputs[static_cast<std::size_t>(i)]).samples.array() -
+        design.offset[i];
+  }
+  for (std::size_t i = 0; i < design.inputs.size(); ++i) {
+    signals.row(ny + static_cast<Index>(i)) = record.At(design.inputs[i]).samples;
+  }
+  return signals;
+}
+
+Record LinearRun(const Setup& setup, const mjModel& plant) {
+  RunOptions options;
+  options.noise_scale = 0.0;
+  return SimulateLinear(setup, plant, DefaultExcitation(setup), options);
+}
+
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
+                              const RowSettings& settings) {
+  const MechanicalModel healthy = Linearize(plant, setup);
+  const std::vector<TurnedModels> turned = TurnModels(plant, setup);
+  SynthesisOptions options = SynthesisOf(setup, healthy);
+  options.degree = settings.degree;
+  options.denominator = settings.denominator;
+  DiagnosisDesign design;
+  design.setup = setup.name;
+  design.outputs = healthy.outputs;
+  design.inputs = healthy.inputs;
+  design.offset = SensorReadings(setup, plant, StaticEquilibrium(plant));
+  design.sensor_noise = options.sensor_noise;
+  design.options = setup.diagnosis;
+  design.options.degree = settings.degree;
+  design.options.denominator = settings.denominator;
+  design.options.estimation_rows = settings.rows;
+  design.stride = Stride(setup);
+  design.disturbances = Multisines(setup);
+  design.disturbance = DesignDisturbanceFilter(healthy, turned, setup);
+
+  const ResidualSpace space = MakeResidualSpace(healthy, options);
+  const Index size = space.rows.front().rows();
+  design.bank = SynthesiseBank(space, MatrixXd::Identity(size, size), turned, options);
+  const MatrixXd signals = Signals(design, LinearRun(setup, plant));
+  RequireBlindness(design, signals);
+  std::vector<MatrixXd> energies = FaultEnergies(design.bank, signals);
+  if (energies.empty()) {
+    energies.push_back(CommandEnergy(design.bank.filters, healthy.b.cols()));
+  }
+  design.bank =
+      Mix(design.bank, CompleteBasis(MostSensitiveRow(energies), settings.rows));
+  return design;
+}
+
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant) {
+  const DiagnosisOptions& wanted = setup.diagnosis;
+  return DesignFilters(setup, plant,
+                       {wanted.degree, wanted.denominator, wanted.estimation_rows});
+}
+
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
+                                const mjModel& plant, const NominalRuns& options) {
+  std::vector<NominalLog> others;
+  for (const std::string& name : setup.diagnosis.trajectories) {
+    NominalRuns single = options;
+    single.runs = 1;
+    single.progress = nullptr;
+    const Excitation excitation = FollowTrajectory(setup, setup.FindTrajectory(name));
+    others.push_back(RunMany(design, setup, plant, excitation, {}, single).front());
+  }
+  const auto repeated =
+      RunMany(design, setup, plant, DefaultExcitation(setup), {}, options);
+  return LimitsOf(design, repeated, others, options.linear);
+}
+
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
+                                const mjModel& plant, const Excitation& excitation,
+                                const MatrixXd& baseline, const NominalRuns& options) {
+  return LimitsOf(design, RunMany(design, setup, plant, excitation, baseline, options),
+                  {}, options.linear);
+}
+
+MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Setup& setup,
+                          const mjModel& plant, const Excitation& excitation,
+                          const NominalRuns& options) {
+  MatrixXd mean;
+  for (const NominalLog& nominal :
+       RunMany(design, setup, plant, excitation, {}, options)) {
+    mean = mean.size() == 0 ? nominal.rows : (mean + nominal.rows).eval();
+  }
+  return mean / static_cast<double>(options.runs);
+}
+
+}  // namespace mjdiag

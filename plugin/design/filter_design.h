@@ -1,0 +1,67 @@
+#pragma once
+// From a setup and its plant to a diagnosis: filters from the linearised plant, limits
+// from nominal runs.
+
+#include <mujoco/mujoco.h>
+
+#include <cstdint>
+#include <functional>
+
+#include "mjdiag/diagnosis/diagnosis_design.h"
+#include "mjdiag/diagnosis/residual_bank.h"
+#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+
+namespace mjdiag {
+
+/// How residual rows of this plant are made: timing, degree, denominator, sensor noise
+/// and unknown forces of the setup. InputError names an unknown joint.
+SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy);
+
+/// z = [y; u] of a record as deviations from rest, nz x samples.
+Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);
+
+/// A healthy run of the linear plant without noise: the default trajectory, or random
+/// inputs where the setup has no controllers.
+Record LinearRun(const Setup& setup, const mjModel& plant);
+
+/// Which rows the residuals are made of.
+struct RowSettings {
+  int degree = 7;
+  Denominator denominator;
+  int rows = 1;  ///< how many; 0: all of the null space
+};
+
+/// Residual row, prefilters and disturbance filter of the healthy plant, without
+/// limits. The row is the one that sees all faults best on LinearRun.
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
+                              const RowSettings& settings);
+/// With the rows that the setup asks for.
+DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant);
+
+/// The runs from which limits and baselines come.
+struct NominalRuns {
+  bool linear = false;
+  int runs = 5;               ///< of the default trajectory, or of the motion given
+  std::uint64_t seed = 1001;  ///< of the first run; the others count up
+  std::function<void(double fraction)> progress;
+};
+
+/// Limits (Eq. 20, 21, 29, 30) from one run of every trajectory that the setup lists
+/// for thresholds and some of its default one.
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
+                                const mjModel& plant, const NominalRuns& options);
+
+/// Limits for one motion, with its baseline subtracted in every run (section A.6 of the
+/// seed); the runs do not share seeds with those of the baseline.
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
+                                const mjModel& plant, const Excitation& excitation,
+                                const Eigen::MatrixXd& baseline,
+                                const NominalRuns& options);
+
+/// Mean residuals of the healthy plant over this motion, n x samples.
+Eigen::MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Setup& setup,
+                                 const mjModel& plant, const Excitation& excitation,
+                                 const NominalRuns& options);
+
+}  // namespace mjdiag

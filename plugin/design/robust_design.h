@@ -1,0 +1,27 @@
+#pragma once
+// A residual for the nonlinear machine: among all rows of the null space, and longer
+// ones, that which recorded nominal runs of the nonlinear plant excite least while it
+// sees one fault (section 6 of the seed). The linear model does not know friction in
+// the guides; its residual is full of it.
+
+#include <mujoco/mujoco.h>
+
+#include <string>
+
+#include "mjdiag/diagnosis/diagnosis_design.h"
+#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+
+namespace mjdiag {
+
+/// Filters like those of DesignFilters, but with the degree and denominator of the
+/// setup's [diagnosis.robust] and the one row that LeastExcitedRow finds for the fault
+/// (a knob of the plant or a disturbance of the setup, InputError on another).
+/// @param excitation  motion of the nominal runs
+/// @param baseline    judge the rows by what differs between runs, for a diagnosis that
+///                    subtracts a baseline
+DiagnosisDesign DesignRobustFilters(const Setup& setup, const mjModel& plant,
+                                    const std::string& fault,
+                                    const Excitation& excitation, bool baseline);
+
+}  // namespace mjdiag

@@ -1,0 +1,59 @@
+#pragma once
+// Effects that MuJoCo does not have, as they act while the machine runs: on the sensor
+// readings once a control tick, on the commands and as generalised forces in every
+// physics step. One small class an effect: friction_effects.cc, drive_effects.cc,
+// structure_effects.cc, encoder_effects.cc.
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/setup/setup.h"
+
+namespace mjdiag {
+
+/// Nothing in it allocates, locks or throws. Effects with a memory begin at rest, at
+/// the state of their first step.
+class ActiveEffect {
+ public:
+  virtual ~ActiveEffect() = default;
+  /// Changes readings, one for each sensor channel of the setup, taken at `time` [s]
+  /// since the start of the run.
+  virtual void Distort(std::span<double> /*readings*/, double /*time*/) noexcept {}
+  /// Changes the command in data.ctrl, of this physics step.
+  virtual void Drive(const mjModel&, mjData&) noexcept {}
+  /// Adds its force to data.qfrc_applied, or changes the bounds of dry friction, from
+  /// positions and velocities of this step.
+  virtual void Push(const mjModel&, mjData&) noexcept {}
+};
+
+/// All active effects of a run: those that the MJCF carries and `added`.
+class ActiveEffects {
+ public:
+  /// `model` has the native effects in it already. InputError as CheckEffect.
+  ActiveEffects(const Setup& setup, const mjModel& model,
+                const std::vector<EffectSpec>& added);
+
+  /// The readings of a control tick, setup order.
+  void Distort(std::span<double> readings, double time) noexcept;
+  /// Once a physics step, after positions and velocities and before accelerations,
+  /// with the commands of the tick in data.ctrl: changes them and sets
+  /// data.qfrc_applied of the joints that have such effects.
+  void Act(const mjModel& model, mjData& data) noexcept;
+  /// Takes the forces off again.
+  void Release(mjData& data) noexcept;
+
+ private:
+  std::vector<std::unique_ptr<ActiveEffect>> effects_;
+  std::vector<int> dofs_;
+};
+
+/// The setup with encoder_noise of the plant and of `added` in the noise of its
+/// sensors.
+Setup WithEncoderNoise(const Setup& setup, const mjModel& model,
+                       const std::vector<EffectSpec>& added);
+
+}  // namespace mjdiag

@@ -1,0 +1,19 @@
+#pragma once
+// The motion of a machine along a record, as an observer has it: what the forces of an
+// effect are computed from.
+
+#include <Eigen/Core>
+
+namespace mjdiag {
+
+struct ObservedMotion {
+  double sample_time = 0.0;      ///< [s]
+  Eigen::MatrixXd position;      ///< nv x samples, from qpos0
+  Eigen::MatrixXd velocity;      ///< nv x samples
+  Eigen::MatrixXd acceleration;  ///< nv x samples
+  Eigen::MatrixXd inputs;        ///< actuators x samples
+  Eigen::MatrixXd outputs;       ///< sensors x samples
+  Eigen::Index samples() const { return position.cols(); }
+};
+
+}  // namespace mjdiag

@@ -1,0 +1,48 @@
+#include "mjdiag/plugin/plant/scenery.h"
+
+#include <algorithm>
+
+namespace mjdiag {
+namespace {
+
+bool AnyCanTouch(const mjModel& model) {
+  if ((model.opt.disableflags & mjDSBL_CONTACT) != 0) return false;
+  const auto set = [](int bits) { return bits != 0; };
+  return model.npair > 0 ||
+         std::any_of(model.geom_contype, model.geom_contype + model.ngeom, set) ||
+         std::any_of(model.geom_conaffinity, model.geom_conaffinity + model.ngeom, set);
+}
+
+bool AnyIsRead(const mjModel& model) {
+  const auto geom = [](int kind) { return kind == mjOBJ_GEOM; };
+  return std::any_of(model.sensor_objtype, model.sensor_objtype + model.nsensor,
+                     geom) ||
+         std::any_of(model.sensor_reftype, model.sensor_reftype + model.nsensor,
+                     geom) ||
+         std::find(model.sensor_type, model.sensor_type + model.nsensor,
+                   static_cast<int>(mjSENS_RANGEFINDER)) !=
+             model.sensor_type + model.nsensor;
+}
+
+bool AnyHoldsATendon(const mjModel& model) {
+  return std::any_of(model.wrap_type, model.wrap_type + model.nwrap, [](int kind) {
+    return kind == mjWRAP_SPHERE || kind == mjWRAP_CYLINDER;
+  });
+}
+
+bool AnyIsInAFluid(const mjModel& model) {
+  return model.opt.density > 0.0 || model.opt.viscosity > 0.0;
+}
+
+}  // namespace
+
+void DropScenery(mjModel& model) {
+  if (AnyCanTouch(model) || AnyIsRead(model) || AnyHoldsATendon(model) ||
+      AnyIsInAFluid(model)) {
+    return;
+  }
+  model.opt.disableflags |= mjDSBL_CONTACT;
+  model.ngeom = 0;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,55 @@
+#pragma once
+// Replay of a measured input on the nonlinear plant beside an observer (observer.h).
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/plugin/effects/changes.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
+#include "mjdiag/plugin/replay/observer.h"
+#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/signals/record.h"
+
+namespace mjdiag {
+
+/// What of a measured record the replay needs, in the setup's order.
+struct MeasuredRun {
+  double sample_time = 0.0;             ///< [s]
+  Eigen::MatrixXd outputs;              ///< sensors x samples
+  Eigen::MatrixXd inputs;               ///< actuators x samples
+  std::map<std::string, double> start;  ///< readings at rest before the first sample
+  Eigen::Index samples() const { return outputs.cols(); }
+};
+
+/// InputError names a sensor or actuator channel that the record lacks, a wrong unit,
+/// or a sample time that is not the control tick.
+MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured);
+
+struct Track {
+  Eigen::MatrixXd innovations;  ///< sensors x samples [unit of the sensor]
+  Eigen::MatrixXd position;     ///< nv x samples, empty unless asked for
+  Eigen::MatrixXd velocity;     ///< nv x samples, the same
+};
+
+/// @param plant   as LoadPlant gives it
+/// @param states  whether to keep the trajectory of the joints
+/// NumericalError if the run diverges.
+Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+                const MeasuredRun& run, const Observer& observer, bool states);
+
+/// The same, and the first order of it. @param model  linear model of `plant`
+/// @param dynamics  every tick is added to it
+Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+                const MeasuredRun& run, const Observer& observer,
+                const MechanicalModel& model, ErrorDynamics& dynamics);
+
+/// The motion that the joints of a track made, with what was measured beside it.
+ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
+                             const Track& track);
+
+}  // namespace mjdiag

@@ -1,0 +1,93 @@
+#include <cmath>
+#include <optional>
+
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+std::vector<std::string> AxisNames(const Setup& setup) {
+  std::vector<std::string> names;
+  for (const AxisSetup& axis : setup.axes) names.push_back(axis.name);
+  return names;
+}
+
+/// The channel of a measured record, in the unit that the setup gives it.
+const Channel& Measured(const Record& measured, const std::string& name,
+                        const std::string& unit) {
+  const Channel& channel = measured.At(name);
+  if (channel.unit != unit) {
+    throw InputError("record", "channel '" + name + "' is in '" + channel.unit + "'",
+                     unit + "; a column under [record.channels] may give the unit");
+  }
+  return channel;
+}
+
+AxisReference MeasuredReference(const Record& measured, const std::string& axis,
+                                const std::string& unit) {
+  const std::string channel = axis + "_ref";
+  const Eigen::VectorXd& position = Measured(measured, channel, unit).samples;
+  const Channel* velocity = measured.Find(channel + "_velocity");
+  const Channel* acceleration = measured.Find(channel + "_acceleration");
+  const Channel* snap = measured.Find(channel + "_snap");
+  if (velocity == nullptr || acceleration == nullptr || snap == nullptr) {
+    return DifferentiateReference(axis, position, measured.sample_time());
+  }
+  return {axis, position, velocity->samples, acceleration->samples, snap->samples};
+}
+
+// A first reading within the sensor's noise of the reference says "at the reference";
+// taking it at its word would start the run with a transient made of noise.
+double StartReading(const SensorSetup& sensor, double measured, double reference) {
+  constexpr double kSigmas = 6.0;
+  const bool at_reference = std::abs(measured - reference) <= kSigmas * sensor.noise_sd;
+  return at_reference ? reference : measured;
+}
+
+void CheckSampleTime(const Setup& setup, const Record& measured) {
+  if (std::abs(measured.sample_time() / setup.sample_time() - 1.0) > 1e-4) {
+    throw InputError(
+        "record", "sample time " + std::to_string(measured.sample_time() * 1e3) + " ms",
+        "the control tick of the setup, " + std::to_string(setup.sample_time() * 1e3) +
+            " ms");
+  }
+}
+
+}  // namespace
+
+Excitation FollowTrajectory(const Setup& setup, const Trajectory& trajectory) {
+  return {SampleTrajectory(trajectory, AxisNames(setup), setup.sample_time()), {}, {}};
+}
+
+Excitation Replay(const Setup& setup, const Record& measured) {
+  CheckSampleTime(setup, measured);
+  Excitation excitation;
+  excitation.inputs = Record(setup.sample_time(), measured.start_time());
+  if (setup.axes.empty()) {
+    for (const ActuatorSetup& actuator : setup.actuators) {
+      excitation.inputs.Add(Measured(measured, actuator.channel, actuator.unit));
+    }
+    for (const SensorSetup& sensor : setup.sensors) {
+      const Channel* channel = measured.Find(sensor.channel);
+      if (channel == nullptr) continue;
+      excitation.start[sensor.channel] = StartReading(sensor, channel->samples[0], 0.0);
+    }
+    return excitation;
+  }
+  excitation.reference.sample_time = setup.sample_time();
+  for (const AxisSetup& axis : setup.axes) {
+    excitation.reference.axes.push_back(
+        MeasuredReference(measured, axis.name, setup.Sensor(axis.sensor).unit));
+    excitation.start[axis.sensor] = StartReading(
+        setup.Sensor(axis.sensor),
+        Measured(measured, axis.sensor, setup.Sensor(axis.sensor).unit).samples[0],
+        excitation.reference.axes.back().position[0]);
+    if (const Channel* known = measured.Find(axis.known_disturbance)) {
+      excitation.inputs.Add(*known);
+    }
+  }
+  return excitation;
+}
+
+}  // namespace mjdiag

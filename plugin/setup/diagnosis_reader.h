@@ -1,0 +1,15 @@
+#pragma once
+// The [diagnosis] section of a setup file.
+
+#include "mjdiag/diagnosis/diagnosis_options.h"
+#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/setup/toml_table.h"
+
+namespace mjdiag {
+
+/// Knobs and joints are checked against the plant when the diagnosis is designed.
+/// @param setup  everything but the diagnosis
+/// InputError with file, line and key.
+DiagnosisOptions ReadDiagnosis(const TomlTable& table, const Setup& setup);
+
+}  // namespace mjdiag

@@ -1,0 +1,59 @@
+#include "mjdiag/plugin/setup/setup.h"
+
+#include <set>
+
+#include "mjdiag/plugin/setup/setup_reader.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+/// The element whose `name` is `wanted`; InputError lists the others without it.
+template <typename Element>
+const Element& FindNamed(const Setup& setup, const std::vector<Element>& elements,
+                         std::string Element::*name, std::string_view wanted,
+                         const std::string& kind) {
+  std::string known;
+  for (const Element& element : elements) {
+    if (element.*name == wanted) return element;
+    known += (known.empty() ? "" : ", ") + element.*name;
+  }
+  throw InputError("setup '" + setup.name + "'",
+                   "there is no " + kind + " '" + std::string(wanted) + "'",
+                   known.empty() ? "a setup that declares one" : "one of " + known);
+}
+
+}  // namespace
+
+const SensorSetup& Setup::Sensor(std::string_view channel) const {
+  return FindNamed(*this, sensors, &SensorSetup::channel, channel, "sensor channel");
+}
+
+const ActuatorSetup& Setup::Actuator(std::string_view channel) const {
+  return FindNamed(*this, actuators, &ActuatorSetup::channel, channel,
+                   "actuator channel");
+}
+
+std::ptrdiff_t Setup::SensorIndex(std::string_view channel) const {
+  return &Sensor(channel) - sensors.data();
+}
+
+std::ptrdiff_t Setup::ActuatorIndex(std::string_view channel) const {
+  return &Actuator(channel) - actuators.data();
+}
+
+const Trajectory& Setup::FindTrajectory(std::string_view trajectory) const {
+  return FindNamed(*this, trajectories, &Trajectory::name, trajectory, "trajectory");
+}
+
+const FaultSizes& Setup::Study(std::string_view study) const {
+  return FindNamed(*this, studies, &FaultSizes::name, study, "[studies] table");
+}
+
+Setup ReadSetup(const std::filesystem::path& where,
+                const std::vector<std::string>& overrides) {
+  std::set<std::string> known_keys;
+  return ReadSetup(where, overrides, known_keys);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,433 @@
+#include "mjdiag/plugin/setup/setup_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "mjdiag/plugin/setup/diagnosis_reader.h"
+#include "mjdiag/plugin/setup/toml_table.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/unit.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSchema = "mjdiag.setup/1";
+constexpr double kHighestRate = 1e6;  // [Hz]
+constexpr double kMostSamples = 1e8;  // of a trajectory
+constexpr int kMostSubsteps = 1000;
+constexpr int kMostComponents = 16;  // of an MJCF sensor
+constexpr int kHighestFilterOrder = 12;
+
+/// Channels that a record of this machine can have, with their SI unit; no unit: any.
+using ChannelUnits = std::map<std::string, std::optional<std::string>>;
+
+template <typename Element>
+std::vector<std::string> NamesOf(const std::vector<Element>& elements,
+                                 std::string Element::*name) {
+  std::vector<std::string> names;
+  names.reserve(elements.size());
+  for (const Element& element : elements) names.push_back(element.*name);
+  return names;
+}
+
+std::string OneOf(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list.empty() ? "none, the setup declares none" : "one of " + list;
+}
+
+void RequireDeclared(const TomlTable& table, std::string_view key,
+                     const std::string& wanted, const std::string& kind,
+                     const std::vector<std::string>& declared) {
+  if (std::find(declared.begin(), declared.end(), wanted) != declared.end()) return;
+  table.Fail(key, "there is no " + kind + " '" + wanted + "'", OneOf(declared));
+}
+
+/// Text that must be one of the declared names.
+std::string DeclaredName(const TomlTable& table, std::string_view key,
+                         const std::string& kind,
+                         const std::vector<std::string>& declared) {
+  std::string wanted = table.Text(key);
+  RequireDeclared(table, key, wanted, kind, declared);
+  return wanted;
+}
+
+Unit KnownUnit(const TomlTable& table, std::string_view key, const std::string& text) {
+  try {
+    return ParseUnit(text);
+  } catch (const InputError&) {
+    table.Fail(key, "unknown unit '" + text + "'",
+               R"(a unit such as "m", "um", "rad", "N m", "V" or "m/s^2")");
+  }
+}
+
+/// A unit in which mjdiag computes.
+std::string SiUnit(const TomlTable& table, std::string_view key) {
+  const std::string text = table.Text(key);
+  const Unit unit = KnownUnit(table, key, text);
+  if (unit.factor != 1.0) {
+    table.Fail(key, "'" + text + "' is no SI unit", "'" + unit.si + "'");
+  }
+  return unit.si;
+}
+
+void DeclareChannel(const TomlTable& table, const std::string& channel,
+                    const std::optional<std::string>& unit, ChannelUnits& channels) {
+  if (!channels.emplace(channel, unit).second) {
+    table.Fail("the channel '" + channel + "' exists already",
+               "names that differ from each other");
+  }
+}
+
+fs::path ExistingFile(const TomlTable& root, std::string_view key,
+                      const fs::path& folder) {
+  fs::path file = folder / root.Text(key);
+  if (!fs::is_regular_file(file)) {
+    root.Fail(key, "there is no file " + file.string(), "a file beside the setup");
+  }
+  return file;
+}
+
+std::optional<fs::path> OptionalFile(const TomlTable& root, std::string_view key,
+                                     const fs::path& folder) {
+  if (!root.Has(key)) return std::nullopt;
+  return ExistingFile(root, key, folder);
+}
+
+void ReadHead(const TomlTable& root, Setup& setup) {
+  const std::string schema = root.Text("schema");
+  if (schema != kSchema) {
+    root.Fail("schema", "is '" + schema + "'", "'" + std::string(kSchema) + "'");
+  }
+  setup.name = root.Text("name");
+  setup.plant = ExistingFile(root, "plant", setup.folder);
+  setup.analytic = OptionalFile(root, "analytic", setup.folder);
+  setup.published = OptionalFile(root, "published", setup.folder);
+}
+
+void ReadRates(const TomlTable& root, Setup& setup) {
+  const TomlTable rates = root.Table("rates");
+  setup.control_rate = rates.Number("control", kPositive);
+  if (setup.control_rate > kHighestRate) {
+    rates.Fail("control", "is above 1e6 Hz", "a control rate in Hz");
+  }
+  setup.substeps = rates.Integer("substeps", 1, kMostSubsteps, 1);
+}
+
+void ReadPhysics(const TomlTable& root, Setup& setup) {
+  const std::optional<TomlTable> physics = root.FindTable("physics");
+  if (!physics) return;
+  setup.gravity = physics->Flag("gravity", setup.gravity);
+  setup.static_friction = physics->Flag("static_friction", setup.static_friction);
+}
+
+void RequireBelowNyquist(const TomlTable& table, std::string_view key, double frequency,
+                         const Setup& setup) {
+  if (frequency >= 0.5 * setup.control_rate) {
+    table.Fail(key, "a frequency is not below half the control rate",
+               "frequencies in Hz below rates.control / 2");
+  }
+}
+
+/// Standard deviation of a sample; of band-limited white noise of a given power it is
+/// sqrt(power * rate).
+double NoiseSd(const TomlTable& sensor, double control_rate) {
+  const double sd = sensor.Number("noise_sd", kNonNegative, 0.0);
+  const double power = sensor.Number("noise_power", kNonNegative, 0.0);
+  if (sensor.Has("noise_sd") && sensor.Has("noise_power")) {
+    sensor.Fail("noise_power", "noise_sd is given as well", "one of them");
+  }
+  return sensor.Has("noise_power") ? std::sqrt(power * control_rate) : sd;
+}
+
+void ReadSensors(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
+  for (const TomlTable& table : root.NamedTables("sensors", "<channel>")) {
+    SensorSetup sensor;
+    sensor.channel = table.name();
+    sensor.element = table.Text("element");
+    sensor.component = table.Integer("component", 0, kMostComponents - 1, 0);
+    sensor.unit = SiUnit(table, "unit");
+    sensor.noise_sd = NoiseSd(table, setup.control_rate);
+    sensor.resolution = table.Number("resolution", kNonNegative, 0.0);
+    DeclareChannel(table, sensor.channel, sensor.unit, channels);
+    setup.sensors.push_back(sensor);
+  }
+  if (setup.sensors.empty()) root.Fail("sensors", "is empty", "a sensor at least");
+}
+
+void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
+  for (const TomlTable& table : root.NamedTables("actuators", "<channel>")) {
+    ActuatorSetup actuator;
+    actuator.channel = table.name();
+    actuator.element = table.Text("element");
+    actuator.unit = SiUnit(table, "unit");
+    actuator.limit = table.Number("limit", kNonNegative, 0.0);
+    DeclareChannel(table, actuator.channel, actuator.unit, channels);
+    setup.actuators.push_back(actuator);
+  }
+  if (setup.actuators.empty()) {
+    root.Fail("actuators", "is empty", "an actuator at least");
+  }
+}
+
+FeedforwardGains ReadFeedforward(const TomlTable& axis) {
+  const std::optional<TomlTable> table = axis.FindTable("feedforward");
+  if (!table) return {};
+  return {table->Number("snap", kAnyNumber, 0.0),
+          table->Number("acceleration", kAnyNumber, 0.0),
+          table->Number("velocity", kAnyNumber, 0.0)};
+}
+
+std::optional<DiscreteCompensator> ReadFeedback(const TomlTable& axis) {
+  const std::optional<TomlTable> table = axis.FindTable("feedback");
+  if (!table) return std::nullopt;
+  const DiscreteCompensator compensator{table->Numbers("numerator", kAnyNumber),
+                                        table->Numbers("denominator", kAnyNumber)};
+  if (compensator.denominator.front() == 0.0) {
+    table->Fail("denominator", "begins with 0", "the coefficient of its highest power");
+  }
+  if (compensator.numerator.size() > compensator.denominator.size()) {
+    table->Fail("numerator", "is longer than the denominator", "a proper compensator");
+  }
+  return compensator;
+}
+
+std::optional<NestedLoops> ReadNestedLoops(const TomlTable& axis) {
+  const std::optional<TomlTable> table = axis.FindTable("nested");
+  if (!table) return std::nullopt;
+  return NestedLoops{table->Number("position_gain", kAnyNumber),
+                     table->Number("velocity_gain", kAnyNumber),
+                     table->Number("saturation", kNonNegative, 0.0)};
+}
+
+MoveLimits ReadLimits(const TomlTable& table) {
+  return {table.Number("velocity", kPositive), table.Number("acceleration", kPositive),
+          table.Number("jerk", kPositive), table.Number("snap", kPositive)};
+}
+
+AxisSetup ReadAxis(const TomlTable& table, const Setup& setup) {
+  AxisSetup axis;
+  axis.name = table.name();
+  axis.sensor = DeclaredName(table, "sensor", "sensor channel",
+                             NamesOf(setup.sensors, &SensorSetup::channel));
+  axis.actuator = DeclaredName(table, "actuator", "actuator channel",
+                               NamesOf(setup.actuators, &ActuatorSetup::channel));
+  for (const AxisSetup& other : setup.axes) {
+    if (other.actuator == axis.actuator) {
+      table.Fail("actuator", "'" + axis.actuator + "' drives axis '" + other.name + "'",
+                 "an actuator for each axis");
+    }
+  }
+  axis.drive_gain = table.Number("drive_gain", kNonZero, 1.0);
+  axis.feedforward = ReadFeedforward(table);
+  axis.feedback = ReadFeedback(table);
+  axis.nested = ReadNestedLoops(table);
+  if (axis.feedback.has_value() == axis.nested.has_value()) {
+    table.Fail(axis.nested ? "has two controllers" : "has no controller",
+               "either feedback or nested");
+  }
+  if (axis.nested && table.Has("feedforward")) {
+    table.Fail("feedforward", "does not go with nested loops", "feedback, or no key");
+  }
+  if (table.Has("known_disturbance")) {
+    axis.known_disturbance = table.Text("known_disturbance");
+  }
+  if (const auto limits = table.FindTable("limits")) axis.limits = ReadLimits(*limits);
+  return axis;
+}
+
+void ReadAxes(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
+  for (const TomlTable& table : root.NamedTables("axes", "<axis>")) {
+    const AxisSetup axis = ReadAxis(table, setup);
+    const std::string unit = setup.Sensor(axis.sensor).unit;
+    const std::string reference = axis.name + "_ref";
+    DeclareChannel(table, reference, unit, channels);
+    DeclareChannel(table, reference + "_velocity", ParseUnit(unit + "/s").si, channels);
+    DeclareChannel(table, reference + "_acceleration", ParseUnit(unit + "/s^2").si,
+                   channels);
+    DeclareChannel(table, reference + "_snap", ParseUnit(unit + "/s^4").si, channels);
+    if (!axis.known_disturbance.empty()) {
+      DeclareChannel(table, axis.known_disturbance, std::nullopt, channels);
+    }
+    setup.axes.push_back(axis);
+  }
+}
+
+void ReadDisturbances(const TomlTable& root, Setup& setup) {
+  for (const TomlTable& table : root.NamedTables("disturbances", "<disturbance>")) {
+    MultisineSetup multisine;
+    multisine.name = table.name();
+    multisine.frequencies = table.Numbers("frequencies", kPositive);
+    for (const double frequency : multisine.frequencies) {
+      RequireBelowNyquist(table, "frequencies", frequency, setup);
+    }
+    for (const TomlTable& entry : table.NamedTables("amplitude", "<actuator>")) {
+      RequireDeclared(table.Table("amplitude"), entry.name(), entry.name(),
+                      "actuator channel",
+                      NamesOf(setup.actuators, &ActuatorSetup::channel));
+      multisine.amplitude[entry.name()] =
+          entry.Number("ratio", kShare) * entry.Number("maximum", kPositive);
+    }
+    if (multisine.amplitude.empty()) {
+      table.Fail("amplitude", "is empty", "ratio and maximum of an actuator channel");
+    }
+    setup.disturbances.push_back(multisine);
+  }
+}
+
+Move ReadMove(const TomlTable& table, const std::vector<std::string>& axes,
+              const Trajectory& trajectory) {
+  Move move;
+  move.at = table.Number("at", kNonNegative);
+  const TomlTable by = table.Table("by");
+  for (const auto& [axis, distance] : table.NamedNumbers("by", "<axis>", kNonZero)) {
+    RequireDeclared(by, axis, axis, "axis", axes);
+    if (!trajectory.limits.contains(axis)) {
+      by.Fail(axis, "the axis has no limits", "[axes." + axis + ".limits]");
+    }
+    move.by[axis] = distance;
+  }
+  if (move.by.empty()) table.Fail("by", "is empty", "a distance for an axis");
+  return move;
+}
+
+Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
+  const std::vector<std::string> axes = NamesOf(setup.axes, &AxisSetup::name);
+  Trajectory trajectory;
+  trajectory.name = table.name();
+  trajectory.duration = table.Number("duration", kPositive);
+  if (trajectory.duration * setup.control_rate > kMostSamples) {
+    table.Fail("duration", "is more than 1e8 control ticks", "seconds");
+  }
+  trajectory.period = table.Number("period", kNonNegative, 0.0);
+  for (const AxisSetup& axis : setup.axes) {
+    if (axis.limits.snap > 0.0) trajectory.limits[axis.name] = axis.limits;
+  }
+  for (const TomlTable& limits : table.NamedTables("limits", "<axis>")) {
+    RequireDeclared(table.Table("limits"), limits.name(), limits.name(), "axis", axes);
+    trajectory.limits[limits.name()] = ReadLimits(limits);
+  }
+  for (const TomlTable& move : table.TableArray("moves")) {
+    trajectory.moves.push_back(ReadMove(move, axes, trajectory));
+  }
+  if (trajectory.moves.empty()) table.Fail("moves", "is empty", "a move at least");
+  return trajectory;
+}
+
+void ReadTrajectories(const TomlTable& root, Setup& setup) {
+  for (const TomlTable& table : root.NamedTables("trajectories", "<trajectory>")) {
+    setup.trajectories.push_back(ReadTrajectory(table, setup));
+  }
+  if (root.Has("default_trajectory")) {
+    setup.default_trajectory =
+        DeclaredName(root, "default_trajectory", "trajectory",
+                     NamesOf(setup.trajectories, &Trajectory::name));
+  } else if (!setup.trajectories.empty()) {
+    setup.default_trajectory = setup.trajectories.front().name;
+  }
+}
+
+ColumnSpec ReadColumn(const TomlTable& table, const std::string& channel,
+                      const std::optional<std::string>& dimension) {
+  ColumnSpec spec{channel, table.Text("column", channel), table.Text("unit", ""),
+                  false};
+  if (spec.unit.empty() || !dimension) return spec;
+  const Unit unit = KnownUnit(table, "unit", spec.unit);
+  if (unit.si != *dimension) {
+    table.Fail("unit", "'" + spec.unit + "' does not convert to '" + *dimension + "'",
+               "a unit of '" + channel + "'");
+  }
+  return spec;
+}
+
+void ReadRecordMap(const TomlTable& root, Setup& setup, const ChannelUnits& channels) {
+  const std::optional<TomlTable> record = root.FindTable("record");
+  if (!record) return;
+  std::vector<std::string> known;
+  for (const auto& [channel, unit] : channels) known.push_back(channel);
+
+  ColumnMap map;
+  if (const auto time = record->FindTable("time")) {
+    map.time = ReadColumn(*time, "time", "s");
+  }
+  for (const TomlTable& table : record->NamedTables("channels", "<channel>")) {
+    const std::string channel = table.name();
+    RequireDeclared(record->Table("channels"), channel, channel, "channel", known);
+    ColumnSpec spec = ReadColumn(table, channel, channels.at(channel));
+    spec.optional = table.Flag("optional", false);
+    map.columns.push_back(spec);
+  }
+  if (map.columns.empty()) {
+    record->Fail("channels", "is empty", "the column of a channel at least");
+  }
+  setup.record = map;
+}
+
+CompareSetup::Derived ReadDerivedForce(const TomlTable& table, const Setup& setup) {
+  CompareSetup::Derived force;
+  force.name = table.name();
+  force.channel = DeclaredName(table, "channel", "actuator channel",
+                               NamesOf(setup.actuators, &ActuatorSetup::channel));
+  force.factor = table.Number("factor", kNonZero, 1.0);
+  force.unit = SiUnit(table, "unit");
+  return force;
+}
+
+void ReadCompare(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
+  const std::optional<TomlTable> table = root.FindTable("compare");
+  if (!table) return;
+  CompareSetup& compare = setup.compare;
+  compare.skip_samples = table->Integer("skip_samples", 0, 1'000'000'000, 0);
+  if (const auto low_pass = table->FindTable("low_pass")) {
+    compare.low_pass_order = low_pass->Integer("order", 1, kHighestFilterOrder);
+    compare.low_pass_cutoff = low_pass->Number("cutoff", kPositive);
+    RequireBelowNyquist(*low_pass, "cutoff", compare.low_pass_cutoff, setup);
+  }
+  for (const TomlTable& force : table->NamedTables("forces", "<name>")) {
+    compare.forces.push_back(ReadDerivedForce(force, setup));
+    DeclareChannel(force, force.name(), compare.forces.back().unit, channels);
+  }
+}
+
+/// Faults are checked against the plant when a study runs.
+void ReadStudies(const TomlTable& root, Setup& setup) {
+  for (const TomlTable& table : root.NamedTables("studies", "<study>")) {
+    setup.studies.push_back({table.name(), table.AllNumbers("<fault>", kNonNegative)});
+  }
+}
+
+}  // namespace
+
+Setup ReadSetup(const fs::path& where, const std::vector<std::string>& overrides,
+                std::set<std::string>& known_keys) {
+  const bool is_file = fs::is_regular_file(where);
+  const TomlDocument document(is_file ? where : where / "setup.toml", overrides);
+  const TomlTable root = document.Root();
+  Setup setup;
+  setup.folder = is_file ? where.parent_path() : where;
+  ChannelUnits channels;
+  ReadHead(root, setup);
+  ReadRates(root, setup);
+  ReadPhysics(root, setup);
+  ReadSensors(root, setup, channels);
+  ReadActuators(root, setup, channels);
+  ReadAxes(root, setup, channels);
+  ReadDisturbances(root, setup);
+  ReadTrajectories(root, setup);
+  ReadRecordMap(root, setup, channels);
+  ReadCompare(root, setup, channels);
+  if (const auto diagnosis = root.FindTable("diagnosis")) {
+    setup.diagnosis = ReadDiagnosis(*diagnosis, setup);
+  }
+  ReadStudies(root, setup);
+  document.RefuseUnknownKeys();
+  known_keys.insert(document.known_keys().begin(), document.known_keys().end());
+  return setup;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,387 @@
+#include "mjdiag/discovery/checks/data_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "gaussian_noise.h"
+#include "mjdiag/discovery/checks/clock_drift.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/record_file.h"
+#include "support/message_of.h"
+
+namespace mjdiag {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// A machine with its default run as the measured record.
+struct Machine {
+  mjdiag::Setup setup;
+  ModelPtr plant;
+
+  explicit Machine(const std::string& name,
+                   const std::vector<std::string>& overrides = {})
+      : setup(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/" + name, overrides)),
+        plant(LoadPlant(setup)) {}
+
+  Record Run(const std::string& effect = "", double noise_scale = 1.0) const {
+    RunOptions options;
+    options.noise_scale = noise_scale;
+    if (!effect.empty()) options.effects.push_back(ParseEffect(effect));
+    const Trajectory& motion = setup.FindTrajectory(setup.default_trajectory);
+    return Simulate(setup, *plant, FollowTrajectory(setup, motion), options);
+  }
+  std::vector<std::string> Check(const Record& record) const {
+    return CheckRecord(setup, *plant, record);
+  }
+  std::string Refusal(const Record& record) const {
+    return test::MessageOf<InputError>([&] { Check(record); });
+  }
+};
+
+/// The same record with one channel changed.
+Record With(const Record& record, const std::string& name,
+            const std::function<void(VectorXd&)>& change) {
+  Record changed(record.sample_time(), record.start_time());
+  for (Channel channel : record.channels()) {
+    if (channel.name == name) change(channel.samples);
+    changed.Add(std::move(channel));
+  }
+  return changed;
+}
+
+Record Scaled(const Record& record, const std::string& name, double factor) {
+  return With(record, name, [&](VectorXd& x) { x *= factor; });
+}
+
+/// What a clock records that gains `drift` samples over the record.
+Record Drifting(const Record& record, const std::string& name, double drift) {
+  return With(record, name, [&](VectorXd& x) {
+    const VectorXd true_samples = x;
+    const auto last = static_cast<double>(x.size() - 1);
+    for (Index k = 0; k < x.size(); ++k) {
+      const double at =
+          std::clamp(static_cast<double>(k) * (1.0 + drift / last) - 0.5 * drift, 0.0,
+                     last - 1e-6);
+      const auto before = static_cast<Index>(at);
+      const double share = at - static_cast<double>(before);
+      x[k] = (1.0 - share) * true_samples[before] + share * true_samples[before + 1];
+    }
+  });
+}
+
+class EmpsRecord : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    machine_ = new Machine("emps", {"sensors.q.noise_sd=1e-8"});
+    record_ = new Record(machine_->Run());
+  }
+  static void TearDownTestSuite() {
+    delete record_;
+    delete machine_;
+  }
+  static inline Machine* machine_ = nullptr;
+  static inline Record* record_ = nullptr;
+};
+
+TEST_F(EmpsRecord, PassesWithoutANote) {
+  EXPECT_THAT(machine_->Check(*record_), IsEmpty());
+}
+
+TEST_F(EmpsRecord, PassesWithWhateverCauseIsInIt) {
+  for (const char* effect :
+       {"coulomb_friction@load:force=0.2",
+        "coulomb_friction@load:force=60",
+        "stribeck_friction@load:coulomb=20,breakaway=40,velocity=0.005",
+        "presliding_hysteresis@load:force=40,stiffness=1e6",
+        "viscous_friction@load:coefficient=400",
+        "force_offset@load:force=20",
+        "force_ripple@load:amplitude=30,period=0.01",
+        "motor_constant@drive:factor=0.4",
+        "input_delay@drive:delay=0.004",
+        "amplifier_lag@drive:time_constant=0.003",
+        "force_saturation@drive:limit=2.5",
+        "linear_stiffness@load:stiffness=3000",
+        "added_mass@load:mass=60",
+        "flexible_mode@load:mass=20,frequency=30,damping_ratio=0.02",
+        "end_stop@load:position=0.15,stiffness=1e5",
+        "floor_vibration@load:amplitude=20,frequency=0.7",
+        "encoder_scale@load_encoder:factor=1.5",
+        "encoder_periodic_error@load_encoder:amplitude=1e-4,period=0.01",
+        "encoder_drift@load_encoder:rate=0.001",
+        "encoder_noise@load_encoder:sd=1e-6"}) {
+    const Record record = machine_->Run(effect);
+    std::vector<std::string> notes;
+    EXPECT_NO_THROW(notes = machine_->Check(record)) << effect;
+    EXPECT_THAT(notes, IsEmpty()) << effect;
+  }
+}
+
+TEST_F(EmpsRecord, WithTooFewSamplesIsRefused) {
+  EXPECT_THAT(machine_->Refusal(record_->Slice(0, 540)),
+              AllOf(HasSubstr("too short: 540 samples of which the first 49"),
+                    HasSubstr("at least 500")));
+}
+
+TEST_F(EmpsRecord, WithSamplesThatAreNoNumbersIsRefused) {
+  for (const std::string channel : {"q", "u", "q_ref"}) {
+    const Record record = With(*record_, channel, [](VectorXd& x) {
+      x[1234] = std::nan("");
+      x[2000] = std::numeric_limits<double>::infinity();
+    });
+    EXPECT_THAT(machine_->Refusal(record),
+                AllOf(HasSubstr("2 missing samples of '" + channel + "'"),
+                      HasSubstr("sample 1234 (1.234 s)")));
+  }
+}
+
+TEST_F(EmpsRecord, ThatHoldsSamplesIsRefused) {
+  const Record record = With(*record_, "q", [](VectorXd& x) {
+    x.segment(1000, 7).setConstant(x[1000]);
+    x.segment(3500, 40).setConstant(x[3500]);
+  });
+  EXPECT_THAT(machine_->Refusal(record),
+              AllOf(HasSubstr("missing samples: 'q' repeats one value 7 times from "
+                              "sample 1000 (1 s)"),
+                    HasSubstr("2 such gaps")));
+}
+
+// At rest and slowly moving, a quantised sensor repeats its values without a fault.
+TEST(QuantisedRecord, Passes) {
+  const Machine machine("emps", {"sensors.q.resolution=1e-6"});
+  for (const char* effect : {"", "coulomb_friction@load:force=20"}) {
+    const Record record = machine.Run(effect);
+    EXPECT_EQ(record.At("q").samples[2600], record.At("q").samples[2610]);
+    EXPECT_THAT(machine.Check(record), IsEmpty()) << effect;
+  }
+}
+
+TEST(QuantisedRecord, ThatSaturatesInMotionIsRefused) {
+  const Machine machine("emps", {"sensors.q.resolution=1e-6"});
+  const Record record =
+      With(machine.Run(), "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
+  EXPECT_THAT(machine.Refusal(record),
+              HasSubstr("saturated: 'q' sits at exactly 0.15"));
+}
+
+TEST(QuantisedRecord, WithoutNoiseThatSaturatesAtRestPasses) {
+  const Machine machine("emps", {"sensors.q.resolution=1e-6"});
+  const double rest = machine.Run().At("q").samples[2600];
+  const Record record =
+      With(machine.Run(), "q", [&](VectorXd& x) { x = x.cwiseMin(rest - 1e-6); });
+  EXPECT_THAT(machine.Check(record), IsEmpty());
+}
+
+TEST_F(EmpsRecord, WithASaturatedEncoderIsRefused) {
+  const Record high = With(*record_, "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
+  EXPECT_THAT(machine_->Refusal(high),
+              HasSubstr("saturated: 'q' sits at exactly 0.15 m for "));
+  const Record low = With(*record_, "q", [](VectorXd& x) { x = x.cwiseMax(0.02); });
+  EXPECT_THAT(machine_->Refusal(low),
+              HasSubstr("saturated: 'q' sits at exactly 0.02 m for "));
+}
+
+// The machine rests there as it should; only that the noise is gone tells.
+TEST_F(EmpsRecord, ThatLosesItsNoiseAtTheEndOfTheStrokeIsRefused) {
+  const double limit = record_->At("q").samples[2600] - 1e-6;
+  const Record record =
+      With(*record_, "q", [&](VectorXd& x) { x = x.cwiseMin(limit); });
+  EXPECT_THAT(machine_->Refusal(record), HasSubstr("saturated: 'q'"));
+}
+
+TEST_F(EmpsRecord, WithAReadingInWrongUnitsIsRefusedByTheFactor) {
+  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "q", 1e3)),
+              AllOf(HasSubstr("wrong units: 'q' reads 1000 times"),
+                    HasSubstr("mm taken for m")));
+  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "q", 1e6)),
+              HasSubstr("'q' reads 1000000 times"));
+  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "q_ref", 1e3)),
+              HasSubstr("'q' reads 0.001 times what its reference 'q_ref' does"));
+}
+
+TEST_F(EmpsRecord, WithAnInputInWrongUnitsIsRefusedByTheFactor) {
+  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "u", 1e3)),
+              AllOf(HasSubstr("wrong units: 'u' reads 1000 times"),
+                    HasSubstr("mV taken for V")));
+  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "u", 1e-3)),
+              HasSubstr("'u' reads 0.001 times"));
+}
+
+TEST_F(EmpsRecord, WithReadingAndReferenceInMillimetresIsRefused) {
+  const Record record = Scaled(Scaled(*record_, "q", 1e3), "q_ref", 1e3);
+  EXPECT_THAT(machine_->Refusal(record),
+              AllOf(HasSubstr("'u' reads 0.001 times"), HasSubstr("'q' and 'q_ref'")));
+}
+
+TEST_F(EmpsRecord, WithDriftingClocksIsRefused) {
+  for (const double drift : {1.0, -1.0, 5.0}) {
+    EXPECT_THAT(machine_->Refusal(Drifting(*record_, "q", drift)),
+                AllOf(HasSubstr("clocks of 'q' and 'u' drift by "),
+                      HasSubstr(drift == 5.0 ? "by 5.0 samples" : "by 1.0 samples")))
+        << drift;
+  }
+  EXPECT_THAT(machine_->Refusal(Drifting(*record_, "u", 2.0)),
+              HasSubstr("clocks of 'q' and 'u' drift by 2.0 samples"));
+}
+
+TEST_F(EmpsRecord, WithAConstantLagOrAQuarterSampleOfDriftPasses) {
+  EXPECT_THAT(machine_->Check(Drifting(*record_, "q", 0.25)), IsEmpty());
+  const Record late = With(*record_, "u", [](VectorXd& x) {
+    x.tail(x.size() - 3) = x.head(x.size() - 3).eval();
+  });
+  EXPECT_THAT(machine_->Check(late), IsEmpty());
+}
+
+/// Under a chirp of 2 to 30 Hz, across the resonance at 13.8 Hz.
+class OpenLoopRecord : public ::testing::Test {
+ protected:
+  Record Run(const std::string& effect = "") const {
+    constexpr Index kSamples = 20000;
+    VectorXd current(kSamples);
+    for (Index k = 0; k < kSamples; ++k) {
+      const double t = static_cast<double>(k) * machine_.setup.sample_time();
+      current[k] = 0.3 * std::sin(2.0 * std::numbers::pi * (2.0 + 3.5 * t) * t);
+    }
+    Excitation excitation;
+    excitation.inputs = Record(machine_.setup.sample_time());
+    excitation.inputs.Add({"i", "A", current});
+    RunOptions options;
+    if (!effect.empty()) options.effects.push_back(ParseEffect(effect));
+    return Simulate(machine_.setup, *machine_.plant, excitation, options);
+  }
+  const Machine machine_{"voice_coil"};
+};
+
+TEST_F(OpenLoopRecord, PassesWithWhateverCauseIsInIt) {
+  for (const char* effect :
+       {"", "coulomb_friction@stage:force=0.3", "added_mass@stage:mass=0.03",
+        "structural_stiffness@stage:factor=0.7",
+        "viscous_friction@stage:coefficient=-2", "force_offset@stage:force=0.5",
+        "motor_constant@coil:factor=0.5", "input_delay@coil:delay=0.002",
+        "cubic_stiffness@stage:coefficient=1e7",
+        "presliding_hysteresis@stage:force=1,stiffness=1e4",
+        "encoder_drift@encoder:rate=1e-4"}) {
+    const Record record = Run(effect);
+    std::vector<std::string> notes;
+    EXPECT_NO_THROW(notes = machine_.Check(record)) << effect;
+    EXPECT_THAT(notes, IsEmpty()) << effect;
+  }
+}
+
+TEST_F(OpenLoopRecord, InWrongUnitsIsRefusedByTheFactor) {
+  const Record record = Run("coulomb_friction@stage:force=0.3");
+  EXPECT_THAT(machine_.Refusal(Scaled(record, "x", 1e3)),
+              AllOf(HasSubstr("'x' reads 1000 times what the plant does"),
+                    HasSubstr("mm taken for m, or 'i'")));
+  EXPECT_THAT(machine_.Refusal(Scaled(record, "i", 1e3)),
+              HasSubstr("'x' reads 0.001 times what the plant does"));
+}
+
+TEST_F(OpenLoopRecord, WithDriftingClocksIsRefused) {
+  EXPECT_THAT(machine_.Refusal(Drifting(Run(), "x", 3.0)),
+              HasSubstr("clocks of 'x' and 'i' drift by 3."));
+}
+
+class BonderRecord : public ::testing::Test {
+ protected:
+  const Machine machine_{"ab383"};
+};
+
+TEST_F(BonderRecord, PassesWithAndWithoutCauses) {
+  for (const char* effect :
+       {"", "coulomb_friction@X:force=0.02", "coulomb_friction@X:force=40",
+        "force_ripple@Y:amplitude=20,period=0.001", "input_delay@x_motor:delay=0.0002",
+        "motor_constant@z_motor:factor=0.5",
+        "floor_vibration@X:amplitude=30,frequency=33.3",
+        "encoder_drift@x_encoder:rate=0.0001"}) {
+    const Record record = machine_.Run(effect);
+    std::vector<std::string> notes;
+    EXPECT_NO_THROW(notes = machine_.Check(record)) << effect;
+    EXPECT_THAT(notes, IsEmpty()) << effect;
+  }
+}
+
+TEST_F(BonderRecord, InDegreesOrWithADriftingClockIsRefused) {
+  const Record record = machine_.Run("coulomb_friction@X:force=20");
+  const double degrees = 180.0 / std::numbers::pi;
+  EXPECT_THAT(
+      machine_.Refusal(Scaled(record, "z", degrees)),
+      AllOf(HasSubstr("'z' reads 180 / pi times"), HasSubstr("degrees taken for rad")));
+  EXPECT_THAT(machine_.Refusal(Scaled(Scaled(record, "z", degrees), "z_ref", degrees)),
+              HasSubstr("'u_z' reads pi / 180 times"));
+  EXPECT_THAT(machine_.Refusal(Drifting(record, "x", 2.0)),
+              HasSubstr("clocks of 'x' and 'u_x' drift by "));
+}
+
+TEST(MeasuredEmpsRecord, PassesWithoutANote) {
+  const char* named = std::getenv("MJDIAG_EMPS_DATA");
+  const std::filesystem::path folder = named != nullptr ? named : "";
+  if (!std::filesystem::exists(folder / "DATA_EMPS.mat")) {
+    ASSERT_EQ(std::getenv("CI"), nullptr) << "no EMPS data in " << folder;
+    GTEST_SKIP() << "no EMPS data: MJDIAG_EMPS_DATA names no folder with DATA_EMPS.mat";
+  }
+  const Machine machine("emps");
+  for (const char* file : {"DATA_EMPS.mat", "DATA_EMPS_PULSES.mat"}) {
+    const Record record = ReadRecord(folder / file, machine.setup.record);
+    EXPECT_THAT(machine.Check(record), IsEmpty()) << file;
+    EXPECT_THAT(machine.Refusal(Drifting(record, "q", 3.0)), HasSubstr("clocks of 'q'"))
+        << file;
+    EXPECT_THAT(machine.Refusal(Scaled(record, "u", 1e3)),
+                HasSubstr("'u' reads 1000 times"))
+        << file;
+  }
+}
+
+// A lag that shrinks as the motion gets faster is a phase error, not a clock.
+TEST(LagTrend, IsNotTakenInByAPhaseErrorUnderAChirp) {
+  constexpr Index kSamples = 20000;
+  constexpr double kPhase = 0.3;
+  VectorXd simulated(kSamples);
+  VectorXd measured(kSamples);
+  for (Index k = 0; k < kSamples; ++k) {
+    const double t = static_cast<double>(k) / kSamples;
+    const double phase = 2.0 * std::numbers::pi * (20.0 + 60.0 * t) * t;
+    simulated[k] = std::sin(phase);
+    measured[k] = std::sin(phase - kPhase);
+  }
+  measured += GaussianNoise(kSamples, 1e-4, 5);
+  const auto trend = FindLagTrend(measured, simulated);
+  if (trend) {
+    EXPECT_EQ(ClockDrift(*trend, LagTrend{}), 0.0) << trend->drift;
+  }
+}
+
+TEST(LagTrend, MeasuresADriftBeyondAnotherGainAndNoise) {
+  constexpr Index kSamples = 10000;
+  constexpr double kDrift = 2.5;
+  VectorXd simulated(kSamples);
+  VectorXd measured(kSamples);
+  for (Index k = 0; k < kSamples; ++k) {
+    const auto t = static_cast<double>(k);
+    const double late = 1.5 + kDrift * (t / kSamples - 0.5);
+    simulated[k] = std::sin(0.01 * t);
+    measured[k] = 0.7 * std::sin(0.01 * (t - late)) + 1e-6 * t;
+  }
+  measured += GaussianNoise(kSamples, 1e-4, 6);
+  const auto trend = FindLagTrend(measured, simulated);
+  ASSERT_TRUE(trend.has_value());
+  EXPECT_NEAR(trend->drift, kDrift, 4.0 * trend->sd + 0.02);
+  EXPECT_NE(ClockDrift(*trend, LagTrend{}), 0.0);
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,78 @@
+#include "mjdiag/discovery/fitting/cause_fit.h"
+
+#include <gtest/gtest.h>
+
+#include "discovery/candidate_place.h"
+#include "discovery/stage_under_test.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using test::Place;
+
+// 40 draws of noise: the 95 % interval covers at least 32 (the binomial chance of fewer
+// is 1e-4).
+TEST(CauseFit, HasIntervalsThatHold) {
+  const test::Stage stage;
+  int covered = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const DiscoveryProblem problem =
+        stage.Pose(stage.Measure({"quadratic_drag@load:coefficient=0.5"}, {}, seed));
+    const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+    const std::size_t place = Place(candidates, "quadratic_drag@load");
+    const CauseFit fit = FitCauses(problem, candidates,
+                                   {{place, Eigen::VectorXd::Constant(1, 0.4)}}, {});
+    const double sd = std::sqrt(ParameterCovariance(problem, fit)(0, 0));
+    covered += std::abs(fit.causes[0].value[0] - 0.5) < 1.96 * sd;
+  }
+  EXPECT_GE(covered, 32);
+}
+
+TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
+  const test::Stage stage;
+  const DiscoveryProblem problem = stage.Pose(
+      stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
+  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const std::size_t place = Place(candidates, "stribeck_friction@load");
+  const CauseFit fit =
+      FitCauses(problem, candidates, {{place, Eigen::Vector3d(8.0, 4.0, 0.02)}},
+                {30, 1e-8, true, nullptr});
+  EXPECT_NEAR(fit.causes[0].value[0], 12.0, 0.05);
+  EXPECT_NEAR(fit.causes[0].value[1], 8.0, 0.1);
+  EXPECT_NEAR(fit.causes[0].value[2], 0.01, 3e-4);
+  EXPECT_NEAR(fit.train, 1.0, 0.1);
+}
+
+// Broyden's updates change the way, not the place: within a tenth of the interval.
+TEST(CauseFit, BySecantsFindsTheSamePlace) {
+  const test::Stage stage;
+  const DiscoveryProblem problem = stage.Pose(
+      stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
+  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const std::vector<FittedCause> start = {
+      {Place(candidates, "stribeck_friction@load"), Eigen::Vector3d(11.0, 7.0, 0.012)}};
+  const CauseFit full =
+      FitCauses(problem, candidates, start, {30, 1e-10, true, nullptr, false});
+  const CauseFit secant =
+      FitCauses(problem, candidates, start, {60, 1e-10, false, nullptr, true});
+  const Eigen::VectorXd sd = ParameterCovariance(problem, full).diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(secant.causes[0].value[i], full.causes[0].value[i], 0.1 * 1.96 * sd[i])
+        << i;
+  }
+}
+
+TEST(CauseFit, StaysWithinItsBounds) {
+  const test::Stage stage;
+  // Less damping than the plant has; more cannot be taken away.
+  const DiscoveryProblem problem = stage.Pose(stage.Measure({}, {{"zeta", 0.0}}));
+  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const std::size_t place = Place(candidates, "coulomb_friction@load");
+  const CauseFit fit =
+      FitCauses(problem, candidates, {{place, Eigen::VectorXd::Constant(1, 5.0)}}, {});
+  EXPECT_GE(fit.causes[0].value[0], 0.0);
+}
+
+}  // namespace
+}  // namespace mjdiag

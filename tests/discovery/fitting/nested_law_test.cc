@@ -1,0 +1,48 @@
+#include "mjdiag/discovery/fitting/nested_law.h"
+
+#include <gtest/gtest.h>
+
+#include "discovery/candidate_place.h"
+#include "discovery/stage_under_test.h"
+
+namespace mjdiag {
+namespace {
+
+class NestedLaw : public testing::Test {
+ protected:
+  test::Stage stage_;
+  DiscoveryProblem problem_ = stage_.Pose(stage_.Measure({}));
+  std::vector<Candidate> candidates_ =
+      ListCandidates(stage_.setup, *stage_.plant, problem_.model);
+
+  std::optional<FittedCause> SimplerOf(const std::string& name,
+                                       const Eigen::VectorXd& value) const {
+    return SimplerLaw(*stage_.plant, candidates_,
+                      {test::Place(candidates_, name), value});
+  }
+};
+
+TEST_F(NestedLaw, AResonanceThatIsEverStifferIsAMass) {
+  const auto simpler =
+      SimplerOf("flexible_mode@load", Eigen::Vector3d(0.7, 300.0, 0.01));
+  ASSERT_TRUE(simpler);
+  EXPECT_EQ(simpler->candidate, test::Place(candidates_, "added_mass@load"));
+  EXPECT_EQ(simpler->value[0], 0.7);
+}
+
+// 203.5 N s/m is the damping of the stage: 10 % more on average is zeta = 1.1.
+TEST_F(NestedLaw, TheKnobStandsForTheSymmetricLawThatItIs) {
+  const double damping = stage_.plant->dof_damping[0];
+  const auto simpler = SimplerOf("asymmetric_viscous_friction@load",
+                                 Eigen::Vector2d(0.05 * damping, 0.15 * damping));
+  ASSERT_TRUE(simpler);
+  EXPECT_EQ(simpler->candidate, test::Place(candidates_, "zeta"));
+  EXPECT_NEAR(simpler->value[0], 1.1, 1e-12);
+}
+
+TEST_F(NestedLaw, ASimpleLawHasNone) {
+  EXPECT_FALSE(SimplerOf("coulomb_friction@load", Eigen::VectorXd::Constant(1, 3.0)));
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,43 @@
+#include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "discovery/stage_under_test.h"
+
+namespace mjdiag {
+namespace {
+
+const FitParameter& Parameter(const std::vector<Candidate>& candidates,
+                              const std::string& candidate, const std::string& name) {
+  const auto found = std::ranges::find(candidates, candidate,
+                                       [](const Candidate& c) { return Describe(c); });
+  return *std::ranges::find(found->parameters, name, &FitParameter::name);
+}
+
+TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
+  const test::Stage stage;
+  const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
+  auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const auto before = candidates;
+  const Track track =
+      FollowRun(stage.setup, *stage.plant, {}, problem.run, problem.observer, true);
+  const ObservedMotion motion = ObserveMotion(*stage.plant, problem.run, track);
+  BoundByRecord(candidates, motion);
+  const double speed = motion.velocity.cwiseAbs().maxCoeff();
+  const FitParameter& velocity =
+      Parameter(candidates, "stribeck_friction@load", "velocity");
+  EXPECT_DOUBLE_EQ(velocity.lower, 1e-3 * speed);
+  EXPECT_DOUBLE_EQ(velocity.upper, 2.0 * speed);
+  EXPECT_DOUBLE_EQ(Parameter(candidates, "force_saturation@drive", "limit").upper,
+                   motion.inputs.cwiseAbs().maxCoeff());
+  EXPECT_DOUBLE_EQ(Parameter(candidates, "end_stop@load", "position").lower,
+                   motion.position.minCoeff());
+  // A size is no shape.
+  EXPECT_EQ(Parameter(candidates, "coulomb_friction@load", "force").upper,
+            Parameter(before, "coulomb_friction@load", "force").upper);
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,43 @@
+#include "mjdiag/discovery/unexplained/sensor_noise.h"
+
+#include <gtest/gtest.h>
+
+#include "discovery/gaussian_noise.h"
+#include "discovery/stage_under_test.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr Eigen::Index kSamples = 20000;
+
+/// Innovations of the stage, 10 nm of noise in its setup, as an observer that follows
+/// nothing would have them.
+std::vector<RaisedNoise> FindIn(const Eigen::VectorXd& innovations) {
+  const test::Stage stage;
+  Observer observer;
+  observer.noise_sd = Eigen::VectorXd::Constant(1, 1e-8);
+  observer.innovation_sd = observer.noise_sd;
+  return FindRaisedNoise(stage.setup, observer, innovations.transpose(), 1.0);
+}
+
+TEST(SensorNoise, WhiteNoiseBeyondTheSetupIsFoundWithItsSize) {
+  const auto found = FindIn(GaussianNoise(kSamples, 1.5e-8, 1));
+  ASSERT_EQ(found.size(), 1u);
+  // sqrt(1.5^2 - 1^2); three of its own standard deviations.
+  EXPECT_NEAR(found[0].sd, 1.118e-8, 3.0 * found[0].sd_error);
+  EXPECT_LT(found[0].sd_error, 2e-10);
+}
+
+TEST(SensorNoise, NoiseOfTheSetupIsNoCause) {
+  EXPECT_TRUE(FindIn(GaussianNoise(kSamples, 1e-8, 2)).empty());
+}
+
+// As strong as above in all, but slow: what a model lacks, not what a sensor does.
+TEST(SensorNoise, ASlowRestIsNoSensorNoise) {
+  const Eigen::VectorXd rest =
+      GaussianNoise(kSamples, 1e-8, 3) + GaussianNoise(kSamples, 1.118e-8, 4, 0.95);
+  EXPECT_TRUE(FindIn(rest).empty());
+}
+
+}  // namespace
+}  // namespace mjdiag

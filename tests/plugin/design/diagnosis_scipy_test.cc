@@ -1,0 +1,319 @@
+// The diagnosis of the wire bonder against SciPy, which makes it anew from the matrices
+// of the machine, here and now: see diagnosis_reference.py. What of SciPy is compared
+// in tests/signals/scipy_test.cc (filter coefficients, Welch, discretisation) is taken
+// as known here.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "mjdiag/diagnosis/delta_form.h"
+#include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/plant/linearize.h"
+#include "support/temporary_folder.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Values = std::map<std::string, MatrixXd>;
+using testing::Each;
+using testing::Lt;
+
+constexpr const char* kPython = "/usr/bin/python3";
+
+struct Output {
+  int status = -1;
+  std::string text;
+};
+
+Output RunCommand(const std::string& command) {
+  Output output;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return output;
+  char block[4096];
+  for (std::size_t n = 0; (n = fread(block, 1, sizeof block, pipe)) > 0;) {
+    output.text.append(block, n);
+  }
+  output.status = pclose(pipe);
+  return output;
+}
+
+Values Parse(const std::string& text) {
+  Values values;
+  std::istringstream stream(text);
+  std::string name;
+  Index rows = 0;
+  Index columns = 0;
+  while (stream >> name >> rows >> columns) {
+    MatrixXd matrix(rows, columns);
+    for (double& value : matrix.reshaped<Eigen::RowMajor>()) stream >> value;
+    values[name] = matrix;
+  }
+  return values;
+}
+
+std::string Text(const Values& values) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const auto& [name, matrix] : values) {
+    text << name << ' ' << matrix.rows() << ' ' << matrix.cols();
+    for (const double value : matrix.reshaped<Eigen::RowMajor>()) text << ' ' << value;
+    text << '\n';
+  }
+  return text.str();
+}
+
+MatrixXd Scalar(double value) { return MatrixXd::Constant(1, 1, value); }
+MatrixXd Pair(double first, double second) {
+  MatrixXd pair(1, 2);
+  pair << first, second;
+  return pair;
+}
+
+/// Coefficients of p^0, p^1, ... side by side.
+MatrixXd SideBySide(const Numerators& numerators) {
+  MatrixXd all(numerators.front().rows(), 0);
+  for (const MatrixXd& coefficient : numerators) {
+    MatrixXd longer(all.rows(), all.cols() + coefficient.cols());
+    longer << all, coefficient;
+    all = longer;
+  }
+  return all;
+}
+
+/// The numerators of which MakeFilterBank made a bank.
+Numerators NumeratorsOf(const FilterBank& bank) {
+  const Index n = bank.order();
+  const Index m = bank.outputs();
+  const double corner = bank.gain / kDeltaScale;
+  Numerators numerators;
+  for (Index k = 0; k < n; ++k) {
+    numerators.push_back(
+        std::pow(corner, static_cast<double>(n - k)) *
+        (bank.B.middleRows(k * m, m) / bank.gain + bank.feedback[k] * bank.D));
+  }
+  numerators.push_back(bank.D);
+  return numerators;
+}
+
+void AddMachine(Values& values, const std::string& prefix,
+                const MechanicalModel& model) {
+  values[prefix + "M"] = model.M;
+  values[prefix + "D"] = model.D;
+  values[prefix + "K"] = model.K;
+  values[prefix + "Gamma"] = model.Gamma;
+  values[prefix + "b"] = model.b;
+}
+
+MatrixXd AsRow(const Denominator& denominator) {
+  return Pair(denominator.order, denominator.cutoff);
+}
+
+/// A quarter of a second with a worn x-guide: all three axes move, alone and together.
+struct Diagnosis {
+  Diagnosis()
+      : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
+                        {"trajectories.multi.duration=0.25",
+                         "diagnosis.estimation.magnitudes.beta_x=1e-3",
+                         "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
+        plant(LoadPlant(setup)),
+        machine(Linearize(*plant, setup)),
+        options(SynthesisOf(setup, machine)),
+        space(MakeResidualSpace(machine, options)),
+        design(DesignFilters(setup, *plant)) {
+    RunOptions run;
+    run.faults = {{"zeta_x", 1.01}};
+    const Record record = SimulateLinear(
+        setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")), run);
+    signals = Signals(design, record);
+    DiagnosisMonitor monitor(design, record.samples());
+    Run(monitor, design, record);
+    log = monitor.Log();
+  }
+
+  Values ForPython() const {
+    Values values;
+    AddMachine(values, "", machine);
+    const std::vector<TurnedModels> turned = TurnModels(*plant, setup);
+    MatrixXd magnitudes(1, turned.size());
+    for (std::size_t i = 0; i < turned.size(); ++i) {
+      AddMachine(values, "minus" + std::to_string(i) + ".", turned[i].minus);
+      AddMachine(values, "plus" + std::to_string(i) + ".", turned[i].plus);
+      magnitudes(0, static_cast<Index>(i)) = turned[i].magnitude;
+    }
+    values["magnitudes"] = magnitudes;
+    values["step"] = Scalar(options.timing.step);
+    values["substeps"] = Scalar(options.timing.substeps);
+    values["delta_scale"] = Scalar(kDeltaScale);
+    values["degree"] = Scalar(options.degree);
+    values["noise"] = VectorXd::Zero(signals.rows()).transpose();
+    values["noise"].leftCols(design.sensor_noise.size()) =
+        design.sensor_noise.transpose();
+    values["record"] = signals;
+    values["space"] = SideBySide(space.rows);
+    values["space.denominator"] = AsRow(options.denominator);
+    values["bank"] = SideBySide(NumeratorsOf(design.bank.filters));
+    values["bank.denominator"] = AsRow(options.denominator);
+    values["disturbance"] = SideBySide(NumeratorsOf(design.disturbance.filter));
+    values["disturbance.denominator"] = AsRow(setup.diagnosis.disturbance_denominator);
+    values["high_pass"] =
+        Pair(setup.diagnosis.high_pass_order, setup.diagnosis.high_pass_cutoff);
+    values["segment"] = Scalar(kSegment);
+    return values;
+  }
+
+  static constexpr int kSegment = 512;
+  mjdiag::Setup setup;
+  ModelPtr plant;
+  MechanicalModel machine;
+  SynthesisOptions options;
+  ResidualSpace space;
+  DiagnosisDesign design;
+  MatrixXd signals;
+  MonitorLog log;
+};
+
+class DiagnosisScipy : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const std::string python(kPython);
+    present_ = RunCommand(python + " -c 'import scipy.signal' 2>/dev/null").status == 0;
+    if (!present_) return;
+    ours_ = new Diagnosis;
+    const test::TemporaryFolder folder;
+    const std::string given = folder.Write("given.txt", Text(ours_->ForPython()));
+    const Output output = RunCommand(python + " " + MJDIAG_SOURCE_DIR +
+                                     "/tests/plugin/diagnosis_reference.py " + given);
+    ASSERT_EQ(output.status, 0);
+    values_ = Parse(output.text);
+  }
+  static void TearDownTestSuite() { delete ours_; }
+
+  void SetUp() override {
+    if (present_) return;
+    const char* ci = std::getenv("CI");
+    ASSERT_FALSE(ci && std::string(ci) == "true") << "python3-scipy is not installed";
+    GTEST_SKIP() << "python3-scipy is not installed: no comparison with SciPy";
+  }
+
+  static const Diagnosis& Ours() { return *ours_; }
+  static const MatrixXd& Value(const std::string& name) { return values_.at(name); }
+  static double Number(const std::string& name) { return Value(name)(0, 0); }
+
+ private:
+  inline static bool present_ = false;
+  inline static Diagnosis* ours_ = nullptr;
+  inline static Values values_;
+};
+
+/// Largest difference, relative to the largest reference value.
+double Difference(const MatrixXd& actual, const MatrixXd& reference) {
+  if (actual.rows() != reference.rows() || actual.cols() != reference.cols()) {
+    ADD_FAILURE() << "shapes differ";
+    return 1.0;
+  }
+  return (actual - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
+}
+
+TEST_F(DiagnosisScipy, FindsTheSameRows) {
+  // Three outputs and twenty states: no row below degree 6, one of 6, four up to 7.
+  const MatrixXd& nullity = Value("nullity");
+  ASSERT_EQ(nullity.cols(), 8);
+  const StateSpace system = DeltaForm(Ours().machine, Ours().options.timing);
+  for (int degree = 0; degree <= 7; ++degree) {
+    EXPECT_EQ(LeftNullSpace(system, degree).rows.rows(), nullity(0, degree)) << degree;
+  }
+  EXPECT_EQ(nullity(0, 5), 0);
+  EXPECT_EQ(nullity(0, 6), 1);
+  EXPECT_EQ(nullity(0, 7), 4);
+  EXPECT_EQ(Ours().space.rows.front().rows(), 4);
+  // Rounding, times 1e4 for the spread of the singular values of the stack in the
+  // coordinates of the reference, times 1e4 for that of the coefficients within a
+  // power.
+  EXPECT_LT(Number("angle"), 1e-7);
+}
+
+TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
+  // N [G; I] at points of the complex plane, over the sum of the magnitudes of what
+  // cancels in it: rounding is left, times the condition of the resolvent (1e5 and more
+  // near the poles of the guides).
+  EXPECT_LT(Number("space.misfit"), 1e-9);
+  EXPECT_LT(Number("bank.misfit"), 1e-9);
+  EXPECT_LT(Number("disturbance.misfit"), 1e-9);
+}
+
+TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheSlopesOfTheResidual) {
+  // Both sides are central differences over a turn of c = 1e-3 of a knob, but of
+  // different things: they agree up to their terms of c^2, times how strongly the row
+  // bends, which is some tens for the guide dampers. A wrong slope is off by one.
+  EXPECT_THAT(Value("slopes").reshaped(), Each(Lt(1e-3)));
+}
+
+TEST_F(DiagnosisScipy, HasTheSameDenominators) {
+  for (const auto& [name, bank] :
+       {std::pair{"bank", Ours().design.bank.filters},
+        std::pair{"disturbance", Ours().design.disturbance.filter}}) {
+    SCOPED_TRACE(name);
+    EXPECT_NEAR(bank.gain, Number(std::string(name) + ".gain"), 1e-12 * bank.gain);
+    // Coefficients between 1 and 11; exp(s T) - 1 loses two digits at 50 Hz.
+    EXPECT_LT(
+        Difference(bank.feedback.transpose(), Value(std::string(name) + ".feedback")),
+        1e-11);
+  }
+}
+
+TEST_F(DiagnosisScipy, ConfirmsThatRowsHaveUnitNoise) {
+  // Rounding, times 1e4 for the Lyapunov equation of poles that near to 1.
+  constexpr double kRounding = 1e-11;
+  const MatrixXd& covariance = Value("space.covariance");
+  EXPECT_LT((covariance - MatrixXd::Identity(4, 4)).cwiseAbs().maxCoeff(), kRounding);
+  const MatrixXd& bank = Value("bank.covariance");
+  EXPECT_NEAR(bank(0, 0), 1.0, kRounding);
+  // The noise of a prefiltered signal tells nothing about that of the residual, up to
+  // the terms of c^2 of its central difference.
+  for (Index i = 1; i < bank.cols(); ++i) {
+    EXPECT_LE(std::abs(bank(0, i)), 1e-4 * std::sqrt(bank(i, i)))
+        << Ours().design.bank.faults[static_cast<std::size_t>(i - 1)];
+  }
+  EXPECT_NEAR(Number("disturbance.covariance"), 1.0, kRounding);
+}
+
+TEST_F(DiagnosisScipy, RunsTheSameFiltersOverARecord) {
+  // Positions of 1e5 times their noise cancel to a residual of some hundred times its
+  // noise, in either form of the filters with its own rounding.
+  constexpr double kRounding = 1e-8;
+  const MatrixXd& reference = Value("bank.output");
+  const MatrixXd outputs = FilterSignals(Ours().design.bank.filters, Ours().signals);
+  for (Index i = 0; i < outputs.rows(); ++i) {
+    EXPECT_LT(Difference(outputs.row(i), reference.row(i)), kRounding) << i;
+  }
+  EXPECT_LT(Difference(Ours().log.residual.transpose(), reference.row(0)), kRounding);
+  // The worn guide is in it: many times the noise, which is one.
+  EXPECT_GT(reference.row(0).cwiseAbs().maxCoeff(), 10.0);
+}
+
+TEST_F(DiagnosisScipy, HasTheSameDensityOfTheDisturbanceResidual) {
+  // As above, of a residual no larger than its noise.
+  constexpr double kRounding = 1e-7;
+  const VectorXd& ours = Ours().log.disturbance;
+  EXPECT_LT(Difference(ours.transpose(), Value("high_passed")), kRounding);
+  const Spectrum spectrum =
+      WelchDensity(ours, Ours().setup.sample_time(), Diagnosis::kSegment);
+  EXPECT_LT(Difference(spectrum.frequency.transpose(), Value("density").row(0)), 1e-14);
+  EXPECT_LT(Difference(spectrum.density.transpose(), Value("density").row(1)),
+            kRounding);
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,98 @@
+// Errors of encoders, on readings and in runs.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+
+namespace mjdiag {
+namespace {
+
+mjdiag::Setup EmpsSetup() { return ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps"); }
+mjdiag::Setup BonderSetup() { return ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"); }
+
+/// Readings of x, y and z of the bonder with one effect.
+std::array<double, 3> Read(const std::string& effect, std::array<double, 3> readings,
+                           double time) {
+  const mjdiag::Setup setup = BonderSetup();
+  const ModelPtr plant = LoadPlant(setup);
+  ActiveEffects(setup, *plant, {ParseEffect(effect)}).Distort(readings, time);
+  return readings;
+}
+
+TEST(EncoderEffects, ScaleMultipliesItsOwnEncoderOnly) {
+  EXPECT_EQ(Read("encoder_scale@y_encoder:factor=1.5", {0.1, 0.2, 0.3}, 7.0),
+            (std::array{0.1, 1.5 * 0.2, 0.3}));
+}
+
+TEST(EncoderEffects, PeriodicErrorRepeatsWithItsPeriod) {
+  const std::string effect =
+      "encoder_periodic_error@x_encoder:amplitude=2e-7,period=2e-5,phase=0.5";
+  for (const double y : {0.0, 3e-6, 1.1e-5, -4.2e-3}) {
+    const double error = 2e-7 * std::sin(2.0 * std::numbers::pi * y / 2e-5 + 0.5);
+    EXPECT_NEAR(Read(effect, {y, 0.0, 0.0}, 0.0)[0], y + error, 1e-15);
+    EXPECT_NEAR(Read(effect, {y + 2e-5, 0.0, 0.0}, 0.0)[0], y + 2e-5 + error, 1e-15);
+  }
+}
+
+TEST(EncoderEffects, DriftGrowsWithTime) {
+  EXPECT_EQ(Read("encoder_drift@z_encoder:rate=-2e-6", {0.1, 0.2, 0.3}, 4.0),
+            (std::array{0.1, 0.2, 0.3 - 8e-6}));
+}
+
+// The controller holds the distorted reading on its reference, so the load itself goes
+// the other way: 0.2 m / 1.001.
+TEST(EncoderEffects, AreWhatTheControllerSees) {
+  const mjdiag::Setup setup = EmpsSetup();
+  const ModelPtr plant = LoadPlant(setup);
+  RunOptions options;
+  options.effects = {ParseEffect("encoder_scale@load_encoder:factor=1.001")};
+  options.log_joints = true;
+  Trajectory motion = setup.FindTrajectory("default");
+  motion.duration = 2.6;
+  const Record record =
+      Simulate(setup, *plant, FollowTrajectory(setup, motion), options);
+  const Eigen::Index last = record.samples() - 1;
+  EXPECT_NEAR(record.At("q").samples[last], 0.2, 1e-6);
+  EXPECT_NEAR(record.At("joint.load").samples[last], 0.2 / 1.001, 1e-6);
+}
+
+/// What the encoder of EMPS reads while the load rests without input.
+Eigen::VectorXd AtRest(const std::vector<std::string>& effects, double own_noise) {
+  mjdiag::Setup setup = EmpsSetup();
+  setup.axes.clear();
+  setup.sensors[0].noise_sd = own_noise;
+  const ModelPtr plant = LoadPlant(setup);
+  Excitation rest;
+  rest.inputs = Record(setup.sample_time());
+  rest.inputs.Add({"u", "V", Eigen::VectorXd::Zero(4000)});
+  RunOptions options;
+  for (const std::string& effect : effects) {
+    options.effects.push_back(ParseEffect(effect));
+  }
+  return Simulate(setup, *plant, rest, options).At("q").samples;
+}
+
+// The standard deviation of 4000 samples is known to 1 / sqrt(2 * 4000) = 1.1 %: bounds
+// of four times that. Two noises add as squares.
+TEST(EncoderEffects, NoiseIsWhiteAndBesideTheSensorsOwn) {
+  const Eigen::VectorXd noise = AtRest({"encoder_noise@load_encoder:sd=3e-6"}, 4e-6);
+  const double bound = 4.0 / std::sqrt(2.0 * 4000.0);
+  const double sd = std::sqrt(noise.squaredNorm() / 4000.0);
+  EXPECT_NEAR(sd / 5e-6, 1.0, bound);
+  // Correlation of neighbours: standard deviation 1 / sqrt(4000).
+  const double correlation =
+      noise.head(3999).dot(noise.tail(3999)) / noise.squaredNorm();
+  EXPECT_NEAR(correlation, 0.0, 4.0 / std::sqrt(4000.0));
+}
+
+TEST(EncoderEffects, NoiseIsAbsentWithoutAnEffect) {
+  EXPECT_EQ(AtRest({}, 0.0).lpNorm<Eigen::Infinity>(), 0.0);
+}
+
+}  // namespace
+}  // namespace mjdiag

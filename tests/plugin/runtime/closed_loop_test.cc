@@ -1,0 +1,68 @@
+#include "mjdiag/plugin/runtime/closed_loop.h"
+
+#include <gtest/gtest.h>
+
+#include "mjdiag/controllers/realisation.h"
+#include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/decompositions.h"
+#include "mjdiag/signals/discretize.h"
+
+namespace mjdiag {
+namespace {
+
+StateSpace Tick(const MechanicalModel& model, const mjdiag::Setup& setup) {
+  return TickModel(model, setup.sample_time() / setup.substeps, setup.substeps);
+}
+
+class BonderLoop : public ::testing::Test {
+ protected:
+  mjdiag::Setup setup_ = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
+  MechanicalModel model_ = Linearize(*LoadPlant(setup_), setup_);
+};
+
+// The figure that is known of this plant, 0.98754, is of its zero-order hold.
+TEST_F(BonderLoop, HasTheKnownLargestEigenvalue) {
+  const StateSpace hold =
+      DiscretizeZoh(ContinuousStateSpace(model_), setup_.sample_time());
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(hold, setup_)), 0.98754, 5e-6);
+}
+
+TEST_F(BonderLoop, IsAsStableOnTheMapOfATick) {
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(model_, setup_), setup_)), 0.98758,
+              5e-6);
+}
+
+// As printed, the y controller cancels its integrator: only marginally stable.
+TEST_F(BonderLoop, IsMarginalWithThePrintedCoefficients) {
+  setup_.axes[1].feedback = {{66900.0, -131600.0, 64700.0}, {1.0, -1.828, 0.8277}};
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(model_, setup_), setup_)), 1.0,
+              2e-3);
+}
+
+TEST(ClosedLoop, OfTheMotionStageIsStable) {
+  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
+  const MechanicalModel model = Linearize(*LoadPlant(setup), setup);
+  EXPECT_LT(SpectralRadius(ClosedLoopMatrix(Tick(model, setup), setup)), 1.0);
+}
+
+// The realisation answers an impulse as the difference equation does.
+TEST(Realisation, HasTheImpulseResponseOfTheCompensator) {
+  const DiscreteCompensator compensator{{3.0, -1.0, 0.5}, {2.0, -1.2, 0.3}};
+  const StateSpace system = Realise(compensator, 1e-3);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(2);
+  double y1 = 0.0;
+  double y2 = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    const double u = k == 0 ? 1.0 : 0.0;
+    const double b = k < 3 ? compensator.numerator[static_cast<std::size_t>(k)] : 0.0;
+    const double expected = (b + 1.2 * y1 - 0.3 * y2) / 2.0;
+    EXPECT_NEAR((system.C * x)(0) + system.D(0, 0) * u, expected, 1e-14) << k;
+    x = system.A * x + system.B * u;
+    y2 = y1;
+    y1 = expected;
+  }
+}
+
+}  // namespace
+}  // namespace mjdiag

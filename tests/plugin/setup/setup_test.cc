@@ -1,0 +1,341 @@
+#include "mjdiag/plugin/setup/setup.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/setup/setup_reader.h"
+#include "mjdiag/signals/error.h"
+#include "setup_file.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+
+const fs::path kSource = MJDIAG_SOURCE_DIR;
+
+std::string ReadAll(const fs::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+TEST_F(SetupFile, FillsTheMachine) {
+  const auto setup = ReadSetup(folder_);
+  EXPECT_EQ(setup.folder, folder_);
+  EXPECT_EQ(setup.name, "stage");
+  EXPECT_EQ(setup.plant, folder_ / "plant.xml");
+  EXPECT_EQ(setup.analytic, folder_ / "analytic.toml");
+  EXPECT_EQ(setup.published, folder_ / "published.toml");
+  EXPECT_EQ(setup.control_rate, 1000.0);
+  EXPECT_EQ(setup.sample_time(), 1e-3);
+  EXPECT_EQ(setup.substeps, 4);
+  EXPECT_FALSE(setup.gravity);
+  EXPECT_FALSE(setup.static_friction);
+}
+
+TEST_F(SetupFile, FillsTheChannelsInTheOrderOfTheFile) {
+  const auto setup = ReadSetup(folder_);
+  ASSERT_EQ(setup.sensors.size(), 2u);
+  EXPECT_EQ(setup.sensors[0].channel, "q");
+  EXPECT_EQ(setup.sensors[1].channel, "a");
+  const SensorSetup& q = setup.Sensor("q");
+  EXPECT_EQ(q.element, "encoder");
+  EXPECT_EQ(q.component, 1);
+  EXPECT_EQ(q.unit, "m");
+  EXPECT_DOUBLE_EQ(q.noise_sd, std::sqrt(4e-19 * 1000.0));
+  EXPECT_EQ(q.resolution, 1e-9);
+  EXPECT_EQ(setup.Sensor("a").noise_sd, 3e-8);
+  EXPECT_EQ(setup.Sensor("a").component, 0);
+
+  ASSERT_EQ(setup.actuators.size(), 2u);
+  EXPECT_EQ(setup.actuators[0].channel, "u");
+  EXPECT_EQ(setup.Actuator("u").element, "motor");
+  EXPECT_EQ(setup.Actuator("u").limit, 50.0);
+  EXPECT_EQ(setup.Actuator("t").unit, "N m");
+  EXPECT_EQ(setup.Actuator("t").limit, 0.0);
+}
+
+TEST_F(SetupFile, FillsTheAxes) {
+  const auto setup = ReadSetup(folder_);
+  ASSERT_EQ(setup.axes.size(), 2u);
+  const AxisSetup& s = setup.axes[0];
+  EXPECT_EQ(s.name, "s");
+  EXPECT_EQ(s.sensor, "q");
+  EXPECT_EQ(s.actuator, "u");
+  EXPECT_EQ(s.drive_gain, 20.5);
+  EXPECT_EQ(s.known_disturbance, "pulse");
+  EXPECT_EQ(s.feedforward.snap, 1e-9);
+  EXPECT_EQ(s.feedforward.acceleration, 0.1);
+  EXPECT_EQ(s.feedforward.velocity, 0.5);
+  ASSERT_TRUE(s.feedback);
+  EXPECT_THAT(s.feedback->numerator, ElementsAre(3.0, -2.5));
+  EXPECT_THAT(s.feedback->denominator, ElementsAre(1.0, -0.5));
+  EXPECT_FALSE(s.nested);
+  EXPECT_EQ(s.limits.velocity, 0.5);
+  EXPECT_EQ(s.limits.snap, 4e5);
+
+  const AxisSetup& r = setup.axes[1];
+  EXPECT_EQ(r.drive_gain, 1.0);
+  EXPECT_EQ(r.known_disturbance, "");
+  ASSERT_TRUE(r.nested);
+  EXPECT_EQ(r.nested->position_gain, 160.0);
+  EXPECT_EQ(r.nested->velocity_gain, 240.0);
+  EXPECT_EQ(r.nested->saturation, 10.0);
+}
+
+TEST_F(SetupFile, FillsDisturbancesAndTrajectories) {
+  const auto setup = ReadSetup(folder_);
+  ASSERT_EQ(setup.disturbances.size(), 1u);
+  EXPECT_EQ(setup.disturbances[0].name, "hum");
+  EXPECT_THAT(setup.disturbances[0].frequencies, ElementsAre(50.0, 150.0));
+  EXPECT_DOUBLE_EQ(setup.disturbances[0].amplitude.at("u"), 4.5);
+
+  ASSERT_EQ(setup.trajectories.size(), 2u);
+  EXPECT_EQ(setup.default_trajectory, "slow");
+  const Trajectory& fast = setup.FindTrajectory("fast");
+  EXPECT_EQ(fast.duration, 2.0);
+  EXPECT_EQ(fast.period, 1.0);
+  ASSERT_EQ(fast.moves.size(), 2u);
+  EXPECT_EQ(fast.moves[0].at, 0.1);
+  EXPECT_EQ(fast.moves[0].by.at("r"), -0.2);
+  EXPECT_EQ(fast.moves[1].by.at("s"), -0.01);
+  EXPECT_EQ(fast.limits.at("s").jerk, 3000.0);
+  EXPECT_EQ(fast.limits.at("r").acceleration, 40.0);
+  const Trajectory& slow = setup.FindTrajectory("slow");
+  EXPECT_EQ(slow.period, 0.0);
+  EXPECT_EQ(slow.limits.at("s").jerk, 2000.0);
+  EXPECT_FALSE(slow.limits.contains("r"));
+}
+
+TEST_F(SetupFile, FillsRecordAndCompare) {
+  const auto setup = ReadSetup(folder_);
+  ASSERT_TRUE(setup.record);
+  EXPECT_EQ(setup.record->time.column, "t");
+  EXPECT_EQ(setup.record->time.unit, "ms");
+  ASSERT_EQ(setup.record->columns.size(), 5u);
+  EXPECT_EQ(setup.record->columns[0].channel, "s_ref");
+  EXPECT_EQ(setup.record->columns[0].column, "setpoint");
+  EXPECT_EQ(setup.record->columns[0].unit, "um");
+  EXPECT_FALSE(setup.record->columns[0].optional);
+  EXPECT_EQ(setup.record->columns[1].unit, "");
+  EXPECT_EQ(setup.record->columns[2].column, "u");
+  EXPECT_TRUE(setup.record->columns[4].optional);
+
+  EXPECT_EQ(setup.compare.skip_samples, 49);
+  EXPECT_EQ(setup.compare.low_pass_order, 4);
+  EXPECT_EQ(setup.compare.low_pass_cutoff, 100.0);
+  ASSERT_EQ(setup.compare.forces.size(), 1u);
+  EXPECT_EQ(setup.compare.forces[0].name, "force");
+  EXPECT_EQ(setup.compare.forces[0].channel, "u");
+  EXPECT_EQ(setup.compare.forces[0].factor, 35.15);
+  EXPECT_EQ(setup.compare.forces[0].unit, "N");
+}
+
+TEST_F(SetupFile, FillsTheFiltersAndThresholdsOfTheDiagnosis) {
+  const DiagnosisOptions diagnosis = ReadSetup(folder_).diagnosis;
+  EXPECT_EQ(diagnosis.degree, 3);
+  EXPECT_EQ(diagnosis.denominator.order, 5);
+  EXPECT_EQ(diagnosis.denominator.cutoff, 60.0);
+  EXPECT_THAT(diagnosis.unknown_forces, ElementsAre("slide", "hinge"));
+  EXPECT_EQ(diagnosis.margin, 3.0);
+  EXPECT_EQ(diagnosis.false_alarms, 0.01);
+  EXPECT_EQ(diagnosis.integral_window, 0.125);
+  EXPECT_THAT(diagnosis.trajectories, ElementsAre("slow", "fast"));
+  EXPECT_EQ(diagnosis.robust.degree, 9);
+  EXPECT_EQ(diagnosis.robust.denominator.order, 10);
+  EXPECT_EQ(diagnosis.robust.denominator.cutoff, 150.0);
+  EXPECT_EQ(diagnosis.robust.runs, 12);
+}
+
+TEST_F(SetupFile, FillsTheEstimationAndDisturbancesOfTheDiagnosis) {
+  const DiagnosisOptions diagnosis = ReadSetup(folder_).diagnosis;
+  EXPECT_EQ(diagnosis.estimation_rows, 2);
+  EXPECT_EQ(diagnosis.sampling, 0.004);
+  EXPECT_EQ(diagnosis.horizon, 1.5);
+  EXPECT_EQ(diagnosis.forgetting, 0.75);
+  EXPECT_THAT(diagnosis.magnitudes,
+              ElementsAre(Pair("beta", 0.03), Pair("zeta", 0.02)));
+  EXPECT_EQ(diagnosis.disturbance_denominator.order, 6);
+  EXPECT_EQ(diagnosis.disturbance_denominator.cutoff, 200.0);
+  EXPECT_EQ(diagnosis.high_pass_order, 2);
+  EXPECT_EQ(diagnosis.high_pass_cutoff, 40.0);
+  EXPECT_EQ(diagnosis.disturbance.segment, 1024);
+  EXPECT_EQ(diagnosis.disturbance.peak_margin, 0.6);
+  EXPECT_EQ(diagnosis.disturbance.total_margin, 0.7);
+  EXPECT_EQ(diagnosis.disturbance.tone_false_alarm, 1e-3);
+}
+
+TEST_F(SetupFile, FillsTheStudiesInTheOrderOfTheFile) {
+  const auto setup = ReadSetup(folder_);
+  ASSERT_EQ(setup.studies.size(), 2u);
+  EXPECT_EQ(setup.studies[0].name, "small");
+  EXPECT_EQ(setup.studies[1].name, "large");
+  EXPECT_THAT(setup.Study("small").values,
+              ElementsAre(Pair("zeta", 1.01), Pair("gamma", 0.002)));
+  EXPECT_THAT(setup.Study("large").values,
+              ElementsAre(Pair("eta", 0.9), Pair("beta", 0.25)));
+  EXPECT_THROW(setup.Study("middle"), InputError);
+}
+
+/// The settings of the seed's chapter 4, as far as the manual gives them as defaults.
+TEST_F(SetupFile, WithoutDiagnosisHasTheDefaultsOfTheManual) {
+  const std::string text = kEveryKey;
+  Write(text.substr(0, text.find("[diagnosis]")));
+  const auto setup = ReadSetup(folder_);
+  const DiagnosisOptions& diagnosis = setup.diagnosis;
+  EXPECT_THAT(setup.studies, IsEmpty());
+  EXPECT_EQ(diagnosis.degree, 7);
+  EXPECT_EQ(diagnosis.denominator.order, 7);
+  EXPECT_EQ(diagnosis.denominator.cutoff, 50.0);
+  EXPECT_THAT(diagnosis.unknown_forces, IsEmpty());
+  EXPECT_EQ(diagnosis.margin, 2.0);
+  EXPECT_EQ(diagnosis.false_alarms, 0.0);
+  EXPECT_EQ(diagnosis.integral_window, 0.25);
+  EXPECT_THAT(diagnosis.trajectories, IsEmpty());
+  EXPECT_EQ(diagnosis.estimation_rows, 1);
+  EXPECT_EQ(diagnosis.sampling, 0.0005);
+  EXPECT_EQ(diagnosis.horizon, 0.0);
+  EXPECT_EQ(diagnosis.forgetting, 0.0);
+  EXPECT_THAT(diagnosis.magnitudes, IsEmpty());
+  EXPECT_EQ(diagnosis.disturbance_denominator.order, 7);
+  EXPECT_EQ(diagnosis.disturbance_denominator.cutoff, 750.0);
+  EXPECT_EQ(diagnosis.high_pass_order, 3);
+  EXPECT_EQ(diagnosis.high_pass_cutoff, 100.0);
+  EXPECT_EQ(diagnosis.disturbance.segment, 4096);
+  EXPECT_EQ(diagnosis.disturbance.peak_margin, 1.0);
+  EXPECT_EQ(diagnosis.disturbance.total_margin, 0.25);
+  EXPECT_EQ(diagnosis.disturbance.tone_false_alarm, 1e-4);
+  EXPECT_EQ(diagnosis.robust.degree, 8);
+  EXPECT_EQ(diagnosis.robust.denominator.order, 8);
+  EXPECT_EQ(diagnosis.robust.denominator.cutoff, 200.0);
+  EXPECT_EQ(diagnosis.robust.runs, 8);
+}
+
+TEST_F(SetupFile, IsReadByItsOwnNameToo) {
+  EXPECT_EQ(ReadSetup(folder_ / "setup.toml").plant, folder_ / "plant.xml");
+}
+
+TEST_F(SetupFile, RunsItsFirstTrajectoryByDefault) {
+  EXPECT_EQ(MessageWith("default_trajectory = \"slow\"", ""), "nothing thrown");
+  EXPECT_EQ(ReadSetup(folder_).default_trajectory, "fast");
+}
+
+TEST_F(SetupFile, TakesOverrides) {
+  const auto setup = ReadSetup(
+      folder_, {"rates.substeps=8", "axes.r.nested.position_gain = 1.5", "name='other'",
+                "axes.s.limits={jerk=1.0}", "sensors.b={element='new', unit='m'}",
+                "trajectories.slow.moves=[{at=0, by={s=1}}]"});
+  EXPECT_EQ(setup.substeps, 8);
+  EXPECT_EQ(setup.name, "other");
+  EXPECT_EQ(setup.axes[1].nested->position_gain, 1.5);
+  EXPECT_EQ(setup.axes[1].nested->velocity_gain, 240.0);
+  EXPECT_EQ(setup.axes[0].limits.jerk, 1.0);
+  EXPECT_EQ(setup.axes[0].limits.snap, 4e5);
+  ASSERT_EQ(setup.sensors.size(), 3u);
+  EXPECT_EQ(setup.sensors[2].channel, "b");
+  EXPECT_EQ(setup.FindTrajectory("slow").moves[0].by.at("s"), 1.0);
+}
+
+/// Every stretch of the text between `open` and the next `close`.
+std::vector<std::string> Between(const std::string& text, const std::string& open,
+                                 const std::string& close) {
+  std::vector<std::string> found;
+  std::size_t at = text.find(open);
+  while (at != std::string::npos) {
+    const std::size_t begin = at + open.size();
+    const std::size_t end = text.find(close, begin);
+    found.push_back(text.substr(begin, end - begin));
+    at = text.find(open, end);
+  }
+  return found;
+}
+
+TEST_F(SetupFile, HasExactlyTheKeysThatTheManualLists) {
+  std::set<std::string> known;
+  ReadSetup(folder_, {}, known);
+  const std::vector<std::string> rows =
+      Between(ReadAll(kSource / "docs/setup.md"), "\n| `", "` |");
+  const std::set<std::string> listed(rows.begin(), rows.end());
+  EXPECT_EQ(rows.size(), listed.size());
+  for (const std::string& key : known) {
+    EXPECT_TRUE(listed.contains(key)) << key << " is not in the manual";
+  }
+  for (const std::string& key : listed) {
+    EXPECT_TRUE(known.contains(key)) << key << " is not read";
+  }
+}
+
+TEST_F(SetupFile, OfTheManualsExamplesReads) {
+  const std::vector<std::string> examples =
+      Between(ReadAll(kSource / "docs/setup.md"), "```toml\n", "```");
+  ASSERT_EQ(examples.size(), 2u);
+  Write(examples[0]);
+  EXPECT_EQ(Message({}), "nothing thrown");
+  EXPECT_TRUE(ReadSetup(folder_).axes.empty());
+  Write(examples[1]);
+  EXPECT_EQ(Message({}), "nothing thrown");
+  const auto closed = ReadSetup(folder_);
+  EXPECT_EQ(closed.axes.size(), 1u);
+  EXPECT_EQ(closed.diagnosis.degree, 2);
+  EXPECT_NO_THROW(SampleTrajectory(closed.FindTrajectory(closed.default_trajectory),
+                                   {"slide"}, 1e-3));
+}
+
+class ShippedSetup : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedSetup, HasTrajectoriesThatItsAxesCanFollow) {
+  const auto setup = ReadSetup(kSource / "mjcf" / GetParam());
+  ASSERT_FALSE(setup.trajectories.empty());
+  std::vector<std::string> axes;
+  for (const AxisSetup& axis : setup.axes) axes.push_back(axis.name);
+  for (const Trajectory& trajectory : setup.trajectories) {
+    const Reference reference = SampleTrajectory(trajectory, axes, setup.sample_time());
+    for (const AxisReference& axis : reference.axes) {
+      EXPECT_NEAR(axis.position.tail(1)[0], 0.0, 1e-15) << trajectory.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Mjcf, ShippedSetup, ::testing::Values("ab383", "emps"),
+                         [](const auto& param_info) { return param_info.param; });
+
+TEST(Ab383Setup, HasTheRatesNoiseAndIntegratorsOfTheSeed) {
+  const auto setup = ReadSetup(kSource / "mjcf/ab383");
+  EXPECT_EQ(setup.control_rate, 8000.0);
+  EXPECT_EQ(setup.substeps, 4);
+  for (const SensorSetup& sensor : setup.sensors) {
+    EXPECT_NEAR(sensor.noise_sd, 20e-9, 1e-12);
+  }
+  for (const AxisSetup& axis : setup.axes) {
+    double at_one = 0.0;
+    for (const double a : axis.feedback->denominator) at_one += a;
+    if (axis.name == "z") continue;  // has none
+    EXPECT_NEAR(at_one, 0.0, 1e-15) << axis.name;
+  }
+  EXPECT_DOUBLE_EQ(setup.disturbances[0].amplitude.at("u_x"), 4.5);
+  EXPECT_DOUBLE_EQ(setup.disturbances[0].amplitude.at("u_z"), 1e-3);
+}
+
+TEST(Ab383Setup, ReachesItsRatedAccelerationOnFourMillimetres) {
+  const auto setup = ReadSetup(kSource / "mjcf/ab383");
+  const Reference x =
+      SampleTrajectory(setup.FindTrajectory("x_150g"), {"x"}, setup.sample_time());
+  EXPECT_GT(x.axes[0].acceleration.maxCoeff(), 147.0 * 9.81);
+  EXPECT_LE(x.axes[0].acceleration.maxCoeff(), 150.0 * 9.81);
+}
+
+}  // namespace
+}  // namespace mjdiag
