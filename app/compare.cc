@@ -4,7 +4,7 @@
 
 #include "app/command.h"
 #include "app/format.h"
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "mjdiag/comparison/comparison.h"
@@ -46,19 +46,19 @@ std::string DerivedTable(const Comparison& comparison) {
 }
 
 void Compare(const CompareOptions& options) {
-  Machine machine = LoadMachine(options.machine);
-  machine.options.seed = options.seed;
-  const Record measured = ReadRecord(options.record, machine.setup.record);
+  Subject subject = LoadSubject(options.machine);
+  subject.options.seed = options.seed;
+  const Record measured = ReadRecord(options.record, subject.setup().record);
   PrepareOutput(options.output);
   Comparison comparison;
   {
     ProgressBar bar("comparing");
-    machine.options.progress = [&bar](double fraction) { bar.Show(fraction); };
-    comparison = Compare(machine.setup, *machine.plant, measured, machine.options);
+    subject.options.progress = [&bar](double fraction) { bar.Show(fraction); };
+    comparison = Compare(subject.machine, measured, subject.options);
   }
 
   nlohmann::json document = ToJson(comparison);
-  document.update(ToJson(machine.options));
+  document.update(ToJson(subject));
   document["record"] = options.record;
   document["command"] = CommandLine();
   const std::string text = ComparisonVerdict(comparison) + "\n\n" +

@@ -36,19 +36,18 @@ constexpr double kLostStiffness = 0.01;
 
 std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
   std::vector<ChangedMachine> changed;
-  for (const FaultKnob& knob : FaultKnobs(*machine.plant)) {
+  for (const FaultKnob& knob : FaultKnobs(machine.plant())) {
     if (knob.kind != KnobKind::kStiffness) continue;
     changed.push_back({knob.name + " = " + Short(kLostStiffness),
-                       LinearizeFaulty(*machine.plant, machine.setup,
-                                       {{knob.name, kLostStiffness}})});
+                       machine.With({{{knob.name, kLostStiffness}}, {}}).linear()});
   }
   return changed;
 }
 
 DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
   DesignFacts facts;
-  facts.healthy = Linearize(*machine.plant, machine.setup);
-  const SynthesisOptions options = SynthesisOf(machine.setup, facts.healthy);
+  facts.healthy = machine.linear();
+  const SynthesisOptions options = SynthesisOf(machine.setup(), facts.healthy);
   const StateSpace system = DeltaForm(facts.healthy, options.timing);
   facts.observability_ranks = ObservabilityRanks(system, options.degree);
   facts.states = system.states();
@@ -103,9 +102,9 @@ NamedPage PageOf(const Machine& machine, const DiagnosisDesign& design,
 }
 
 void Design(const DesignOptions& options) {
-  const Machine machine = LoadMachine(options.machine);
+  const Machine machine = LoadSubject(options.machine).nominal;
   PrepareOutput(options.output);
-  const Excitation excitation = MakeExcitation(machine.setup, {});
+  const Excitation excitation = MakeExcitation(machine.setup(), {});
   const ReadyDiagnosis ready =
       PrepareDiagnosis(options.source, machine, excitation, options.linear);
   const DesignFacts facts = FactsOf(machine, options.method == "lp");

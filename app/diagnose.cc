@@ -41,11 +41,11 @@ Eigen::Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
 
 DiagnosisResult Refined(const Machine& machine, const DiagnosisDesign& design,
                         const DiagnosisMonitor& monitor, const Record& record) {
-  const MechanicalModel healthy = Linearize(*machine.plant, machine.setup);
+  const MechanicalModel& healthy = machine.linear();
   const RefinedEstimate refined = RefineEstimate(
-      design, SynthesisOf(machine.setup, healthy),
-      FaultModels(*machine.plant, machine.setup),
-      Magnitudes(*machine.plant, machine.setup), record, HorizonStart(design, record));
+      design, SynthesisOf(machine.setup(), healthy),
+      FaultModels(machine),
+      Magnitudes(machine), record, HorizonStart(design, record));
   return Conclude(design, monitor, refined.estimate);
 }
 
@@ -54,11 +54,11 @@ void Diagnose(const DiagnoseOptions& options) {
     throw InputError("--refine", "does not go with --baseline",
                      "one of the two: a baseline belongs to the healthy filters");
   }
-  const Machine machine = LoadMachine(options.machine);
-  const Record record = ReadRecord(options.record, machine.setup.record);
+  const Machine machine = LoadSubject(options.machine).nominal;
+  const Record record = ReadRecord(options.record, machine.setup().record);
   const bool needs_motion = options.source.baseline || !options.source.robust.empty();
   const Excitation excitation =
-      needs_motion ? Replay(machine.setup, record) : Excitation{};
+      needs_motion ? Replay(machine.setup(), record) : Excitation{};
   PrepareOutput(options.output);
   const ReadyDiagnosis ready =
       PrepareDiagnosis(options.source, machine, excitation, options.linear);

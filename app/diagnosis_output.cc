@@ -24,15 +24,15 @@ std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
 
 void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
                         const Setup& setup) {
-  if (design.outputs != ChannelsOf(setup.sensors) ||
-      design.inputs != ChannelsOf(setup.actuators)) {
+  if (design.outputs != ChannelsOf(setup.channels.sensors) ||
+      design.inputs != ChannelsOf(setup.channels.actuators)) {
     throw InputError(file, "its channels are not those of '" + setup.name + "'",
                      "filters designed for this setup");
   }
-  if (std::abs(design.sample_time() * setup.control_rate - 1.0) > 1e-9) {
+  if (std::abs(design.sample_time() * setup.rates.control - 1.0) > 1e-9) {
     throw InputError(
         file, "made for a tick of " + Short(design.sample_time() * 1e3) + " ms",
-        "the control tick of the setup, " + Short(setup.sample_time() * 1e3) + " ms");
+        "the control tick of the setup, " + Short(setup.rates.tick() * 1e3) + " ms");
   }
 }
 
@@ -69,16 +69,16 @@ void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source) {
 
 ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
                                 const Excitation& excitation, bool linear) {
-  const Setup& setup = machine.setup;
+  const Setup& setup = machine.setup();
   ReadyDiagnosis ready;
   if (!source.filters.empty()) {
     ready.design = ReadFilters(source.filters);
     RequireSameMachine(source.filters, ready.design, setup);
   } else if (!source.robust.empty()) {
-    ready.design = DesignRobustFilters(setup, *machine.plant, source.robust, excitation,
+    ready.design = DesignRobustFilters(machine, source.robust, excitation,
                                        source.baseline);
   } else {
-    ready.design = DesignFilters(setup, *machine.plant);
+    ready.design = DesignFilters(machine);
   }
   ProgressBar bar("healthy runs");
   ready.runs.linear = linear;
@@ -87,12 +87,12 @@ ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& ma
   runs.progress = [&bar](double fraction) { bar.Show(fraction); };
   if (source.baseline) {
     ready.baseline =
-        ResidualBaseline(ready.design, setup, *machine.plant, excitation, runs);
+        ResidualBaseline(ready.design, machine, excitation, runs);
     runs.seed += static_cast<std::uint64_t>(source.runs);
-    ready.design.limits = CalibrateLimits(ready.design, setup, *machine.plant,
+    ready.design.limits = CalibrateLimits(ready.design, machine,
                                           excitation, ready.baseline, runs);
   } else if (!ready.design.limits.known) {
-    ready.design.limits = CalibrateLimits(ready.design, setup, *machine.plant, runs);
+    ready.design.limits = CalibrateLimits(ready.design, machine, runs);
   }
   return ready;
 }
@@ -103,7 +103,7 @@ DiagnosisResult Conclude(const ReadyDiagnosis& ready, const Machine& machine,
   DiagnosisResult result = Conclude(ready.design, monitor);
   if (ready.baseline.size() > 0) {
     RemoveCrossTerms(
-        result, ready.design, machine.setup, *machine.plant,
+        result, ready.design, machine,
         {excitation, ready.baseline, monitor.first_regressed(), ready.runs});
   }
   return result;

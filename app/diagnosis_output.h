@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "mjdiag/diagnosis/diagnosis_result.h"
 #include "mjdiag/plugin/design/filter_design.h"

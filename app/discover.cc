@@ -7,7 +7,7 @@
 #include "app/command.h"
 #include "app/discovery_output.h"
 #include "app/exit_status.h"
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "mjdiag/discovery/discovery.h"
@@ -46,7 +46,7 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
   options.progress = [&bar](const std::string& what, double fraction) {
     bar.Show(what, fraction);
   };
-  return Discover(machine.setup, *machine.plant, measured, unseen ? &*unseen : nullptr,
+  return Discover(machine, measured, unseen ? &*unseen : nullptr,
                   options);
 }
 
@@ -65,11 +65,11 @@ std::string Extend(const DiscoverCommand& command, const Machine& machine,
 
 void Discover(const DiscoverCommand& command) {
   RequirePlantOfItsFile(command.machine);
-  const Machine machine = LoadMachine(command.machine);
-  const Record measured = ReadRecord(command.record, machine.setup.record);
+  const Machine machine = LoadSubject(command.machine).nominal;
+  const Record measured = ReadRecord(command.record, machine.setup().record);
   std::optional<Record> unseen;
   if (!command.validation.empty()) {
-    unseen = ReadRecord(command.validation, machine.setup.record);
+    unseen = ReadRecord(command.validation, machine.setup().record);
   }
   PrepareOutput(command.output);
   Discovery discovery = RunDiscovery(machine, command, measured, unseen);

@@ -53,10 +53,10 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
   MakeOutputFolder(extended);
   const Changes changes = ChangesOf(discovery);
   // Both texts first: neither file is written if one of them cannot be made.
-  const std::string plant = ExtendMjcf(machine.setup.plant, *machine.plant,
+  const std::string plant = ExtendMjcf(machine.setup().plant, machine.plant(),
                                        changes.faults, changes.effects, extended);
   const std::string text =
-      ExtendSetup(SetupFile(setup), machine.setup, changes.effects, extended);
+      ExtendSetup(SetupFile(setup), machine.setup(), changes.effects, extended);
   WriteTextFile(extended / "plant.xml", plant);
   WriteTextFile(extended / "setup.toml", text);
   return (extended / "plant.xml").string();

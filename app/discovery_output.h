@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/machine.h"
+#include "app/subject.h"
 #include "mjdiag/discovery/discovery.h"
 
 namespace mjdiag::app {

@@ -8,7 +8,7 @@
 #include "app/command.h"
 #include "app/exit_status.h"
 #include "app/format.h"
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "mjdiag/plugin/setup/chain_file.h"
 #include "mjdiag/plugin/runtime/closed_loop.h"
@@ -114,16 +114,15 @@ std::string SideBySide(const MechanicalModel& extracted,
   return table.ToString();
 }
 
-StateSpace Tick(const Machine& machine, const MechanicalModel& extracted) {
-  const Setup& setup = machine.setup;
-  return TickModel(extracted, setup.sample_time() / setup.substeps, setup.substeps);
+StateSpace Tick(const Machine& machine) {
+  const Rates& rates = machine.rates();
+  return TickModel(machine.linear(), rates.step(), rates.substeps);
 }
 
-double TickDifference(const Machine& machine, const mjModel& model,
-                      const MechanicalModel& extracted) {
-  const Setup& setup = machine.setup;
-  const StateSpace exact = Tick(machine, extracted);
-  const StateSpace differences = TickByFiniteDifferences(model, setup);
+double TickDifference(const Machine& machine) {
+  const StateSpace exact = Tick(machine);
+  const StateSpace differences = TickByFiniteDifferences(
+      machine.plant(), machine.channels(), machine.rates().substeps);
   return std::max({RelativeDifference(exact.A, differences.A),
                    RelativeDifference(exact.B, differences.B),
                    RelativeDifference(exact.C, differences.C)});
@@ -143,21 +142,21 @@ struct Answer {
   bool good = true;
 };
 
-Answer Compare(const Machine& machine, const mjModel& model,
-               const MechanicalModel& extracted, nlohmann::json& document) {
-  if (!machine.setup.analytic) {
+Answer Compare(const Machine& machine, nlohmann::json& document) {
+  const MechanicalModel& extracted = machine.linear();
+  if (!machine.setup().analytic) {
     throw InputError("--compare", "the setup has no analytic model",
                      "a key 'analytic' in setup.toml");
   }
-  const MechanicalModel analytic = Linearize(ReadLinearChain(*machine.setup.analytic));
-  RequireSameChannels(extracted, analytic, machine.setup.analytic->string());
+  const MechanicalModel analytic = Linearize(ReadLinearChain(*machine.setup().analytic));
+  RequireSameChannels(extracted, analytic, machine.setup().analytic->string());
   const nlohmann::json difference = {
       {"M", RelativeDifference(extracted.M, analytic.M)},
       {"D", RelativeDifference(extracted.D, analytic.D)},
       {"K", RelativeDifference(extracted.K, analytic.K)},
       {"Gamma", RelativeDifference(extracted.Gamma, analytic.Gamma)},
       {"b", RelativeDifference(extracted.b, analytic.b)},
-      {"tick", TickDifference(machine, model, extracted)}};
+      {"tick", TickDifference(machine)}};
   document["difference"] = difference;
 
   Answer answer;
@@ -174,14 +173,13 @@ Answer Compare(const Machine& machine, const mjModel& model,
   return answer;
 }
 
-Answer ComparePublished(const Machine& machine, const mjModel&,
-                        const MechanicalModel& extracted, nlohmann::json& document) {
-  if (!machine.setup.published) {
+Answer ComparePublished(const Machine& machine, nlohmann::json& document) {
+  if (!machine.setup().published) {
     throw InputError("--published", "the setup has no published residual row",
                      "a key 'published' in setup.toml");
   }
   const PublishedRowComparison comparison =
-      ComparePublishedRow(extracted, ReadPublishedRow(*machine.setup.published));
+      ComparePublishedRow(machine.linear(), ReadPublishedRow(*machine.setup().published));
   nlohmann::json coefficients = nlohmann::json::array();
   Table table({"coefficient", "printed", "computed", "half units of the last digit"});
   for (const CoefficientComparison& c : comparison.coefficients) {
@@ -202,25 +200,24 @@ Answer ComparePublished(const Machine& machine, const mjModel&,
 }
 
 void Linearize(const LinearizeOptions& options) {
-  const Machine machine = LoadMachine(options.machine);
-  if (!machine.options.effects.empty() || !machine.options.disturbances.empty()) {
+  const Subject subject = LoadSubject(options.machine);
+  const Machine& machine = subject.machine;
+  if (!machine.changes().effects.empty() || !subject.options.disturbances.empty()) {
     throw InputError("linearize", "effects and disturbances are not linear",
                      "fault knobs of the plant only");
   }
-  const ModelPtr model = CopyModel(*machine.plant);
-  for (const Fault& fault : machine.options.faults) ApplyFault(*model, fault);
-  const MechanicalModel extracted = Linearize(*model, machine.setup);
+  const MechanicalModel& extracted = machine.linear();
 
   nlohmann::json document = ModelJson(extracted);
-  document.update(ToJson(machine.options));
+  document.update(ToJson(subject));
   document["schema"] = "mjdiag.linearize/1";
   document["command"] = CommandLine();
-  document["setup"] = machine.setup.name;
-  std::string text = machine.setup.name + ", " + Describe(machine.options) + "\n\n" +
+  document["setup"] = machine.setup().name;
+  std::string text = machine.setup().name + ", " + Describe(subject) + "\n\n" +
                      ModeTable(extracted);
-  if (!machine.setup.axes.empty()) {
+  if (!machine.setup().control.axes.empty()) {
     const double radius =
-        SpectralRadius(ClosedLoopMatrix(Tick(machine, extracted), machine.setup));
+        SpectralRadius(ClosedLoopMatrix(Tick(machine), machine.setup()));
     document["closed_loop"] = {{"largest_eigenvalue", radius}};
     text += "\nclosed loop: largest eigenvalue " + Short(radius) +
             (radius < 1.0 ? ", stable\n" : ", unstable\n");
@@ -230,7 +227,7 @@ void Linearize(const LinearizeOptions& options) {
        {std::pair{options.compare, &Compare},
         std::pair{options.published, &ComparePublished}}) {
     if (!wanted) continue;
-    const Answer answer = compare(machine, *model, extracted, document);
+    const Answer answer = compare(machine, document);
     text += "\n" + answer.text;
     good = good && answer.good;
   }

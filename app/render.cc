@@ -12,7 +12,7 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/format.h"
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
@@ -65,22 +65,20 @@ struct TitledRecord {
 };
 
 /// The healthy machine, and beside it the one with the faults and effects asked for.
-std::vector<TitledRecord> SimulateRuns(const Machine& machine,
+std::vector<TitledRecord> SimulateRuns(const Subject& subject,
                                        const MotionOptions& motion) {
-  const Excitation excitation = MakeExcitation(machine.setup, motion);
-  RunOptions faulty = machine.options;
+  const Excitation excitation = MakeExcitation(subject.setup(), motion);
+  RunOptions faulty = subject.options;
   SetMotion(motion, faulty);
   faulty.log_joints = true;
   RunOptions healthy = faulty;
-  healthy.faults.clear();
-  healthy.effects.clear();
   healthy.disturbances.clear();
   std::vector<TitledRecord> runs;
-  runs.push_back(
-      {"healthy", Run(machine, motion, excitation, healthy, "simulating the healthy")});
-  if (Describe(faulty) != Describe(healthy)) {
-    runs.push_back({Describe(faulty),
-                    Run(machine, motion, excitation, faulty, "simulating the faulty")});
+  runs.push_back({"healthy", Run(subject.nominal, motion, excitation, healthy,
+                                 "simulating the healthy")});
+  if (!subject.healthy()) {
+    runs.push_back({Describe(subject), Run(subject.machine, motion, excitation, faulty,
+                                           "simulating the faulty")});
   }
   return runs;
 }
@@ -90,11 +88,11 @@ std::vector<TitledRecord> ReadRuns(const Machine& machine,
                                    const std::vector<std::string>& files) {
   std::vector<TitledRecord> runs;
   for (const std::string& file : files) {
-    Record record = ReadRecord(file, machine.setup.record);
+    Record record = ReadRecord(file, machine.setup().record);
     const bool logged = std::ranges::any_of(
         record.channels(),
         [](const Channel& channel) { return channel.name.starts_with("joint."); });
-    if (!logged) record = WithObservedJoints(machine.setup, *machine.plant, record);
+    if (!logged) record = WithObservedJoints(machine, record);
     runs.push_back({std::filesystem::path(file).stem().string(), std::move(record)});
   }
   return runs;
@@ -169,8 +167,8 @@ DiagnosisOverlay Diagnose(const RenderOptions& options, const Machine& machine,
   const bool needs_motion = options.source.baseline || !options.source.robust.empty();
   Excitation excitation;
   if (needs_motion) {
-    excitation = options.records.empty() ? MakeExcitation(machine.setup, options.motion)
-                                         : Replay(machine.setup, record);
+    excitation = options.records.empty() ? MakeExcitation(machine.setup(), options.motion)
+                                         : Replay(machine.setup(), record);
   }
   const ReadyDiagnosis ready =
       PrepareDiagnosis(options.source, machine, excitation, options.motion.linear);
@@ -178,7 +176,8 @@ DiagnosisOverlay Diagnose(const RenderOptions& options, const Machine& machine,
 }
 
 void Render(RenderOptions options) {
-  const Machine machine = LoadMachine(options.machine);
+  const Subject subject = LoadSubject(options.machine);
+  const Machine& machine = subject.nominal;
   for (const std::string& text : options.amplify) {
     ParseAmplification(text, options.clip.picture);
   }
@@ -186,9 +185,9 @@ void Render(RenderOptions options) {
                                                ? std::vector<TitledRecord>()
                                                : ReadRuns(machine, options.records);
   PrepareOutput(options.output);
-  CheckPicture(*machine.plant, options.clip.picture);
+  CheckPicture(machine.plant(), options.clip.picture);
   const std::vector<TitledRecord> records =
-      titled.empty() ? SimulateRuns(machine, options.motion) : titled;
+      titled.empty() ? SimulateRuns(subject, options.motion) : titled;
   std::vector<ClipRun> runs;
   for (const TitledRecord& run : records) runs.push_back({run.title, &run.record});
   if (options.diagnose) {
@@ -196,9 +195,9 @@ void Render(RenderOptions options) {
   }
 
   const std::filesystem::path folder = options.output.folder;
-  nlohmann::json document = ToJson(machine.options);
+  nlohmann::json document = ToJson(subject);
   document["schema"] = "mjdiag.render/1";
-  document["setup"] = machine.setup.name;
+  document["setup"] = machine.setup().name;
   document["command"] = CommandLine();
   document["width"] = options.clip.picture.width;
   document["height"] = options.clip.picture.height;
@@ -208,7 +207,7 @@ void Render(RenderOptions options) {
   }
   std::string text;
   if (options.still) {
-    document["amplification"] = RenderStill(*machine.plant, runs, options.clip.picture,
+    document["amplification"] = RenderStill(machine.plant(), runs, options.clip.picture,
                                             *options.still, folder / "still.png");
     document["still"] = "still.png";
     text = "picture: " + (folder / "still.png").string() + "\n";
@@ -218,7 +217,7 @@ void Render(RenderOptions options) {
     {
       ProgressBar bar("rendering");
       options.clip.progress = [&bar](double fraction) { bar.Show(fraction); };
-      summary = RenderClip(*machine.plant, runs, options.clip, folder / "clip.mp4");
+      summary = RenderClip(machine.plant(), runs, options.clip, folder / "clip.mp4");
     }
     document["clip"] = "clip.mp4";
     document["speed"] = options.clip.speed;

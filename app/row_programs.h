@@ -3,7 +3,7 @@
 // do they find a row where the singular value decomposition finds a null space, and is
 // it the same one?
 
-#include "app/machine.h"
+#include "app/subject.h"
 #include "mjdiag/diagnosis/residual_bank.h"
 #include "mjdiag/report/design_page.h"
 

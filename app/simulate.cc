@@ -8,7 +8,7 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/format.h"
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/report/diagnosis_json.h"
@@ -32,7 +32,7 @@ struct SimulateOptions {
 std::map<std::string, double> LargestTrackingErrors(const Setup& setup,
                                                     const Record& record) {
   std::map<std::string, double> errors;
-  for (const AxisSetup& axis : setup.axes) {
+  for (const AxisSetup& axis : setup.control.axes) {
     const Channel* reference = record.Find(axis.name + "_ref");
     if (reference == nullptr) continue;
     errors[axis.name] =
@@ -41,29 +41,29 @@ std::map<std::string, double> LargestTrackingErrors(const Setup& setup,
   return errors;
 }
 
-std::string Summary(const Setup& setup, const Machine& machine, const Record& record,
+std::string Summary(const Setup& setup, const Subject& subject, const Record& record,
                     const nlohmann::json& document) {
-  std::string text = setup.name + ", " + Describe(machine.options) + ": " +
+  std::string text = setup.name + ", " + Describe(subject) + ": " +
                      std::to_string(record.samples()) + " samples, " +
                      Short(record.duration()) + " s, " +
                      Short(document["real_time_factor"]) + " times real time\n\n";
   Table table({"axis", "largest tracking error", "peak input"});
-  for (const AxisSetup& axis : setup.axes) {
+  for (const AxisSetup& axis : setup.control.axes) {
     const Channel& input = record.At(axis.actuator);
     table.Add({axis.name,
                FormatQuantity(document["tracking_error_max"][axis.name],
-                              setup.Sensor(axis.sensor).unit),
+                              setup.channels.Sensor(axis.sensor).unit),
                FormatQuantity(input.samples.lpNorm<Eigen::Infinity>(), input.unit)});
   }
-  return text + (setup.axes.empty() ? "" : table.ToString());
+  return text + (setup.control.axes.empty() ? "" : table.ToString());
 }
 
 void Simulate(const SimulateOptions& options) {
-  Machine machine = LoadMachine(options.machine);
-  SetMotion(options.motion, machine.options);
-  CheckMode(machine.setup, machine.options.mode);
-  machine.options.log_joints = options.log_joints;
-  const Excitation excitation = MakeExcitation(machine.setup, options.motion);
+  Subject subject = LoadSubject(options.machine);
+  SetMotion(options.motion, subject.options);
+  CheckMode(subject.setup().control, subject.options.mode);
+  subject.options.log_joints = options.log_joints;
+  const Excitation excitation = MakeExcitation(subject.setup(), options.motion);
   PrepareOutput(options.output);
 
   std::optional<ReadyDiagnosis> ready;
@@ -71,28 +71,28 @@ void Simulate(const SimulateOptions& options) {
   std::optional<MonitorObserver> observer;
   if (options.diagnose) {
     ready =
-        PrepareDiagnosis(options.source, machine, excitation, options.motion.linear);
+        PrepareDiagnosis(options.source, subject.nominal, excitation, options.motion.linear);
     monitor.emplace(ready->design, excitation.samples(), ready->baseline);
     observer.emplace(*monitor);
-    machine.options.observer = &*observer;
+    subject.options.observer = &*observer;
   }
   const auto start = std::chrono::steady_clock::now();
   const Record record =
-      Run(machine, options.motion, excitation, machine.options, "simulating");
+      Run(subject.machine, options.motion, excitation, subject.options, "simulating");
   const std::chrono::duration<double> elapsed =
       std::chrono::steady_clock::now() - start;
 
-  nlohmann::json document = ToJson(machine.options);
+  nlohmann::json document = ToJson(subject);
   document["schema"] = "mjdiag.simulate/1";
-  document["setup"] = machine.setup.name;
+  document["setup"] = subject.setup().name;
   document["command"] = CommandLine();
   document["linear"] = options.motion.linear;
   document["seed"] = options.motion.seed;
   document["samples"] = record.samples();
   document["sample_time"] = record.sample_time();
-  document["tracking_error_max"] = LargestTrackingErrors(machine.setup, record);
+  document["tracking_error_max"] = LargestTrackingErrors(subject.setup(), record);
   document["real_time_factor"] = record.duration() / elapsed.count();
-  std::string text = Summary(machine.setup, machine, record, document);
+  std::string text = Summary(subject.setup(), subject, record, document);
   if (!options.output.folder.empty()) {
     const RecordFormat format = ParseRecordFormat(options.format);
     const auto file =
@@ -103,7 +103,7 @@ void Simulate(const SimulateOptions& options) {
   }
   std::function<NamedPage()> page;
   if (options.diagnose) {
-    const DiagnosisResult result = Conclude(*ready, machine, excitation, *monitor);
+    const DiagnosisResult result = Conclude(*ready, subject.nominal, excitation, *monitor);
     document["diagnosis"] = ToJson(result);
     text += "\n" + Describe(result);
     if (!options.output.folder.empty()) {
@@ -112,7 +112,7 @@ void Simulate(const SimulateOptions& options) {
     }
     page = [&, result] {
       return PageOf(ready->design, *monitor, result,
-                    "simulated: " + Describe(machine.options));
+                    "simulated: " + Describe(subject));
     };
   }
   Publish(options.output, "simulate", document, text, page);

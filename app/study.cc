@@ -7,7 +7,7 @@
 
 #include "app/command.h"
 #include "app/format.h"
-#include "app/machine.h"
+#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "mjdiag/studies/hidden_table.h"
@@ -29,13 +29,12 @@ struct StudyCommand {
   std::uint64_t seed = 1;
 };
 
-using Study = std::function<std::vector<StudyTable>(const Setup&, const mjModel&,
-                                                    const StudyOptions&)>;
+using Study = std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)>;
 
 template <int causes>
-std::vector<StudyTable> HiddenEffects(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> HiddenEffects(const Machine& machine,
                                       const StudyOptions& options) {
-  return HiddenStudy(setup, plant, causes, options);
+  return HiddenStudy(machine, causes, options);
 }
 
 /// Preset -> study, and what it is for.
@@ -43,13 +42,13 @@ const std::map<std::string, Study>& Studies() {
   static const std::map<std::string, Study> studies{
       {"table2", LinearDetectionStudy},
       {"table3",
-       [](const Setup& setup, const mjModel& plant, const StudyOptions& options) {
-         return NonlinearDetectionStudy(setup, plant, "table3", false, options);
+       [](const Machine& machine, const StudyOptions& options) {
+         return NonlinearDetectionStudy(machine, "table3", false, options);
        }},
       {"table4", ClassificationStudy},
       {"table5",
-       [](const Setup& setup, const mjModel& plant, const StudyOptions& options) {
-         return NonlinearDetectionStudy(setup, plant, "table5", true, options);
+       [](const Machine& machine, const StudyOptions& options) {
+         return NonlinearDetectionStudy(machine, "table5", true, options);
        }},
       {"estimation", EstimationStudy},
       {"disturbance", DisturbanceStudy},
@@ -98,11 +97,11 @@ NamedPage PageOf(const StudyCommand& command, const std::string& setup,
 }
 
 void RunStudy(const StudyCommand& command) {
-  const Machine machine = LoadMachine(command.machine);
+  const Machine machine = LoadSubject(command.machine).nominal;
   PrepareOutput(command.output);
   StudyOptions options{command.runs, command.seed, {}};
   nlohmann::json document{{"schema", "mjdiag.study/1"},
-                          {"setup", machine.setup.name},
+                          {"setup", machine.setup().name},
                           {"preset", command.preset},
                           {"runs", command.runs},
                           {"seed", command.seed},
@@ -113,14 +112,14 @@ void RunStudy(const StudyCommand& command) {
   {
     ProgressBar bar("study " + command.preset);
     options.progress = [&bar](double fraction) { bar.Show(fraction); };
-    tables = Studies().at(command.preset)(machine.setup, *machine.plant, options);
+    tables = Studies().at(command.preset)(machine, options);
   }
   for (const StudyTable& table : tables) {
     document["tables"].push_back(ToJson(table));
     text += ToText(table);
   }
   Publish(command.output, "study", document, text,
-          [&] { return PageOf(command, machine.setup.name, tables); });
+          [&] { return PageOf(command, machine.setup().name, tables); });
 }
 
 }  // namespace

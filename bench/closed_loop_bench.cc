@@ -32,13 +32,13 @@ double Median(std::vector<double> values) {
 
 void ClosedLoopOverBareSteps(benchmark::State& state, bool static_friction) {
   Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  setup.static_friction = static_friction;
+  setup.physics.static_friction = static_friction;
   const ModelPtr model = LoadPlant(setup);
   const Excitation excitation =
-      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
   const Eigen::VectorXd start = StartPosition(setup, *model, {});
   DropScenery(*model);
-  const int steps = kTicksPerSlice * setup.substeps;
+  const int steps = kTicksPerSlice * setup.rates.substeps;
   std::vector<double> ratios;
   double bare_seconds = 0.0;
   for (auto _ : state) {

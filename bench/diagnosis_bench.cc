@@ -46,7 +46,7 @@ Setup Bonder(bool static_friction) {
 }
 
 Excitation DefaultMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
 }
 
 /// A closed loop that stands at its first tick.
@@ -87,7 +87,7 @@ void MonitoredOverPlainLoop(benchmark::State& state, bool static_friction) {
   design.limits = CalibrateLimits(design, setup, *model, nominal);
   const Eigen::VectorXd start = StartPosition(setup, *model, {});
   DropScenery(*model);
-  const int steps = kTicksPerSlice * setup.substeps;
+  const int steps = kTicksPerSlice * setup.rates.substeps;
   std::vector<double> ratios;
   double added = 0.0;
   for (auto _ : state) {

@@ -70,7 +70,7 @@ struct Subject {
     RunOptions options;
     options.log_joints = true;
     Excitation excitation =
-        FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+        FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
     healthy = Simulate(setup, *model, excitation, options).Slice(0, 1600);
     options.seed = 2;
     worn = Simulate(setup, *model, excitation, options).Slice(0, 1600);

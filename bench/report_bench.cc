@@ -41,7 +41,7 @@ void ReportOfADiagnosis(benchmark::State& state) {
   options.faults = {{"zeta_x", 1.2}};
   const Record record = SimulateLinear(
       setup, *plant,
-      FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory)), options);
+      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)), options);
   DiagnosisMonitor monitor(design, record.samples());
   Run(monitor, design, record);
   const DiagnosisResult result = Conclude(design, monitor);

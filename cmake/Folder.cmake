@@ -1,14 +1,30 @@
-# What nearly every file includes, parsed once a target. The files still include what
+# What nearly every file includes, parsed once for all folders. The files still include what
 # they use; MJDIAG_PRECOMPILE=OFF shows whether they do.
 option(MJDIAG_PRECOMPILE "Precompile the common headers" ON)
 function(mjdiag_precompile target)
-  if(MJDIAG_PRECOMPILE)
-    target_precompile_headers(${target} PRIVATE ${ARGN} <algorithm> <cmath> <filesystem>
-                              <functional> <map> <string> <vector>)
+  if(NOT MJDIAG_PRECOMPILE)
+    return()
+  endif()
+  if(ARGN OR NOT TARGET mjdiag_precompiled)
+    target_precompile_headers(${target} PRIVATE ${ARGN} <Eigen/Core> <algorithm> <cmath>
+                              <filesystem> <functional> <map> <string> <vector>)
+  else()
+    target_precompile_headers(${target} REUSE_FROM mjdiag_precompiled)
   endif()
 endfunction()
 
-# mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>])
+if(MJDIAG_PRECOMPILE)
+  file(WRITE ${PROJECT_BINARY_DIR}/precompiled.cc "")
+  add_library(mjdiag_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cc)
+  set_target_properties(mjdiag_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(mjdiag_precompiled PUBLIC cxx_std_20)
+  target_link_libraries(mjdiag_precompiled PRIVATE mjdiag_warnings Eigen3::Eigen)
+  target_precompile_headers(mjdiag_precompiled PRIVATE <Eigen/Core> <algorithm> <cmath>
+                            <filesystem> <functional> <map> <string> <vector>)
+endif()
+
+# mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>]
+#               [PRECOMPILE <headers...>])
 #
 # Makes a library target from the .cc files directly in the folder <path>: for
 # plugin/plant mjdiag_plugin_plant (alias mjdiag::plugin_plant). Its headers are
@@ -16,7 +32,7 @@ endfunction()
 # an include root of its own that holds nothing but links to its headers. A folder that
 # includes upwards in the table of the design therefore does not compile.
 function(mjdiag_folder path)
-  cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
   set(source ${PROJECT_SOURCE_DIR}/${path})
   file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cc)
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${source} ${source}/*.h)
@@ -38,7 +54,7 @@ function(mjdiag_folder path)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS}
                                          $<BUILD_INTERFACE:mjdiag_warnings>)
-  mjdiag_precompile(${target} <Eigen/Core>)
+  mjdiag_precompile(${target} ${arg_PRECOMPILE})
   install(TARGETS ${target} EXPORT mjdiagTargets)
   install(DIRECTORY ${source}/ DESTINATION include/mjdiag/${path}
           FILES_MATCHING PATTERN "*.h")

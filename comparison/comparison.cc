@@ -16,9 +16,9 @@ constexpr Eigen::Index kShortestComparison = 64;
 /// not an answer.
 std::vector<std::string> ComparedChannels(const Setup& setup) {
   std::vector<std::string> names;
-  for (const SensorSetup& sensor : setup.sensors) names.push_back(sensor.channel);
-  if (setup.axes.empty()) return names;
-  for (const ActuatorSetup& actuator : setup.actuators) {
+  for (const SensorSetup& sensor : setup.channels.sensors) names.push_back(sensor.channel);
+  if (setup.control.axes.empty()) return names;
+  for (const ActuatorSetup& actuator : setup.channels.actuators) {
     names.push_back(actuator.channel);
   }
   return names;
@@ -27,7 +27,7 @@ std::vector<std::string> ComparedChannels(const Setup& setup) {
 /// Position sensors among the compared channels.
 std::vector<std::string> Positions(const Record& compared, const Setup& setup) {
   std::vector<std::string> names;
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : setup.channels.sensors) {
     const bool position = sensor.unit == "m" || sensor.unit == "rad";
     if (position && compared.Find(sensor.channel)) names.push_back(sensor.channel);
   }
@@ -75,15 +75,15 @@ const ChannelMismatch* Comparison::Worst() const {
   return worst == channels.end() ? nullptr : &*worst;
 }
 
-Comparison Compare(const Setup& setup, const mjModel& plant, const Record& measured,
+Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options) {
   Comparison result;
-  result.setup = setup.name;
-  result.closed_loop = !setup.axes.empty();
-  result.options.skip_samples = setup.compare.skip_samples;
+  result.setup = machine.setup().name;
+  result.closed_loop = !machine.setup().control.axes.empty();
+  result.options.skip_samples = machine.setup().compare.skip_samples;
 
   std::vector<std::string> names;
-  for (const std::string& name : ComparedChannels(setup)) {
+  for (const std::string& name : ComparedChannels(machine.setup())) {
     (measured.Find(name) ? names : result.not_measured).push_back(name);
   }
   if (names.empty()) {
@@ -99,12 +99,13 @@ Comparison Compare(const Setup& setup, const mjModel& plant, const Record& measu
                      "at least " + std::to_string(kShortestComparison) + " to compare");
   }
 
-  const Setup machine = WithMeasuredNoise(setup, measured);
-  const Excitation excitation = Replay(machine, measured);
+  const Machine noisy =
+      machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
+  const Excitation excitation = Replay(noisy.setup(), measured);
   RunOptions without_noise = options;
   without_noise.noise_scale = 0.0;
-  const Record simulated = Simulate(machine, plant, excitation, without_noise);
-  const auto floors = EstimateNoiseFloor(machine, plant, excitation, simulated, options,
+  const Record simulated = Simulate(noisy, excitation, without_noise);
+  const auto floors = EstimateNoiseFloor(noisy, excitation, simulated, options,
                                          result.options.skip_samples);
 
   const double start = measured.start_time();
@@ -115,9 +116,9 @@ Comparison Compare(const Setup& setup, const mjModel& plant, const Record& measu
     result.channels.push_back(MeasureMismatch(result.measured, result.simulated, name,
                                               floors.at(name), result.options));
   }
-  const std::vector<std::string> positions = Positions(result.measured, setup);
-  result.measured_derived = DeriveChannels(result.measured, positions, setup.compare);
-  result.simulated_derived = DeriveChannels(result.simulated, positions, setup.compare);
+  const std::vector<std::string> positions = Positions(result.measured, machine.setup());
+  result.measured_derived = DeriveChannels(result.measured, positions, machine.setup().compare);
+  result.simulated_derived = DeriveChannels(result.simulated, positions, machine.setup().compare);
   result.derived = MeasureDerived(result.measured_derived, result.simulated_derived,
                                   result.options.skip_samples);
   return result;

@@ -9,7 +9,7 @@
 
 #include "mjdiag/comparison/derived.h"
 #include "mjdiag/comparison/mismatch.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record.h"
 
@@ -34,12 +34,12 @@ struct Comparison {
   const ChannelMismatch* Worst() const;
 };
 
-/// Replays `measured` on the plant (see Replay), without sensor noise, and compares all
+/// Replays `measured` on the machine (see Replay), without sensor noise, and compares all
 /// sensors and, in closed loop, actuators that the record has.
-/// `options` gives effects, faults, disturbances, the seed of the noise floor and the
-/// progress callback; its noise_scale is not used.
+/// `options` gives disturbances, the seed of the noise floor and the progress callback;
+/// its noise_scale is not used.
 /// InputError if the record lacks what Replay needs or has no sensor of the setup.
-Comparison Compare(const Setup& setup, const mjModel& plant, const Record& measured,
+Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options);
 
 }  // namespace mjdiag

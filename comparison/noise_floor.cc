@@ -48,7 +48,7 @@ NoiseFloor FloorOf(const std::vector<Eigen::VectorXd>& draws, double sample_time
 }
 
 /// Runs that differ in the seed of their noise only, in parallel.
-std::vector<Record> NoisyRuns(const Setup& setup, const mjModel& plant,
+std::vector<Record> NoisyRuns(const Machine& machine,
                               const Excitation& excitation, const RunOptions& options) {
   std::vector<std::future<Record>> runs;
   for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
@@ -57,7 +57,7 @@ std::vector<Record> NoisyRuns(const Setup& setup, const mjModel& plant,
     noisy.seed = options.seed + draw;
     noisy.progress = nullptr;
     runs.push_back(std::async(std::launch::async, [&, noisy] {
-      return Simulate(setup, plant, excitation, noisy);
+      return Simulate(machine, excitation, noisy);
     }));
   }
   std::vector<Record> records;
@@ -81,21 +81,22 @@ double IndependentSamples(const Spectrum& spectrum, Eigen::Index n) {
   return std::max(1.0, static_cast<double>(n) * sum * sum / (bins * squares));
 }
 
-Setup WithMeasuredNoise(const Setup& setup, const Record& measured) {
-  Setup noisy = setup;
-  for (SensorSetup& sensor : noisy.sensors) {
-    if (const Channel* channel = measured.Find(sensor.channel)) {
-      const double quantisation = sensor.resolution / std::sqrt(12.0);
-      sensor.noise_sd = std::max(NoiseLevel(channel->samples), quantisation);
-    }
+Eigen::VectorXd MeasuredNoise(const Channels& channels, const Record& measured) {
+  Eigen::VectorXd sd(static_cast<Eigen::Index>(channels.sensors.size()));
+  for (Eigen::Index i = 0; i < sd.size(); ++i) {
+    const SensorSetup& sensor = channels.sensors[static_cast<std::size_t>(i)];
+    const Channel* channel = measured.Find(sensor.channel);
+    sd[i] = channel == nullptr ? sensor.noise_sd
+                               : std::max(NoiseLevel(channel->samples),
+                                          sensor.resolution / std::sqrt(12.0));
   }
-  return noisy;
+  return sd;
 }
 
 std::map<std::string, NoiseFloor> EstimateNoiseFloor(
-    const Setup& setup, const mjModel& plant, const Excitation& excitation,
+    const Machine& machine, const Excitation& excitation,
     const Record& clean, const RunOptions& options, Eigen::Index skip) {
-  const std::vector<Record> noisy = NoisyRuns(setup, plant, excitation, options);
+  const std::vector<Record> noisy = NoisyRuns(machine, excitation, options);
   std::map<std::string, NoiseFloor> floors;
   const auto add = [&](const std::string& channel) {
     const Eigen::VectorXd& quiet = clean.At(channel).samples;
@@ -106,8 +107,8 @@ std::map<std::string, NoiseFloor> EstimateNoiseFloor(
     }
     floors[channel] = FloorOf(draws, clean.sample_time());
   };
-  for (const SensorSetup& sensor : setup.sensors) add(sensor.channel);
-  for (const ActuatorSetup& actuator : setup.actuators) add(actuator.channel);
+  for (const SensorSetup& sensor : machine.channels().sensors) add(sensor.channel);
+  for (const ActuatorSetup& actuator : machine.channels().actuators) add(actuator.channel);
   return floors;
 }
 

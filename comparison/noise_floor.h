@@ -15,7 +15,7 @@
 #include <string>
 
 #include "mjdiag/comparison/mismatch.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record.h"
 #include "mjdiag/signals/spectrum.h"
@@ -27,17 +27,17 @@ namespace mjdiag {
 /// white noise, less for coloured noise.
 double IndependentSamples(const Spectrum& spectrum, Eigen::Index n);
 
-/// The setup with every sensor's noise_sd [unit] set to what `measured` shows of it, at
-/// least its quantisation noise. Sensors that were not measured keep theirs.
-Setup WithMeasuredNoise(const Setup& setup, const Record& measured);
+/// Noise of every sensor [unit]: what `measured` shows of it, at least its quantisation
+/// noise; of sensors that were not measured what their channel says.
+Eigen::VectorXd MeasuredNoise(const Channels& channels, const Record& measured);
 
 /// Floor of every sensor and actuator channel of the setup, whose noise_sd is trusted
-/// (see WithMeasuredNoise).
+/// (see MeasuredNoise).
 /// @param clean    Simulate of the same excitation and options with noise_scale = 0
 /// @param options  of that run; its seed and the next ones draw the noise, in parallel
 /// @param skip     samples left out at the start
 std::map<std::string, NoiseFloor> EstimateNoiseFloor(
-    const Setup& setup, const mjModel& plant, const Excitation& excitation,
+    const Machine& machine, const Excitation& excitation,
     const Record& clean, const RunOptions& options, Eigen::Index skip);
 
 }  // namespace mjdiag

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> Positions(const Setup& setup, const Record& measured) {
   std::vector<std::string> positions;
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : setup.channels.sensors) {
     const bool position = sensor.unit == "m" || sensor.unit == "rad";
     if (position && measured.Find(sensor.channel)) positions.push_back(sensor.channel);
   }
@@ -22,35 +22,33 @@ std::vector<std::string> Positions(const Setup& setup, const Record& measured) {
 
 }  // namespace
 
-std::map<std::string, double> ReplayErrors(const Setup& setup, const mjModel& plant,
+std::map<std::string, double> ReplayErrors(const Machine& machine,
                                            const Changes& changes,
                                            const Record& measured) {
   RunOptions options;
-  options.faults = changes.faults;
-  options.effects = changes.effects;
   options.noise_scale = 0.0;
   Record simulated;
   try {
-    simulated = Simulate(setup, plant, Replay(setup, measured), options);
+    simulated = Simulate(machine.With(changes), Replay(machine.setup(), measured), options);
   } catch (const NumericalError&) {
-    return {{setup.sensors.front().channel, std::numeric_limits<double>::infinity()}};
+    return {{machine.channels().sensors.front().channel, std::numeric_limits<double>::infinity()}};
   }
   std::map<std::string, double> errors;
   const auto add = [&](const std::string& channel) {
     const Channel* before = measured.Find(channel);
     if (before == nullptr) return;
     errors[channel] = RelativeErrorPercent(
-        before->samples, simulated.At(channel).samples, setup.compare.skip_samples);
+        before->samples, simulated.At(channel).samples, machine.setup().compare.skip_samples);
   };
-  for (const SensorSetup& sensor : setup.sensors) add(sensor.channel);
-  if (!setup.axes.empty()) {
-    for (const ActuatorSetup& actuator : setup.actuators) add(actuator.channel);
+  for (const SensorSetup& sensor : machine.channels().sensors) add(sensor.channel);
+  if (!machine.setup().control.axes.empty()) {
+    for (const ActuatorSetup& actuator : machine.channels().actuators) add(actuator.channel);
   }
-  const std::vector<std::string> positions = Positions(setup, measured);
-  const Record derived = DeriveChannels(measured, positions, setup.compare);
+  const std::vector<std::string> positions = Positions(machine.setup(), measured);
+  const Record derived = DeriveChannels(measured, positions, machine.setup().compare);
   for (const DerivedMismatch& signal :
-       MeasureDerived(derived, DeriveChannels(simulated, positions, setup.compare),
-                      setup.compare.skip_samples)) {
+       MeasureDerived(derived, DeriveChannels(simulated, positions, machine.setup().compare),
+                      machine.setup().compare.skip_samples)) {
     errors[signal.name] = signal.relative_error_percent;
   }
   return errors;

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "mjdiag/plugin/effects/changes.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -16,7 +16,7 @@ namespace mjdiag {
 /// Channel or derived signal -> 100 ||measured - simulated|| / ||measured|| [%], after
 /// setup.compare.skip_samples. Of a replay that diverges: infinity for the first
 /// sensor.
-std::map<std::string, double> ReplayErrors(const Setup& setup, const mjModel& plant,
+std::map<std::string, double> ReplayErrors(const Machine& machine,
                                            const Changes& changes,
                                            const Record& measured);
 

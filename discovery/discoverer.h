@@ -18,16 +18,15 @@ namespace mjdiag {
 /// A discovery under way.
 class Discoverer {
  public:
-  Discoverer(const Setup& setup, const mjModel& plant, const Record& measured,
+  Discoverer(const Machine& machine, const Record& measured,
              const Record* validation, const DiscoverOptions& options)
-      : setup_(setup),
-        plant_(plant),
+      : machine_(machine),
         measured_(measured),
         validation_(validation),
         options_(options),
-        problem_(PoseProblem(setup, plant, measured, options.train_share,
+        problem_(PoseProblem(machine, measured, options.train_share,
                              options.bandwidth)),
-        candidates_(ListCandidates(setup, plant, problem_.model)) {}
+        candidates_(ListCandidates(machine)) {}
 
   Discovery Run();
 
@@ -36,10 +35,10 @@ class Discoverer {
     if (options_.progress) options_.progress(what, fraction);
   }
   Track FollowWith(const Changes& changes) const {
-    return FollowRun(setup_, plant_, changes, problem_.run, problem_.observer, true);
+    return FollowRun(machine_, changes, problem_.run, problem_.observer, true);
   }
   ObservedMotion MotionOf(const Track& track) const {
-    return ObserveMotion(plant_, problem_.run, track);
+    return ObserveMotion(machine_, problem_.run, track);
   }
   bool IsColoured(const CauseFit& fit) const;
   void Search(SearchOptions options, bool down_to_noise);
@@ -63,8 +62,7 @@ class Discoverer {
   void AddComparisons();
   void AddLimits();
 
-  const Setup& setup_;
-  const mjModel& plant_;
+  const Machine& machine_;
   const Record& measured_;
   const Record* validation_;
   const DiscoverOptions& options_;

@@ -46,7 +46,7 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
     const double sd = std::sqrt(covariance(first + index, first + index));
     const std::string& name = candidate.parameters[i].name;
     const std::string unit =
-        candidate.cause.fault ? "1" : SiteUnit(plant_, candidate.cause.spec, name);
+        candidate.cause.fault ? "1" : SiteUnit(machine_.plant(), candidate.cause.spec, name);
     parameters.push_back(
         {name, unit, fitted.value[index], sd, interval.low, interval.high});
   }
@@ -85,7 +85,7 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
       return !down_to_noise ||
              IsNear(*coarse, problem_, ChangesOf(candidates_, fit.causes));
     };
-    search_ = SearchCauses(coarse->problem, candidates_, rough, &search_);
+    search_ = SearchCauses(*coarse, candidates_, rough, &search_);
     if (search_.served && options.preliminary && options.preliminary(search_.fit)) {
       return;
     }
@@ -114,7 +114,7 @@ void Discoverer::NameCauses() {
       }
     }
     found.alternatives = AlternativesOf(fit.causes[i], search_.contenders[i]);
-    for (const Cause& twin : Twins(plant_, found.cause)) {
+    for (const Cause& twin : Twins(machine_.plant(), found.cause)) {
       found.alternatives.insert(found.alternatives.begin(),
                                 {twin, found.probability, true});
     }
@@ -126,7 +126,7 @@ void Discoverer::NameCauses() {
 // cannot be judged.
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
   for (const RaisedNoise& raised :
-       FindRaisedNoise(setup_, problem_.observer, innovations, options_.train_share)) {
+       FindRaisedNoise(machine_.setup(), problem_.observer, innovations, options_.train_share)) {
     FoundCause found;
     found.cause.spec = {"encoder_noise", raised.element, {{"sd", raised.sd}}};
     found.parameters = {{"sd", raised.unit, raised.sd, raised.sd_error,
@@ -169,16 +169,16 @@ void Discoverer::Judge() {
 }
 
 void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
-  const std::vector<Index> seen = SeenJoints(problem_.model);
+  const std::vector<Index> seen = SeenJoints(problem_.machine.linear());
   for (std::size_t y = 0; y < seen.size(); ++y) {
     constexpr double kMoves = 50.0;  // times the sensor noise
     const VectorXd q = motion.outputs.row(static_cast<Index>(y));
     const double range = q.maxCoeff() - q.minCoeff();
     const std::string& joint =
-        problem_.model.coordinates[static_cast<std::size_t>(seen[y])];
+        problem_.machine.linear().coordinates[static_cast<std::size_t>(seen[y])];
     if (range < kMoves * problem_.observer.noise_sd[static_cast<Index>(y)]) {
       discovery_.notes.push_back(
-          "'" + setup_.sensors[y].channel +
+          "'" + machine_.channels().sensors[y].channel +
           "' does not move: friction, springs, ripple, mass and motor of joint '" +
           joint + "' cannot be judged; record a motion of it");
     }
@@ -204,12 +204,9 @@ void Discoverer::NoteTwins(std::size_t cause,
     }
     std::string note = "the record does not tell " + Describe(found.cause) + " from " +
                        Describe(CauseOf(candidates_, other.cause));
-    Setup noisy = setup_;
-    for (std::size_t y = 0; y < noisy.sensors.size(); ++y) {
-      noisy.sensors[y].noise_sd = problem_.observer.noise_sd[static_cast<Index>(y)];
-    }
     const auto motion =
-        FindTellingMotion(noisy, plant_, ChangesOf({found.cause}),
+        FindTellingMotion(machine_.WithSensorNoise(problem_.observer.noise_sd),
+                          ChangesOf({found.cause}),
                           ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
     if (!motion || motion->separation < kTells) {
@@ -228,16 +225,16 @@ void Discoverer::NoteTwins(std::size_t cause,
 }
 
 Discovery Discoverer::Run() {
-  discovery_.setup = setup_.name;
+  discovery_.setup = machine_.setup().name;
   discovery_.train_share = options_.train_share;
-  discovery_.sample_time = setup_.sample_time();
+  discovery_.sample_time = machine_.rates().tick();
   BoundByRecord(candidates_, MotionOf(FollowWith({})));
   SearchOptions search;
   search.most_causes = options_.most_causes;
   search.progress = options_.progress;
   std::optional<MeasuredRun> unseen;
   if (validation_ != nullptr) {
-    unseen = ToMeasuredRun(setup_, *validation_);
+    unseen = ToMeasuredRun(machine_.setup(), *validation_);
     search.unseen = &*unseen;
   }
   search.preliminary = [this](const CauseFit& fit) {
@@ -245,8 +242,8 @@ Discovery Discoverer::Run() {
   };
   Search(search, true);
   if (search.preliminary(search_.fit)) {
-    problem_ = PoseProblem(setup_, plant_, measured_, options_.train_share,
-                           kFastShare * setup_.control_rate);
+    problem_ = PoseProblem(machine_, measured_, options_.train_share,
+                           kFastShare * machine_.rates().control);
     // Every further one takes longer than all before it.
     search.most_causes = std::min(search.most_causes, kFurtherCauses);
     search.preliminary = nullptr;
@@ -291,15 +288,15 @@ Discovery Discoverer::Run() {
   return std::move(discovery_);
 }
 
-Discovery Discover(const Setup& setup, const mjModel& plant, const Record& measured,
+Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options) {
-  std::vector<std::string> notes = CheckRecord(setup, plant, measured);
+  std::vector<std::string> notes = CheckRecord(machine, measured);
   if (validation != nullptr) {
-    for (std::string& note : CheckRecord(setup, plant, *validation)) {
+    for (std::string& note : CheckRecord(machine, *validation)) {
       notes.push_back("validation record: " + note);
     }
   }
-  Discovery discovery = Discoverer(setup, plant, measured, validation, options).Run();
+  Discovery discovery = Discoverer(machine, measured, validation, options).Run();
   discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
   return discovery;
 }

@@ -16,7 +16,7 @@
 #include "mjdiag/comparison/comparison.h"
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -135,7 +135,7 @@ struct DiscoverOptions {
 /// @param validation  a record of another motion that nothing is fitted to, or null
 /// InputError if the record lacks what the replay needs or cannot be judged (see
 /// data_check.h).
-Discovery Discover(const Setup& setup, const mjModel& plant, const Record& measured,
+Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 
 /// "no_discrepancy", "explained", "partly_explained", "unexplained".

@@ -57,16 +57,16 @@ double Gain(const std::map<std::string, double>& before,
 }  // namespace
 
 std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
-  std::vector<std::string> joints = DrivenNames(problem_.model);
+  std::vector<std::string> joints = DrivenNames(problem_.machine.linear());
   joints.resize(std::min<std::size_t>(
       joints.size(), static_cast<std::size_t>(problem_.run.outputs.rows())));
   std::vector<std::string> units;
   for (const std::string& joint : joints) {
-    const int id = FindElement(plant_, mjOBJ_JOINT, joint);
-    units.push_back(plant_.jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
+    const int id = FindElement(machine_.plant(), mjOBJ_JOINT, joint);
+    units.push_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
   }
-  return UnexplainedForces(problem_.model, problem_.observer, problem_.step(),
-                           setup_.substeps, track.innovations, joints, units);
+  return UnexplainedForces(problem_.machine.linear(), problem_.observer, problem_.step(),
+                           machine_.rates().substeps, track.innovations, joints, units);
 }
 
 void Discoverer::FindWhere(const Track& nominal, const Track& final) {
@@ -86,14 +86,14 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
   const auto worst =
       std::ranges::max_element(discovery_.forces_after, std::less<>(),
                                [&](const UnknownSignal& s) { return strength(s); });
-  const auto joint = std::ranges::find(problem_.model.coordinates, worst->site) -
-                     problem_.model.coordinates.begin();
+  const auto joint = std::ranges::find(problem_.machine.linear().coordinates, worst->site) -
+                     problem_.machine.linear().coordinates.begin();
   std::vector<Variable> variables;
   const VectorXd own = motion.velocity.row(joint);
-  for (const std::string& name : DrivenNames(problem_.model)) {
-    const auto j = std::ranges::find(problem_.model.coordinates, name) -
-                   problem_.model.coordinates.begin();
-    const bool hinge = plant_.jnt_type[plant_.dof_jntid[j]] == mjJNT_HINGE;
+  for (const std::string& name : DrivenNames(problem_.machine.linear())) {
+    const auto j = std::ranges::find(problem_.machine.linear().coordinates, name) -
+                   problem_.machine.linear().coordinates.begin();
+    const bool hinge = machine_.plant().jnt_type[machine_.plant().dof_jntid[j]] == mjJNT_HINGE;
     const std::string unit = hinge ? "rad" : "m";
     variables.push_back({name + " position", unit, motion.position.row(j), false});
     variables.push_back(
@@ -106,8 +106,8 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
     return std::abs(v) < still ? 0.0 : v > 0.0 ? 1.0 : -1.0;
   });
   variables.push_back({"direction", "1", direction, true});
-  for (std::size_t u = 0; u < setup_.actuators.size(); ++u) {
-    variables.push_back({setup_.actuators[u].channel, setup_.actuators[u].unit,
+  for (std::size_t u = 0; u < machine_.channels().actuators.size(); ++u) {
+    variables.push_back({machine_.channels().actuators[u].channel, machine_.channels().actuators[u].unit,
                          motion.inputs.row(static_cast<Index>(u)), false});
   }
   const Index n = motion.samples();
@@ -126,7 +126,7 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   const Candidate& candidate = candidates_[search_.fit.causes[cause].candidate];
   LawPlot plot;
   plot.cause = Describe(candidate);
-  plot.site = problem_.model.coordinates[static_cast<std::size_t>(candidate.joint)];
+  plot.site = problem_.machine.linear().coordinates[static_cast<std::size_t>(candidate.joint)];
   const auto at = [&](const std::vector<UnknownSignal>& forces) {
     return std::ranges::find(forces, plot.site, &UnknownSignal::site);
   };
@@ -138,12 +138,12 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   const UnknownSignal& without = *at(forces);
   const VectorXd explained = without.value - at(discovery_.forces_after)->value;
 
-  const bool hinge = plant_.jnt_type[plant_.dof_jntid[candidate.joint]] == mjJNT_HINGE;
+  const bool hinge = machine_.plant().jnt_type[machine_.plant().dof_jntid[candidate.joint]] == mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, problem_.run.inputs.rows() - 1));
   const Cause& named = discovery_.causes[cause].cause;
   const LawAxis axis = AxisOf(VariableOf(named), candidate, motion, hinge,
-                              setup_.actuators[channel].unit);
+                              machine_.channels().actuators[channel].unit);
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;
   plot.y_unit = without.unit;
@@ -196,9 +196,9 @@ void Discoverer::AddLadder() {
       entry.held_out =
           std::sqrt(MeanSquare(rest, channels, problem_.train, problem_.run.samples()));
     } else if (number % replays == 1) {
-      entry.error_percent = ReplayErrors(setup_, plant_, changes, measured_);
+      entry.error_percent = ReplayErrors(machine_, changes, measured_);
     } else {
-      entry.validation_percent = ReplayErrors(setup_, plant_, changes, *validation_);
+      entry.validation_percent = ReplayErrors(machine_, changes, *validation_);
     }
   });
 }
@@ -222,7 +222,7 @@ void Discoverer::AddComparisons() {
   }
   ParallelFor(static_cast<int>(tasks.size()), [&](int number) {
     const Task& task = tasks[static_cast<std::size_t>(number)];
-    task.result = Compare(setup_, plant_, *task.measured, task.options);
+    task.result = Compare(machine_, *task.measured, task.options);
   });
   const Index skip = problem_.skip;
   discovery_.mismatch_before.train =

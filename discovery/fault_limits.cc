@@ -37,7 +37,7 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,
                                           const Changes& changes) {
   const auto [track, dynamics] = problem.Linearised(changes);
-  const ObservedMotion motion = ObserveMotion(*problem.plant, problem.run, track);
+  const ObservedMotion motion = ObserveMotion(problem.machine, problem.run, track);
   const Index channels = problem.run.outputs.rows();
   const VectorXd residual = Averaged(problem.Scaled(track), channels, dynamics.block());
   const Index skipped = channels * (problem.skip / dynamics.block());
@@ -45,7 +45,7 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
   for (const Candidate& candidate : candidates) {
     if (!candidate.cause.fault) continue;
     for (const Trial& trial :
-         MakeTrials(*problem.plant, problem.model, candidate, motion)) {
+         MakeTrials(problem.machine.plant(), problem.machine.linear(), candidate, motion)) {
       const VectorXd phi =
           dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
       const Index used = phi.size() - skipped;

@@ -16,17 +16,17 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 MatrixXd Commands(const Setup& setup, const Record& record) {
-  MatrixXd commands(static_cast<Index>(setup.actuators.size()), record.samples());
-  for (std::size_t i = 0; i < setup.actuators.size(); ++i) {
-    commands.row(static_cast<Index>(i)) = record.At(setup.actuators[i].channel).samples;
+  MatrixXd commands(static_cast<Index>(setup.channels.actuators.size()), record.samples());
+  for (std::size_t i = 0; i < setup.channels.actuators.size(); ++i) {
+    commands.row(static_cast<Index>(i)) = record.At(setup.channels.actuators[i].channel).samples;
   }
   return commands;
 }
 
-std::vector<std::string> FaultNames(const Setup& setup, const mjModel& plant) {
+std::vector<std::string> FaultNames(const Machine& machine) {
   std::vector<std::string> names;
-  for (const Fault& knob : HealthyKnobs(plant)) names.push_back(knob.name);
-  for (const MultisineSetup& source : setup.disturbances) names.push_back(source.name);
+  for (const Fault& knob : HealthyKnobs(machine.plant())) names.push_back(knob.name);
+  for (const MultisineSetup& source : machine.setup().disturbances) names.push_back(source.name);
   return names;
 }
 
@@ -42,22 +42,22 @@ VectorXd EstimatorSd(Setup setup, const mjModel& plant, const Record& record,
 
 }  // namespace
 
-InformationBound FaultBound(const Setup& setup, const mjModel& plant,
+InformationBound FaultBound(const Machine& machine,
                             const Excitation& motion) {
-  const MechanicalModel healthy = Linearize(plant, setup);
-  const SynthesisOptions options = SynthesisOf(setup, healthy);
+  const MechanicalModel healthy = machine.linear();
+  const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
   RunOptions quiet;
   quiet.noise_scale = 0.0;
   const MatrixXd commands =
-      Commands(setup, SimulateLinear(setup, plant, motion, quiet));
+      Commands(machine.setup(), SimulateLinear(machine, motion, quiet));
   std::vector<MatrixXd> sensitivities =
-      OutputSensitivities(TurnModels(plant, setup), options.timing, commands);
-  const std::vector<Multisine> sources = Multisines(setup);
+      OutputSensitivities(TurnModels(machine), options.timing, commands);
+  const std::vector<Multisine> sources = Multisines(machine.setup());
   MatrixXd waveforms(commands.rows(), static_cast<Index>(sources.size()));
   for (std::size_t i = 0; i < sources.size(); ++i) {
     MatrixXd waveform(commands.rows(), commands.cols());
     for (Index k = 0; k < commands.cols(); ++k) {
-      Waveforms(sources, static_cast<double>(k) * setup.sample_time(), waveforms);
+      Waveforms(sources, static_cast<double>(k) * machine.rates().tick(), waveforms);
       waveform.col(k) = waveforms.col(static_cast<Index>(i));
     }
     sensitivities.push_back(OutputResponse(healthy, options.timing, waveform));
@@ -65,9 +65,9 @@ InformationBound FaultBound(const Setup& setup, const mjModel& plant,
   return CramerRaoBound(sensitivities, options.sensor_noise);
 }
 
-std::ptrdiff_t BoundIndex(const Setup& setup, const mjModel& plant,
+std::ptrdiff_t BoundIndex(const Machine& machine,
                           const std::string& fault) {
-  const std::vector<std::string> names = FaultNames(setup, plant);
+  const std::vector<std::string> names = FaultNames(machine);
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {
     std::string known;
@@ -77,23 +77,23 @@ std::ptrdiff_t BoundIndex(const Setup& setup, const mjModel& plant,
   return found - names.begin();
 }
 
-std::vector<StudyTable> BoundStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> BoundStudy(const Machine& machine,
                                    const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(setup);
-  const InformationBound bound = FaultBound(setup, plant, motion);
+  const Excitation motion = DefaultMotion(machine.setup());
+  const InformationBound bound = FaultBound(machine, motion);
   RunOptions run;
   run.seed = options.seed;
-  const Record record = SimulateLinear(setup, plant, motion, run);
-  const VectorXd one = EstimatorSd(setup, plant, record, 1);
-  const VectorXd all = EstimatorSd(setup, plant, record, 0);
+  const Record record = SimulateLinear(machine, motion, run);
+  const VectorXd one = EstimatorSd(machine, record, 1);
+  const VectorXd all = EstimatorSd(machine, record, 0);
   StudyTable table{
-      "Information bound of trajectory " + setup.default_trajectory,
+      "Information bound of trajectory " + machine.setup().trajectories.fallback,
       {"fault", "bound alone", "bound together", "sd, one row", "times bound",
        "sd, all rows", "times bound"},
       {},
       {"Standard deviations of the knob's deviation from healthy; linear "
        "plant, known commands, sensor noise of the setup, start at rest."}};
-  const std::vector<std::string> names = FaultNames(setup, plant);
+  const std::vector<std::string> names = FaultNames(machine);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);
     table.rows.push_back({names[i], bound.alone[at], bound.together[at], one[at],

@@ -78,14 +78,14 @@ int MostSignificant(const DiagnosisResult& result,
   return named;
 }
 
-std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
+std::vector<Sample> RunCases(const Machine& machine,
                              const std::vector<Case>& cases,
                              const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(setup);
-  const DiagnosisDesign design = LinearDetector(setup, plant).design;
+  const Excitation motion = DefaultMotion(machine.setup());
+  const DiagnosisDesign design = LinearDetector(machine).design;
   std::vector<std::string> channels = design.outputs;
   channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
-  const auto& kinds = setup.Study("table4_from").values;
+  const auto& kinds = machine.setup().Study("table4_from").values;
 
   std::vector<Sample> samples(cases.size());
   ParallelFor(
@@ -93,8 +93,7 @@ std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
       [&](int i) {
         const Case& drawn = cases[static_cast<std::size_t>(i)];
         const Record record =
-            SimulateLinear(setup, plant, motion,
-                           WithFaults(setup, plant, drawn.faults,
+            RunLinear(motion, WithFaults(machine, drawn.faults,
                                       options.seed + static_cast<std::uint64_t>(i)));
         DiagnosisMonitor monitor(design, record.samples());
         Run(monitor, design, record);
@@ -142,13 +141,13 @@ std::vector<Cell> Row(const std::string& method, const Confusion& detection,
 
 }  // namespace
 
-std::vector<StudyTable> ClassificationStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> ClassificationStudy(const Machine& machine,
                                             const StudyOptions& options) {
-  const std::vector<Case> cases = DrawCases(setup, options.runs, options.seed);
-  const std::vector<Sample> samples = RunCases(setup, plant, cases, options);
+  const std::vector<Case> cases = DrawCases(machine.setup(), options.runs, options.seed);
+  const std::vector<Sample> samples = RunCases(machine, cases, options);
   // Pairs of a healthy and a faulty run go to training and test in turn, a round of all
   // faults at a time.
-  const std::size_t round = 2 * setup.Study("table4_from").values.size();
+  const std::size_t round = 2 * machine.setup().Study("table4_from").values.size();
   const auto in_training = [&](std::size_t i) { return (i / round) % 2 == 0; };
   const auto in_test = [&](std::size_t i) { return !in_training(i); };
   const auto faulty = [&](std::size_t i) { return cases[i].label != kHealthy; };
@@ -187,10 +186,10 @@ std::vector<StudyTable> ClassificationStudy(const Setup& setup, const mjModel& p
           CountConfusion(faulty_test_labels, isolator.PredictRows(faulty_test))));
 
   StudyTable ranges{"Ranges of the faults", {"fault", "from", "to"}, {}, {}};
-  const auto& from = setup.Study("table4_from").values;
+  const auto& from = machine.setup().Study("table4_from").values;
   for (std::size_t i = 0; i < from.size(); ++i) {
     ranges.rows.push_back(
-        {from[i].first, from[i].second, setup.Study("table4_to").values[i].second});
+        {from[i].first, from[i].second, machine.setup().Study("table4_to").values[i].second});
   }
   return {table, ranges};
 }

@@ -14,7 +14,7 @@ namespace mjdiag {
 /// faulty ones. The residual-based method detects by thresholds and spectrum and names
 /// the fault whose estimate is most significant; it is trained on nothing but healthy
 /// runs.
-std::vector<StudyTable> ClassificationStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> ClassificationStudy(const Machine& machine,
                                             const StudyOptions& options);
 
 }  // namespace mjdiag

@@ -53,28 +53,28 @@ struct LinearRow {
 
 }  // namespace
 
-std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
                                              const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(setup);
-  const Detector detector = LinearDetector(setup, plant);
+  const Excitation motion = DefaultMotion(machine.setup());
+  const Detector detector = LinearDetector(machine);
 
   const auto look = [&](const std::string& fault, double deviation,
                         std::uint64_t seed) {
-    const double healthy = HealthyValue(setup, fault);
+    const double healthy = HealthyValue(machine.setup(), fault);
     const std::vector<SizedFault> faults{{fault, healthy + deviation}};
     const Record record =
-        SimulateLinear(setup, plant, motion, WithFaults(setup, plant, faults, seed));
+        RunLinear(motion, WithFaults(machine, faults, seed));
     return Look(detector, record, fault);
   };
 
-  const auto& largest = setup.Study("largest").values;
-  const FaultSizes& published = setup.Study("table2");
+  const auto& largest = machine.setup().Study("largest").values;
+  const FaultSizes& published = machine.setup().Study("table2");
   std::vector<LinearRow> rows(largest.size());
   ParallelFor(
       static_cast<int>(largest.size()),
       [&](int i) {
         const auto& [fault, value] = largest[static_cast<std::size_t>(i)];
-        const double healthy = HealthyValue(setup, fault);
+        const double healthy = HealthyValue(machine.setup(), fault);
         LinearRow& row = rows[static_cast<std::size_t>(i)];
         if (const auto size = PublishedSize(published, fault)) {
           row.published = look(fault, *size - healthy, options.seed);
@@ -93,7 +93,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& 
       },
       Stage(options, 0.0, 0.5));
 
-  const InformationBound bound = FaultBound(setup, plant, motion);
+  const InformationBound bound = FaultBound(machine, motion);
   StudyTable table{
       "Smallest detectable faults, linear plant",
       {"fault", "published", "seen at that size", "at time [s]", "smallest by residual",
@@ -102,7 +102,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& 
       {}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::string& fault = largest[i].first;
-    const double healthy = HealthyValue(setup, fault);
+    const double healthy = HealthyValue(machine.setup(), fault);
     const auto size = PublishedSize(published, fault);
     const LinearRow& row = rows[i];
     const bool any = row.published.residual || row.published.spectrum;
@@ -113,7 +113,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& 
          DeviationCell(row.by_estimate),
          healthy == 0.0 ? SizeCell(row.by_spectrum, 0.0) : Cell("-"),
          Cell(bound.together[static_cast<Eigen::Index>(
-             BoundIndex(setup, plant, fault))])});
+             BoundIndex(machine, fault))])});
   }
   table.notes = {
       "The faults are there from the start: the time is the delay of detection, most "
@@ -125,9 +125,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& 
   ParallelFor(
       options.runs,
       [&](int i) {
-        const Record record = SimulateLinear(
-            setup, plant, motion,
-            WithFaults(setup, plant, {},
+        const Record record = RunLinear(motion, WithFaults(machine, {},
                        options.seed + 10000 + static_cast<std::uint64_t>(i)));
         DiagnosisMonitor monitor(detector.design, record.samples());
         Run(monitor, detector.design, record);
@@ -157,30 +155,29 @@ std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& 
   return {table, alarms};
 }
 
-std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
-                                                const mjModel& plant,
+std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(setup);
+  const Excitation motion = DefaultMotion(machine.setup());
   NominalRuns nominal;
   nominal.runs = 8;
   const auto finish = [&](DiagnosisDesign design) {
     Detector detector{std::move(design), {}};
     NominalRuns runs = nominal;
     if (baseline) {
-      detector.baseline = ResidualBaseline(detector.design, setup, plant, motion, runs);
+      detector.baseline = ResidualBaseline(detector.design, machine, motion, runs);
       runs.seed += static_cast<std::uint64_t>(runs.runs);
-      detector.design.limits = CalibrateLimits(detector.design, setup, plant, motion,
+      detector.design.limits = CalibrateLimits(detector.design, machine, motion,
                                                detector.baseline, runs);
     } else {
-      detector.design.limits = CalibrateLimits(detector.design, setup, plant, runs);
+      detector.design.limits = CalibrateLimits(detector.design, machine, runs);
     }
     return detector;
   };
-  const Detector common = finish(DesignFilters(setup, plant));
+  const Detector common = finish(DesignFilters(machine));
 
-  const auto& largest = setup.Study("largest").values;
-  const FaultSizes& published = setup.Study(study);
+  const auto& largest = machine.setup().Study("largest").values;
+  const FaultSizes& published = machine.setup().Study(study);
   StudyTable table{
       baseline ? "Smallest detectable faults, nonlinear plant, baseline "
                  "subtracted"
@@ -197,19 +194,16 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
   std::vector<Record> healthy_runs(kHealthyRuns);
   ParallelFor(kHealthyRuns, [&](int i) {
     healthy_runs[static_cast<std::size_t>(i)] =
-        Simulate(setup, plant, motion,
-                 WithFaults(setup, plant, {},
+        RunNonlinear(motion, WithFaults(machine, {},
                             options.seed + 20000 + static_cast<std::uint64_t>(i)));
   });
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const auto& [fault, value] = largest[i];
-    const double healthy = HealthyValue(setup, fault);
+    const double healthy = HealthyValue(machine.setup(), fault);
     const Detector robust =
-        finish(DesignRobustFilters(setup, plant, fault, motion, baseline));
+        finish(DesignRobustFilters(machine, fault, motion, baseline));
     const auto record_at = [&, &name = fault](double deviation) {
-      return Simulate(
-          setup, plant, motion,
-          WithFaults(setup, plant, {{name, healthy + deviation}}, options.seed));
+      return RunNonlinear(motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
     };
     // Three ways to see it; an estimate may come from either row.
     enum Way { kResidual, kRobust, kEstimate, kWays };

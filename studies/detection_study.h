@@ -11,15 +11,14 @@ namespace mjdiag {
 /// and when; the smallest size that does, by bisection; the smallest that the estimate
 /// and the spectrum see; and the information bound. Beside it the false alarms in
 /// `options.runs` healthy runs. Both seeds and noise differ from those of the design.
-std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
                                              const StudyOptions& options);
 
 /// Table 3 (`study` "table3", thresholds from nominal runs of the nonlinear plant) or
 /// Table 5 ("table5", with the baseline of the same motion subtracted): every fault at
 /// the published size and the smallest size seen, by the row for all faults, by the row
 /// made robust for that fault, and by the estimate with its limits from nominal runs.
-std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
-                                                const mjModel& plant,
+std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options);
 

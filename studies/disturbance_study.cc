@@ -43,10 +43,10 @@ int Found(const std::vector<DiagnosisResult>& results, double frequency, double 
 
 }  // namespace
 
-std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
                                          const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(setup);
-  const DiagnosisDesign design = LinearDetector(setup, plant).design;
+  const Excitation motion = DefaultMotion(machine.setup());
+  const DiagnosisDesign design = LinearDetector(machine).design;
   const double cell = design.limits.disturbance.nominal.resolution();
 
   StudyTable table{"Disturbances and noise, " + std::to_string(options.runs) +
@@ -56,15 +56,16 @@ std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plan
                    {},
                    {"A tone counts as found within one cell of the spectrum, " +
                     Cell(cell).text + " Hz."}};
-  for (const Scenario& scenario : Scenarios(setup)) {
+  for (const Scenario& scenario : Scenarios(machine.setup())) {
     std::vector<DiagnosisResult> results(static_cast<std::size_t>(options.runs));
     ParallelFor(
         options.runs,
         [&](int i) {
-          RunOptions run = WithFaults(setup, plant, scenario.faults,
-                                      options.seed + static_cast<std::uint64_t>(i));
-          run.noise_scale = scenario.noise;
-          const Record record = SimulateLinear(setup, plant, motion, run);
+          FaultyMachine run =
+              WithFaults(machine, scenario.faults,
+                         options.seed + static_cast<std::uint64_t>(i));
+          run.options.noise_scale = scenario.noise;
+          const Record record = RunLinear(motion, run);
           DiagnosisMonitor monitor(design, record.samples());
           Run(monitor, design, record);
           results[static_cast<std::size_t>(i)] = Conclude(design, monitor);
@@ -96,8 +97,8 @@ std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plan
       const double truth =
           scenario.faults.empty() ? 0.0 : scenario.faults.front().value;
       for (const FaultVerdict& fault : result.faults) {
-        if (setup.disturbances.empty() ||
-            fault.name != setup.disturbances.front().name) {
+        if (machine.setup().disturbances.empty() ||
+            fault.name != machine.setup().disturbances.front().name) {
           continue;
         }
         mean += fault.value / runs;

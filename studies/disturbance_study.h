@@ -10,7 +10,7 @@ namespace mjdiag {
 /// its magnitude, healthy runs, and tenfold sensor noise; tones found with their
 /// frequencies, the magnitude estimated, and whether noise was called raised, each over
 /// `options.runs` runs.
-std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
                                          const StudyOptions& options);
 
 }  // namespace mjdiag

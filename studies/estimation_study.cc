@@ -28,14 +28,14 @@ VectorXd Truth(const Setup& setup, const DiagnosisDesign& design,
   return truth;
 }
 
-StudyTable Repeat(const Setup& setup, const mjModel& plant,
+StudyTable Repeat(const Machine& machine,
                   const DiagnosisDesign& design, const FaultSizes& sizes,
                   const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(setup);
-  const ModelAt model_at = FaultModels(plant, setup);
-  const VectorXd magnitudes = Magnitudes(plant, setup);
+  const Excitation motion = DefaultMotion(machine.setup());
+  const ModelAt model_at = FaultModels(machine);
+  const VectorXd magnitudes = Magnitudes(machine);
   const SynthesisOptions synthesis =
-      SynthesisOf(setup, model_at(VectorXd::Ones(magnitudes.size())));
+      SynthesisOf(machine.setup(), model_at(VectorXd::Ones(magnitudes.size())));
   std::vector<SizedFault> faults;
   for (const auto& [name, value] : sizes.values) faults.push_back({name, value});
 
@@ -44,16 +44,15 @@ StudyTable Repeat(const Setup& setup, const mjModel& plant,
       options.runs,
       [&](int i) {
         const Record record =
-            SimulateLinear(setup, plant, motion,
-                           WithFaults(setup, plant, faults,
+            RunLinear(motion, WithFaults(machine, faults,
                                       options.seed + static_cast<std::uint64_t>(i)));
         estimates[static_cast<std::size_t>(i)] =
             RefineEstimate(design, synthesis, model_at, magnitudes, record).estimate;
       },
       options.progress);
 
-  const VectorXd truth = Truth(setup, design, sizes);
-  const InformationBound bound = FaultBound(setup, plant, motion);
+  const VectorXd truth = Truth(machine.setup(), design, sizes);
+  const InformationBound bound = FaultBound(machine, motion);
   const auto band = BinomialBand(options.runs, 0.95, 0.99);
   StudyTable table{
       "All at once: [studies." + sizes.name + "], " + std::to_string(options.runs) +
@@ -94,12 +93,12 @@ StudyTable Repeat(const Setup& setup, const mjModel& plant,
 
 }  // namespace
 
-std::vector<StudyTable> EstimationStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> EstimationStudy(const Machine& machine,
                                         const StudyOptions& options) {
-  const DiagnosisDesign design = DesignFilters(setup, plant);
+  const DiagnosisDesign design = DesignFilters(machine);
   std::vector<StudyTable> tables;
   for (const char* name : {"estimation_large", "estimation_small"}) {
-    tables.push_back(Repeat(setup, plant, design, setup.Study(name), options));
+    tables.push_back(Repeat(machine, design, machine.setup().Study(name), options));
   }
   return tables;
 }

@@ -13,7 +13,7 @@ namespace mjdiag {
 /// claimed and found, how often the 95 % interval held the truth with the binomial 99 %
 /// band of that count, and the multiple of the information bound. Every knob and
 /// disturbance is estimated, refined where it lies (RefineEstimate).
-std::vector<StudyTable> EstimationStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> EstimationStudy(const Machine& machine,
                                         const StudyOptions& options);
 
 }  // namespace mjdiag

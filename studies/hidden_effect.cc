@@ -171,15 +171,15 @@ Sized DrawShape(const std::string& type, const Scales& k, Random& r) {
 }
 
 Excitation NominalMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
 }
 
 /// A trajectory that the record does not have: the shortest of all axes at once.
 const Trajectory& UnseenTrajectory(const Setup& setup) {
-  const Trajectory* best = &setup.trajectories.front();
+  const Trajectory* best = &setup.trajectories.all.front();
   std::size_t most = 0;
-  for (const Trajectory& trajectory : setup.trajectories) {
-    if (trajectory.name == setup.default_trajectory) continue;
+  for (const Trajectory& trajectory : setup.trajectories.all) {
+    if (trajectory.name == setup.trajectories.fallback) continue;
     if (trajectory.moves.front().by.size() <= most) continue;
     most = trajectory.moves.front().by.size();
     best = &trajectory;
@@ -187,33 +187,31 @@ const Trajectory& UnseenTrajectory(const Setup& setup) {
   return *best;
 }
 
-RunOptions WithCauses(const std::vector<Cause>& causes, std::uint64_t seed,
-                      double noise) {
-  const Changes changes = ChangesOf(causes);
+/// A run with those causes in the machine.
+Record RunWithCauses(const Machine& machine, const std::vector<Cause>& causes,
+                     const Excitation& motion, std::uint64_t seed, double noise) {
   RunOptions options;
-  options.faults = changes.faults;
-  options.effects = changes.effects;
   options.seed = seed;
   options.noise_scale = noise;
-  return options;
+  return Simulate(machine.With(ChangesOf(causes)), motion, options);
 }
 
 /// The nominal motion posed with the noise of that seed.
-DiscoveryProblem PoseNominal(const Setup& setup, const mjModel& plant,
+DiscoveryProblem PoseNominal(const Machine& machine,
                              std::uint64_t seed) {
   RunOptions noisy;
   noisy.seed = seed;
-  return PoseProblem(setup, plant, Simulate(setup, plant, NominalMotion(setup), noisy),
+  return PoseProblem(machine, Simulate(machine, NominalMotion(machine.setup()), noisy),
                      1.0, 0.0);
 }
 
 /// What a cause adds without noise: the scaled innovations of the nominal plant on a
 /// clean run.
 VectorXd CleanResidual(const DiscoveryProblem& problem, const Cause& cause) {
-  const Setup& setup = *problem.setup;
+  const Setup& setup = problem.machine.setup();
   DiscoveryProblem clean = problem;
-  clean.run = ToMeasuredRun(setup, Simulate(setup, *problem.plant, NominalMotion(setup),
-                                            WithCauses({cause}, 1, 0.0)));
+  clean.run = ToMeasuredRun(setup, RunWithCauses(problem.machine, {cause},
+                                                 NominalMotion(setup), 1, 0.0));
   return clean.Residual({});
 }
 
@@ -233,64 +231,65 @@ double LeastOwnShare(const Eigen::MatrixXd& columns) {
 
 Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate,
                      const Record& nominal) {
-  const mjModel& plant = *problem.plant;
+  const mjModel& plant = problem.machine.plant();
   const auto joint = static_cast<int>(candidate.joint);
   const int id = plant.dof_jntid[joint];
   const std::string name =
-      "joint." + problem.model.coordinates[static_cast<std::size_t>(joint)];
+      "joint." + problem.machine.linear().coordinates[static_cast<std::size_t>(joint)];
   const VectorXd& q = nominal.At(name).samples;
   const double tick = nominal.sample_time();
   Scales scales;
   scales.stroke = q.maxCoeff() - q.minCoeff();
   scales.speed =
       (q.tail(q.size() - 1) - q.head(q.size() - 1)).cwiseAbs().maxCoeff() / tick;
-  const std::vector<Index> driven = DrivenJoints(problem.model);
+  const std::vector<Index> driven = DrivenJoints(problem.machine.linear());
   std::size_t motor = 0;
   for (std::size_t u = 0; u < driven.size(); ++u) {
     if (driven[u] == candidate.joint) motor = u;
   }
   scales.force =
-      nominal.At(problem.setup->actuators[motor].channel).samples.cwiseAbs().maxCoeff();
+      nominal.At(problem.machine.setup().channels.actuators[motor].channel).samples.cwiseAbs().maxCoeff();
   scales.stiffness = plant.jnt_stiffness[id];
   const int address = plant.jnt_qposadr[id];
   scales.strain = (q.array() - plant.qpos_spring[address]).abs().maxCoeff();
   scales.damping = plant.dof_damping[joint];
-  scales.mass = problem.model.M(joint, joint);
+  scales.mass = problem.machine.linear().M(joint, joint);
   scales.duration = nominal.duration();
   return scales;
 }
 
 }  // namespace
 
-HiddenCase MakeCase(const Setup& setup, const mjModel& plant,
-                    const std::vector<Cause>& truth, std::uint64_t seed) {
+HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
+                    std::uint64_t seed) {
   HiddenCase hidden;
   hidden.truth = truth;
   hidden.record =
-      Simulate(setup, plant, NominalMotion(setup), WithCauses(truth, seed, 1.0));
-  const Excitation other = FollowTrajectory(setup, UnseenTrajectory(setup));
-  hidden.unseen = Simulate(setup, plant, other, WithCauses(truth, seed + 1, 1.0));
-  hidden.unseen_clean = Simulate(setup, plant, other, WithCauses(truth, seed, 0.0));
+      RunWithCauses(machine, truth, NominalMotion(machine.setup()), seed, 1.0);
+  const Excitation other =
+      FollowTrajectory(machine.setup(), UnseenTrajectory(machine.setup()));
+  hidden.unseen = RunWithCauses(machine, truth, other, seed + 1, 1.0);
+  hidden.unseen_clean = RunWithCauses(machine, truth, other, seed, 0.0);
   return hidden;
 }
 
-Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& type,
+Cause DrawEffect(const Machine& machine, const std::string& type,
                  const HiddenSize& size, std::uint64_t seed) {
   Random random(seed);
   RunOptions quiet;
   quiet.noise_scale = 0.0;
   quiet.log_joints = true;
-  const Excitation motion = NominalMotion(setup);
-  const Record nominal = Simulate(setup, plant, motion, quiet);
-  const DiscoveryProblem problem = PoseNominal(setup, plant, seed);
+  const Excitation motion = NominalMotion(machine.setup());
+  const Record nominal = Simulate(machine, motion, quiet);
+  const DiscoveryProblem problem = PoseNominal(machine, seed);
 
   if (type == "encoder_noise") {
-    const SensorSetup& sensor = setup.sensors[random.Index(setup.sensors.size())];
+    const SensorSetup& sensor = machine.channels().sensors[random.Index(machine.channels().sensors.size())];
     return {{type, sensor.element, {{"sd", sensor.noise_sd * random.Log(0.5, 10.0)}}},
             false};
   }
   std::vector<Candidate> sites;
-  for (const Candidate& candidate : AllSites(setup, plant, problem.model)) {
+  for (const Candidate& candidate : AllSites(machine)) {
     const bool fits =
         type == "fault" ? candidate.cause.fault : candidate.cause.spec.effect == type;
     if (fits) sites.push_back(candidate);
@@ -329,7 +328,7 @@ Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& ty
   return at(scale);
 }
 
-std::vector<Cause> DrawEffects(const Setup& setup, const mjModel& plant,
+std::vector<Cause> DrawEffects(const Machine& machine,
                                const std::vector<std::string>& types,
                                const HiddenSize& size, std::uint64_t seed) {
   constexpr std::uint64_t kDraws = 50;
@@ -337,10 +336,10 @@ std::vector<Cause> DrawEffects(const Setup& setup, const mjModel& plant,
     std::vector<Cause> causes;
     for (std::size_t i = 0; i < types.size(); ++i) {
       causes.push_back(
-          DrawEffect(setup, plant, types[i], size, 1000 * seed + 10 * draw + i));
+          DrawEffect(machine, types[i], size, 1000 * seed + 10 * draw + i));
     }
     if (causes.size() < 2) return causes;
-    const DiscoveryProblem problem = PoseNominal(setup, plant, seed);
+    const DiscoveryProblem problem = PoseNominal(machine, seed);
     Eigen::MatrixXd columns(problem.run.outputs.size(), 0);
     for (const Cause& cause : causes) {
       if (cause.spec.effect == "encoder_noise") continue;  // like nothing else

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -31,19 +31,19 @@ struct HiddenSize {
 };
 
 /// A case with these causes; `seed` draws the noise.
-HiddenCase MakeCase(const Setup& setup, const mjModel& plant,
+HiddenCase MakeCase(const Machine& machine,
                     const std::vector<Cause>& truth, std::uint64_t seed);
 
 /// One effect of that type (a name of the catalogue, or "fault" for a knob) at a random
 /// site, with random shape and a size drawn from `size`. The same seed, the same
 /// effect.
-Cause DrawEffect(const Setup& setup, const mjModel& plant, const std::string& type,
+Cause DrawEffect(const Machine& machine, const std::string& type,
                  const HiddenSize& size, std::uint64_t seed);
 
 /// Several effects at once, each drawn as above, and drawn again until each adds at
 /// least `size.least` that no amplitudes of the others explain: two that cancel, or are
 /// each other's image on this motion, are one.
-std::vector<Cause> DrawEffects(const Setup& setup, const mjModel& plant,
+std::vector<Cause> DrawEffects(const Machine& machine,
                                const std::vector<std::string>& types,
                                const HiddenSize& size, std::uint64_t seed);
 

@@ -74,21 +74,19 @@ void CountParameters(const mjModel& plant, const FoundCause& found, const Cause&
   }
 }
 
-double UnseenRatio(const Setup& setup, const mjModel& plant, const HiddenCase& hidden,
+double UnseenRatio(const Machine& machine, const HiddenCase& hidden,
                    const Discovery& answer) {
   const Changes changes = ChangesOf(answer);
   RunOptions options;
-  options.faults = changes.faults;
-  options.effects = changes.effects;
   options.noise_scale = 0.0;
   Record simulated;
   try {
-    simulated = Simulate(setup, plant, Replay(setup, hidden.unseen), options);
+    simulated = Simulate(machine.With(changes), Replay(machine.setup(), hidden.unseen), options);
   } catch (const NumericalError&) {
     return std::numeric_limits<double>::infinity();
   }
   double worst = 0.0;
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : machine.channels().sensors) {
     const Eigen::VectorXd& measured = hidden.unseen.At(sensor.channel).samples;
     const double floor = Rms(measured - hidden.unseen_clean.At(sensor.channel).samples);
     worst =
@@ -125,25 +123,25 @@ bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& t
   });
 }
 
-HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
+HiddenOutcome RunHidden(const Machine& machine,
                         const std::vector<std::string>& types, std::uint64_t seed) {
   HiddenOutcome outcome;
-  const std::vector<Cause> truth = DrawEffects(setup, plant, types, {}, seed);
-  outcome.hidden = MakeCase(setup, plant, truth, seed);
+  const std::vector<Cause> truth = DrawEffects(machine, types, {}, seed);
+  outcome.hidden = MakeCase(machine, truth, seed);
   DiscoverOptions options;
   options.figures = false;
-  outcome.answer = Discover(setup, plant, outcome.hidden.record, nullptr, options);
+  outcome.answer = Discover(machine, outcome.hidden.record, nullptr, options);
   for (const Cause& cause : truth) {
     outcome.considered +=
         std::ranges::any_of(outcome.answer.causes, [&](const FoundCause& f) {
-          return Names(plant, f, cause) || IsAlternative(plant, f, cause);
+          return Names(machine.plant(), f, cause) || IsAlternative(machine.plant(), f, cause);
         });
     const auto found = std::ranges::find_if(
         outcome.answer.causes,
-        [&](const FoundCause& f) { return Names(plant, f, cause); });
+        [&](const FoundCause& f) { return Names(machine.plant(), f, cause); });
     if (found == outcome.answer.causes.end()) continue;
     ++outcome.named;
-    CountParameters(plant, *found, cause, outcome);
+    CountParameters(machine.plant(), *found, cause, outcome);
   }
   outcome.claim = outcome.answer.verdict != DiscoveryVerdict::kNoDiscrepancy;
   outcome.right = outcome.named == static_cast<int>(truth.size()) &&
@@ -152,7 +150,7 @@ HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
   outcome.undecided = !outcome.right &&
                       outcome.considered == static_cast<int>(truth.size()) &&
                       outcome.answer.causes.size() == truth.size();
-  outcome.unseen_ratio = UnseenRatio(setup, plant, outcome.hidden, outcome.answer);
+  outcome.unseen_ratio = UnseenRatio(machine, outcome.hidden, outcome.answer);
   outcome.hidden.record = {};
   outcome.hidden.unseen = {};
   outcome.hidden.unseen_clean = {};

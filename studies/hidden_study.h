@@ -12,7 +12,7 @@
 
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/studies/hidden_effect.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
 
@@ -36,7 +36,7 @@ struct HiddenOutcome {
 
 /// @param causes  how many effects are hidden: 0, 1 or 2
 /// @param types   of the effects, as many as causes (see DrawEffect)
-HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
+HiddenOutcome RunHidden(const Machine& machine,
                         const std::vector<std::string>& types, std::uint64_t seed);
 
 /// The types of run number `run`: one after the other of the catalogue.

@@ -74,11 +74,11 @@ StudyTable Summary(const Count& count, int causes) {
 
 }  // namespace
 
-std::vector<StudyTable> HiddenStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> HiddenStudy(const Machine& machine,
                                     int causes, const StudyOptions& options) {
   using Clock = std::chrono::steady_clock;
   StudyTable runs;
-  runs.title = "Effects hidden in simulated measurements of " + setup.name;
+  runs.title = "Effects hidden in simulated measurements of " + machine.setup().name;
   runs.columns = {"seed",
                   "hidden",
                   "found",
@@ -96,7 +96,7 @@ std::vector<StudyTable> HiddenStudy(const Setup& setup, const mjModel& plant,
         const auto i = static_cast<std::size_t>(run);
         const std::uint64_t seed = options.seed + i;
         const auto start = Clock::now();
-        outcomes[i] = RunHidden(setup, plant,
+        outcomes[i] = RunHidden(machine,
                                 TypesOfRun(static_cast<int>(seed - 1), causes), seed);
         seconds[i] = std::chrono::duration<double>(Clock::now() - start).count();
       },

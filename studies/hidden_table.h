@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/study_table.h"
 
@@ -13,7 +13,7 @@ namespace mjdiag {
 
 /// options.runs runs with `causes` hidden effects each (0, 1 or 2), seeds from
 /// options.seed on: one row a run, and how many were right.
-std::vector<StudyTable> HiddenStudy(const Setup& setup, const mjModel& plant,
+std::vector<StudyTable> HiddenStudy(const Machine& machine,
                                     int causes, const StudyOptions& options);
 
 }  // namespace mjdiag

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {
@@ -16,20 +15,27 @@ bool IsDisturbance(const Setup& setup, const std::string& name) {
 
 }  // namespace
 
-RunOptions WithFaults(const Setup& setup, const mjModel& plant,
-                      const std::vector<SizedFault>& faults, std::uint64_t seed) {
+FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
+                         std::uint64_t seed) {
   RunOptions options;
   options.seed = seed;
-  const ModelPtr trial = CopyModel(plant);
+  Changes changes;
   for (const SizedFault& fault : faults) {
-    if (IsDisturbance(setup, fault.name)) {
+    if (IsDisturbance(machine.setup(), fault.name)) {
       options.disturbances[fault.name] = fault.value;
     } else {
-      ApplyFault(*trial, {fault.name, fault.value});
-      options.faults.push_back({fault.name, fault.value});
+      changes.faults.push_back({fault.name, fault.value});
     }
   }
-  return options;
+  return {machine.With(changes), options};
+}
+
+Record RunLinear(const Excitation& motion, const FaultyMachine& faulty) {
+  return SimulateLinear(faulty.machine, motion, faulty.options);
+}
+
+Record RunNonlinear(const Excitation& motion, const FaultyMachine& faulty) {
+  return Simulate(faulty.machine, motion, faulty.options);
 }
 
 double HealthyValue(const Setup& setup, const std::string& fault) {
@@ -37,14 +43,14 @@ double HealthyValue(const Setup& setup, const std::string& fault) {
 }
 
 Excitation DefaultMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
 }
 
-Detector LinearDetector(const Setup& setup, const mjModel& plant) {
-  Detector detector{DesignFilters(setup, plant), {}};
+Detector LinearDetector(const Machine& machine) {
+  Detector detector{DesignFilters(machine), {}};
   NominalRuns nominal;
   nominal.linear = true;
-  detector.design.limits = CalibrateLimits(detector.design, setup, plant, nominal);
+  detector.design.limits = CalibrateLimits(detector.design, machine, nominal);
   return detector;
 }
 

@@ -24,10 +24,18 @@ struct SizedFault {
   double value = 1.0;
 };
 
-/// Run options with these faults on; disturbances of the setup go where they belong.
-/// InputError on a name that neither the plant nor the setup has.
-RunOptions WithFaults(const Setup& setup, const mjModel& plant,
-                      const std::vector<SizedFault>& faults, std::uint64_t seed);
+/// A machine with faults of its plant, and how it is run with those of the outside.
+struct FaultyMachine {
+  Machine machine;
+  RunOptions options;
+};
+
+/// Disturbances of the setup go where they belong. InputError on a name that neither
+/// the plant nor the setup has.
+FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
+                         std::uint64_t seed);
+Record RunLinear(const Excitation& motion, const FaultyMachine& faulty);
+Record RunNonlinear(const Excitation& motion, const FaultyMachine& faulty);
 
 /// 0 for a disturbance of the setup, else 1.
 double HealthyValue(const Setup& setup, const std::string& fault);
@@ -42,7 +50,7 @@ struct Detector {
 Excitation DefaultMotion(const Setup& setup);
 
 /// The setup's filters with limits from nominal runs of the linear plant.
-Detector LinearDetector(const Setup& setup, const mjModel& plant);
+Detector LinearDetector(const Machine& machine);
 
 /// What it sees.
 struct Detection {

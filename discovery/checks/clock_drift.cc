@@ -174,18 +174,18 @@ void CheckClocks(const Setup& setup, const Record& measured, const Record& simul
                         simulated.At(channel).samples.tail(counted));
   };
   const auto quoted = [](const std::string& name) { return "'" + name + "'"; };
-  if (setup.axes.empty()) {
-    const std::string inputs = setup.actuators.size() == 1
-                                   ? quoted(setup.actuators.front().channel)
+  if (setup.control.axes.empty()) {
+    const std::string inputs = setup.channels.actuators.size() == 1
+                                   ? quoted(setup.channels.actuators.front().channel)
                                    : "the inputs";
-    for (const SensorSetup& sensor : setup.sensors) {
+    for (const SensorSetup& sensor : setup.channels.sensors) {
       const std::optional<LagTrend> reading = trend(sensor.channel);
       if (!reading) continue;
       RefuseDrift(quoted(sensor.channel), inputs, ClockDrift(*reading, LagTrend{}));
     }
     return;
   }
-  for (const AxisSetup& axis : setup.axes) {
+  for (const AxisSetup& axis : setup.control.axes) {
     const std::optional<LagTrend> reading = trend(axis.sensor);
     if (!reading) continue;
     if (const std::optional<LagTrend> input = trend(axis.actuator)) {

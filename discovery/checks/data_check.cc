@@ -59,23 +59,22 @@ double SmallestStep(const VectorXd& x) {
 
 class RecordCheck {
  public:
-  RecordCheck(const Setup& setup, const mjModel& plant, const Record& measured)
-      : setup_(setup),
-        plant_(plant),
+  RecordCheck(const Machine& machine, const Record& measured)
+      : machine_(machine),
         measured_(measured),
-        skip_(setup.compare.skip_samples) {}
+        skip_(machine.setup().compare.skip_samples) {}
 
   std::vector<std::string> Check() {
     CheckLength();
     CheckFinite();
-    ToMeasuredRun(setup_, measured_);  // names what the replay lacks
-    for (const SensorSetup& sensor : setup_.sensors) CheckHeld(sensor);
+    ToMeasuredRun(setup(), measured_);  // names what the replay lacks
+    for (const SensorSetup& sensor : setup().channels.sensors) CheckHeld(sensor);
     CheckReadingUnits();
     SimulateNominal(closed_loop());
     if (simulated_) CheckUnits();
     if (simulated_ && !closed_loop()) SimulateNominal(true);
-    for (const SensorSetup& sensor : setup_.sensors) CheckSaturation(sensor);
-    if (simulated_) CheckClocks(setup_, measured_, *simulated_);
+    for (const SensorSetup& sensor : setup().channels.sensors) CheckSaturation(sensor);
+    if (simulated_) CheckClocks(setup(), measured_, *simulated_);
     return notes_;
   }
 
@@ -92,7 +91,8 @@ class RecordCheck {
                         static_cast<double>(counted + skip_) * measured_.sample_time();
     return "sample " + std::to_string(counted + skip_) + " (" + Digits(time) + " s)";
   }
-  bool closed_loop() const { return !setup_.axes.empty(); }
+  const Setup& setup() const { return machine_.setup(); }
+  bool closed_loop() const { return !setup().control.axes.empty(); }
 
   void CheckLength() const;
   void CheckFinite() const;
@@ -105,8 +105,7 @@ class RecordCheck {
   void SimulateNominal(bool start);
   const VectorXd* Expected(const SensorSetup& sensor) const;
 
-  const Setup& setup_;
-  const mjModel& plant_;
+  const Machine& machine_;
   const Record& measured_;
   Index skip_;
   std::optional<Record> simulated_;  ///< of the nominal plant, without noise
@@ -125,11 +124,11 @@ void RecordCheck::CheckLength() const {
 
 void RecordCheck::CheckFinite() const {
   std::set<std::string> needed;
-  for (const SensorSetup& sensor : setup_.sensors) needed.insert(sensor.channel);
-  for (const ActuatorSetup& actuator : setup_.actuators) {
+  for (const SensorSetup& sensor : setup().channels.sensors) needed.insert(sensor.channel);
+  for (const ActuatorSetup& actuator : setup().channels.actuators) {
     needed.insert(actuator.channel);
   }
-  for (const AxisSetup& axis : setup_.axes) {
+  for (const AxisSetup& axis : setup().control.axes) {
     for (const char* suffix : {"_ref", "_ref_velocity", "_ref_acceleration"}) {
       needed.insert(axis.name + suffix);
     }
@@ -187,7 +186,7 @@ void RecordCheck::CheckHeld(const SensorSetup& sensor) const {
 /// What the sensor should read as far as the record tells: its reference, or the
 /// simulated plant; null if nothing tells.
 const VectorXd* RecordCheck::Expected(const SensorSetup& sensor) const {
-  for (const AxisSetup& axis : setup_.axes) {
+  for (const AxisSetup& axis : setup().control.axes) {
     if (axis.sensor == sensor.channel) {
       return &measured_.At(axis.name + "_ref").samples;
     }
@@ -320,8 +319,8 @@ bool IsAngle(const std::string& unit) { return unit.starts_with("rad"); }
 
 void RecordCheck::CheckReadingUnits() const {
   constexpr double kLike = 0.9;
-  for (const AxisSetup& axis : setup_.axes) {
-    const SensorSetup& sensor = setup_.Sensor(axis.sensor);
+  for (const AxisSetup& axis : setup().control.axes) {
+    const SensorSetup& sensor = setup().channels.Sensor(axis.sensor);
     const std::string reference = axis.name + "_ref";
     const Likeness likeness = Liken(Reading(axis.sensor), Reading(reference));
     const auto mistake = FindMistake(likeness.factor, IsAngle(sensor.unit));
@@ -335,18 +334,18 @@ void RecordCheck::CheckReadingUnits() const {
 
 void RecordCheck::SimulateNominal(bool start) {
   // A record in wrong units asks for far too much; limits would hide by how much.
-  Setup setup = setup_;
-  for (SensorSetup& sensor : setup.sensors) sensor.resolution = 0.0;
-  for (ActuatorSetup& actuator : setup.actuators) actuator.limit = 0.0;
-  for (AxisSetup& axis : setup.axes) {
+  Setup unlimited = setup();
+  for (SensorSetup& sensor : unlimited.channels.sensors) sensor.resolution = 0.0;
+  for (ActuatorSetup& actuator : unlimited.channels.actuators) actuator.limit = 0.0;
+  for (AxisSetup& axis : unlimited.control.axes) {
     if (axis.nested) axis.nested->saturation = 0.0;
   }
   RunOptions options;
   options.noise_scale = 0.0;
   try {
-    Excitation excitation = Replay(setup, measured_);
+    Excitation excitation = Replay(unlimited, measured_);
     if (!start) excitation.start.clear();
-    simulated_ = Simulate(setup, plant_, excitation, options);
+    simulated_ = Simulate(machine_.WithSetup(unlimited), excitation, options);
   } catch (const NumericalError& error) {
     simulated_.reset();
     notes_.push_back("units and clocks of the record are not checked: the plant as " +
@@ -358,23 +357,23 @@ void RecordCheck::CheckUnits() const {
   constexpr double kInputLike = 0.5;
   constexpr double kReadingLike = 0.7;
   if (closed_loop()) {
-    for (const AxisSetup& axis : setup_.axes) {
+    for (const AxisSetup& axis : setup().control.axes) {
       const Likeness likeness =
           Liken(Reading(axis.actuator), Counted(*simulated_, axis.actuator));
       const auto mistake =
-          FindMistake(likeness.factor, IsAngle(setup_.Sensor(axis.sensor).unit));
+          FindMistake(likeness.factor, IsAngle(setup().channels.Sensor(axis.sensor).unit));
       if (!mistake || likeness.correlation < kInputLike) continue;
-      RefuseUnit(axis.actuator, setup_.Actuator(axis.actuator).unit, *mistake,
+      RefuseUnit(axis.actuator, setup().channels.Actuator(axis.actuator).unit, *mistake,
                  "what the plant needs for that motion",
                  Quoted(axis.sensor) + " and " + Quoted(axis.name + "_ref"));
     }
     return;
   }
   std::string inputs;
-  for (const ActuatorSetup& actuator : setup_.actuators) {
+  for (const ActuatorSetup& actuator : setup().channels.actuators) {
     inputs += (inputs.empty() ? "" : ", ") + Quoted(actuator.channel);
   }
-  for (const SensorSetup& sensor : setup_.sensors) {
+  for (const SensorSetup& sensor : setup().channels.sensors) {
     // Differences: offsets of force let free axes drift away.
     const VectorXd measured = Reading(sensor.channel);
     const VectorXd simulated = Counted(*simulated_, sensor.channel);
@@ -390,9 +389,9 @@ void RecordCheck::CheckUnits() const {
 
 }  // namespace
 
-std::vector<std::string> CheckRecord(const Setup& setup, const mjModel& plant,
+std::vector<std::string> CheckRecord(const Machine& machine,
                                      const Record& measured) {
-  return RecordCheck(setup, plant, measured).Check();
+  return RecordCheck(machine, measured).Check();
 }
 
 }  // namespace mjdiag

@@ -28,7 +28,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -37,7 +37,7 @@ namespace mjdiag {
 /// @return what one should know and can live with, sentences for people
 /// InputError names the channel and what is wrong with it; also if the record lacks
 /// what the replay needs (see ToMeasuredRun).
-std::vector<std::string> CheckRecord(const Setup& setup, const mjModel& plant,
+std::vector<std::string> CheckRecord(const Machine& machine,
                                      const Record& measured);
 
 }  // namespace mjdiag

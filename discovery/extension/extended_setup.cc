@@ -100,7 +100,7 @@ void WriteNoise(SetupText& text, const Setup& setup, const SensorSetup& sensor,
   if (const auto given = text.At(path + ".noise_sd")) {
     text.Replace(*given.node(), AllDigits(sd));
   } else if (const auto power = text.At(path + ".noise_power")) {
-    text.Replace(*power.node(), AllDigits(sd * sd / setup.control_rate));
+    text.Replace(*power.node(), AllDigits(sd * sd / setup.rates.control));
   } else if (const auto element = text.At(path + ".element")) {
     text.AddBeside(*text.At(path).as_table(), *element.node(), "element", "noise_sd",
                    AllDigits(sd));
@@ -137,7 +137,7 @@ std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
   if (const auto friction = text.At("physics.static_friction")) {
     text.Replace(*friction.node(), "true");
   }
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : setup.channels.sensors) {
     double sd = sensor.noise_sd;
     for (const EffectSpec& effect : effects) {
       if (effect.effect != "encoder_noise" || effect.site != sensor.element) continue;

@@ -50,7 +50,7 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, fit.causes));
   std::vector<FittedCause> others;
   for (Start& start : BetterWaves(
-           seen, wave, present, ObserveMotion(*seen.plant, seen.run, track), dynamics,
+           seen, wave, present, ObserveMotion(seen.machine, seen.run, track), dynamics,
            left - (moved - left) / kStep, SensitivitiesWithout(fit, i), kMostPeriods)) {
     start.candidate = causes[i].candidate;
     others.push_back(FittedFrom(candidates, start));

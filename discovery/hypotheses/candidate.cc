@@ -105,24 +105,24 @@ std::vector<Index> JointSites(const mjModel& plant, const MechanicalModel& model
   return driven;
 }
 
-std::vector<Candidate> KnobCandidates(const Setup& setup, const mjModel& plant,
-                                      const MechanicalModel& model) {
+std::vector<Candidate> KnobCandidates(const Machine& machine) {
+  const MechanicalModel& model = machine.linear();
   std::vector<Candidate> candidates;
-  for (const FaultKnob& knob : FaultKnobs(plant)) {
+  for (const FaultKnob& knob : FaultKnobs(machine.plant())) {
     Candidate candidate;
-    candidate.cause = KnobCause(plant, knob);
+    candidate.cause = KnobCause(machine.plant(), knob);
     candidate.parameters = {{"value", 0.0, 100.0}};
     const int element = knob.elements.front();
     if (knob.kind == KnobKind::kGear) {
-      const std::string name = ElementName(plant, mjOBJ_ACTUATOR, element);
+      const std::string name = ElementName(machine.plant(), mjOBJ_ACTUATOR, element);
       const auto place =
-          std::ranges::find(setup.actuators, name, &ActuatorSetup::element);
-      if (place == setup.actuators.end()) continue;
-      candidate.channel = place - setup.actuators.begin();
+          std::ranges::find(machine.channels().actuators, name, &ActuatorSetup::element);
+      if (place == machine.channels().actuators.end()) continue;
+      candidate.channel = place - machine.channels().actuators.begin();
       candidate.joint =
           DrivenJoints(model)[static_cast<std::size_t>(candidate.channel)];
     } else {
-      candidate.joint = plant.jnt_dofadr[element];
+      candidate.joint = machine.plant().jnt_dofadr[element];
     }
     candidates.push_back(std::move(candidate));
   }
@@ -144,9 +144,9 @@ std::vector<Index> SeenJoints(const MechanicalModel& model) {
   return MostMoved(model, model.b);
 }
 
-std::vector<Candidate> AllSites(const Setup& setup, const mjModel& plant,
-                                const MechanicalModel& model) {
-  std::vector<Candidate> candidates = KnobCandidates(setup, plant, model);
+std::vector<Candidate> AllSites(const Machine& machine) {
+  const MechanicalModel& model = machine.linear();
+  std::vector<Candidate> candidates = KnobCandidates(machine);
   const std::vector<Index> driven = DrivenJoints(model);
   const std::vector<Index> seen = SeenJoints(model);
   const auto add = [&](Candidate candidate) {
@@ -155,18 +155,18 @@ std::vector<Candidate> AllSites(const Setup& setup, const mjModel& plant,
   for (const EffectType& type : EffectCatalogue()) {
     if (type.name == "encoder_noise") continue;
     if (type.site == EffectSite::kActuator) {
-      for (std::size_t u = 0; u < setup.actuators.size(); ++u) {
-        add(MakeCandidate(plant, type, setup.actuators[u].element, driven[u],
+      for (std::size_t u = 0; u < machine.channels().actuators.size(); ++u) {
+        add(MakeCandidate(machine.plant(), type, machine.channels().actuators[u].element, driven[u],
                           static_cast<Index>(u)));
       }
     } else if (type.site == EffectSite::kSensor) {
-      for (std::size_t y = 0; y < setup.sensors.size(); ++y) {
-        add(MakeCandidate(plant, type, setup.sensors[y].element, seen[y],
+      for (std::size_t y = 0; y < machine.channels().sensors.size(); ++y) {
+        add(MakeCandidate(machine.plant(), type, machine.channels().sensors[y].element, seen[y],
                           static_cast<Index>(y)));
       }
     } else {
-      for (const Index joint : JointSites(plant, model, type)) {
-        add(MakeCandidate(plant, type,
+      for (const Index joint : JointSites(machine.plant(), model, type)) {
+        add(MakeCandidate(machine.plant(), type,
                           model.coordinates[static_cast<std::size_t>(joint)], joint,
                           -1));
       }
@@ -175,15 +175,14 @@ std::vector<Candidate> AllSites(const Setup& setup, const mjModel& plant,
   return candidates;
 }
 
-std::vector<Candidate> ListCandidates(const Setup& setup, const mjModel& plant,
-                                      const MechanicalModel& model) {
-  std::vector<Candidate> candidates = AllSites(setup, plant, model);
+std::vector<Candidate> ListCandidates(const Machine& machine) {
+  std::vector<Candidate> candidates = AllSites(machine);
   const std::vector<Candidate> all = candidates;
   std::erase_if(candidates, [&](const Candidate& candidate) {
     return !candidate.cause.fault &&
            std::ranges::any_of(all, [&](const Candidate& knob) {
              return knob.cause.fault &&
-                    Indistinguishable(plant, knob.cause, candidate.cause);
+                    Indistinguishable(machine.plant(), knob.cause, candidate.cause);
            });
   });
   return candidates;

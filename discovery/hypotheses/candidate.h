@@ -18,7 +18,7 @@
 
 #include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
 
@@ -47,11 +47,9 @@ std::string Describe(const Candidate& candidate);
 std::vector<Eigen::Index> DrivenJoints(const MechanicalModel& model);
 std::vector<Eigen::Index> SeenJoints(const MechanicalModel& model);
 
-std::vector<Candidate> ListCandidates(const Setup& setup, const mjModel& plant,
-                                      const MechanicalModel& model);
+std::vector<Candidate> ListCandidates(const Machine& machine);
 
 /// The same with those effects that a knob stands for.
-std::vector<Candidate> AllSites(const Setup& setup, const mjModel& plant,
-                                const MechanicalModel& model);
+std::vector<Candidate> AllSites(const Machine& machine);
 
 }  // namespace mjdiag

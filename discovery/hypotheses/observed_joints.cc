@@ -13,15 +13,15 @@ constexpr double kBandwidth = 0.02;
 
 }  // namespace
 
-Record WithObservedJoints(const Setup& setup, const mjModel& plant,
+Record WithObservedJoints(const Machine& machine,
                           const Record& measured) {
   const DiscoveryProblem problem =
-      PoseProblem(setup, plant, measured, 1.0, kBandwidth * setup.control_rate);
-  const Track track = FollowRun(setup, plant, {}, problem.run, problem.observer, true);
+      PoseProblem(machine, measured, 1.0, kBandwidth * machine.rates().control);
+  const Track track = FollowRun(machine, {}, problem.run, problem.observer, true);
   Record seen = measured;
-  for (int joint = 0; joint < plant.njnt; ++joint) {
+  for (int joint = 0; joint < machine.plant().njnt; ++joint) {
     Channel channel =
-        JointChannel(plant, joint, track.position.row(plant.jnt_dofadr[joint]));
+        JointChannel(machine.plant(), joint, track.position.row(machine.plant().jnt_dofadr[joint]));
     if (!seen.Find(channel.name)) seen.Add(std::move(channel));
   }
   return seen;

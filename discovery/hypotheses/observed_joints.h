@@ -5,14 +5,14 @@
 
 #include <mujoco/mujoco.h>
 
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
 
 /// The record with a channel "joint.<name>" for every joint that it has none of.
 /// InputError where a sensor or an actuator of the setup is missing in it.
-Record WithObservedJoints(const Setup& setup, const mjModel& plant,
+Record WithObservedJoints(const Machine& machine,
                           const Record& measured);
 
 }  // namespace mjdiag

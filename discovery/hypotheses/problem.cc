@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
@@ -33,22 +32,22 @@ VectorXd DiscoveryProblem::Scaled(const Track& track) const {
 VectorXd DiscoveryProblem::StillSpeed() const {
   constexpr double kShare = 0.02;
   const double noise = observer.noise_sd.minCoeff();
-  return VectorXd::Constant(plant->nv, kShare * noise / run.sample_time);
+  return VectorXd::Constant(machine.plant().nv, kShare * noise / run.sample_time);
 }
 
 VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
-  return Scaled(FollowRun(*setup, *plant, changes, run, observer, false));
+  return Scaled(FollowRun(machine, changes, run, observer, false));
 }
 
 std::pair<Track, ErrorDynamics> DiscoveryProblem::Linearised(
     const Changes& changes) const {
   constexpr Eigen::Index kBlocks = 5000;
   ErrorDynamics dynamics(observer, std::max<Eigen::Index>(1, run.samples() / kBlocks));
-  Track track = FollowRun(*setup, *plant, changes, run, observer, model, dynamics);
+  Track track = FollowRun(machine, changes, run, observer, dynamics);
   return {std::move(track), std::move(dynamics)};
 }
 
-VectorXd SensorNoise(const Setup& setup, const MeasuredRun& run,
+VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
                      const Eigen::MatrixXd& innovations) {
   VectorXd sd(run.outputs.rows());
   for (Index i = 0; i < sd.size(); ++i) {
@@ -56,34 +55,31 @@ VectorXd SensorNoise(const Setup& setup, const MeasuredRun& run,
     const double of_innovations =
         innovations.size() > 0 ? NoiseLevel(innovations.row(i)) : of_record;
     sd[i] = std::max(std::min(of_record, of_innovations),
-                     Floor(setup.sensors[static_cast<std::size_t>(i)], run.outputs, i));
+                     Floor(channels.sensors[static_cast<std::size_t>(i)], run.outputs, i));
   }
   return sd;
 }
 
-DiscoveryProblem PoseProblem(const Setup& setup, const mjModel& plant,
+DiscoveryProblem PoseProblem(const Machine& machine,
                              const Record& measured, double train_share,
                              double bandwidth) {
-  DiscoveryProblem problem;
-  problem.setup = &setup;
-  problem.plant = &plant;
-  problem.model = Linearize(plant, setup);
-  problem.run = ToMeasuredRun(setup, measured);
-  problem.skip = setup.compare.skip_samples;
+  DiscoveryProblem problem{.machine = machine,
+                           .run = ToMeasuredRun(machine.setup(), measured)};
+  problem.skip = machine.setup().compare.skip_samples;
   problem.train = static_cast<Index>(
       std::lround(train_share * static_cast<double>(measured.samples())));
   const double hertz = bandwidth > 0.0 ? bandwidth
                                        : std::min(kPeriods / measured.duration(),
-                                                  0.1 * setup.control_rate);
+                                                  0.1 * machine.rates().control);
   // Twice: the noise is known better once the motion is taken out.
   Eigen::MatrixXd innovations;
   for (int round = 0; round < 2; ++round) {
     problem.observer =
-        DesignObserver(problem.model, plant.opt.timestep, setup.substeps,
-                       SensorNoise(setup, problem.run, innovations), hertz);
+        DesignObserver(machine.linear(), problem.step(), machine.rates().substeps,
+                       SensorNoise(machine.channels(), problem.run, innovations), hertz);
     if (round == 0) {
       innovations =
-          FollowRun(setup, plant, {}, problem.run, problem.observer, false).innovations;
+          FollowRun(machine, {}, problem.run, problem.observer, false).innovations;
     }
   }
   return problem;

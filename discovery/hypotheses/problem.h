@@ -7,24 +7,21 @@
 #include <Eigen/Core>
 #include <utility>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/tracking.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
 
 struct DiscoveryProblem {
-  const Setup* setup = nullptr;    ///< not owned
-  const mjModel* plant = nullptr;  ///< as LoadPlant gives it, not owned
-  MechanicalModel model;           ///< of the nominal plant
-  Observer observer;
+  Machine machine;  ///< the nominal one
+  Observer observer{};
   MeasuredRun run;
   Eigen::Index skip = 0;   ///< samples at the start that count for nothing
   Eigen::Index train = 0;  ///< samples that a fit sees; the rest is held out
 
-  double step() const { return plant->opt.timestep; }
+  double step() const { return machine.plant().opt.timestep; }  ///< of physics [s]
   /// Innovations over their standard deviation with those changes, stacked sample by
   /// sample, (ny samples).
   Eigen::VectorXd Residual(const Changes& changes) const;
@@ -39,12 +36,12 @@ struct DiscoveryProblem {
 
 /// Noise of the sensors from the record and from the innovations of the nominal plant,
 /// whichever is lower: what moves in a record is not noise. [unit of each sensor]
-Eigen::VectorXd SensorNoise(const Setup& setup, const MeasuredRun& run,
+Eigen::VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
                             const Eigen::MatrixXd& innovations);
 
 /// @param train_share  of the record that fits see, 0 to 1
 /// @param bandwidth    of the observer [Hz]; 0: 25 over the duration of the record
-DiscoveryProblem PoseProblem(const Setup& setup, const mjModel& plant,
+DiscoveryProblem PoseProblem(const Machine& machine,
                              const Record& measured, double train_share,
                              double bandwidth);
 

@@ -51,7 +51,7 @@ MatrixXd Screener::Responses(const std::vector<Trial>& trials, std::size_t first
   Index columns = 0;
   for (std::size_t t = first; t < last; ++t) columns += trials[t].signals.cols();
   MatrixXd signals(problem_.train, columns);
-  MatrixXd entry(problem_.model.M.rows(), columns);
+  MatrixXd entry(problem_.machine.linear().M.rows(), columns);
   const bool forces = trials[first].entry.size() > 0;
   Index next = 0;
   for (std::size_t t = first; t < last; ++t) {

@@ -54,12 +54,12 @@ Screening Screen(const DiscoveryProblem& problem,
     const double duration =
         static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
     std::vector<Trial> trials;
-    if (const auto sweep = MakeSweep(problem.model, candidate, motion, duration)) {
+    if (const auto sweep = MakeSweep(problem.machine.linear(), candidate, motion, duration)) {
       tried[c] = static_cast<int>(sweep->values.size());
       trials =
           screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
     } else {
-      trials = MakeTrials(*problem.plant, problem.model, candidate, motion);
+      trials = MakeTrials(problem.machine.plant(), problem.machine.linear(), candidate, motion);
       tried[c] = static_cast<int>(trials.size());
     }
     for (auto& start : screener.Judge(trials, candidate)) {
@@ -84,7 +84,7 @@ Screening ScreenBeside(const DiscoveryProblem& problem,
                        const MatrixXd& sensitivities, int starts_each) {
   const DiscoveryProblem seen = Beginning(problem, problem.train);
   const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, causes));
-  return Screen(seen, candidates, ObserveMotion(*seen.plant, seen.run, track), dynamics,
+  return Screen(seen, candidates, ObserveMotion(seen.machine, seen.run, track), dynamics,
                 seen.Scaled(track), sensitivities, starts_each);
 }
 
@@ -97,7 +97,7 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
   const Screener screener(problem, dynamics, residual, sensitivities);
   double gain = 0.0;
   std::vector<Trial> trials;
-  if (const auto sweep = MakeSweep(problem.model, wave, motion, duration)) {
+  if (const auto sweep = MakeSweep(problem.machine.linear(), wave, motion, duration)) {
     constexpr std::size_t kPeaks = 40;
     const auto now = screener.Judge({sweep->make(present)}, wave).front();
     gain = now ? now->gain : 0.0;
@@ -105,7 +105,7 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
       trials.push_back(sweep->make(screener.ValueAt(*sweep, place)));
     }
   } else {
-    trials = MakeTrials(*problem.plant, problem.model, wave, motion);
+    trials = MakeTrials(problem.machine.plant(), problem.machine.linear(), wave, motion);
   }
   std::vector<Start> starts;
   for (auto& start : screener.Judge(trials, wave)) {

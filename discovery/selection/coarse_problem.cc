@@ -20,10 +20,10 @@ double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) 
 }
 
 /// @param exact  innovations of the problem
-bool IsNearTo(const VectorXd& exact, const CoarseProblem& coarse,
+bool IsNearTo(const VectorXd& exact, const DiscoveryProblem& coarse,
               const DiscoveryProblem& problem, const Changes& changes) {
   try {
-    return (coarse.problem.Residual(changes) - exact).squaredNorm() <
+    return (coarse.Residual(changes) - exact).squaredNorm() <
            Insignificant(problem, exact);
   } catch (const NumericalError&) {
     return false;
@@ -32,28 +32,22 @@ bool IsNearTo(const VectorXd& exact, const CoarseProblem& coarse,
 
 }  // namespace
 
-bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
+bool IsNear(const DiscoveryProblem& coarse, const DiscoveryProblem& problem,
             const Changes& changes) {
   return IsNearTo(problem.Residual(changes), coarse, problem, changes);
 }
 
-std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
-                                       const Changes& changes) {
-  const int substeps = problem.setup->substeps;
-  if (substeps < 2) return nullptr;
+std::optional<DiscoveryProblem> Coarsen(const DiscoveryProblem& problem,
+                                        const Changes& changes) {
+  const int substeps = problem.machine.rates().substeps;
+  if (substeps < 2) return std::nullopt;
   const VectorXd exact = problem.Residual(changes);
   for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
-    auto coarse = std::make_unique<CoarseProblem>();
-    coarse->setup = *problem.setup;
-    coarse->setup.substeps = fewer;
-    coarse->plant = CopyModel(*problem.plant);
-    coarse->plant->opt.timestep *= static_cast<double>(substeps) / fewer;
-    coarse->problem = problem;
-    coarse->problem.setup = &coarse->setup;
-    coarse->problem.plant = coarse->plant.get();
-    if (IsNearTo(exact, *coarse, problem, changes)) return coarse;
+    DiscoveryProblem coarse = problem;
+    coarse.machine = problem.machine.WithSubsteps(fewer);
+    if (IsNearTo(exact, coarse, problem, changes)) return coarse;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 }  // namespace mjdiag

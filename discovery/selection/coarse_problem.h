@@ -3,29 +3,22 @@
 // time nearly in proportion to the number of steps. What it finds is where a search
 // with all of them goes on from.
 
-#include <memory>
+#include <optional>
 
 #include "mjdiag/discovery/hypotheses/problem.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
-
-struct CoarseProblem {
-  Setup setup;
-  ModelPtr plant;
-  DiscoveryProblem problem;  ///< refers to the two above
-};
 
 /// Whether the innovations beside those changes differ by less from those of `problem`
 /// than a cause would have to explain to be significant. The more has been explained,
 /// the less that is.
-bool IsNear(const CoarseProblem& coarse, const DiscoveryProblem& problem,
+bool IsNear(const DiscoveryProblem& coarse, const DiscoveryProblem& problem,
             const Changes& changes);
 
 /// The problem with one substep a tick, or two, if that is near beside those changes;
-/// null if it is not, or has no more. The observer, which is designed on whole ticks,
+/// none if it is not, or has no more. The observer, which is designed on whole ticks,
 /// stays.
-std::unique_ptr<CoarseProblem> Coarsen(const DiscoveryProblem& problem,
-                                       const Changes& changes);
+std::optional<DiscoveryProblem> Coarsen(const DiscoveryProblem& problem,
+                                        const Changes& changes);
 
 }  // namespace mjdiag

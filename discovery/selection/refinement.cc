@@ -125,7 +125,7 @@ std::vector<FittedCause> Refinement::Challengers(const CauseFit& fit,
     if (std::ranges::any_of(challengers, same)) return;
     if (challengers.size() < kMost) challengers.push_back(other);
   };
-  const auto simpler = SimplerLaw(*problem_.plant, candidates_, fit.causes[i]);
+  const auto simpler = SimplerLaw(problem_.machine.plant(), candidates_, fit.causes[i]);
   if (simpler) consider(*simpler);
   const Screening without = ScreenBeside(problem_, candidates_, Without(fit.causes, i),
                                          SensitivitiesWithout(fit, i), 1);

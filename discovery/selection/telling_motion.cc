@@ -31,18 +31,16 @@ Trajectory Slower(Trajectory trajectory, double factor) {
   return trajectory;
 }
 
-Record RunOf(const Setup& setup, const mjModel& plant, const Excitation& excitation,
+Record RunOf(const Machine& machine, const Excitation& excitation,
              const Changes& changes) {
   RunOptions options;
-  options.faults = changes.faults;
-  options.effects = changes.effects;
   options.noise_scale = 0.0;
-  return Simulate(setup, plant, excitation, options);
+  return Simulate(machine.With(changes), excitation, options);
 }
 
 double Separation(const Setup& setup, const Record& a, const Record& b) {
   double sum = 0.0;
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : setup.channels.sensors) {
     if (sensor.noise_sd <= 0.0) continue;
     sum += ((a.At(sensor.channel).samples - b.At(sensor.channel).samples) /
             sensor.noise_sd)
@@ -53,14 +51,14 @@ double Separation(const Setup& setup, const Record& a, const Record& b) {
 
 }  // namespace
 
-std::optional<TellingMotion> FindTellingMotion(const Setup& setup, const mjModel& plant,
+std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
                                                const Changes& one,
                                                const Changes& other) {
-  if (setup.axes.empty()) return std::nullopt;
+  if (machine.setup().control.axes.empty()) return std::nullopt;
   // The slowest, which take longest, first.
   std::vector<TellingMotion> motions;
   for (const double slower : {5.0, 2.0, 1.0}) {
-    for (const Trajectory& trajectory : setup.trajectories) {
+    for (const Trajectory& trajectory : machine.setup().trajectories.all) {
       motions.push_back({trajectory.name, slower, 0.0});
     }
   }
@@ -71,15 +69,15 @@ std::optional<TellingMotion> FindTellingMotion(const Setup& setup, const mjModel
     const TellingMotion& motion = motions[i];
     try {
       const Excitation excitation = FollowTrajectory(
-          setup, Slower(setup.FindTrajectory(motion.trajectory), motion.slower));
-      runs[i][which] = RunOf(setup, plant, excitation, which == 0 ? one : other);
+          machine.setup(), Slower(machine.setup().trajectories.Find(motion.trajectory), motion.slower));
+      runs[i][which] = RunOf(machine, excitation, which == 0 ? one : other);
     } catch (const std::exception&) {
       // A motion that cannot be run is not proposed.
     }
   });
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto& [a, b] = runs[i];
-    if (a && b) motions[i].separation = Separation(setup, *a, *b);
+    if (a && b) motions[i].separation = Separation(machine.setup(), *a, *b);
   }
   const auto best =
       std::ranges::max_element(motions, std::less<>(), &TellingMotion::separation);

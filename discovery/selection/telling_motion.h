@@ -9,7 +9,7 @@
 #include <string>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
 
@@ -22,7 +22,7 @@ struct TellingMotion {
 
 /// None without controllers or trajectories in the setup, or if no run succeeds.
 /// @param setup  with the measured noise of its sensors
-std::optional<TellingMotion> FindTellingMotion(const Setup& setup, const mjModel& plant,
+std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
                                                const Changes& one,
                                                const Changes& other);
 

@@ -30,8 +30,8 @@ std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& obs
   constexpr double kLeast = 0.02;
   const auto n = static_cast<Index>(share * static_cast<double>(innovations.cols()));
   std::vector<RaisedNoise> found;
-  for (std::size_t i = 0; i < setup.sensors.size(); ++i) {
-    const SensorSetup& sensor = setup.sensors[i];
+  for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
+    const SensorSetup& sensor = setup.channels.sensors[i];
     const auto row = static_cast<Index>(i);
     const double expected =
         std::hypot(sensor.noise_sd, sensor.resolution / std::sqrt(12.0));
@@ -46,7 +46,7 @@ std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& obs
     // The mean square of half of the band is less certain by sqrt(2), that of their
     // difference as that of the whole.
     const double upper =
-        UpperRms(innovations.row(row).head(n).transpose(), setup.sample_time());
+        UpperRms(innovations.row(row).head(n).transpose(), setup.rates.tick());
     if (rms - upper > std::max(kSigmas * error, kLeast * rms)) continue;
     const double raised = std::sqrt(rms * rms - expected * expected);
     found.push_back({sensor.element, sensor.unit, raised, error * rms / raised});

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "mjdiag/plugin/runtime/instance.h"
-#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 
@@ -48,7 +48,7 @@ const char* mjdiag_version(void) { return MJDIAG_VERSION; }
 const char* mjdiag_last_error(void) { return last_error.c_str(); }
 
 int mjdiag_prepare(mjModel* model, const char* setup) {
-  return Guard([&] { mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)), *model); })
+  return Guard([&] { mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)).physics, *model); })
              ? 0
              : 1;
 }
@@ -61,16 +61,16 @@ mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* s
                                const char* trajectory, uint64_t seed) {
   auto made = std::make_unique<mjdiag_instance>(model, data, nullptr);
   const bool good = Guard([&] {
-    const mjdiag::Setup machine = mjdiag::ReadSetup(Text(setup));
-    mjdiag::CheckTimeStep(machine, *model);
+    mjdiag::Setup parts = mjdiag::ReadSetup(Text(setup));
+    mjdiag::CheckTimeStep(parts, *model);
+    const mjdiag::Machine machine(std::move(parts), *model);
+    const mjdiag::Trajectories& known = machine.setup().trajectories;
     const mjdiag::Excitation excitation = mjdiag::FollowTrajectory(
-        machine,
-        machine.FindTrajectory(trajectory ? trajectory : machine.default_trajectory));
+        machine.setup(), known.Find(trajectory ? trajectory : known.fallback));
     mjdiag::RunOptions options;
     options.seed = seed;
-    made->instance =
-        std::make_unique<mjdiag::Instance>(machine, *model, excitation, options);
-    const Eigen::VectorXd start = mjdiag::StartPosition(machine, *model, {});
+    made->instance = std::make_unique<mjdiag::Instance>(machine, excitation, options);
+    const Eigen::VectorXd& start = machine.rest();
     mj_resetData(model, data);
     std::copy(start.begin(), start.end(), data->qpos);
     mjdiag::Attach(*model, *data, *made->instance);

@@ -33,11 +33,10 @@ struct Named {
 
 class Simulator {
  public:
-  Simulator(const DiagnosisDesign& design, const Setup& setup, const mjModel& plant,
+  Simulator(const DiagnosisDesign& design, const Machine& machine,
             const DiagnosedMotion& motion)
       : design_(design),
-        setup_(setup),
-        plant_(plant),
+        machine_(machine),
         motion_(motion),
         healthy_(Estimates({})) {}
 
@@ -52,17 +51,17 @@ class Simulator {
     monitor.RegressFrom(motion_.first_regressed);
     RunOptions options;
     options.seed = motion_.runs.seed;
+    Changes changes;
     for (const Named& fault : named) {
-      options.faults.push_back(
+      changes.faults.push_back(
           {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
     }
-    RunWith(monitor, setup_, plant_, motion_.excitation, options, motion_.runs.linear);
+    RunWith(monitor, machine_.With(changes), motion_.excitation, options, motion_.runs.linear);
     return monitor.estimator().Estimate().value;
   }
 
   const DiagnosisDesign& design_;
-  const Setup& setup_;
-  const mjModel& plant_;
+  const Machine& machine_;
   const DiagnosedMotion& motion_;
   VectorXd healthy_;
 };
@@ -161,13 +160,13 @@ class CrossTerms {
 }  // namespace
 
 void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
-                      const Setup& setup, const mjModel& plant,
+                      const Machine& machine,
                       const DiagnosedMotion& motion) {
   constexpr int kRuns = 16;
   CrossTerms terms(result.faults, design.bank.faults.size());
   if (!terms.NameNext()) return;
   try {
-    const Simulator simulator(design, setup, plant, motion);
+    const Simulator simulator(design, machine, motion);
     int left = kRuns;
     // Before the strong ones have settled nobody knows what is left of the weak.
     while (!terms.Learn(simulator.EstimatesOf(terms.named())) || terms.NameNext()) {

@@ -30,7 +30,7 @@ struct DiagnosedMotion {
 /// `cross_term` and are no longer `detected`, the others have the value f. Nothing
 /// changes where no such f is found.
 void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
-                      const Setup& setup, const mjModel& plant,
+                      const Machine& machine,
                       const DiagnosedMotion& motion);
 
 }  // namespace mjdiag

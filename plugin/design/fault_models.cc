@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -21,22 +19,13 @@ struct Slope {
 /// Relative to the springs of the machine.
 constexpr double kMoved = 1e-9;
 
-bool MovesTheEquilibrium(const mjModel& plant, const Eigen::VectorXd& healthy,
-                         const Fault& turned) {
-  const ModelPtr copy = CopyModel(plant);
-  ApplyFault(*copy, turned);
-  const Eigen::VectorXd moved = StaticEquilibrium(*copy);
+bool MovesTheEquilibrium(const Machine& machine, const Fault& turned) {
+  const Eigen::VectorXd& healthy = machine.rest();
+  const Eigen::VectorXd moved = machine.With({{turned}, {}}).rest();
   return (moved - healthy).norm() > kMoved * (1.0 + healthy.norm());
 }
 
 }  // namespace
-
-MechanicalModel LinearizeFaulty(const mjModel& plant, const Setup& setup,
-                                const std::vector<Fault>& faults) {
-  const ModelPtr copy = CopyModel(plant);
-  for (const Fault& fault : faults) ApplyFault(*copy, fault);
-  return Linearize(*copy, setup);
-}
 
 std::vector<Fault> HealthyKnobs(const mjModel& plant) {
   std::vector<Fault> knobs;
@@ -44,18 +33,18 @@ std::vector<Fault> HealthyKnobs(const mjModel& plant) {
   return knobs;
 }
 
-Eigen::VectorXd Magnitudes(const mjModel& plant, const Setup& setup) {
-  const std::vector<Fault> knobs = HealthyKnobs(plant);
+Eigen::VectorXd Magnitudes(const Machine& machine) {
+  const std::vector<Fault> knobs = HealthyKnobs(machine.plant());
   std::string known;
   for (const Fault& knob : knobs) known += (known.empty() ? "" : ", ") + knob.name;
   Eigen::VectorXd magnitudes = Eigen::VectorXd::Constant(
       static_cast<Eigen::Index>(knobs.size()), kDefaultMagnitude);
-  for (const auto& [name, magnitude] : setup.diagnosis.magnitudes) {
+  for (const auto& [name, magnitude] : machine.setup().diagnosis.magnitudes) {
     const auto found =
         std::find_if(knobs.begin(), knobs.end(),
                      [&n = name](const Fault& knob) { return knob.name == n; });
     if (found == knobs.end()) {
-      throw InputError("setup '" + setup.name + "': diagnosis.estimation.magnitudes",
+      throw InputError("setup '" + machine.setup().name + "': diagnosis.estimation.magnitudes",
                        "the plant has no knob '" + name + "'", "one of " + known);
     }
     magnitudes[found - knobs.begin()] = magnitude;
@@ -63,22 +52,21 @@ Eigen::VectorXd Magnitudes(const mjModel& plant, const Setup& setup) {
   return magnitudes;
 }
 
-ModelAt FaultModels(const mjModel& plant, const Setup& setup) {
-  const std::vector<Fault> healthy = HealthyKnobs(plant);
-  const auto full = [&plant, &setup, healthy](const Eigen::VectorXd& knobs) {
+ModelAt FaultModels(const Machine& machine) {
+  const std::vector<Fault> healthy = HealthyKnobs(machine.plant());
+  const auto full = [machine, healthy](const Eigen::VectorXd& knobs) {
     std::vector<Fault> faults = healthy;
     for (std::size_t i = 0; i < faults.size(); ++i) {
       faults[i].value = knobs[static_cast<Eigen::Index>(i)];
     }
-    return LinearizeFaulty(plant, setup, faults);
+    return machine.With({faults, {}}).linear();
   };
-  const MechanicalModel base = Linearize(plant, setup);
-  const Eigen::VectorXd rest = StaticEquilibrium(plant);
+  const MechanicalModel base = machine.linear();
   std::vector<Slope> slopes;
   for (std::size_t i = 0; i < healthy.size(); ++i) {
     // Half the value tells more than a small step: the models are affine.
     constexpr double kTurned = 0.5;
-    if (MovesTheEquilibrium(plant, rest, {healthy[i].name, kTurned})) return full;
+    if (MovesTheEquilibrium(machine, {healthy[i].name, kTurned})) return full;
     Eigen::VectorXd knobs =
         Eigen::VectorXd::Ones(static_cast<Eigen::Index>(healthy.size()));
     knobs[static_cast<Eigen::Index>(i)] = kTurned;
@@ -99,21 +87,21 @@ ModelAt FaultModels(const mjModel& plant, const Setup& setup) {
   };
 }
 
-std::vector<TurnedModels> TurnModels(const mjModel& plant, const Setup& setup) {
+std::vector<TurnedModels> TurnModels(const Machine& machine) {
   std::vector<std::string> names;
-  for (const Fault& knob : HealthyKnobs(plant)) names.push_back(knob.name);
-  const Eigen::VectorXd magnitudes = Magnitudes(plant, setup);
+  for (const Fault& knob : HealthyKnobs(machine.plant())) names.push_back(knob.name);
+  const Eigen::VectorXd magnitudes = Magnitudes(machine);
   return TurnAbout(names, Eigen::VectorXd::Ones(magnitudes.size()), magnitudes,
-                   FaultModels(plant, setup));
+                   FaultModels(machine));
 }
 
 std::vector<Multisine> Multisines(const Setup& setup) {
   std::vector<Multisine> sines;
   for (const MultisineSetup& source : setup.disturbances) {
     Eigen::VectorXd amplitude =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.actuators.size()));
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.channels.actuators.size()));
     for (const auto& [channel, value] : source.amplitude) {
-      amplitude[setup.ActuatorIndex(channel)] = value;
+      amplitude[setup.channels.ActuatorIndex(channel)] = value;
     }
     sines.push_back({source.name, source.frequencies, amplitude});
   }

@@ -8,7 +8,6 @@
 #include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/diagnosis/row_choice.h"
 #include "mjdiag/plugin/design/fault_models.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/plant/start_state.h"
@@ -46,11 +45,11 @@ MatrixXd UnknownForces(const Setup& setup, const MechanicalModel& model) {
 /// compare rows, and its size does not matter on the linear plant.
 Excitation RandomInputs(const Setup& setup) {
   Excitation excitation;
-  excitation.inputs = Record(setup.sample_time());
+  excitation.inputs = Record(setup.rates.tick());
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
-  const auto samples = static_cast<Index>(kRandomRun * setup.control_rate);
-  for (const ActuatorSetup& actuator : setup.actuators) {
+  const auto samples = static_cast<Index>(kRandomRun * setup.rates.control);
+  for (const ActuatorSetup& actuator : setup.channels.actuators) {
     const VectorXd values =
         VectorXd::NullaryExpr(samples, [&](Index) { return normal(generator); });
     excitation.inputs.Add({actuator.channel, actuator.unit, values});
@@ -59,12 +58,12 @@ Excitation RandomInputs(const Setup& setup) {
 }
 
 Excitation DefaultExcitation(const Setup& setup) {
-  if (setup.axes.empty()) return RandomInputs(setup);
-  if (setup.default_trajectory.empty()) {
+  if (setup.control.axes.empty()) return RandomInputs(setup);
+  if (setup.trajectories.fallback.empty()) {
     throw InputError("setup '" + setup.name + "'", "has no trajectory",
                      "one under [trajectories], for the design of the diagnosis");
   }
-  return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
+  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
 }
 
 /// Energies of the rows under unit white noise on the commands, for plants without
@@ -116,7 +115,7 @@ DisturbanceFilter DesignDisturbanceFilter(const MechanicalModel& healthy,
 }
 
 int Stride(const Setup& setup) {
-  const double ticks = setup.diagnosis.sampling * setup.control_rate;
+  const double ticks = setup.diagnosis.sampling * setup.rates.control;
   const auto stride = static_cast<int>(std::lround(ticks));
   if (stride < 1 || std::abs(ticks - stride) > 1e-6 * ticks) {
     throw InputError("setup '" + setup.name + "': diagnosis.estimation.sampling",
@@ -150,26 +149,24 @@ struct NominalLog {
   MatrixXd rows;
 };
 
-NominalLog RunNominal(const DiagnosisDesign& design, const Setup& setup,
-                      const mjModel& plant, const Excitation& excitation,
+NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
                       const MatrixXd& baseline, std::uint64_t seed, bool linear) {
   DiagnosisMonitor monitor(design, excitation.samples(), baseline);
   RunOptions options;
   options.seed = seed;
-  RunWith(monitor, setup, plant, excitation, options, linear);
+  RunWith(monitor, machine, excitation, options, linear);
   return {monitor.Log(), monitor.estimate(), monitor.ResidualRows()};
 }
 
 /// Runs of one motion that differ in their noise.
-std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Setup& setup,
-                                const mjModel& plant, const Excitation& excitation,
+std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
                                 const MatrixXd& baseline, const NominalRuns& options) {
   std::vector<NominalLog> logs(static_cast<std::size_t>(options.runs));
   ParallelFor(
       options.runs,
       [&](int i) {
         logs[static_cast<std::size_t>(i)] =
-            RunNominal(design, setup, plant, excitation, baseline,
+            RunNominal(design, machine, excitation, baseline,
                        options.seed + static_cast<std::uint64_t>(i), options.linear);
       },
       options.progress);
@@ -231,12 +228,12 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
 
 SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy) {
   SynthesisOptions options;
-  options.timing = {setup.sample_time() / setup.substeps, setup.substeps};
+  options.timing = {setup.rates.step(), setup.rates.substeps};
   options.degree = setup.diagnosis.degree;
   options.denominator = setup.diagnosis.denominator;
-  options.sensor_noise.resize(static_cast<Index>(setup.sensors.size()));
-  for (std::size_t i = 0; i < setup.sensors.size(); ++i) {
-    options.sensor_noise[static_cast<Index>(i)] = setup.sensors[i].noise_sd;
+  options.sensor_noise.resize(static_cast<Index>(setup.channels.sensors.size()));
+  for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
+    options.sensor_noise[static_cast<Index>(i)] = setup.channels.sensors[i].noise_sd;
   }
   options.unknown_inputs.forces = UnknownForces(setup, healthy);
   return options;
@@ -256,37 +253,37 @@ MatrixXd Signals(const DiagnosisDesign& design, const Record& record) {
   return signals;
 }
 
-Record LinearRun(const Setup& setup, const mjModel& plant) {
+Record LinearRun(const Machine& machine) {
   RunOptions options;
   options.noise_scale = 0.0;
-  return SimulateLinear(setup, plant, DefaultExcitation(setup), options);
+  return SimulateLinear(machine, DefaultExcitation(machine.setup()), options);
 }
 
-DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
+DiagnosisDesign DesignFilters(const Machine& machine,
                               const RowSettings& settings) {
-  const MechanicalModel healthy = Linearize(plant, setup);
-  const std::vector<TurnedModels> turned = TurnModels(plant, setup);
-  SynthesisOptions options = SynthesisOf(setup, healthy);
+  const MechanicalModel healthy = machine.linear();
+  const std::vector<TurnedModels> turned = TurnModels(machine);
+  SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
   options.degree = settings.degree;
   options.denominator = settings.denominator;
   DiagnosisDesign design;
-  design.setup = setup.name;
+  design.setup = machine.setup().name;
   design.outputs = healthy.outputs;
   design.inputs = healthy.inputs;
-  design.offset = SensorReadings(setup, plant, StaticEquilibrium(plant));
+  design.offset = SensorReadings(machine.channels(), machine.plant(), machine.rest());
   design.sensor_noise = options.sensor_noise;
-  design.options = setup.diagnosis;
+  design.options = machine.setup().diagnosis;
   design.options.degree = settings.degree;
   design.options.denominator = settings.denominator;
   design.options.estimation_rows = settings.rows;
-  design.stride = Stride(setup);
-  design.disturbances = Multisines(setup);
-  design.disturbance = DesignDisturbanceFilter(healthy, turned, setup);
+  design.stride = Stride(machine.setup());
+  design.disturbances = Multisines(machine.setup());
+  design.disturbance = DesignDisturbanceFilter(healthy, turned, machine.setup());
 
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const Index size = space.rows.front().rows();
   design.bank = SynthesiseBank(space, MatrixXd::Identity(size, size), turned, options);
-  const MatrixXd signals = Signals(design, LinearRun(setup, plant));
+  const MatrixXd signals = Signals(design, LinearRun(machine));
   RequireBlindness(design, signals);
   std::vector<MatrixXd> energies = FaultEnergies(design.bank, signals);
   if (energies.empty()) {
@@ -297,40 +294,37 @@ DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
   return design;
 }
 
-DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant) {
-  const DiagnosisOptions& wanted = setup.diagnosis;
-  return DesignFilters(setup, plant,
+DiagnosisDesign DesignFilters(const Machine& machine) {
+  const DiagnosisOptions& wanted = machine.setup().diagnosis;
+  return DesignFilters(machine,
                        {wanted.degree, wanted.denominator, wanted.estimation_rows});
 }
 
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
-                                const mjModel& plant, const NominalRuns& options) {
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const NominalRuns& options) {
   std::vector<NominalLog> others;
-  for (const std::string& name : setup.diagnosis.trajectories) {
+  for (const std::string& name : machine.setup().diagnosis.trajectories) {
     NominalRuns single = options;
     single.runs = 1;
     single.progress = nullptr;
-    const Excitation excitation = FollowTrajectory(setup, setup.FindTrajectory(name));
-    others.push_back(RunMany(design, setup, plant, excitation, {}, single).front());
+    const Excitation excitation = FollowTrajectory(machine.setup(), machine.setup().trajectories.Find(name));
+    others.push_back(RunMany(design, machine, excitation, {}, single).front());
   }
   const auto repeated =
-      RunMany(design, setup, plant, DefaultExcitation(setup), {}, options);
+      RunMany(design, machine, DefaultExcitation(machine.setup()), {}, options);
   return LimitsOf(design, repeated, others, options.linear);
 }
 
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
-                                const mjModel& plant, const Excitation& excitation,
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
                                 const MatrixXd& baseline, const NominalRuns& options) {
-  return LimitsOf(design, RunMany(design, setup, plant, excitation, baseline, options),
+  return LimitsOf(design, RunMany(design, machine, excitation, baseline, options),
                   {}, options.linear);
 }
 
-MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Setup& setup,
-                          const mjModel& plant, const Excitation& excitation,
+MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
                           const NominalRuns& options) {
   MatrixXd mean;
   for (const NominalLog& nominal :
-       RunMany(design, setup, plant, excitation, {}, options)) {
+       RunMany(design, machine, excitation, {}, options)) {
     mean = mean.size() == 0 ? nominal.rows : (mean + nominal.rows).eval();
   }
   return mean / static_cast<double>(options.runs);

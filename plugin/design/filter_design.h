@@ -9,7 +9,7 @@
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 #include "mjdiag/diagnosis/residual_bank.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
@@ -23,7 +23,7 @@ Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);
 
 /// A healthy run of the linear plant without noise: the default trajectory, or random
 /// inputs where the setup has no controllers.
-Record LinearRun(const Setup& setup, const mjModel& plant);
+Record LinearRun(const Machine& machine);
 
 /// Which rows the residuals are made of.
 struct RowSettings {
@@ -34,10 +34,10 @@ struct RowSettings {
 
 /// Residual row, prefilters and disturbance filter of the healthy plant, without
 /// limits. The row is the one that sees all faults best on LinearRun.
-DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
+DiagnosisDesign DesignFilters(const Machine& machine,
                               const RowSettings& settings);
 /// With the rows that the setup asks for.
-DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant);
+DiagnosisDesign DesignFilters(const Machine& machine);
 
 /// The runs from which limits and baselines come.
 struct NominalRuns {
@@ -49,19 +49,16 @@ struct NominalRuns {
 
 /// Limits (Eq. 20, 21, 29, 30) from one run of every trajectory that the setup lists
 /// for thresholds and some of its default one.
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
-                                const mjModel& plant, const NominalRuns& options);
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const NominalRuns& options);
 
 /// Limits for one motion, with its baseline subtracted in every run (section A.6 of the
 /// seed); the runs do not share seeds with those of the baseline.
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,
-                                const mjModel& plant, const Excitation& excitation,
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
                                 const Eigen::MatrixXd& baseline,
                                 const NominalRuns& options);
 
 /// Mean residuals of the healthy plant over this motion, n x samples.
-Eigen::MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Setup& setup,
-                                 const mjModel& plant, const Excitation& excitation,
+Eigen::MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
                                  const NominalRuns& options);
 
 }  // namespace mjdiag

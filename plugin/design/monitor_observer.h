@@ -21,12 +21,12 @@ class MonitorObserver : public TickObserver {
 };
 
 /// A run that the monitor watches, of the plant or of its linear model.
-inline void RunWith(DiagnosisMonitor& monitor, const Setup& setup, const mjModel& plant,
+inline void RunWith(DiagnosisMonitor& monitor, const Machine& machine,
                     const Excitation& excitation, RunOptions options, bool linear) {
   MonitorObserver observer(monitor);
   options.observer = &observer;
-  linear ? SimulateLinear(setup, plant, excitation, options)
-         : Simulate(setup, plant, excitation, options);
+  linear ? SimulateLinear(machine, excitation, options)
+         : Simulate(machine, excitation, options);
 }
 
 }  // namespace mjdiag

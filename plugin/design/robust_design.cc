@@ -19,14 +19,14 @@ constexpr std::uint64_t kFirstSeed = 5001;
 
 /// Residuals of every row over nominal runs, k x N each.
 std::vector<MatrixXd> NominalResiduals(const DiagnosisDesign& design,
-                                       const Setup& setup, const mjModel& plant,
+                                       const Machine& machine,
                                        const Excitation& excitation) {
   std::vector<MatrixXd> residuals(
-      static_cast<std::size_t>(setup.diagnosis.robust.runs));
-  ParallelFor(setup.diagnosis.robust.runs, [&](int i) {
+      static_cast<std::size_t>(machine.setup().diagnosis.robust.runs));
+  ParallelFor(machine.setup().diagnosis.robust.runs, [&](int i) {
     RunOptions options;
     options.seed = kFirstSeed + static_cast<std::uint64_t>(i);
-    const Record record = Simulate(setup, plant, excitation, options);
+    const Record record = Simulate(machine, excitation, options);
     residuals[static_cast<std::size_t>(i)] =
         FilterSignals(design.bank.filters, Signals(design, record))
             .topRows(design.bank.residuals);
@@ -67,8 +67,7 @@ MatrixXd DisturbanceResponse(const DiagnosisDesign& design, Index source,
 }
 
 /// Residuals that a unit of the fault leaves over the healthy linear run, k x N.
-MatrixXd Response(const DiagnosisDesign& design, const Setup& setup,
-                  const mjModel& plant, const std::string& fault) {
+MatrixXd Response(const DiagnosisDesign& design, const Machine& machine, const std::string& fault) {
   const std::vector<std::string> names = design.FaultNames();
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {
@@ -79,7 +78,7 @@ MatrixXd Response(const DiagnosisDesign& design, const Setup& setup,
   }
   const Index index = found - names.begin();
   const auto knobs = static_cast<Index>(design.bank.faults.size());
-  const MatrixXd signals = Signals(design, LinearRun(setup, plant));
+  const MatrixXd signals = Signals(design, LinearRun(machine));
   if (index >= knobs) {
     return DisturbanceResponse(design, index - knobs, signals.cols());
   }
@@ -89,15 +88,15 @@ MatrixXd Response(const DiagnosisDesign& design, const Setup& setup,
 
 }  // namespace
 
-DiagnosisDesign DesignRobustFilters(const Setup& setup, const mjModel& plant,
+DiagnosisDesign DesignRobustFilters(const Machine& machine,
                                     const std::string& fault,
                                     const Excitation& excitation, bool baseline) {
-  const RobustOptions& wanted = setup.diagnosis.robust;
+  const RobustOptions& wanted = machine.setup().diagnosis.robust;
   DiagnosisDesign design =
-      DesignFilters(setup, plant, {wanted.degree, wanted.denominator, 0});
-  const MatrixXd response = Response(design, setup, plant, fault);
+      DesignFilters(machine, {wanted.degree, wanted.denominator, 0});
+  const MatrixXd response = Response(design, machine, fault);
   const MatrixXd nuisance =
-      NuisanceEnergy(NominalResiduals(design, setup, plant, excitation), baseline);
+      NuisanceEnergy(NominalResiduals(design, machine, excitation), baseline);
   design.bank = Mix(design.bank, LeastExcitedRow(nuisance, response).transpose());
   design.options.estimation_rows = 1;
   return design;

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
@@ -20,7 +20,7 @@ namespace mjdiag {
 /// @param excitation  motion of the nominal runs
 /// @param baseline    judge the rows by what differs between runs, for a diagnosis that
 ///                    subtracts a baseline
-DiagnosisDesign DesignRobustFilters(const Setup& setup, const mjModel& plant,
+DiagnosisDesign DesignRobustFilters(const Machine& machine,
                                     const std::string& fault,
                                     const Excitation& excitation, bool baseline);
 

@@ -8,19 +8,12 @@
 namespace mjdiag {
 namespace {
 
-std::vector<EffectSpec> AllEffects(const mjModel& model,
-                                   const std::vector<EffectSpec>& added) {
-  std::vector<EffectSpec> all = EffectsOf(model);
-  all.insert(all.end(), added.begin(), added.end());
-  return all;
-}
-
-std::unique_ptr<ActiveEffect> Make(const Setup& setup, const mjModel& model,
+std::unique_ptr<ActiveEffect> Make(const Channels& channels, const mjModel& model,
                                    const EffectSpec& spec) {
   if (auto effect = MakeFrictionEffect(model, spec)) return effect;
   if (auto effect = MakeDriveEffect(model, spec)) return effect;
   if (auto effect = MakeStructureEffect(model, spec)) return effect;
-  return MakeEncoderEffect(setup, spec);
+  return MakeEncoderEffect(channels, spec);
 }
 
 }  // namespace
@@ -31,11 +24,11 @@ JointOf FindJoint(const mjModel& model, const EffectSpec& spec) {
   return {model.jnt_dofadr[joint], position, model.qpos0[position]};
 }
 
-ActiveEffects::ActiveEffects(const Setup& setup, const mjModel& model,
-                             const std::vector<EffectSpec>& added) {
-  for (const EffectSpec& spec : AllEffects(model, added)) {
+ActiveEffects::ActiveEffects(const Channels& channels, const mjModel& model,
+                             const std::vector<EffectSpec>& effects) {
+  for (const EffectSpec& spec : effects) {
     CheckEffect(model, spec);
-    auto effect = Make(setup, model, spec);
+    auto effect = Make(channels, model, spec);
     if (!effect) continue;
     effects_.push_back(std::move(effect));
     if (FindEffect(spec.effect).element() == mjOBJ_JOINT) {
@@ -60,17 +53,15 @@ void ActiveEffects::Release(mjData& data) noexcept {
   for (const int dof : dofs_) data.qfrc_applied[dof] = 0.0;
 }
 
-Setup WithEncoderNoise(const Setup& setup, const mjModel& model,
-                       const std::vector<EffectSpec>& added) {
-  Setup noisy = setup;
-  for (const EffectSpec& spec : AllEffects(model, added)) {
+Channels WithEncoderNoise(Channels channels, const std::vector<EffectSpec>& effects) {
+  for (const EffectSpec& spec : effects) {
     if (spec.effect != "encoder_noise") continue;
-    for (SensorSetup& sensor : noisy.sensors) {
+    for (SensorSetup& sensor : channels.sensors) {
       if (sensor.element != spec.site) continue;
       sensor.noise_sd = std::hypot(sensor.noise_sd, spec.Value("sd"));
     }
   }
-  return noisy;
+  return channels;
 }
 
 }  // namespace mjdiag

@@ -30,12 +30,14 @@ class ActiveEffect {
   virtual void Push(const mjModel&, mjData&) noexcept {}
 };
 
-/// All active effects of a run: those that the MJCF carries and `added`.
+/// All active effects of a run.
 class ActiveEffects {
  public:
-  /// `model` has the native effects in it already. InputError as CheckEffect.
-  ActiveEffects(const Setup& setup, const mjModel& model,
-                const std::vector<EffectSpec>& added);
+  /// @param model    has the native effects in it already
+  /// @param effects  all that act, those that the MJCF carries among them
+  /// InputError as CheckEffect.
+  ActiveEffects(const Channels& channels, const mjModel& model,
+                const std::vector<EffectSpec>& effects);
 
   /// The readings of a control tick, setup order.
   void Distort(std::span<double> readings, double time) noexcept;
@@ -51,9 +53,7 @@ class ActiveEffects {
   std::vector<int> dofs_;
 };
 
-/// The setup with encoder_noise of the plant and of `added` in the noise of its
-/// sensors.
-Setup WithEncoderNoise(const Setup& setup, const mjModel& model,
-                       const std::vector<EffectSpec>& added);
+/// The channels with encoder_noise of the effects in the noise of their sensors.
+Channels WithEncoderNoise(Channels channels, const std::vector<EffectSpec>& effects);
 
 }  // namespace mjdiag

@@ -24,8 +24,8 @@ std::unique_ptr<ActiveEffect> MakeDriveEffect(const mjModel& model,
                                               const EffectSpec& spec);
 std::unique_ptr<ActiveEffect> MakeStructureEffect(const mjModel& model,
                                                   const EffectSpec& spec);
-/// Acts on the channels of the setup that read the sensor.
-std::unique_ptr<ActiveEffect> MakeEncoderEffect(const Setup& setup,
+/// Acts on the channels that read the sensor.
+std::unique_ptr<ActiveEffect> MakeEncoderEffect(const Channels& channels,
                                                 const EffectSpec& spec);
 
 }  // namespace mjdiag

@@ -1,5 +1,5 @@
 // Errors of what the sensors read. White noise is not among them: it goes into the
-// noise of the setup (WithEncoderNoise).
+// noise of the channels (WithEncoderNoise).
 
 #include <cmath>
 #include <numbers>
@@ -13,9 +13,9 @@ namespace {
 /// One error of all channels that read a sensor.
 class EncoderEffect : public ActiveEffect {
  public:
-  EncoderEffect(const Setup& setup, const EffectSpec& spec) {
-    for (std::size_t i = 0; i < setup.sensors.size(); ++i) {
-      if (setup.sensors[i].element == spec.site) channels_.push_back(i);
+  EncoderEffect(const Channels& channels, const EffectSpec& spec) {
+    for (std::size_t i = 0; i < channels.sensors.size(); ++i) {
+      if (channels.sensors[i].element == spec.site) channels_.push_back(i);
     }
   }
   void Distort(std::span<double> readings, double time) noexcept final {
@@ -30,8 +30,8 @@ class EncoderEffect : public ActiveEffect {
 
 class EncoderScale final : public EncoderEffect {
  public:
-  EncoderScale(const Setup& setup, const EffectSpec& spec)
-      : EncoderEffect(setup, spec), factor_(spec.Value("factor")) {}
+  EncoderScale(const Channels& channels, const EffectSpec& spec)
+      : EncoderEffect(channels, spec), factor_(spec.Value("factor")) {}
 
  private:
   double Read(double y, double) const noexcept override { return factor_ * y; }
@@ -41,8 +41,8 @@ class EncoderScale final : public EncoderEffect {
 
 class EncoderPeriodicError final : public EncoderEffect {
  public:
-  EncoderPeriodicError(const Setup& setup, const EffectSpec& spec)
-      : EncoderEffect(setup, spec),
+  EncoderPeriodicError(const Channels& channels, const EffectSpec& spec)
+      : EncoderEffect(channels, spec),
         amplitude_(spec.Value("amplitude")),
         wave_number_(2.0 * std::numbers::pi / spec.Value("period")),
         phase_(spec.Value("phase")) {}
@@ -59,8 +59,8 @@ class EncoderPeriodicError final : public EncoderEffect {
 
 class EncoderDrift final : public EncoderEffect {
  public:
-  EncoderDrift(const Setup& setup, const EffectSpec& spec)
-      : EncoderEffect(setup, spec), rate_(spec.Value("rate")) {}
+  EncoderDrift(const Channels& channels, const EffectSpec& spec)
+      : EncoderEffect(channels, spec), rate_(spec.Value("rate")) {}
 
  private:
   double Read(double y, double time) const noexcept override {
@@ -72,16 +72,16 @@ class EncoderDrift final : public EncoderEffect {
 
 }  // namespace
 
-std::unique_ptr<ActiveEffect> MakeEncoderEffect(const Setup& setup,
+std::unique_ptr<ActiveEffect> MakeEncoderEffect(const Channels& channels,
                                                 const EffectSpec& spec) {
   if (spec.effect == "encoder_scale") {
-    return std::make_unique<EncoderScale>(setup, spec);
+    return std::make_unique<EncoderScale>(channels, spec);
   }
   if (spec.effect == "encoder_periodic_error") {
-    return std::make_unique<EncoderPeriodicError>(setup, spec);
+    return std::make_unique<EncoderPeriodicError>(channels, spec);
   }
   if (spec.effect == "encoder_drift") {
-    return std::make_unique<EncoderDrift>(setup, spec);
+    return std::make_unique<EncoderDrift>(channels, spec);
   }
   return nullptr;
 }

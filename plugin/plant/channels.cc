@@ -8,9 +8,9 @@
 
 namespace mjdiag {
 
-std::vector<int> SensorAddresses(const Setup& setup, const mjModel& model) {
+std::vector<int> SensorAddresses(const Channels& channels, const mjModel& model) {
   std::vector<int> addresses;
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : channels.sensors) {
     const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
     if (sensor.component < 0 || sensor.component >= model.sensor_dim[id]) {
       throw InputError(
@@ -23,9 +23,9 @@ std::vector<int> SensorAddresses(const Setup& setup, const mjModel& model) {
   return addresses;
 }
 
-std::vector<int> ActuatorAddresses(const Setup& setup, const mjModel& model) {
+std::vector<int> ActuatorAddresses(const Channels& channels, const mjModel& model) {
   std::vector<int> addresses;
-  for (const ActuatorSetup& actuator : setup.actuators) {
+  for (const ActuatorSetup& actuator : channels.actuators) {
     addresses.push_back(FindElement(model, mjOBJ_ACTUATOR, actuator.element));
   }
   return addresses;

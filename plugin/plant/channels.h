@@ -12,9 +12,9 @@ namespace mjdiag {
 
 /// Index into mjData.sensordata of every sensor channel of the setup. InputError names
 /// a missing element or a component that the sensor does not have.
-std::vector<int> SensorAddresses(const Setup& setup, const mjModel& model);
+std::vector<int> SensorAddresses(const Channels& channels, const mjModel& model);
 /// Index into mjData.ctrl of every actuator channel of the setup.
-std::vector<int> ActuatorAddresses(const Setup& setup, const mjModel& model);
+std::vector<int> ActuatorAddresses(const Channels& channels, const mjModel& model);
 
 /// What a record has of a joint: "joint.<name>" in m or rad.
 Channel JointChannel(const mjModel& model, int joint, Eigen::VectorXd samples);

@@ -130,7 +130,7 @@ MatrixXd OtherDamping(const mjModel& model, const VectorXd& position) {
 }
 
 /// Generalised forces per unit of the setup's actuator signals.
-MatrixXd InputMatrix(const mjModel& model, const Setup& setup,
+MatrixXd InputMatrix(const mjModel& model, const Channels& channels,
                      const VectorXd& position) {
   const ModelPtr unlimited = CopyModel(model);
   std::fill_n(unlimited->actuator_ctrllimited, unlimited->nu, mjtByte{0});
@@ -138,12 +138,12 @@ MatrixXd InputMatrix(const mjModel& model, const Setup& setup,
   SmoothDynamics dynamics(*unlimited, position);
   dynamics.Update();
   const VectorXd at_rest = VectorXd::Map(dynamics.data().qfrc_actuator, model.nv);
-  MatrixXd gamma(model.nv, static_cast<Index>(setup.actuators.size()));
-  const std::vector<int> actuators = ActuatorAddresses(setup, model);
+  MatrixXd gamma(model.nv, static_cast<Index>(channels.actuators.size()));
+  const std::vector<int> actuators = ActuatorAddresses(channels, model);
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     const int actuator = actuators[i];
     if (model.actuator_dyntype[actuator] != mjDYN_NONE) {
-      throw InputError("actuator " + setup.actuators[i].element,
+      throw InputError("actuator " + channels.actuators[i].element,
                        "has dynamics of its own", "dyntype \"none\"");
     }
     dynamics.data().ctrl[actuator] = 1.0;
@@ -155,8 +155,8 @@ MatrixXd InputMatrix(const mjModel& model, const Setup& setup,
   return gamma;
 }
 
-void RequirePositionSensors(const mjModel& model, const Setup& setup) {
-  for (const SensorSetup& sensor : setup.sensors) {
+void RequirePositionSensors(const mjModel& model, const Channels& channels) {
+  for (const SensorSetup& sensor : channels.sensors) {
     const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
     if (model.sensor_needstage[id] == mjSTAGE_POS) continue;
     throw InputError("sensor " + sensor.element, "does not read a position",
@@ -166,10 +166,10 @@ void RequirePositionSensors(const mjModel& model, const Setup& setup) {
 
 }  // namespace
 
-MatrixXd OutputMatrix(const mjModel& model, const Setup& setup,
+MatrixXd OutputMatrix(const mjModel& model, const Channels& channels,
                       const VectorXd& position) {
-  RequirePositionSensors(model, setup);
-  const std::vector<int> addresses = SensorAddresses(setup, model);
+  RequirePositionSensors(model, channels);
+  const std::vector<int> addresses = SensorAddresses(channels, model);
   SmoothDynamics dynamics(model, position);
   const auto readings = [&]() -> VectorXd {
     dynamics.Update();
@@ -232,23 +232,24 @@ VectorXd StaticEquilibrium(const mjModel& model) {
   throw NumericalError("no static equilibrium: the search did not converge");
 }
 
-MechanicalModel Linearize(const mjModel& model, const Setup& setup) {
-  const VectorXd position = StaticEquilibrium(model);
+MechanicalModel Linearize(const mjModel& model, const Channels& channels,
+                          const VectorXd& rest) {
+  RequireSlidesAndHinges(model);
   MechanicalModel result;
   for (int joint = 0; joint < model.njnt; ++joint) {
     result.coordinates.push_back(ElementName(model, mjOBJ_JOINT, joint));
   }
-  for (const ActuatorSetup& actuator : setup.actuators) {
+  for (const ActuatorSetup& actuator : channels.actuators) {
     result.inputs.push_back(actuator.channel);
   }
-  for (const SensorSetup& sensor : setup.sensors) {
+  for (const SensorSetup& sensor : channels.sensors) {
     result.outputs.push_back(sensor.channel);
   }
-  result.M = SmoothDynamics(model, position).Mass();
-  result.D = JointDamping(model) + OtherDamping(model, position);
-  result.K = JointStiffness(model) + GeometricStiffness(model, position);
-  result.Gamma = InputMatrix(model, setup, position);
-  result.b = OutputMatrix(model, setup, position);
+  result.M = SmoothDynamics(model, rest).Mass();
+  result.D = JointDamping(model) + OtherDamping(model, rest);
+  result.K = JointStiffness(model) + GeometricStiffness(model, rest);
+  result.Gamma = InputMatrix(model, channels, rest);
+  result.b = OutputMatrix(model, channels, rest);
   return result;
 }
 

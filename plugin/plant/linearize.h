@@ -15,12 +15,13 @@ Eigen::VectorXd StaticEquilibrium(const mjModel& model);
 
 /// b of y = b^T q about `position`, nq x ny. InputError if a sensor of the setup does
 /// not read a position.
-Eigen::MatrixXd OutputMatrix(const mjModel& model, const Setup& setup,
+Eigen::MatrixXd OutputMatrix(const mjModel& model, const Channels& channels,
                              const Eigen::VectorXd& position);
 
-/// M, D, K (springs and gravity), Gamma and b of the setup's channels at the
-/// equilibrium. Static friction is left out, as in the seed's section 2.2.3. Requires
-/// slide and hinge joints only (InputError names others).
-MechanicalModel Linearize(const mjModel& model, const Setup& setup);
+/// M, D, K (springs and gravity), Gamma and b of the channels at the
+/// static equilibrium `rest`. Static friction is left out, as in the seed's section
+/// 2.2.3. Requires slide and hinge joints only (InputError names others).
+MechanicalModel Linearize(const mjModel& model, const Channels& channels,
+                          const Eigen::VectorXd& rest);
 
 }  // namespace mjdiag

@@ -17,10 +17,10 @@ double LargestError(const Eigen::VectorXd& error, const Eigen::VectorXd& target)
   return (error.array().abs() / (1e-12 + 1e-9 * target.array().abs())).maxCoeff();
 }
 
-/// The setup with those sensors only that have a start reading and read a position.
-Setup PositionSensors(const Setup& setup, const mjModel& model,
-                      const std::map<std::string, double>& start) {
-  Setup placed = setup;
+/// Those sensors only that have a start reading and read a position.
+Channels PositionSensors(const Channels& channels, const mjModel& model,
+                         const std::map<std::string, double>& start) {
+  Channels placed = channels;
   std::erase_if(placed.sensors, [&](const SensorSetup& sensor) {
     const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
     return !start.contains(sensor.channel) || model.sensor_needstage[id] != mjSTAGE_POS;
@@ -30,13 +30,13 @@ Setup PositionSensors(const Setup& setup, const mjModel& model,
 
 }  // namespace
 
-Eigen::VectorXd SensorReadings(const Setup& setup, const mjModel& model,
+Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
                                const Eigen::VectorXd& qpos) {
   const DataPtr data = MakeData(model);
   Eigen::Map<Eigen::VectorXd>(data->qpos, model.nq) = qpos;
   mj_fwdPosition(&model, data.get());
   mj_sensorPos(&model, data.get());
-  const std::vector<int> addresses = SensorAddresses(setup, model);
+  const std::vector<int> addresses = SensorAddresses(channels, model);
   Eigen::VectorXd readings(static_cast<Eigen::Index>(addresses.size()));
   for (std::size_t i = 0; i < addresses.size(); ++i) {
     readings[static_cast<Eigen::Index>(i)] = data->sensordata[addresses[i]];
@@ -44,12 +44,13 @@ Eigen::VectorXd SensorReadings(const Setup& setup, const mjModel& model,
   return readings;
 }
 
-Eigen::VectorXd StartPosition(const Setup& setup, const mjModel& model,
+Eigen::VectorXd StartPosition(const Channels& channels, const mjModel& model,
+                              const Eigen::VectorXd& rest,
                               const std::map<std::string, double>& start) {
-  Eigen::VectorXd qpos = StaticEquilibrium(model);
+  Eigen::VectorXd qpos = rest;
   if (start.empty()) return qpos;
 
-  const Setup placed = PositionSensors(setup, model, start);
+  const Channels placed = PositionSensors(channels, model, start);
   const auto sensors = static_cast<Eigen::Index>(placed.sensors.size());
   if (sensors == 0) return qpos;
   Eigen::VectorXd target(sensors);

@@ -12,14 +12,15 @@
 namespace mjdiag {
 
 /// Readings of the setup's sensors with the machine at rest at `qpos`, nsensor.
-Eigen::VectorXd SensorReadings(const Setup& setup, const mjModel& model,
+Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
                                const Eigen::VectorXd& qpos);
 
-/// Joint positions at rest: the static equilibrium, moved so that the named sensors
-/// read `start`. Of all ways to move there the one that strains the springs least is
+/// Joint positions at rest: the static equilibrium `rest`, moved so that the named
+/// sensors read `start`. Of all ways to move there the one that strains the springs least is
 /// taken: dq = W b (b^T W b)^-1 dy with W = 1 / (1 + k) per joint. NumericalError if
 /// the sensors cannot read that.
-Eigen::VectorXd StartPosition(const Setup& setup, const mjModel& model,
+Eigen::VectorXd StartPosition(const Channels& channels, const mjModel& model,
+                              const Eigen::VectorXd& rest,
                               const std::map<std::string, double>& start);
 
 }  // namespace mjdiag

@@ -49,26 +49,27 @@ StateSpace StepByFiniteDifferences(const mjModel& model) {
 
 }  // namespace
 
-StateSpace TickByFiniteDifferences(const mjModel& model, const Setup& setup) {
+StateSpace TickByFiniteDifferences(const mjModel& model, const Channels& channels,
+                                   int substeps) {
   if (model.na > 0) {
     throw InputError("plant", "has actuators with a state", "dyntype \"none\"");
   }
   const ModelPtr frictionless = CopyModel(model);
   frictionless->opt.disableflags |= mjDSBL_FRICTIONLOSS;
   const StateSpace step = StepByFiniteDifferences(*frictionless);
-  const std::vector<int> sensors = SensorAddresses(setup, model);
-  const std::vector<int> actuators = ActuatorAddresses(setup, model);
+  const std::vector<int> sensors = SensorAddresses(channels, model);
+  const std::vector<int> actuators = ActuatorAddresses(channels, model);
   const Eigen::MatrixXd input = step.B(Eigen::all, actuators);
   StateSpace tick;
   tick.A = step.A;
   tick.B = input;
-  for (int i = 1; i < setup.substeps; ++i) {
+  for (int i = 1; i < substeps; ++i) {
     tick.A = step.A * tick.A;
     tick.B = step.A * tick.B + input;
   }
   tick.C = step.C(sensors, Eigen::all);
   tick.D = Eigen::MatrixXd::Zero(tick.C.rows(), tick.B.cols());
-  tick.sample_time = step.sample_time * setup.substeps;
+  tick.sample_time = step.sample_time * substeps;
   return tick;
 }
 

@@ -10,9 +10,9 @@
 namespace mjdiag {
 
 /// mjd_transitionFD of one physics step about the static equilibrium, with static
-/// friction off, applied `setup.substeps` times. x = [q; v], u and y are the channels
-/// of the setup. Takes the control callback off meanwhile: not to be called while
+/// friction off, applied `substeps` times. x = [q; v], u and y are the channels. Takes the control callback off meanwhile: not to be called while
 /// simulations run in other threads.
-StateSpace TickByFiniteDifferences(const mjModel& model, const Setup& setup);
+StateSpace TickByFiniteDifferences(const mjModel& model, const Channels& channels,
+                                   int substeps);
 
 }  // namespace mjdiag

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <functional>
 
-#include "mjdiag/plugin/plant/tangent.h"
-#include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
-#include "mjdiag/plugin/plant/channels.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/plant/scenery.h"
+#include "mjdiag/plugin/machine/stepper.h"
+#include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/plugin/runtime/simulation.h"
-#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -41,60 +37,65 @@ void ChooseSolver(mjModel& model) {
   if (model.neq == 0 && !limited && !contacts) model.opt.solver = mjSOL_PGS;
 }
 
-/// Called after every substep and every tick.
+/// Holds what was recorded, and keeps what the machine reads.
+class RecordedInputs final : public TickControl {
+ public:
+  explicit RecordedInputs(const MeasuredRun& run)
+      : run_(run), reading_(run.outputs.rows()) {}
+
+  void Tick(std::span<const double> outputs,
+            std::span<double> inputs) noexcept override {
+    std::copy(outputs.begin(), outputs.end(), reading_.begin());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      inputs[i] = run_.inputs(static_cast<Index>(i), tick_);
+    }
+    ++tick_;
+  }
+  const VectorXd& reading() const { return reading_; }
+
+ private:
+  const MeasuredRun& run_;
+  VectorXd reading_;
+  Index tick_ = 0;
+};
+
+/// Called after every physics step and every tick.
 struct Watch {
-  std::function<void(const mjModel&, const mjData&)> substep;
+  std::function<void(const mjModel&, const mjData&)> step;
   std::function<void()> tick;
 };
 
-Track Follow(const Setup& setup, const mjModel& plant, const Changes& changes,
-             const MeasuredRun& run, const Observer& observer, bool states,
-             const Watch& watch) {
-  const ModelPtr model = ChangedPlant(plant, changes.faults, changes.effects);
-  const VectorXd start = StartPosition(setup, *model, run.start);
-  DropScenery(*model);
-  ChooseSolver(*model);
-  const DataPtr data = MakeData(*model);
-  std::copy(start.begin(), start.end(), data->qpos);
-  ActiveEffects effects(setup, *model, changes.effects);
-  const std::vector<int> sensors = SensorAddresses(setup, *model);
-  const std::vector<int> actuators = ActuatorAddresses(setup, *model);
+Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& run,
+             const Observer& observer, bool states, const Watch& watch) {
+  const Machine machine = nominal.With(changes);
+  const StartedPlant plant = StartPlant(machine, run.start);
+  mjModel& model = *plant.model;
+  mjData& data = *plant.data;
+  ChooseSolver(model);
+  Stepper stepper(machine);
+  RecordedInputs control(run);
+  std::function<void()> after_step;
+  if (watch.step) after_step = [&] { watch.step(model, data); };
 
   const Index n = run.samples();
-  const Index nv = model->nv;
+  const Index nv = model.nv;
   Track track;
   track.innovations.resize(run.outputs.rows(), n);
   if (states) {
     track.position.resize(nv, n);
     track.velocity.resize(nv, n);
   }
-  Eigen::Map<VectorXd> q(data->qpos, nv);
-  Eigen::Map<VectorXd> v(data->qvel, nv);
-  VectorXd reading(run.outputs.rows());
+  Eigen::Map<VectorXd> q(data.qpos, nv);
+  Eigen::Map<VectorXd> v(data.qvel, nv);
   VectorXd correction(2 * nv);
   for (Index k = 0; k < n; ++k) {
-    for (int substep = 0; substep < setup.substeps; ++substep) {
-      mj_step1(model.get(), data.get());
-      if (substep == 0) {
-        for (std::size_t i = 0; i < sensors.size(); ++i) {
-          reading[static_cast<Index>(i)] = data->sensordata[sensors[i]];
-        }
-        effects.Distort({reading.data(), sensors.size()},
-                        static_cast<double>(k) * run.sample_time);
-        track.innovations.col(k) = run.outputs.col(k) - reading;
-        if (states) {
-          track.position.col(k) = q;
-          track.velocity.col(k) = v;
-        }
-      }
-      for (std::size_t i = 0; i < actuators.size(); ++i) {
-        data->ctrl[actuators[i]] = run.inputs(static_cast<Index>(i), k);
-      }
-      effects.Act(*model, *data);
-      mj_step2(model.get(), data.get());
-      if (watch.substep) watch.substep(*model, *data);
+    if (states) {
+      track.position.col(k) = q;
+      track.velocity.col(k) = v;
     }
-    if (HasDiverged(*data)) {
+    stepper.Advance(model, data, control, after_step);
+    track.innovations.col(k) = run.outputs.col(k) - control.reading();
+    if (HasDiverged(data)) {
       throw NumericalError("replay: diverged at " +
                            std::to_string(static_cast<double>(k) * run.sample_time) +
                            " s");
@@ -111,42 +112,42 @@ Track Follow(const Setup& setup, const mjModel& plant, const Changes& changes,
 
 MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   MeasuredRun run;
-  run.sample_time = setup.sample_time();
+  run.sample_time = setup.rates.tick();
   run.start = Replay(setup, measured).start;
-  run.outputs.resize(static_cast<Index>(setup.sensors.size()), measured.samples());
-  run.inputs.resize(static_cast<Index>(setup.actuators.size()), measured.samples());
+  run.outputs.resize(static_cast<Index>(setup.channels.sensors.size()), measured.samples());
+  run.inputs.resize(static_cast<Index>(setup.channels.actuators.size()), measured.samples());
   for (Index i = 0; i < run.outputs.rows(); ++i) {
-    const SensorSetup& sensor = setup.sensors[static_cast<std::size_t>(i)];
+    const SensorSetup& sensor = setup.channels.sensors[static_cast<std::size_t>(i)];
     run.outputs.row(i) = Samples(measured, sensor.channel, sensor.unit);
   }
   for (Index i = 0; i < run.inputs.rows(); ++i) {
-    const ActuatorSetup& actuator = setup.actuators[static_cast<std::size_t>(i)];
+    const ActuatorSetup& actuator = setup.channels.actuators[static_cast<std::size_t>(i)];
     run.inputs.row(i) = Samples(measured, actuator.channel, actuator.unit);
   }
   return run;
 }
 
-Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+Track FollowRun(const Machine& machine, const Changes& changes,
                 const MeasuredRun& run, const Observer& observer, bool states) {
-  return Follow(setup, plant, changes, run, observer, states, {});
+  return Follow(machine, changes, run, observer, states, {});
 }
 
-Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+Track FollowRun(const Machine& machine, const Changes& changes,
                 const MeasuredRun& run, const Observer& observer,
-                const MechanicalModel& model, ErrorDynamics& dynamics) {
-  TangentRecorder recorder(plant, model);
+                ErrorDynamics& dynamics) {
+  TangentRecorder recorder(machine.plant(), machine.linear());
   const Watch watch{[&recorder](const mjModel& changed, const mjData& data) {
                       recorder.Substep(changed, data);
                     },
                     [&] { dynamics.Add(recorder.EndTick()); }};
-  return Follow(setup, plant, changes, run, observer, true, watch);
+  return Follow(machine, changes, run, observer, true, watch);
 }
 
-ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
+ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
                              const Track& track) {
   ObservedMotion motion;
   motion.sample_time = run.sample_time;
-  const Eigen::Map<const VectorXd> rest(plant.qpos0, plant.nv);
+  const Eigen::Map<const VectorXd> rest(machine.plant().qpos0, machine.plant().nv);
   motion.position = track.position.colwise() - rest;
   motion.velocity = track.velocity;
   motion.acceleration = CentralDifferences(track.velocity, run.sample_time);

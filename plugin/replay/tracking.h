@@ -1,18 +1,15 @@
 #pragma once
 // Replay of a measured input on the nonlinear plant beside an observer (observer.h).
 
-#include <mujoco/mujoco.h>
-
 #include <Eigen/Core>
 #include <map>
 #include <string>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
 #include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/plugin/replay/observer.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -36,20 +33,21 @@ struct Track {
   Eigen::MatrixXd velocity;     ///< nv x samples, the same
 };
 
-/// @param plant   as LoadPlant gives it
-/// @param states  whether to keep the trajectory of the joints
+/// The run beside the machine with those changes.
+/// @param machine  the nominal one
+/// @param states   whether to keep the trajectory of the joints
 /// NumericalError if the run diverges.
-Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+Track FollowRun(const Machine& machine, const Changes& changes,
                 const MeasuredRun& run, const Observer& observer, bool states);
 
-/// The same, and the first order of it. @param model  linear model of `plant`
+/// The same, and the first order of it.
 /// @param dynamics  every tick is added to it
-Track FollowRun(const Setup& setup, const mjModel& plant, const Changes& changes,
+Track FollowRun(const Machine& machine, const Changes& changes,
                 const MeasuredRun& run, const Observer& observer,
-                const MechanicalModel& model, ErrorDynamics& dynamics);
+                ErrorDynamics& dynamics);
 
 /// The motion that the joints of a track made, with what was measured beside it.
-ObservedMotion ObserveMotion(const mjModel& plant, const MeasuredRun& run,
+ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
                              const Track& track);
 
 }  // namespace mjdiag

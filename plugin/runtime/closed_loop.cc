@@ -19,14 +19,14 @@ StateSpace Feedback(const AxisSetup& axis, double sample_time) {
 
 Eigen::MatrixXd ClosedLoopMatrix(const StateSpace& plant, const Setup& setup) {
   Eigen::MatrixXd closed = plant.A;
-  for (const AxisSetup& axis : setup.axes) {
-    const StateSpace controller = Feedback(axis, setup.sample_time());
+  for (const AxisSetup& axis : setup.control.axes) {
+    const StateSpace controller = Feedback(axis, setup.rates.tick());
     const Eigen::Index n = closed.rows();
     const Eigen::Index nc = controller.states();
     // u = drive_gain (C_c x_c - D_c y), y = c x
     const Eigen::VectorXd input =
-        axis.drive_gain * plant.B.col(setup.ActuatorIndex(axis.actuator));
-    const Eigen::RowVectorXd output = plant.C.row(setup.SensorIndex(axis.sensor));
+        axis.drive_gain * plant.B.col(setup.channels.ActuatorIndex(axis.actuator));
+    const Eigen::RowVectorXd output = plant.C.row(setup.channels.SensorIndex(axis.sensor));
     Eigen::MatrixXd next = Eigen::MatrixXd::Zero(n + nc, n + nc);
     next.topLeftCorner(n, n) = closed;
     next.topLeftCorner(plant.states(), plant.states()) -=

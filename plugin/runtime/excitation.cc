@@ -9,7 +9,7 @@ namespace {
 
 std::vector<std::string> AxisNames(const Setup& setup) {
   std::vector<std::string> names;
-  for (const AxisSetup& axis : setup.axes) names.push_back(axis.name);
+  for (const AxisSetup& axis : setup.control.axes) names.push_back(axis.name);
   return names;
 }
 
@@ -46,10 +46,10 @@ double StartReading(const SensorSetup& sensor, double measured, double reference
 }
 
 void CheckSampleTime(const Setup& setup, const Record& measured) {
-  if (std::abs(measured.sample_time() / setup.sample_time() - 1.0) > 1e-4) {
+  if (std::abs(measured.sample_time() / setup.rates.tick() - 1.0) > 1e-4) {
     throw InputError(
         "record", "sample time " + std::to_string(measured.sample_time() * 1e3) + " ms",
-        "the control tick of the setup, " + std::to_string(setup.sample_time() * 1e3) +
+        "the control tick of the setup, " + std::to_string(setup.rates.tick() * 1e3) +
             " ms");
   }
 }
@@ -57,31 +57,31 @@ void CheckSampleTime(const Setup& setup, const Record& measured) {
 }  // namespace
 
 Excitation FollowTrajectory(const Setup& setup, const Trajectory& trajectory) {
-  return {SampleTrajectory(trajectory, AxisNames(setup), setup.sample_time()), {}, {}};
+  return {SampleTrajectory(trajectory, AxisNames(setup), setup.rates.tick()), {}, {}};
 }
 
 Excitation Replay(const Setup& setup, const Record& measured) {
   CheckSampleTime(setup, measured);
   Excitation excitation;
-  excitation.inputs = Record(setup.sample_time(), measured.start_time());
-  if (setup.axes.empty()) {
-    for (const ActuatorSetup& actuator : setup.actuators) {
+  excitation.inputs = Record(setup.rates.tick(), measured.start_time());
+  if (setup.control.axes.empty()) {
+    for (const ActuatorSetup& actuator : setup.channels.actuators) {
       excitation.inputs.Add(Measured(measured, actuator.channel, actuator.unit));
     }
-    for (const SensorSetup& sensor : setup.sensors) {
+    for (const SensorSetup& sensor : setup.channels.sensors) {
       const Channel* channel = measured.Find(sensor.channel);
       if (channel == nullptr) continue;
       excitation.start[sensor.channel] = StartReading(sensor, channel->samples[0], 0.0);
     }
     return excitation;
   }
-  excitation.reference.sample_time = setup.sample_time();
-  for (const AxisSetup& axis : setup.axes) {
+  excitation.reference.sample_time = setup.rates.tick();
+  for (const AxisSetup& axis : setup.control.axes) {
     excitation.reference.axes.push_back(
-        MeasuredReference(measured, axis.name, setup.Sensor(axis.sensor).unit));
+        MeasuredReference(measured, axis.name, setup.channels.Sensor(axis.sensor).unit));
     excitation.start[axis.sensor] = StartReading(
-        setup.Sensor(axis.sensor),
-        Measured(measured, axis.sensor, setup.Sensor(axis.sensor).unit).samples[0],
+        setup.channels.Sensor(axis.sensor),
+        Measured(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit).samples[0],
         excitation.reference.axes.back().position[0]);
     if (const Channel* known = measured.Find(axis.known_disturbance)) {
       excitation.inputs.Add(*known);

@@ -5,18 +5,17 @@
 #include <mutex>
 
 #include "mjdiag/plugin/plant/channels.h"
+#include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
 
-// Two slots: a constant that no other user of userdata will hold, then the pointer.
-constexpr int kSlots = 2;
 constexpr double kMark = 7.2657474e-169;
 static_assert(sizeof(mjtNum) == sizeof(std::uintptr_t), "a slot must hold a pointer");
 
 mjtNum* Slots(const mjModel& model, const mjData& data) {
-  return model.nuserdata < kSlots ? nullptr : data.userdata + model.nuserdata - kSlots;
+  return model.nuserdata < kInstanceSlots ? nullptr : data.userdata + model.nuserdata - kInstanceSlots;
 }
 
 // What was installed before; serves the data that carry no mark.
@@ -47,40 +46,18 @@ void InstallControlCallback() {
 
 }  // namespace
 
-Instance::Instance(const Setup& setup, const mjModel& model,
-                   const Excitation& excitation, const RunOptions& options)
-    : loop_(WithEncoderNoise(setup, model, options.effects), excitation, options),
-      effects_(setup, model, options.effects),
-      sample_time_(setup.sample_time()),
-      substeps_(setup.substeps),
-      sensor_address_(SensorAddresses(setup, model)),
-      actuator_address_(ActuatorAddresses(setup, model)),
-      outputs_(sensor_address_.size()),
-      inputs_(actuator_address_.size()) {
-  if (options.log_joints) joints_.resize(model.nq, excitation.samples());
+Instance::Instance(const Machine& machine, const Excitation& excitation,
+                   const RunOptions& options)
+    : loop_(machine.setup(), excitation, options), stepper_(machine) {
+  if (options.log_joints) joints_.resize(machine.plant().nq, excitation.samples());
 }
 
 void Instance::OnStep(const mjModel& model, mjData& data) noexcept {
-  if (substep_ == 0) {
-    for (std::size_t i = 0; i < outputs_.size(); ++i) {
-      outputs_[i] = data.sensordata[sensor_address_[i]];
-    }
-    LogJoints(model, data);
-    const double time = static_cast<double>(loop_.ticks_done()) * sample_time_;
-    effects_.Distort(outputs_, time);
-    loop_.Tick(outputs_, inputs_);
-  }
-  if (++substep_ == substeps_) substep_ = 0;
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    data.ctrl[actuator_address_[i]] = inputs_[i];
-  }
-  effects_.Act(model, data);
+  if (stepper_.AtTickStart()) LogJoints(model, data);
+  stepper_.OnStep(model, data, loop_);
 }
 
-void Instance::Release(mjData& data) noexcept {
-  for (const int address : actuator_address_) data.ctrl[address] = 0.0;
-  effects_.Release(data);
-}
+void Instance::Release(mjData& data) noexcept { stepper_.Release(data); }
 
 void Instance::LogJoints(const mjModel& model, const mjData& data) noexcept {
   const Eigen::Index k = loop_.ticks_done();
@@ -99,8 +76,6 @@ Record Instance::ToRecord(const mjModel& model) const {
   }
   return record;
 }
-
-void ReserveInstanceSlot(mjModel& model) { model.nuserdata += kSlots; }
 
 void Attach(const mjModel& model, mjData& data, Instance& instance) {
   mjtNum* slots = Slots(model, data);

@@ -7,9 +7,8 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
-#include <vector>
 
-#include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/plugin/runtime/tick_loop.h"
 
@@ -17,7 +16,7 @@ namespace mjdiag {
 
 class Instance {
  public:
-  Instance(const Setup& setup, const mjModel& model, const Excitation& excitation,
+  Instance(const Machine& machine, const Excitation& excitation,
            const RunOptions& options);
 
   /// Called by the control callback once a physics step: at the first step of a tick it
@@ -36,19 +35,9 @@ class Instance {
   void LogJoints(const mjModel& model, const mjData& data) noexcept;
 
   TickLoop loop_;
-  ActiveEffects effects_;
-  double sample_time_;
-  int substeps_;
-  int substep_ = 0;
-  std::vector<int> sensor_address_;
-  std::vector<int> actuator_address_;
-  std::vector<double> outputs_;
-  std::vector<double> inputs_;
+  Stepper stepper_;
   Eigen::MatrixXd joints_;  // nq x ticks, empty: not logged
 };
-
-/// Makes room in mjData.userdata for the mark of an instance. Call before mj_makeData.
-void ReserveInstanceSlot(mjModel& model);
 
 /// Marks the data as belonging to the instance and installs the control callback (once
 /// a process; data without a mark go to the callback that was installed before).

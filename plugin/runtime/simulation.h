@@ -9,22 +9,15 @@
 // ("joint.X"). Sample k holds the sensors read at the start of tick k and the actuator
 // signals held from there to tick k + 1.
 
-#include <mujoco/mujoco.h>
-
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "mjdiag/controllers/axis_controller.h"
 #include "mjdiag/controllers/reference.h"
-#include "mjdiag/diagnosis/mechanical_model.h"
-#include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/plant/fault.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -65,8 +58,6 @@ class TickObserver {
 
 struct RunOptions {
   ControlMode mode = ControlMode::kBoth;
-  std::vector<Fault> faults;
-  std::vector<EffectSpec> effects;
   /// Multisine disturbance -> magnitude (gamma of Eq. 7); left out: 0.
   std::map<std::string, double> disturbances;
   double noise_scale = 1.0;  ///< times every sensor's noise; 0: none
@@ -76,37 +67,17 @@ struct RunOptions {
   std::function<void(double fraction)> progress;  ///< called now and then from the run
 };
 
-/// InputError if the model's time step is not control tick / substeps, or its
-/// integrator calls the control callback more than once a step.
-void CheckTimeStep(const Setup& setup, const mjModel& model);
+/// InputError if an axis cannot run in that mode.
+void CheckMode(const Control& control, ControlMode mode);
 
-/// InputError if an axis of the setup cannot run in that mode.
-void CheckMode(const Setup& setup, ControlMode mode);
-
-/// Makes a loaded model the plant of a setup: gravity, static friction, native effects
-/// that the MJCF carries, and the slot for the mark of an instance. Once a model.
-void PreparePlant(const Setup& setup, mjModel& model);
-
-/// The plant of a setup, as the setup wants it (gravity, static friction, time step).
-/// InputError if the time step does not fit or an element that the setup names is
-/// missing.
-ModelPtr LoadPlant(const Setup& setup);
-
-/// A copy of the plant with those faults and what of the effects is native.
-ModelPtr ChangedPlant(const mjModel& plant, const std::vector<Fault>& faults,
-                      const std::vector<EffectSpec>& effects);
-
-/// Whether the run has diverged: MuJoCo resets the state then and goes on.
-bool HasDiverged(const mjData& data);
-
-/// One run of the nonlinear plant. NumericalError says at which time and joint it
-/// diverged. `plant` stays as it is; faults and effects go into a copy.
-Record Simulate(const Setup& setup, const mjModel& plant, const Excitation& excitation,
+/// One run of the nonlinear machine. NumericalError says at which time and joint it
+/// diverged.
+Record Simulate(const Machine& machine, const Excitation& excitation,
                 const RunOptions& options);
 
-/// The same run on the linear plant of the same MJCF (with the same faults; effects are
-/// refused with InputError).
-Record SimulateLinear(const Setup& setup, const mjModel& plant,
-                      const Excitation& excitation, const RunOptions& options);
+/// The same run of the linear model of the machine; effects that it was given besides
+/// those of its MJCF, and effects that are not linear, are refused with InputError.
+Record SimulateLinear(const Machine& machine, const Excitation& excitation,
+                      const RunOptions& options);
 
 }  // namespace mjdiag

@@ -29,12 +29,12 @@ double Clamp(double value, double limit) {
 
 TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
                    const RunOptions& options)
-    : sensors_(setup.sensors),
-      actuators_(setup.actuators),
+    : sensors_(setup.channels.sensors),
+      actuators_(setup.channels.actuators),
       reference_(excitation.reference),
       inputs_(excitation.inputs),
-      feedthrough_(setup.actuators.size(), nullptr),
-      sample_time_(setup.sample_time()),
+      feedthrough_(setup.channels.actuators.size(), nullptr),
+      sample_time_(setup.rates.tick()),
       noise_scale_(options.noise_scale),
       generator_(options.seed),
       observer_(options.observer),
@@ -54,9 +54,9 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
 
 void TickLoop::AddAxes(const Setup& setup, const Excitation& excitation,
                        ControlMode mode) {
-  CheckMode(setup, mode);
-  for (std::size_t i = 0; i < setup.axes.size(); ++i) {
-    const AxisSetup& axis = setup.axes[i];
+  CheckMode(setup.control, mode);
+  for (std::size_t i = 0; i < setup.control.axes.size(); ++i) {
+    const AxisSetup& axis = setup.control.axes[i];
     if (i >= reference_.axes.size() || reference_.axes[i].axis != axis.name) {
       throw InputError("reference", "no motion for axis '" + axis.name + "'",
                        "one for every axis of the setup, in its order");
@@ -67,8 +67,8 @@ void TickLoop::AddAxes(const Setup& setup, const Excitation& excitation,
     entry.controller->Reset(start == excitation.start.end()
                                 ? reference_.axes[i].position[0]
                                 : start->second);
-    entry.sensor = setup.SensorIndex(axis.sensor);
-    entry.actuator = setup.ActuatorIndex(axis.actuator);
+    entry.sensor = setup.channels.SensorIndex(axis.sensor);
+    entry.actuator = setup.channels.ActuatorIndex(axis.actuator);
     entry.drive_gain = axis.drive_gain;
     entry.disturbance = inputs_.Find(axis.known_disturbance);
   }
@@ -85,7 +85,7 @@ void TickLoop::AddSines(const Setup& setup, const RunOptions& options) {
     }
     for (const auto& [channel, amplitude] : source->amplitude) {
       for (const double frequency : source->frequencies) {
-        sines_.push_back({setup.ActuatorIndex(channel), magnitude * amplitude,
+        sines_.push_back({setup.channels.ActuatorIndex(channel), magnitude * amplitude,
                           2.0 * std::numbers::pi * frequency});
       }
     }

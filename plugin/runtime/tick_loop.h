@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "mjdiag/controllers/axis_controller.h"
+#include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
 
-class TickLoop {
+class TickLoop : public TickControl {
  public:
   /// InputError if the excitation lacks an axis or an actuator channel of the setup, or
   /// options.disturbances names none of its disturbances.
@@ -22,7 +23,8 @@ class TickLoop {
 
   /// @param outputs  true sensor readings at the start of the tick, setup order
   /// @param inputs   receives the actuator signals to hold until the next tick
-  void Tick(std::span<const double> outputs, std::span<double> inputs) noexcept;
+  void Tick(std::span<const double> outputs,
+            std::span<double> inputs) noexcept override;
 
   Eigen::Index ticks_done() const { return tick_; }
   Eigen::Index ticks() const { return readings_.cols(); }

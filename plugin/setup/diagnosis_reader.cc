@@ -14,7 +14,7 @@ constexpr NumberRule kProbability{[](double x) { return x >= 0.0 && x < 1.0; },
 
 double Cutoff(const TomlTable& table, const Setup& setup, double fallback) {
   const double cutoff = table.Number("cutoff", kPositive, fallback);
-  if (cutoff >= 0.5 * setup.control_rate) {
+  if (cutoff >= 0.5 * setup.rates.control) {
     table.Fail("cutoff", "is " + std::to_string(cutoff) + " Hz",
                "less than half the control rate");
   }
@@ -30,7 +30,7 @@ void ReadThresholds(const TomlTable& table, const Setup& setup,
   options.trajectories = table.Texts("trajectories", {});
   for (const std::string& name : options.trajectories) {
     const auto named = [&](const Trajectory& t) { return t.name == name; };
-    if (!std::any_of(setup.trajectories.begin(), setup.trajectories.end(), named)) {
+    if (!std::any_of(setup.trajectories.all.begin(), setup.trajectories.all.end(), named)) {
       table.Fail("trajectories", "there is no trajectory '" + name + "'",
                  "names under [trajectories]");
     }

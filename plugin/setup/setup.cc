@@ -10,7 +10,7 @@ namespace {
 
 /// The element whose `name` is `wanted`; InputError lists the others without it.
 template <typename Element>
-const Element& FindNamed(const Setup& setup, const std::vector<Element>& elements,
+const Element& FindNamed(const std::vector<Element>& elements,
                          std::string Element::*name, std::string_view wanted,
                          const std::string& kind) {
   std::string known;
@@ -18,36 +18,34 @@ const Element& FindNamed(const Setup& setup, const std::vector<Element>& element
     if (element.*name == wanted) return element;
     known += (known.empty() ? "" : ", ") + element.*name;
   }
-  throw InputError("setup '" + setup.name + "'",
-                   "there is no " + kind + " '" + std::string(wanted) + "'",
+  throw InputError("setup", "there is no " + kind + " '" + std::string(wanted) + "'",
                    known.empty() ? "a setup that declares one" : "one of " + known);
 }
 
 }  // namespace
 
-const SensorSetup& Setup::Sensor(std::string_view channel) const {
-  return FindNamed(*this, sensors, &SensorSetup::channel, channel, "sensor channel");
+const SensorSetup& Channels::Sensor(std::string_view channel) const {
+  return FindNamed(sensors, &SensorSetup::channel, channel, "sensor channel");
 }
 
-const ActuatorSetup& Setup::Actuator(std::string_view channel) const {
-  return FindNamed(*this, actuators, &ActuatorSetup::channel, channel,
-                   "actuator channel");
+const ActuatorSetup& Channels::Actuator(std::string_view channel) const {
+  return FindNamed(actuators, &ActuatorSetup::channel, channel, "actuator channel");
 }
 
-std::ptrdiff_t Setup::SensorIndex(std::string_view channel) const {
+std::ptrdiff_t Channels::SensorIndex(std::string_view channel) const {
   return &Sensor(channel) - sensors.data();
 }
 
-std::ptrdiff_t Setup::ActuatorIndex(std::string_view channel) const {
+std::ptrdiff_t Channels::ActuatorIndex(std::string_view channel) const {
   return &Actuator(channel) - actuators.data();
 }
 
-const Trajectory& Setup::FindTrajectory(std::string_view trajectory) const {
-  return FindNamed(*this, trajectories, &Trajectory::name, trajectory, "trajectory");
+const Trajectory& Trajectories::Find(std::string_view name) const {
+  return FindNamed(all, &Trajectory::name, name, "trajectory");
 }
 
 const FaultSizes& Setup::Study(std::string_view study) const {
-  return FindNamed(*this, studies, &FaultSizes::name, study, "[studies] table");
+  return FindNamed(studies, &FaultSizes::name, study, "[studies] table");
 }
 
 Setup ReadSetup(const std::filesystem::path& where,

@@ -79,35 +79,67 @@ struct FaultSizes {
   std::vector<std::pair<std::string, double>> values;
 };
 
+/// [rates]: the clock of the controller, and how finely physics follows it.
+struct Rates {
+  double control = 0.0;  ///< [Hz]
+  int substeps = 1;      ///< physics steps a control tick
+
+  double tick() const { return 1.0 / control; }           ///< [s]
+  double step() const { return 1.0 / control / substeps; }  ///< of the physics [s]
+};
+
+/// [physics]
+struct Physics {
+  bool gravity = true;
+  bool static_friction = true;
+};
+
+/// [sensors] and [actuators]: what is read and driven once a control tick.
+struct Channels {
+  std::vector<SensorSetup> sensors;
+  std::vector<ActuatorSetup> actuators;
+
+  /// The channel of that name; InputError lists the others without it.
+  const SensorSetup& Sensor(std::string_view channel) const;
+  const ActuatorSetup& Actuator(std::string_view channel) const;
+  /// Its place in `sensors` and `actuators`; InputError as above.
+  std::ptrdiff_t SensorIndex(std::string_view channel) const;
+  std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
+};
+
+/// [axes]
+struct Control {
+  std::vector<AxisSetup> axes;  ///< empty: open loop, records drive the actuators
+};
+
+/// [trajectories]
+struct Trajectories {
+  std::vector<Trajectory> all;
+  std::string fallback;  ///< name of the one that is taken if none is named
+
+  /// InputError lists the others without it.
+  const Trajectory& Find(std::string_view name) const;
+};
+
+/// What the file says, part by part; a consumer takes the part that it needs.
 struct Setup {
   std::filesystem::path folder;
   std::string name;
   std::filesystem::path plant;                     ///< MJCF file
   std::optional<std::filesystem::path> analytic;   ///< linear chain, see linear_chain.h
   std::optional<std::filesystem::path> published;  ///< printed residual row
-  double control_rate = 0.0;                       ///< [Hz]
-  int substeps = 1;                                ///< physics steps a control tick
-  bool gravity = true;
-  bool static_friction = true;
-  std::vector<SensorSetup> sensors;
-  std::vector<ActuatorSetup> actuators;
-  std::vector<AxisSetup> axes;  ///< empty: open loop, records drive the actuators
+  Rates rates;
+  Physics physics;
+  Channels channels;
+  Control control;
   std::vector<MultisineSetup> disturbances;
-  std::vector<Trajectory> trajectories;
-  std::string default_trajectory;
+  Trajectories trajectories;
   std::optional<ColumnMap> record;  ///< how a measured file becomes a Record
   CompareSetup compare;
   DiagnosisOptions diagnosis;
   std::vector<FaultSizes> studies;
 
-  double sample_time() const { return 1.0 / control_rate; }
-  const SensorSetup& Sensor(std::string_view channel) const;
-  const ActuatorSetup& Actuator(std::string_view channel) const;
-  /// Place of a channel in `sensors` and `actuators`; InputError as above.
-  std::ptrdiff_t SensorIndex(std::string_view channel) const;
-  std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
   const FaultSizes& Study(std::string_view study) const;
-  const Trajectory& FindTrajectory(std::string_view trajectory) const;
 };
 
 /// Reads `<where>/setup.toml`, or `where` itself if it is a file. `overrides` are

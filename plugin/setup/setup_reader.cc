@@ -112,23 +112,23 @@ void ReadHead(const TomlTable& root, Setup& setup) {
 
 void ReadRates(const TomlTable& root, Setup& setup) {
   const TomlTable rates = root.Table("rates");
-  setup.control_rate = rates.Number("control", kPositive);
-  if (setup.control_rate > kHighestRate) {
+  setup.rates.control = rates.Number("control", kPositive);
+  if (setup.rates.control > kHighestRate) {
     rates.Fail("control", "is above 1e6 Hz", "a control rate in Hz");
   }
-  setup.substeps = rates.Integer("substeps", 1, kMostSubsteps, 1);
+  setup.rates.substeps = rates.Integer("substeps", 1, kMostSubsteps, 1);
 }
 
 void ReadPhysics(const TomlTable& root, Setup& setup) {
   const std::optional<TomlTable> physics = root.FindTable("physics");
   if (!physics) return;
-  setup.gravity = physics->Flag("gravity", setup.gravity);
-  setup.static_friction = physics->Flag("static_friction", setup.static_friction);
+  setup.physics.gravity = physics->Flag("gravity", setup.physics.gravity);
+  setup.physics.static_friction = physics->Flag("static_friction", setup.physics.static_friction);
 }
 
 void RequireBelowNyquist(const TomlTable& table, std::string_view key, double frequency,
                          const Setup& setup) {
-  if (frequency >= 0.5 * setup.control_rate) {
+  if (frequency >= 0.5 * setup.rates.control) {
     table.Fail(key, "a frequency is not below half the control rate",
                "frequencies in Hz below rates.control / 2");
   }
@@ -152,12 +152,12 @@ void ReadSensors(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
     sensor.element = table.Text("element");
     sensor.component = table.Integer("component", 0, kMostComponents - 1, 0);
     sensor.unit = SiUnit(table, "unit");
-    sensor.noise_sd = NoiseSd(table, setup.control_rate);
+    sensor.noise_sd = NoiseSd(table, setup.rates.control);
     sensor.resolution = table.Number("resolution", kNonNegative, 0.0);
     DeclareChannel(table, sensor.channel, sensor.unit, channels);
-    setup.sensors.push_back(sensor);
+    setup.channels.sensors.push_back(sensor);
   }
-  if (setup.sensors.empty()) root.Fail("sensors", "is empty", "a sensor at least");
+  if (setup.channels.sensors.empty()) root.Fail("sensors", "is empty", "a sensor at least");
 }
 
 void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
@@ -168,9 +168,9 @@ void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) 
     actuator.unit = SiUnit(table, "unit");
     actuator.limit = table.Number("limit", kNonNegative, 0.0);
     DeclareChannel(table, actuator.channel, actuator.unit, channels);
-    setup.actuators.push_back(actuator);
+    setup.channels.actuators.push_back(actuator);
   }
-  if (setup.actuators.empty()) {
+  if (setup.channels.actuators.empty()) {
     root.Fail("actuators", "is empty", "an actuator at least");
   }
 }
@@ -214,10 +214,10 @@ AxisSetup ReadAxis(const TomlTable& table, const Setup& setup) {
   AxisSetup axis;
   axis.name = table.name();
   axis.sensor = DeclaredName(table, "sensor", "sensor channel",
-                             NamesOf(setup.sensors, &SensorSetup::channel));
+                             NamesOf(setup.channels.sensors, &SensorSetup::channel));
   axis.actuator = DeclaredName(table, "actuator", "actuator channel",
-                               NamesOf(setup.actuators, &ActuatorSetup::channel));
-  for (const AxisSetup& other : setup.axes) {
+                               NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
+  for (const AxisSetup& other : setup.control.axes) {
     if (other.actuator == axis.actuator) {
       table.Fail("actuator", "'" + axis.actuator + "' drives axis '" + other.name + "'",
                  "an actuator for each axis");
@@ -244,7 +244,7 @@ AxisSetup ReadAxis(const TomlTable& table, const Setup& setup) {
 void ReadAxes(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
   for (const TomlTable& table : root.NamedTables("axes", "<axis>")) {
     const AxisSetup axis = ReadAxis(table, setup);
-    const std::string unit = setup.Sensor(axis.sensor).unit;
+    const std::string unit = setup.channels.Sensor(axis.sensor).unit;
     const std::string reference = axis.name + "_ref";
     DeclareChannel(table, reference, unit, channels);
     DeclareChannel(table, reference + "_velocity", ParseUnit(unit + "/s").si, channels);
@@ -254,7 +254,7 @@ void ReadAxes(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
     if (!axis.known_disturbance.empty()) {
       DeclareChannel(table, axis.known_disturbance, std::nullopt, channels);
     }
-    setup.axes.push_back(axis);
+    setup.control.axes.push_back(axis);
   }
 }
 
@@ -269,7 +269,7 @@ void ReadDisturbances(const TomlTable& root, Setup& setup) {
     for (const TomlTable& entry : table.NamedTables("amplitude", "<actuator>")) {
       RequireDeclared(table.Table("amplitude"), entry.name(), entry.name(),
                       "actuator channel",
-                      NamesOf(setup.actuators, &ActuatorSetup::channel));
+                      NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
       multisine.amplitude[entry.name()] =
           entry.Number("ratio", kShare) * entry.Number("maximum", kPositive);
     }
@@ -297,15 +297,15 @@ Move ReadMove(const TomlTable& table, const std::vector<std::string>& axes,
 }
 
 Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
-  const std::vector<std::string> axes = NamesOf(setup.axes, &AxisSetup::name);
+  const std::vector<std::string> axes = NamesOf(setup.control.axes, &AxisSetup::name);
   Trajectory trajectory;
   trajectory.name = table.name();
   trajectory.duration = table.Number("duration", kPositive);
-  if (trajectory.duration * setup.control_rate > kMostSamples) {
+  if (trajectory.duration * setup.rates.control > kMostSamples) {
     table.Fail("duration", "is more than 1e8 control ticks", "seconds");
   }
   trajectory.period = table.Number("period", kNonNegative, 0.0);
-  for (const AxisSetup& axis : setup.axes) {
+  for (const AxisSetup& axis : setup.control.axes) {
     if (axis.limits.snap > 0.0) trajectory.limits[axis.name] = axis.limits;
   }
   for (const TomlTable& limits : table.NamedTables("limits", "<axis>")) {
@@ -321,14 +321,14 @@ Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
 
 void ReadTrajectories(const TomlTable& root, Setup& setup) {
   for (const TomlTable& table : root.NamedTables("trajectories", "<trajectory>")) {
-    setup.trajectories.push_back(ReadTrajectory(table, setup));
+    setup.trajectories.all.push_back(ReadTrajectory(table, setup));
   }
   if (root.Has("default_trajectory")) {
-    setup.default_trajectory =
+    setup.trajectories.fallback =
         DeclaredName(root, "default_trajectory", "trajectory",
-                     NamesOf(setup.trajectories, &Trajectory::name));
-  } else if (!setup.trajectories.empty()) {
-    setup.default_trajectory = setup.trajectories.front().name;
+                     NamesOf(setup.trajectories.all, &Trajectory::name));
+  } else if (!setup.trajectories.all.empty()) {
+    setup.trajectories.fallback = setup.trajectories.all.front().name;
   }
 }
 
@@ -372,7 +372,7 @@ CompareSetup::Derived ReadDerivedForce(const TomlTable& table, const Setup& setu
   CompareSetup::Derived force;
   force.name = table.name();
   force.channel = DeclaredName(table, "channel", "actuator channel",
-                               NamesOf(setup.actuators, &ActuatorSetup::channel));
+                               NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
   force.factor = table.Number("factor", kNonZero, 1.0);
   force.unit = SiUnit(table, "unit");
   return force;

@@ -21,7 +21,7 @@ Setup Emps() {
 
 Record Measurement(const Setup& setup, const RunOptions& options) {
   const ModelPtr plant = LoadPlant(setup);
-  const Trajectory& trajectory = setup.FindTrajectory(setup.default_trajectory);
+  const Trajectory& trajectory = setup.trajectories.Find(setup.trajectories.fallback);
   return Simulate(setup, *plant, FollowTrajectory(setup, trajectory), options);
 }
 

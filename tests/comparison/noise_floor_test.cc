@@ -47,15 +47,15 @@ TEST(NoiseFloor, OfColouredNoiseIsRarelyExceeded) {
 
 TEST(MeasuredNoise, IsFoundInTheRecord) {
   mjdiag::Setup setup;
-  setup.sensors = {{"x", "x_encoder", 0, "m", 0.0, 0.0},
+  setup.channels.sensors = {{"x", "x_encoder", 0, "m", 0.0, 0.0},
                    {"y", "y_encoder", 0, "m", 3e-9, 0.0}};
   Record measured(1e-3);
   const Eigen::ArrayXd phase = Eigen::ArrayXd::LinSpaced(kSamples, 0.0, 50.0);
   measured.Add(
       {"x", "m", 0.01 * phase.sin().matrix() + GaussianNoise(kSamples, 2e-8, 5)});
   const mjdiag::Setup noisy = WithMeasuredNoise(setup, measured);
-  EXPECT_NEAR(noisy.sensors[0].noise_sd, 2e-8, 0.1 * 2e-8);
-  EXPECT_EQ(noisy.sensors[1].noise_sd, 3e-9) << "y was not measured";
+  EXPECT_NEAR(noisy.channels.sensors[0].noise_sd, 2e-8, 0.1 * 2e-8);
+  EXPECT_EQ(noisy.channels.sensors[1].noise_sd, 3e-9) << "y was not measured";
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(Discovery, SaysNothingOfNoise) {
   const test::Stage stage;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Discovery answer = Discover(
-        stage.setup, *stage.plant, stage.Measure({}, {}, seed), nullptr, CausesOnly());
+        stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
     EXPECT_EQ(answer.verdict, DiscoveryVerdict::kNoDiscrepancy);
     EXPECT_EQ(Named(answer), "");
   }
@@ -47,7 +47,7 @@ TEST(Discovery, SaysNothingOfNoise) {
 
 TEST(Discovery, NamesDryFrictionAndItsForce) {
   const test::Stage stage;
-  const Discovery answer = Discover(stage.setup, *stage.plant,
+  const Discovery answer = Discover(stage.machine,
                                     stage.Measure({"coulomb_friction@load:force=18"}),
                                     nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kExplained);
@@ -61,7 +61,7 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
 TEST(Discovery, NamesATurnedKnobAsTheFault) {
   const test::Stage stage;
   const Discovery answer =
-      Discover(stage.setup, *stage.plant, stage.Measure({}, {{"zeta", 1.02}}), nullptr,
+      Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}), nullptr,
                CausesOnly());
   ASSERT_EQ(Named(answer), "zeta@load");
   EXPECT_TRUE(answer.causes[0].cause.fault);
@@ -77,11 +77,11 @@ TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
   const test::Stage stage;
   const Record measured = stage.Measure({"force_saturation@drive:limit=1.2"});
   const Discovery alone =
-      Discover(stage.setup, *stage.plant, measured, nullptr, CausesOnly());
+      Discover(stage.machine, measured, nullptr, CausesOnly());
   EXPECT_EQ(Named(alone), "force_saturation@drive");
   const Record validation = stage.Measure({}, {}, 2);
   const Discovery judged =
-      Discover(stage.setup, *stage.plant, measured, &validation, CausesOnly());
+      Discover(stage.machine, measured, &validation, CausesOnly());
   EXPECT_EQ(Named(judged).find("force_saturation"), std::string::npos);
   EXPECT_TRUE(std::ranges::any_of(judged.notes, [](const std::string& note) {
     return note.find("spoils") != std::string::npos &&
@@ -92,7 +92,7 @@ TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
 TEST(Discovery, FindsTwoCausesAtOnce) {
   const test::Stage stage;
   const Discovery answer =
-      Discover(stage.setup, *stage.plant,
+      Discover(stage.machine,
                stage.Measure({"coulomb_friction@load:force=18",
                               "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}),
                nullptr, CausesOnly());
@@ -123,7 +123,7 @@ TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
   constexpr double kRipple = 1.5;
   const test::Stage stage;
   const Discovery answer =
-      Discover(stage.setup, *stage.plant,
+      Discover(stage.machine,
                stage.Measure({"coulomb_friction@load:force=18",
                               "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}),
                nullptr, {});
@@ -137,7 +137,7 @@ TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
 TEST(Discovery, NamesRaisedEncoderNoise) {
   const test::Stage stage;
   const Discovery answer = Discover(
-      stage.setup, *stage.plant,
+      stage.machine,
       stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}), nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "encoder_noise@load_encoder");
   const CauseParameter& sd = Parameter(answer, "sd");
@@ -150,17 +150,17 @@ TEST(Discovery, NamesRaisedEncoderNoise) {
 Record WithForce(const test::Stage& stage,
                  const std::function<double(double q, double v, double t)>& force) {
   Excitation motion =
-      FollowTrajectory(stage.setup, stage.setup.FindTrajectory("default"));
+      FollowTrajectory(stage.setup, stage.setup.trajectories.Find("default"));
   const AxisReference& reference = motion.reference.axes[0];
   Channel hidden{"pulse", "V", Eigen::VectorXd(motion.samples())};
   for (Eigen::Index k = 0; k < motion.samples(); ++k) {
     hidden.samples[k] = force(reference.position[k], reference.velocity[k],
-                              static_cast<double>(k) * stage.setup.sample_time()) /
+                              static_cast<double>(k) * stage.setup.rates.tick()) /
                         stage.plant->actuator_gear[0];
   }
-  motion.inputs = Record(stage.setup.sample_time());
+  motion.inputs = Record(stage.setup.rates.tick());
   motion.inputs.Add(hidden);
-  const Record run = Simulate(stage.setup, *stage.plant, motion, {});
+  const Record run = Simulate(stage.machine, motion, {});
   Record shown(run.sample_time());
   for (Channel channel : run.channels()) {
     if (channel.name == "pulse") continue;
@@ -176,7 +176,7 @@ TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
     return -150.0 * std::sin(60.0 * q) * v;
   });
   const Discovery answer =
-      Discover(stage.setup, *stage.plant, record, nullptr, CausesOnly());
+      Discover(stage.machine, record, nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("position"), std::string::npos)
@@ -188,7 +188,7 @@ TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
   const Record record = WithForce(
       stage, [](double, double, double t) { return t > 1.2 && t < 1.9 ? 4.0 : 0.0; });
   const Discovery answer =
-      Discover(stage.setup, *stage.plant, record, nullptr, CausesOnly());
+      Discover(stage.machine, record, nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("time"), std::string::npos)
@@ -205,7 +205,7 @@ TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
   const ModelPtr plant = LoadPlant(setup);
   const int run = GetParam();
   const HiddenOutcome outcome =
-      RunHidden(setup, *plant, TypesOfRun(run, 1), static_cast<std::uint64_t>(run + 1));
+      RunHidden(machine, TypesOfRun(run, 1), static_cast<std::uint64_t>(run + 1));
   EXPECT_TRUE(outcome.right) << "hidden: " << Describe(outcome.hidden.truth[0])
                              << ", found: " << Named(outcome.answer);
   EXPECT_LT(outcome.unseen_ratio, 1.2);

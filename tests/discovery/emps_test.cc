@@ -52,7 +52,7 @@ class Emps : public ::testing::Test {
     for (const std::string& effect : effects) {
       options.effects.push_back(ParseEffect(effect));
     }
-    return Compare(setup, *plant, ReadRecord(DataFolder() / file, setup.record),
+    return Compare(machine, ReadRecord(DataFolder() / file, setup.record),
                    options);
   }
   /// The plant has them rounded.
@@ -95,9 +95,9 @@ TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
   const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
   const ModelPtr plant = LoadPlant(setup);
   const DiscoveryProblem problem =
-      PoseProblem(setup, *plant,
+      PoseProblem(machine,
                   ReadRecord(DataFolder() / "DATA_EMPS.mat", setup.record), 1.0, 20.0);
-  const auto candidates = ListCandidates(setup, *plant, problem.model);
+  const auto candidates = ListCandidates(machine, problem.machine.linear());
   const std::vector<FittedCause> start = {
       {test::Place(candidates, "coulomb_friction@load"),
        Eigen::VectorXd::Constant(1, 15.0)},

@@ -25,18 +25,18 @@ struct Stage {
     }
     options.faults = faults;
     options.seed = seed;
-    return Simulate(setup, *plant,
-                    FollowTrajectory(setup, setup.FindTrajectory("default")), options);
+    return Simulate(machine,
+                    FollowTrajectory(setup, setup.trajectories.Find("default")), options);
   }
 
   DiscoveryProblem Pose(const Record& measured) const {
-    return PoseProblem(setup, *plant, measured, 0.7, 0.0);
+    return PoseProblem(machine, measured, 0.7, 0.0);
   }
 
  private:
   static ModelPtr Load(Setup& setup) {
     ModelPtr model = LoadModel(setup.plant);
-    model->opt.timestep = setup.sample_time() / setup.substeps;
+    model->opt.timestep = setup.rates.tick() / setup.rates.substeps;
     PreparePlant(setup, *model);
     return model;
   }

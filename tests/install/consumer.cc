@@ -5,7 +5,7 @@
 int main(int, char** argv) {
   const mjdiag::Setup setup = mjdiag::ReadSetup(argv[1]);
   const mjdiag::ModelPtr plant = mjdiag::LoadPlant(setup);
-  mjdiag::Trajectory trajectory = setup.FindTrajectory("x");
+  mjdiag::Trajectory trajectory = setup.trajectories.Find("x");
   trajectory.duration = 0.01;
   const mjdiag::Record record =
       mjdiag::Simulate(setup, *plant, mjdiag::FollowTrajectory(setup, trajectory), {});

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 struct Example {
   explicit Example(double zeta_x) {
     setup.diagnosis.trajectories.clear();
-    for (Trajectory& trajectory : setup.trajectories) trajectory.duration = 0.3;
+    for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
     plant = LoadPlant(setup);
     design = DesignFilters(setup, *plant);
     NominalRuns nominal;
@@ -31,7 +31,7 @@ struct Example {
     RunOptions options;
     options.faults = {{"zeta_x", zeta_x}};
     const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")), options);
+        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), options);
     monitor.emplace(design, record.samples());
     Run(*monitor, design, record);
     result = Conclude(design, *monitor);

@@ -44,7 +44,7 @@ TEST(EstimationStudy, FindsAllFaultsAtOnceWithinOnePerCent) {
   const ModelPtr plant = LoadPlant(setup);
   StudyOptions options;
   options.runs = 6;
-  for (const StudyTable& table : EstimationStudy(setup, *plant, options)) {
+  for (const StudyTable& table : EstimationStudy(machine, options)) {
     int judged = 0;
     for (const auto& row : table.rows) {
       if (!row[3].is_number) continue;

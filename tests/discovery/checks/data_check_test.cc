@@ -42,11 +42,11 @@ struct Machine {
     RunOptions options;
     options.noise_scale = noise_scale;
     if (!effect.empty()) options.effects.push_back(ParseEffect(effect));
-    const Trajectory& motion = setup.FindTrajectory(setup.default_trajectory);
-    return Simulate(setup, *plant, FollowTrajectory(setup, motion), options);
+    const Trajectory& motion = setup.trajectories.Find(setup.trajectories.fallback);
+    return Simulate(machine, FollowTrajectory(setup, motion), options);
   }
   std::vector<std::string> Check(const Record& record) const {
-    return CheckRecord(setup, *plant, record);
+    return CheckRecord(machine, record);
   }
   std::string Refusal(const Record& record) const {
     return test::MessageOf<InputError>([&] { Check(record); });
@@ -253,11 +253,11 @@ class OpenLoopRecord : public ::testing::Test {
     constexpr Index kSamples = 20000;
     VectorXd current(kSamples);
     for (Index k = 0; k < kSamples; ++k) {
-      const double t = static_cast<double>(k) * machine_.setup.sample_time();
+      const double t = static_cast<double>(k) * machine_.setup.rates.tick();
       current[k] = 0.3 * std::sin(2.0 * std::numbers::pi * (2.0 + 3.5 * t) * t);
     }
     Excitation excitation;
-    excitation.inputs = Record(machine_.setup.sample_time());
+    excitation.inputs = Record(machine_.setup.rates.tick());
     excitation.inputs.Add({"i", "A", current});
     RunOptions options;
     if (!effect.empty()) options.effects.push_back(ParseEffect(effect));

@@ -23,9 +23,9 @@ std::filesystem::path Folder(const std::string& machine) {
 
 Record ShortRun(const Setup& setup, const mjModel& plant,
                 const RunOptions& causes = {}) {
-  Trajectory trajectory = setup.FindTrajectory(setup.default_trajectory);
+  Trajectory trajectory = setup.trajectories.Find(setup.trajectories.fallback);
   // The default motion of EMPS begins at 0.2 s, that of AB383 at 0.01 s.
-  trajectory.duration = setup.axes.size() > 1 ? 0.1 : 0.5;
+  trajectory.duration = setup.control.axes.size() > 1 ? 0.1 : 0.5;
   RunOptions options = causes;
   options.noise_scale = 0.0;
   options.log_joints = true;
@@ -297,8 +297,8 @@ TEST(ExtendedPlant, HasEncoderNoiseInTheSetup) {
   EXPECT_THAT(ab383.Mjcf(), Not(HasSubstr("encoder_noise")));
   // 20 nm of its own.
   const mjdiag::Setup noisy = ReadSetup(ab383.folder().path());
-  EXPECT_NEAR(noisy.Sensor("x").noise_sd, std::hypot(2e-8, 3e-8), 1e-20);
-  EXPECT_EQ(noisy.Sensor("y").noise_sd, ab383.setup().Sensor("y").noise_sd);
+  EXPECT_NEAR(noisy.channels.Sensor("x").noise_sd, std::hypot(2e-8, 3e-8), 1e-20);
+  EXPECT_EQ(noisy.channels.Sensor("y").noise_sd, ab383.setup().channels.Sensor("y").noise_sd);
 
   const Extension emps(Folder("emps"));
   emps.Write(With({"encoder_noise@load_encoder:sd=3e-6"}));

@@ -41,7 +41,7 @@ TEST_F(ExtendedSetup, AddsNoiseToATable) {
   const std::string text =
       Extend(std::string(kHead) + "name = 'stage'\nplant = 'stage.xml' # mine\n" +
              kRest + "[sensors.q]\n  unit = \"m\"\n  element = \"encoder\" # Größe\n");
-  EXPECT_EQ(setup_.Sensor("q").noise_sd, 3e-6);
+  EXPECT_EQ(setup_.channels.Sensor("q").noise_sd, 3e-6);
   EXPECT_EQ(setup_.name, "stage (extended)");
   EXPECT_THAT(text, HasSubstr("plant = \"plant.xml\" # mine\n"));
   EXPECT_THAT(text, HasSubstr("  element = \"encoder\" # Größe\n  noise_sd = 3e-06\n"));
@@ -52,15 +52,15 @@ TEST_F(ExtendedSetup, AddsNoiseToAnInlineTableBehindWordsOfManyBytes) {
          "name = \"\"\"Tisch größer\"\"\"\nplant = \"stage.xml\"\n" + kRest +
          "[sensors]\n"
          "q = { unit = \"m\", element = \"encoder\", resolution = 1e-9 }\n");
-  EXPECT_EQ(setup_.Sensor("q").noise_sd, 3e-6);
-  EXPECT_EQ(setup_.Sensor("q").resolution, 1e-9);
+  EXPECT_EQ(setup_.channels.Sensor("q").noise_sd, 3e-6);
+  EXPECT_EQ(setup_.channels.Sensor("q").resolution, 1e-9);
   EXPECT_EQ(setup_.name, "Tisch größer (extended)");
 }
 
 TEST_F(ExtendedSetup, AddsNoiseToDottedKeysOnALastLineWithoutEnd) {
   Extend(std::string(kHead) + "name = \"s\"\nplant = \"stage.xml\"\n" + kRest +
          "[sensors]\nq.unit = \"m\"\nq.element = \"encoder\"");
-  EXPECT_EQ(setup_.Sensor("q").noise_sd, 3e-6);
+  EXPECT_EQ(setup_.channels.Sensor("q").noise_sd, 3e-6);
 }
 
 TEST_F(ExtendedSetup, AddsToTheNoiseThatThereIsInItsOwnKey) {
@@ -70,9 +70,9 @@ TEST_F(ExtendedSetup, AddsToTheNoiseThatThereIsInItsOwnKey) {
       "[sensors.r]\nunit = \"m\"\nelement = \"encoder\"\nnoise_sd = 4e-6 # known\n"
       "[sensors.s]\nunit = \"m\"\nelement = \"other\"\nnoise_sd = 4e-6\n");
   // sqrt(1.6e-14 * 1000) is 4 um.
-  EXPECT_NEAR(setup_.Sensor("q").noise_sd, 5e-6, 1e-18);
-  EXPECT_NEAR(setup_.Sensor("r").noise_sd, 5e-6, 1e-18);
-  EXPECT_EQ(setup_.Sensor("s").noise_sd, 4e-6);
+  EXPECT_NEAR(setup_.channels.Sensor("q").noise_sd, 5e-6, 1e-18);
+  EXPECT_NEAR(setup_.channels.Sensor("r").noise_sd, 5e-6, 1e-18);
+  EXPECT_EQ(setup_.channels.Sensor("s").noise_sd, 4e-6);
   EXPECT_THAT(text, HasSubstr(" # known\n"));
 }
 
@@ -87,8 +87,8 @@ TEST_F(ExtendedSetup, LeavesOutWhatDescribesTheOldPlant) {
   EXPECT_THAT(text, Not(HasSubstr("analytic")));
   EXPECT_THAT(text, Not(HasSubstr("printed")));
   // What of it is left is in the extended plant.
-  EXPECT_TRUE(setup_.static_friction);
-  EXPECT_FALSE(setup_.gravity);
+  EXPECT_TRUE(setup_.physics.static_friction);
+  EXPECT_FALSE(setup_.physics.gravity);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ TEST(CauseFit, HasIntervalsThatHold) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const DiscoveryProblem problem =
         stage.Pose(stage.Measure({"quadratic_drag@load:coefficient=0.5"}, {}, seed));
-    const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+    const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
     const std::size_t place = Place(candidates, "quadratic_drag@load");
     const CauseFit fit = FitCauses(problem, candidates,
                                    {{place, Eigen::VectorXd::Constant(1, 0.4)}}, {});
@@ -33,7 +33,7 @@ TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
   const test::Stage stage;
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
-  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const std::size_t place = Place(candidates, "stribeck_friction@load");
   const CauseFit fit =
       FitCauses(problem, candidates, {{place, Eigen::Vector3d(8.0, 4.0, 0.02)}},
@@ -49,7 +49,7 @@ TEST(CauseFit, BySecantsFindsTheSamePlace) {
   const test::Stage stage;
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
-  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const std::vector<FittedCause> start = {
       {Place(candidates, "stribeck_friction@load"), Eigen::Vector3d(11.0, 7.0, 0.012)}};
   const CauseFit full =
@@ -67,7 +67,7 @@ TEST(CauseFit, StaysWithinItsBounds) {
   const test::Stage stage;
   // Less damping than the plant has; more cannot be taken away.
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}, {{"zeta", 0.0}}));
-  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const std::size_t place = Place(candidates, "coulomb_friction@load");
   const CauseFit fit =
       FitCauses(problem, candidates, {{place, Eigen::VectorXd::Constant(1, 5.0)}}, {});

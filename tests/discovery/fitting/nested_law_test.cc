@@ -13,7 +13,7 @@ class NestedLaw : public testing::Test {
   test::Stage stage_;
   DiscoveryProblem problem_ = stage_.Pose(stage_.Measure({}));
   std::vector<Candidate> candidates_ =
-      ListCandidates(stage_.setup, *stage_.plant, problem_.model);
+      ListCandidates(stage_.machine, problem_.machine.linear());
 
   std::optional<FittedCause> SimplerOf(const std::string& name,
                                        const Eigen::VectorXd& value) const {

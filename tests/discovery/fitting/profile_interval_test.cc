@@ -25,7 +25,7 @@ Fitted FitOf(const test::Stage& stage, const std::string& effect,
              const std::string& site, const Eigen::VectorXd& start) {
   Fitted f;
   f.problem = stage.Pose(stage.Measure({effect}));
-  f.candidates = ListCandidates(stage.setup, *stage.plant, f.problem.model);
+  f.candidates = ListCandidates(stage.machine, f.problem.machine.linear());
   const std::size_t place = test::Place(f.candidates, site);
   f.fit = FitCauses(f.problem, f.candidates, {{place, start}},
                     {.iterations = 30, .tolerance = 1e-10});

@@ -23,7 +23,7 @@ TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {
   const test::Stage stage;
   const DiscoveryProblem problem =
       stage.Pose(stage.Measure({"quadratic_drag@load:coefficient=20"}));
-  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const CauseFit truth = FitAt(problem, candidates, "quadratic_drag@load", 20.0);
   EXPECT_LT(Unsteadiness(problem, candidates, truth), 1.0);
   EXPECT_FALSE(LookAround(problem, candidates, truth, 10.0));
@@ -38,9 +38,9 @@ TEST(UnsteadyFit, SeesThatACourseDependsOnTheLastDigit) {
   const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
   const ModelPtr plant = LoadPlant(setup);
   const HiddenCase hidden =
-      MakeCase(setup, *plant, {{ParseEffect("backlash@u4:gap=8.9e-10")}}, 1);
-  const DiscoveryProblem problem = PoseProblem(setup, *plant, hidden.record, 0.7, 0.0);
-  const auto candidates = ListCandidates(setup, *plant, problem.model);
+      MakeCase(machine, {{ParseEffect("backlash@u4:gap=8.9e-10")}}, 1);
+  const DiscoveryProblem problem = PoseProblem(machine, hidden.record, 0.7, 0.0);
+  const auto candidates = ListCandidates(machine, problem.machine.linear());
   const CauseFit truth = FitAt(problem, candidates, "backlash@u4", 8.9e-10);
   EXPECT_GT(Unsteadiness(problem, candidates, truth), 30.0);
 }

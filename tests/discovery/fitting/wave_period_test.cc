@@ -12,7 +12,7 @@ TEST(WavePeriod, LeavesAWrongPeriodThatAFitCannotLeave) {
   const test::Stage stage;
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"force_ripple@load:amplitude=0.3,period=0.02,phase=0.4"}));
-  const auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const std::size_t place = test::Place(candidates, "force_ripple@load");
   ASSERT_TRUE(HasPeriod(candidates[place]));
   ASSERT_EQ(candidates[place].parameters[1].name, "period");

@@ -19,10 +19,10 @@ const FitParameter& Parameter(const std::vector<Candidate>& candidates,
 TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
   const test::Stage stage;
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  auto candidates = ListCandidates(stage.setup, *stage.plant, problem.model);
+  auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const auto before = candidates;
   const Track track =
-      FollowRun(stage.setup, *stage.plant, {}, problem.run, problem.observer, true);
+      FollowRun(stage.machine, {}, problem.run, problem.observer, true);
   const ObservedMotion motion = ObserveMotion(*stage.plant, problem.run, track);
   BoundByRecord(candidates, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();

@@ -13,7 +13,7 @@ namespace {
 TEST(ObservedJoints, FollowTheEncoderWhateverTheModelLacks) {
   const test::Stage stage;
   const Record measured = stage.Measure({"coulomb_friction@load:force=20"});
-  const Record seen = WithObservedJoints(stage.setup, *stage.plant, measured);
+  const Record seen = WithObservedJoints(stage.machine, measured);
   const Channel& joint = seen.At("joint.load");
   EXPECT_EQ(joint.unit, "m");
   ASSERT_EQ(joint.samples.size(), measured.samples());
@@ -26,7 +26,7 @@ TEST(ObservedJoints, ARecordWithoutTheInputIsRefused) {
   const Record measured = stage.Measure({});
   Record cut(measured.sample_time());
   cut.Add(measured.At("q"));
-  EXPECT_THROW(WithObservedJoints(stage.setup, *stage.plant, cut), InputError);
+  EXPECT_THROW(WithObservedJoints(stage.machine, cut), InputError);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ TEST(CoarseProblem, IsNearUntilNoiseIsLeft) {
   const DiscoveryProblem problem = stage.Pose(stage.Measure({friction}));
   const auto coarse = Coarsen(problem, {});
   ASSERT_NE(coarse, nullptr);
-  EXPECT_EQ(coarse->setup.substeps, 1);
-  EXPECT_DOUBLE_EQ(coarse->plant->opt.timestep, stage.setup.sample_time());
+  EXPECT_EQ(coarse->setup.rates.substeps, 1);
+  EXPECT_DOUBLE_EQ(coarse->plant->opt.timestep, stage.setup.rates.tick());
   Changes truth;
   truth.effects = {ParseEffect(friction)};
   EXPECT_FALSE(IsNear(*coarse, problem, truth));

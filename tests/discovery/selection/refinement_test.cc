@@ -21,7 +21,7 @@ struct Found {
         const std::vector<std::pair<std::string, Eigen::VectorXd>>& found)
       : problem(stage.Pose(stage.Measure(hidden))),
         beginning(Beginning(problem, problem.train / 4)),
-        candidates(ListCandidates(stage.setup, *stage.plant, problem.model)) {
+        candidates(ListCandidates(stage.machine, problem.machine.linear())) {
     std::vector<FittedCause> causes;
     for (const auto& [name, value] : found) {
       causes.push_back({test::Place(candidates, name), value});

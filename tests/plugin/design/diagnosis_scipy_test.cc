@@ -135,7 +135,7 @@ struct Diagnosis {
     RunOptions run;
     run.faults = {{"zeta_x", 1.01}};
     const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")), run);
+        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), run);
     signals = Signals(design, record);
     DiagnosisMonitor monitor(design, record.samples());
     Run(monitor, design, record);
@@ -309,7 +309,7 @@ TEST_F(DiagnosisScipy, HasTheSameDensityOfTheDisturbanceResidual) {
   const VectorXd& ours = Ours().log.disturbance;
   EXPECT_LT(Difference(ours.transpose(), Value("high_passed")), kRounding);
   const Spectrum spectrum =
-      WelchDensity(ours, Ours().setup.sample_time(), Diagnosis::kSegment);
+      WelchDensity(ours, Ours().setup.rates.tick(), Diagnosis::kSegment);
   EXPECT_LT(Difference(spectrum.frequency.transpose(), Value("density").row(0)), 1e-14);
   EXPECT_LT(Difference(spectrum.density.transpose(), Value("density").row(1)),
             kRounding);

@@ -40,7 +40,7 @@ struct Bench {
       : setup(Bonder(overrides)),
         plant(LoadPlant(setup)),
         design(DesignFilters(setup, *plant)),
-        motion(FollowTrajectory(setup, setup.FindTrajectory("multi"))) {}
+        motion(FollowTrajectory(setup, setup.trajectories.Find("multi"))) {}
 
   NominalRuns Nominal(bool linear, int runs = 5) const {
     NominalRuns nominal;
@@ -143,7 +143,7 @@ TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   double integral = 0.0;
   const auto run = [&](const std::string& motion, std::uint64_t seed) {
     const Excitation excitation =
-        FollowTrajectory(bench.setup, bench.setup.FindTrajectory(motion));
+        FollowTrajectory(bench.setup, bench.setup.trajectories.Find(motion));
     DiagnosisMonitor monitor(bench.design, excitation.samples());
     MonitorObserver observer(monitor);
     RunOptions options;
@@ -252,7 +252,7 @@ TEST(DesignFilters, LeavesNothingOfALinearRunWithoutNoise) {
 
 TEST(Signals, AreDeviationsFromRest) {
   const Bench bench;
-  Record record(bench.setup.sample_time());
+  Record record(bench.setup.rates.tick());
   for (const char* name : {"u_z", "z", "u_y", "y", "u_x", "x"}) {
     record.Add(
         {name, "m", VectorXd::LinSpaced(3, 1.0, 3.0) * std::string(name).size()});

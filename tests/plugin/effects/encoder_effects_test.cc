@@ -52,7 +52,7 @@ TEST(EncoderEffects, AreWhatTheControllerSees) {
   RunOptions options;
   options.effects = {ParseEffect("encoder_scale@load_encoder:factor=1.001")};
   options.log_joints = true;
-  Trajectory motion = setup.FindTrajectory("default");
+  Trajectory motion = setup.trajectories.Find("default");
   motion.duration = 2.6;
   const Record record =
       Simulate(setup, *plant, FollowTrajectory(setup, motion), options);
@@ -64,11 +64,11 @@ TEST(EncoderEffects, AreWhatTheControllerSees) {
 /// What the encoder of EMPS reads while the load rests without input.
 Eigen::VectorXd AtRest(const std::vector<std::string>& effects, double own_noise) {
   mjdiag::Setup setup = EmpsSetup();
-  setup.axes.clear();
-  setup.sensors[0].noise_sd = own_noise;
+  setup.control.axes.clear();
+  setup.channels.sensors[0].noise_sd = own_noise;
   const ModelPtr plant = LoadPlant(setup);
   Excitation rest;
-  rest.inputs = Record(setup.sample_time());
+  rest.inputs = Record(setup.rates.tick());
   rest.inputs.Add({"u", "V", Eigen::VectorXd::Zero(4000)});
   RunOptions options;
   for (const std::string& effect : effects) {

@@ -29,12 +29,12 @@ const std::string kBonder = std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383/";
 
 Setup BonderSetup() {
   Setup setup;
-  setup.control_rate = 8000.0;
-  setup.substeps = 4;
-  setup.sensors = {{"x", "x_encoder", 0, "m"},
+  setup.rates.control = 8000.0;
+  setup.rates.substeps = 4;
+  setup.channels.sensors = {{"x", "x_encoder", 0, "m"},
                    {"y", "y_encoder", 1, "m"},
                    {"z", "z_encoder", 0, "rad"}};
-  setup.actuators = {
+  setup.channels.actuators = {
       {"u_x", "x_motor", "N"}, {"u_y", "y_motor", "N"}, {"u_z", "z_motor", "N m"}};
   return setup;
 }
@@ -233,7 +233,7 @@ TEST(Linearize, TickModelIsMujocosOwnStep) {
   const ModelPtr bonder = Bonder();
   const auto setup = BonderSetup();
   const StateSpace exact =
-      TickModel(Linearize(*bonder, setup), bonder->opt.timestep, setup.substeps);
+      TickModel(Linearize(*bonder, setup), bonder->opt.timestep, setup.rates.substeps);
   const StateSpace differences = TickByFiniteDifferences(*bonder, setup);
   EXPECT_LT(Relative(exact.A, differences.A), 1e-8);
   EXPECT_LT(Relative(exact.B, differences.B), 1e-8);
@@ -320,7 +320,7 @@ TEST(Linearize, RefusesSensorsThatDoNotReadPositions) {
       <inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
     </body></worldbody><sensor><jointvel name="speed" joint="x"/></sensor></mujoco>)");
   mjdiag::Setup setup;
-  setup.sensors = {{"v", "speed", 0, "m/s"}};
+  setup.channels.sensors = {{"v", "speed", 0, "m/s"}};
   EXPECT_THROW(Linearize(*model, setup), InputError);
 }
 

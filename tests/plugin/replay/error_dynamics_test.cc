@@ -24,8 +24,8 @@ VectorXd Noise(Index n, unsigned seed) {
 /// First order of the run of a problem, its first samples.
 ErrorDynamics DynamicsOf(const DiscoveryProblem& problem, Index samples, Index block) {
   ErrorDynamics dynamics(problem.observer, block);
-  FollowRun(*problem.setup, *problem.plant, {}, Beginning(problem, samples).run,
-            problem.observer, problem.model, dynamics);
+  FollowRun(problem.machine.setup(), problem.machine.plant(), {}, Beginning(problem, samples).run,
+            problem.observer, problem.machine.linear(), dynamics);
   return dynamics;
 }
 
@@ -37,13 +37,13 @@ TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
   quiet.noise_scale = 0.0;
   quiet.effects = {ParseEffect("viscous_friction@load:coefficient=0.5")};
   const Excitation motion =
-      FollowTrajectory(stage.setup, stage.setup.FindTrajectory("default"));
+      FollowTrajectory(stage.setup, stage.setup.trajectories.Find("default"));
   DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   problem.run =
-      ToMeasuredRun(stage.setup, Simulate(stage.setup, *stage.plant, motion, quiet));
+      ToMeasuredRun(stage.setup, Simulate(stage.machine, motion, quiet));
   ErrorDynamics dynamics(problem.observer, 1);
-  const Track track = FollowRun(stage.setup, *stage.plant, {}, problem.run,
-                                problem.observer, problem.model, dynamics);
+  const Track track = FollowRun(stage.machine, {}, problem.run,
+                                problem.observer, problem.machine.linear(), dynamics);
   const ObservedMotion observed = ObserveMotion(*stage.plant, problem.run, track);
   const MatrixXd force = -0.5 * observed.velocity.transpose();
   const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
@@ -69,9 +69,9 @@ TEST(ErrorDynamics, HasAnAdjoint) {
   mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
   const ModelPtr plant = LoadPlant(setup);
   RunOptions options;
-  const Excitation motion = FollowTrajectory(setup, setup.FindTrajectory("x"));
+  const Excitation motion = FollowTrajectory(setup, setup.trajectories.Find("x"));
   const DiscoveryProblem problem =
-      PoseProblem(setup, *plant, Simulate(setup, *plant, motion, options), 0.7, 0.0);
+      PoseProblem(machine, Simulate(machine, motion, options), 0.7, 0.0);
   const Index n = 600;
   for (const Index block : {1, 3}) {
     const ErrorDynamics dynamics = DynamicsOf(problem, n, block);
@@ -102,13 +102,13 @@ TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
   const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
   const ModelPtr plant = LoadPlant(setup);
   const Record measured = Simulate(
-      setup, *plant, FollowTrajectory(setup, setup.FindTrajectory("multi")), {});
+      machine, FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
   const DiscoveryProblem problem =
-      Beginning(PoseProblem(setup, *plant, measured, 0.8, 0.0), 6000);
+      Beginning(PoseProblem(machine, measured, 0.8, 0.0), 6000);
   for (const Index block : {1, 3}) {
     ErrorDynamics dynamics(problem.observer, block);
-    const Track track = FollowRun(setup, *plant, {}, problem.run, problem.observer,
-                                  problem.model, dynamics);
+    const Track track = FollowRun(machine, {}, problem.run, problem.observer,
+                                  problem.machine.linear(), dynamics);
     const ObservedMotion motion = ObserveMotion(*plant, problem.run, track);
     for (const char* name : {"X", "Y", "Z"}) {
       const int joint = mj_name2id(plant.get(), mjOBJ_JOINT, name);

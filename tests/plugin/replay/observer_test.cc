@@ -23,7 +23,7 @@ TEST(Observer, IsStableOnTheBonderAtAnyBandwidth) {
   const MechanicalModel model = Bonder(setup);
   for (const double bandwidth : {2.0, 10.0, 160.0, 800.0}) {
     const Observer observer =
-        DesignObserver(model, setup.sample_time() / setup.substeps, setup.substeps,
+        DesignObserver(model, setup.rates.tick() / setup.rates.substeps, setup.rates.substeps,
                        VectorXd::Constant(3, 2e-8), bandwidth);
     const MatrixXd F = observer.tick.A - observer.L * observer.tick.C;
     EXPECT_LT(SpectralRadius(F), 1.0) << bandwidth;
@@ -38,8 +38,8 @@ TEST(Observer, HasTheStationaryGainOfTheKalmanPredictor) {
   const double r = 1e-8;
   const double bandwidth = 5.0;
   const Observer observer =
-      DesignObserver(model, stage.setup.sample_time() / stage.setup.substeps,
-                     stage.setup.substeps, VectorXd::Constant(1, r), bandwidth);
+      DesignObserver(model, stage.setup.rates.tick() / stage.setup.rates.substeps,
+                     stage.setup.rates.substeps, VectorXd::Constant(1, r), bandwidth);
   const double omega = 2.0 * 3.141592653589793 * bandwidth;
   const double acceleration = (model.b.transpose() * Solve(model.M, model.Gamma))(0);
   const double force = omega * omega * r / std::abs(acceleration);

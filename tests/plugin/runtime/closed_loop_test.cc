@@ -12,7 +12,7 @@ namespace mjdiag {
 namespace {
 
 StateSpace Tick(const MechanicalModel& model, const mjdiag::Setup& setup) {
-  return TickModel(model, setup.sample_time() / setup.substeps, setup.substeps);
+  return TickModel(model, setup.rates.tick() / setup.rates.substeps, setup.rates.substeps);
 }
 
 class BonderLoop : public ::testing::Test {
@@ -24,7 +24,7 @@ class BonderLoop : public ::testing::Test {
 // The figure that is known of this plant, 0.98754, is of its zero-order hold.
 TEST_F(BonderLoop, HasTheKnownLargestEigenvalue) {
   const StateSpace hold =
-      DiscretizeZoh(ContinuousStateSpace(model_), setup_.sample_time());
+      DiscretizeZoh(ContinuousStateSpace(model_), setup_.rates.tick());
   EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(hold, setup_)), 0.98754, 5e-6);
 }
 
@@ -35,7 +35,7 @@ TEST_F(BonderLoop, IsAsStableOnTheMapOfATick) {
 
 // As printed, the y controller cancels its integrator: only marginally stable.
 TEST_F(BonderLoop, IsMarginalWithThePrintedCoefficients) {
-  setup_.axes[1].feedback = {{66900.0, -131600.0, 64700.0}, {1.0, -1.828, 0.8277}};
+  setup_.control.axes[1].feedback = {{66900.0, -131600.0, 64700.0}, {1.0, -1.828, 0.8277}};
   EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(model_, setup_), setup_)), 1.0,
               2e-3);
 }

@@ -44,7 +44,7 @@ struct Bench {
         data(MakeData(*model)),
         instance(
             setup, *model,
-            FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory)),
+            FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
             options) {
     const Eigen::VectorXd start = StartPosition(setup, *model, {});
     std::copy(start.begin(), start.end(), data->qpos);
@@ -143,7 +143,7 @@ TEST(ControlCallback, TicksOnceEverySubsteps) {
   Bench bench;
   Attach(*bench.model, *bench.data, bench.instance);
   for (int i = 0; i < 9; ++i) mj_step(bench.model.get(), bench.data.get());
-  EXPECT_EQ(bench.setup.substeps, 4);
+  EXPECT_EQ(bench.setup.rates.substeps, 4);
   EXPECT_EQ(bench.instance.loop().ticks_done(), 3);
 }
 
@@ -158,11 +158,11 @@ TEST(ControlCallback, RefusesAModelWithoutRoomForItsMark) {
 TEST(Instance, NamesAMissingSensorAndActuator) {
   Bench bench;
   mjdiag::Setup setup = bench.setup;
-  setup.sensors[0].component = 7;
+  setup.channels.sensors[0].component = 7;
   EXPECT_THROW(SensorAddresses(setup, *bench.model), InputError);
-  setup.sensors[0].element = "ghost";
+  setup.channels.sensors[0].element = "ghost";
   EXPECT_THROW(SensorAddresses(setup, *bench.model), InputError);
-  setup.actuators[0].element = "ghost";
+  setup.channels.actuators[0].element = "ghost";
   EXPECT_THROW(ActuatorAddresses(setup, *bench.model), InputError);
 }
 

@@ -19,7 +19,7 @@ mjdiag::Setup ReadPlantSetup(const std::string& plant,
 }
 
 Excitation Motion(const Setup& setup, const std::string& name, double duration) {
-  Trajectory trajectory = setup.FindTrajectory(name);
+  Trajectory trajectory = setup.trajectories.Find(name);
   trajectory.duration = duration;
   return FollowTrajectory(setup, trajectory);
 }
@@ -56,7 +56,7 @@ TEST_F(Ab383, TracksFourMillimetresInXWithinTenMicrometres) {
 }
 
 TEST_F(Ab383, StaysStableOverTheWholeMultiMoveReference) {
-  const Record record = Run(Motion(setup_, setup_.default_trajectory, 2.5));
+  const Record record = Run(Motion(setup_, setup_.trajectories.fallback, 2.5));
   EXPECT_EQ(record.samples(), 20000);
   EXPECT_LT(LargestError(record, "x"), 20e-6);
   EXPECT_LT(LargestError(record, "y"), 20e-6);
@@ -179,7 +179,7 @@ TEST_F(Ab383, GammaIsTheMultisineOfEquation7OnEveryActuator) {
 TEST_F(Ab383, DivergenceSaysWhenAndWhichJoint) {
   // A sign error in one loop.
   mjdiag::Setup setup = setup_;
-  for (double& b : setup.axes[0].feedback->numerator) b = -b;
+  for (double& b : setup.control.axes[0].feedback->numerator) b = -b;
   try {
     Simulate(setup, *plant_, Motion(setup, "x", 0.5), {});
     FAIL() << "did not diverge";
@@ -205,7 +205,7 @@ TEST_F(Ab383, RefusesAnUnknownFaultDisturbanceOrEffect) {
 TEST(Replay, StartsWhereTheMeasurementStarts) {
   const mjdiag::Setup setup = ReadPlantSetup("emps");
   const ModelPtr plant = LoadPlant(setup);
-  Record measured(setup.sample_time());
+  Record measured(setup.rates.tick());
   measured.Add({"q_ref", "m", Eigen::VectorXd::Constant(100, 0.101)});
   measured.Add({"q", "m", Eigen::VectorXd::Constant(100, 0.1)});
   const Record simulated = Simulate(setup, *plant, Replay(setup, measured), {});
@@ -217,9 +217,9 @@ TEST(Replay, StartsWhereTheMeasurementStarts) {
 
 TEST(Replay, DrivesTheActuatorsOfASetupWithoutControllers) {
   mjdiag::Setup setup = ReadPlantSetup("emps");
-  setup.axes.clear();
+  setup.control.axes.clear();
   const ModelPtr plant = LoadPlant(setup);
-  Record measured(setup.sample_time());
+  Record measured(setup.rates.tick());
   measured.Add({"q", "m", Eigen::VectorXd::Zero(2001)});
   measured.Add({"u", "V", Eigen::VectorXd::Constant(2001, 1.0)});
   const Record simulated = Simulate(setup, *plant, Replay(setup, measured), {});
@@ -233,7 +233,7 @@ TEST(Replay, DrivesTheActuatorsOfASetupWithoutControllers) {
 
 TEST(Replay, NamesAMissingChannelAndAWrongSampleTime) {
   const mjdiag::Setup setup = ReadPlantSetup("emps");
-  Record without_reference(setup.sample_time());
+  Record without_reference(setup.rates.tick());
   without_reference.Add({"q", "m", Eigen::VectorXd::Zero(10)});
   try {
     Replay(setup, without_reference);

@@ -378,11 +378,11 @@ TEST_F(SetupErrors, RefusesAMachineWithoutChannels) {
 TEST_F(SetupErrors, OfAnUnknownChannelSaysWhichThereAre) {
   const auto setup = ReadSetup(folder_);
   EXPECT_THAT(
-      [&] { setup.Sensor("x"); },
+      [&] { setup.channels.Sensor("x"); },
       ::testing::ThrowsMessage<InputError>(
           "setup 'stage': there is no sensor channel 'x'; expected one of q, a"));
-  EXPECT_THROW(setup.Actuator("q"), InputError);
-  EXPECT_THROW(setup.FindTrajectory("x"), InputError);
+  EXPECT_THROW(setup.channels.Actuator("q"), InputError);
+  EXPECT_THROW(setup.trajectories.Find("x"), InputError);
 }
 
 }  // namespace

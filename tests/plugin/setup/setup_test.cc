@@ -39,39 +39,39 @@ TEST_F(SetupFile, FillsTheMachine) {
   EXPECT_EQ(setup.plant, folder_ / "plant.xml");
   EXPECT_EQ(setup.analytic, folder_ / "analytic.toml");
   EXPECT_EQ(setup.published, folder_ / "published.toml");
-  EXPECT_EQ(setup.control_rate, 1000.0);
-  EXPECT_EQ(setup.sample_time(), 1e-3);
-  EXPECT_EQ(setup.substeps, 4);
-  EXPECT_FALSE(setup.gravity);
-  EXPECT_FALSE(setup.static_friction);
+  EXPECT_EQ(setup.rates.control, 1000.0);
+  EXPECT_EQ(setup.rates.tick(), 1e-3);
+  EXPECT_EQ(setup.rates.substeps, 4);
+  EXPECT_FALSE(setup.physics.gravity);
+  EXPECT_FALSE(setup.physics.static_friction);
 }
 
 TEST_F(SetupFile, FillsTheChannelsInTheOrderOfTheFile) {
   const auto setup = ReadSetup(folder_);
-  ASSERT_EQ(setup.sensors.size(), 2u);
-  EXPECT_EQ(setup.sensors[0].channel, "q");
-  EXPECT_EQ(setup.sensors[1].channel, "a");
-  const SensorSetup& q = setup.Sensor("q");
+  ASSERT_EQ(setup.channels.sensors.size(), 2u);
+  EXPECT_EQ(setup.channels.sensors[0].channel, "q");
+  EXPECT_EQ(setup.channels.sensors[1].channel, "a");
+  const SensorSetup& q = setup.channels.Sensor("q");
   EXPECT_EQ(q.element, "encoder");
   EXPECT_EQ(q.component, 1);
   EXPECT_EQ(q.unit, "m");
   EXPECT_DOUBLE_EQ(q.noise_sd, std::sqrt(4e-19 * 1000.0));
   EXPECT_EQ(q.resolution, 1e-9);
-  EXPECT_EQ(setup.Sensor("a").noise_sd, 3e-8);
-  EXPECT_EQ(setup.Sensor("a").component, 0);
+  EXPECT_EQ(setup.channels.Sensor("a").noise_sd, 3e-8);
+  EXPECT_EQ(setup.channels.Sensor("a").component, 0);
 
-  ASSERT_EQ(setup.actuators.size(), 2u);
-  EXPECT_EQ(setup.actuators[0].channel, "u");
-  EXPECT_EQ(setup.Actuator("u").element, "motor");
-  EXPECT_EQ(setup.Actuator("u").limit, 50.0);
-  EXPECT_EQ(setup.Actuator("t").unit, "N m");
-  EXPECT_EQ(setup.Actuator("t").limit, 0.0);
+  ASSERT_EQ(setup.channels.actuators.size(), 2u);
+  EXPECT_EQ(setup.channels.actuators[0].channel, "u");
+  EXPECT_EQ(setup.channels.Actuator("u").element, "motor");
+  EXPECT_EQ(setup.channels.Actuator("u").limit, 50.0);
+  EXPECT_EQ(setup.channels.Actuator("t").unit, "N m");
+  EXPECT_EQ(setup.channels.Actuator("t").limit, 0.0);
 }
 
 TEST_F(SetupFile, FillsTheAxes) {
   const auto setup = ReadSetup(folder_);
-  ASSERT_EQ(setup.axes.size(), 2u);
-  const AxisSetup& s = setup.axes[0];
+  ASSERT_EQ(setup.control.axes.size(), 2u);
+  const AxisSetup& s = setup.control.axes[0];
   EXPECT_EQ(s.name, "s");
   EXPECT_EQ(s.sensor, "q");
   EXPECT_EQ(s.actuator, "u");
@@ -87,7 +87,7 @@ TEST_F(SetupFile, FillsTheAxes) {
   EXPECT_EQ(s.limits.velocity, 0.5);
   EXPECT_EQ(s.limits.snap, 4e5);
 
-  const AxisSetup& r = setup.axes[1];
+  const AxisSetup& r = setup.control.axes[1];
   EXPECT_EQ(r.drive_gain, 1.0);
   EXPECT_EQ(r.known_disturbance, "");
   ASSERT_TRUE(r.nested);
@@ -103,9 +103,9 @@ TEST_F(SetupFile, FillsDisturbancesAndTrajectories) {
   EXPECT_THAT(setup.disturbances[0].frequencies, ElementsAre(50.0, 150.0));
   EXPECT_DOUBLE_EQ(setup.disturbances[0].amplitude.at("u"), 4.5);
 
-  ASSERT_EQ(setup.trajectories.size(), 2u);
-  EXPECT_EQ(setup.default_trajectory, "slow");
-  const Trajectory& fast = setup.FindTrajectory("fast");
+  ASSERT_EQ(setup.trajectories.all.size(), 2u);
+  EXPECT_EQ(setup.trajectories.fallback, "slow");
+  const Trajectory& fast = setup.trajectories.Find("fast");
   EXPECT_EQ(fast.duration, 2.0);
   EXPECT_EQ(fast.period, 1.0);
   ASSERT_EQ(fast.moves.size(), 2u);
@@ -114,7 +114,7 @@ TEST_F(SetupFile, FillsDisturbancesAndTrajectories) {
   EXPECT_EQ(fast.moves[1].by.at("s"), -0.01);
   EXPECT_EQ(fast.limits.at("s").jerk, 3000.0);
   EXPECT_EQ(fast.limits.at("r").acceleration, 40.0);
-  const Trajectory& slow = setup.FindTrajectory("slow");
+  const Trajectory& slow = setup.trajectories.Find("slow");
   EXPECT_EQ(slow.period, 0.0);
   EXPECT_EQ(slow.limits.at("s").jerk, 2000.0);
   EXPECT_FALSE(slow.limits.contains("r"));
@@ -238,15 +238,15 @@ TEST_F(SetupFile, TakesOverrides) {
       folder_, {"rates.substeps=8", "axes.r.nested.position_gain = 1.5", "name='other'",
                 "axes.s.limits={jerk=1.0}", "sensors.b={element='new', unit='m'}",
                 "trajectories.slow.moves=[{at=0, by={s=1}}]"});
-  EXPECT_EQ(setup.substeps, 8);
+  EXPECT_EQ(setup.rates.substeps, 8);
   EXPECT_EQ(setup.name, "other");
-  EXPECT_EQ(setup.axes[1].nested->position_gain, 1.5);
-  EXPECT_EQ(setup.axes[1].nested->velocity_gain, 240.0);
-  EXPECT_EQ(setup.axes[0].limits.jerk, 1.0);
-  EXPECT_EQ(setup.axes[0].limits.snap, 4e5);
-  ASSERT_EQ(setup.sensors.size(), 3u);
-  EXPECT_EQ(setup.sensors[2].channel, "b");
-  EXPECT_EQ(setup.FindTrajectory("slow").moves[0].by.at("s"), 1.0);
+  EXPECT_EQ(setup.control.axes[1].nested->position_gain, 1.5);
+  EXPECT_EQ(setup.control.axes[1].nested->velocity_gain, 240.0);
+  EXPECT_EQ(setup.control.axes[0].limits.jerk, 1.0);
+  EXPECT_EQ(setup.control.axes[0].limits.snap, 4e5);
+  ASSERT_EQ(setup.channels.sensors.size(), 3u);
+  EXPECT_EQ(setup.channels.sensors[2].channel, "b");
+  EXPECT_EQ(setup.trajectories.Find("slow").moves[0].by.at("s"), 1.0);
 }
 
 /// Every stretch of the text between `open` and the next `close`.
@@ -288,9 +288,9 @@ TEST_F(SetupFile, OfTheManualsExamplesReads) {
   Write(examples[1]);
   EXPECT_EQ(Message({}), "nothing thrown");
   const auto closed = ReadSetup(folder_);
-  EXPECT_EQ(closed.axes.size(), 1u);
+  EXPECT_EQ(closed.control.axes.size(), 1u);
   EXPECT_EQ(closed.diagnosis.degree, 2);
-  EXPECT_NO_THROW(SampleTrajectory(closed.FindTrajectory(closed.default_trajectory),
+  EXPECT_NO_THROW(SampleTrajectory(closed.trajectories.Find(closed.trajectories.fallback),
                                    {"slide"}, 1e-3));
 }
 
@@ -298,11 +298,11 @@ class ShippedSetup : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedSetup, HasTrajectoriesThatItsAxesCanFollow) {
   const auto setup = ReadSetup(kSource / "mjcf" / GetParam());
-  ASSERT_FALSE(setup.trajectories.empty());
+  ASSERT_FALSE(setup.trajectories.all.empty());
   std::vector<std::string> axes;
-  for (const AxisSetup& axis : setup.axes) axes.push_back(axis.name);
-  for (const Trajectory& trajectory : setup.trajectories) {
-    const Reference reference = SampleTrajectory(trajectory, axes, setup.sample_time());
+  for (const AxisSetup& axis : setup.control.axes) axes.push_back(axis.name);
+  for (const Trajectory& trajectory : setup.trajectories.all) {
+    const Reference reference = SampleTrajectory(trajectory, axes, setup.rates.tick());
     for (const AxisReference& axis : reference.axes) {
       EXPECT_NEAR(axis.position.tail(1)[0], 0.0, 1e-15) << trajectory.name;
     }
@@ -314,12 +314,12 @@ INSTANTIATE_TEST_SUITE_P(Mjcf, ShippedSetup, ::testing::Values("ab383", "emps"),
 
 TEST(Ab383Setup, HasTheRatesNoiseAndIntegratorsOfTheSeed) {
   const auto setup = ReadSetup(kSource / "mjcf/ab383");
-  EXPECT_EQ(setup.control_rate, 8000.0);
-  EXPECT_EQ(setup.substeps, 4);
-  for (const SensorSetup& sensor : setup.sensors) {
+  EXPECT_EQ(setup.rates.control, 8000.0);
+  EXPECT_EQ(setup.rates.substeps, 4);
+  for (const SensorSetup& sensor : setup.channels.sensors) {
     EXPECT_NEAR(sensor.noise_sd, 20e-9, 1e-12);
   }
-  for (const AxisSetup& axis : setup.axes) {
+  for (const AxisSetup& axis : setup.control.axes) {
     double at_one = 0.0;
     for (const double a : axis.feedback->denominator) at_one += a;
     if (axis.name == "z") continue;  // has none
@@ -332,7 +332,7 @@ TEST(Ab383Setup, HasTheRatesNoiseAndIntegratorsOfTheSeed) {
 TEST(Ab383Setup, ReachesItsRatedAccelerationOnFourMillimetres) {
   const auto setup = ReadSetup(kSource / "mjcf/ab383");
   const Reference x =
-      SampleTrajectory(setup.FindTrajectory("x_150g"), {"x"}, setup.sample_time());
+      SampleTrajectory(setup.trajectories.Find("x_150g"), {"x"}, setup.rates.tick());
   EXPECT_GT(x.axes[0].acceleration.maxCoeff(), 147.0 * 9.81);
   EXPECT_LE(x.axes[0].acceleration.maxCoeff(), 150.0 * 9.81);
 }

@@ -30,11 +30,16 @@ struct MotionOptions {
   bool linear = false;
 };
 
-/// The setup with its plant loaded and the options parsed.
-struct Machine {
-  Setup setup;
-  ModelPtr plant;
-  RunOptions options;
+/// The machine of the setup, and what is to be run.
+struct Subject {
+  Machine nominal;
+  Machine machine;     ///< with the faults and effects of the options
+  RunOptions options;  ///< with their disturbances
+
+  const Setup& setup() const { return nominal.setup(); }
+  bool healthy() const {
+    return machine.changes() == Changes{} && options.disturbances.empty();
+  }
 };
 
 /// Accepts finite numbers in least .. most only; CLI11's own ranges let NaN pass.
@@ -44,7 +49,7 @@ void AddMachineOptions(CLI::App& command, MachineOptions& options);
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 
 /// InputError on a fault or effect that the machine does not have.
-Machine LoadMachine(const MachineOptions& options);
+Subject LoadSubject(const MachineOptions& options);
 
 /// The trajectory (cut to the duration) or the replayed record.
 Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion);
@@ -56,8 +61,8 @@ Record Run(const Machine& machine, const MotionOptions& motion,
            const std::string& label);
 
 /// Folder names of the faults and effects, for titles: "zeta_x = 1.2, ..."; "healthy".
-std::string Describe(const RunOptions& options);
+std::string Describe(const Subject& subject);
 /// The same for machines to read.
-nlohmann::json ToJson(const RunOptions& options);
+nlohmann::json ToJson(const Subject& subject);
 
 }  // namespace mjdiag::app

@@ -1,8 +1,9 @@
-#include "app/machine.h"
+#include "app/subject.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "app/format.h"
 #include "app/progress.h"
@@ -31,11 +32,9 @@ bool IsDisturbance(const Setup& setup, const std::string& name) {
                      [&](const MultisineSetup& d) { return d.name == name; });
 }
 
-// A fault is tried on a copy of the plant, so that a wrong one is reported before
-// anything else happens.
-void AddFault(const Fault& fault, Machine& machine, mjModel& trial) {
-  const auto& faults = machine.options.faults;
-  if (machine.options.disturbances.contains(fault.name) ||
+void AddFault(const Fault& fault, Subject& subject) {
+  const std::vector<Fault>& faults = subject.machine.changes().faults;
+  if (subject.options.disturbances.contains(fault.name) ||
       std::any_of(faults.begin(), faults.end(),
                   [&](const Fault& f) { return f.name == fault.name; })) {
     throw InputError("--fault " + fault.name, "given twice", "one value");
@@ -43,12 +42,11 @@ void AddFault(const Fault& fault, Machine& machine, mjModel& trial) {
   if (!std::isfinite(fault.value)) {
     throw InputError("--fault " + fault.name, "not a finite number", "a finite one");
   }
-  if (IsDisturbance(machine.setup, fault.name)) {
-    machine.options.disturbances[fault.name] = fault.value;
+  if (IsDisturbance(subject.setup(), fault.name)) {
+    subject.options.disturbances[fault.name] = fault.value;
     return;
   }
-  ApplyFault(trial, fault);
-  machine.options.faults.push_back(fault);
+  subject.machine = subject.machine.With({{fault}, {}});
 }
 
 }  // namespace
@@ -102,21 +100,19 @@ void AddMotionOptions(CLI::App& command, MotionOptions& options) {
                    "Run the linearised plant instead of the nonlinear one");
 }
 
-Machine LoadMachine(const MachineOptions& options) {
-  Machine machine{ReadSetup(options.setup, options.overrides), nullptr, {}};
-  if (options.no_friction) machine.setup.static_friction = false;
-  machine.plant = LoadPlant(machine.setup);
-  const ModelPtr trial = CopyModel(*machine.plant);
-  for (const std::string& text : options.faults) {
-    AddFault(ParseFault(text), machine, *trial);
+Subject LoadSubject(const MachineOptions& options) {
+  Setup setup = ReadSetup(options.setup, options.overrides);
+  if (options.no_friction) setup.physics.static_friction = false;
+  const Machine nominal(std::move(setup));
+  Subject subject{nominal, nominal, {}};
+  for (const std::string& text : options.faults) AddFault(ParseFault(text), subject);
+  for (const EffectSpec& effect : nominal.effects()) {
+    CheckEffect(nominal.plant(), effect);
   }
-  for (const EffectSpec& effect : EffectsOf(*machine.plant))
-    CheckEffect(*trial, effect);
   for (const std::string& text : options.effects) {
-    machine.options.effects.push_back(ParseEffect(text));
-    CheckEffect(*trial, machine.options.effects.back());
+    subject.machine = subject.machine.With({{}, {ParseEffect(text)}});
   }
-  return machine;
+  return subject;
 }
 
 Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion) {
@@ -129,13 +125,13 @@ Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion) {
     }
     return Replay(setup, record);
   }
-  if (setup.axes.empty()) {
+  if (setup.control.axes.empty()) {
     throw InputError("--setup", "'" + setup.name + "' has no controlled axes",
                      "--replay RECORD with its inputs");
   }
   const std::string& name =
-      motion.trajectory.empty() ? setup.default_trajectory : motion.trajectory;
-  Trajectory trajectory = setup.FindTrajectory(name);
+      motion.trajectory.empty() ? setup.trajectories.fallback : motion.trajectory;
+  Trajectory trajectory = setup.trajectories.Find(name);
   if (motion.duration > 0.0) trajectory.duration = motion.duration;
   return FollowTrajectory(setup, trajectory);
 }
@@ -154,38 +150,38 @@ Record Run(const Machine& machine, const MotionOptions& motion,
   ProgressBar bar(label);
   RunOptions with_bar = options;
   with_bar.progress = [&bar](double fraction) { bar.Show(fraction); };
-  return motion.linear
-             ? SimulateLinear(machine.setup, *machine.plant, excitation, with_bar)
-             : Simulate(machine.setup, *machine.plant, excitation, with_bar);
+  return motion.linear ? SimulateLinear(machine, excitation, with_bar)
+                       : Simulate(machine, excitation, with_bar);
 }
 
-std::string Describe(const RunOptions& options) {
+std::string Describe(const Subject& subject) {
+  const auto& [faults, effects] = subject.machine.changes();
   std::string text;
   const auto append = [&text](const std::string& item) {
     text += (text.empty() ? "" : ", ") + item;
   };
-  for (const Fault& fault : options.faults) {
+  for (const Fault& fault : faults) {
     append(fault.name + " = " + Short(fault.value));
   }
-  for (const auto& [name, magnitude] : options.disturbances) {
+  for (const auto& [name, magnitude] : subject.options.disturbances) {
     append(name + " = " + Short(magnitude));
   }
-  for (const EffectSpec& effect : options.effects) {
+  for (const EffectSpec& effect : effects) {
     append(effect.effect + " at " + effect.site);
   }
   return text.empty() ? "healthy" : text;
 }
 
-nlohmann::json ToJson(const RunOptions& options) {
+nlohmann::json ToJson(const Subject& subject) {
   nlohmann::json faults = nlohmann::json::array();
-  for (const Fault& fault : options.faults) {
+  for (const Fault& fault : subject.machine.changes().faults) {
     faults.push_back({{"name", fault.name}, {"value", fault.value}});
   }
-  for (const auto& [name, magnitude] : options.disturbances) {
+  for (const auto& [name, magnitude] : subject.options.disturbances) {
     faults.push_back({{"name", name}, {"value", magnitude}});
   }
   nlohmann::json effects = nlohmann::json::array();
-  for (const EffectSpec& effect : options.effects) {
+  for (const EffectSpec& effect : subject.machine.changes().effects) {
     effects.push_back({{"effect", effect.effect},
                        {"site", effect.site},
                        {"parameters", effect.parameters}});

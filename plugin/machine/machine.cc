@@ -1,0 +1,147 @@
+#include "mjdiag/plugin/machine/machine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/plugin/plant/channels.h"
+#include "mjdiag/plugin/plant/instance_slot.h"
+#include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+/// Found when first asked for, by whichever copy of the machine is asked.
+struct Machine::Derived {
+  std::once_flag rest_once;
+  std::once_flag linear_once;
+  Eigen::VectorXd rest;
+  MechanicalModel linear;
+};
+
+namespace {
+
+ModelPtr LoadPlant(const Setup& setup) {
+  ModelPtr model = LoadModel(setup.plant);
+  CheckTimeStep(setup, *model);
+  PreparePlant(setup.physics, *model);
+  return model;
+}
+
+Setup WithNoiseOf(Setup setup, const std::vector<EffectSpec>& effects) {
+  setup.channels = WithEncoderNoise(std::move(setup.channels), effects);
+  return setup;
+}
+
+}  // namespace
+
+Machine::Machine(Setup setup) {
+  ModelPtr model = LoadPlant(setup);
+  FaultKnobs(*model);  // complains of those that are malformed
+  setup_ = std::make_shared<Setup>(WithNoiseOf(std::move(setup), EffectsOf(*model)));
+  Adopt(std::move(model));
+}
+
+Machine::Machine(Setup setup, const mjModel& prepared)
+    : setup_(
+          std::make_shared<Setup>(WithNoiseOf(std::move(setup), EffectsOf(prepared)))) {
+  Adopt(CopyModel(prepared));
+}
+
+void Machine::Adopt(std::shared_ptr<const mjModel> plant) {
+  plant_ = std::move(plant);
+  sensor_addresses_ = SensorAddresses(channels(), *plant_);
+  actuator_addresses_ = ActuatorAddresses(channels(), *plant_);
+  derived_ = std::make_shared<Derived>();
+}
+
+std::vector<EffectSpec> Machine::effects() const {
+  std::vector<EffectSpec> all = EffectsOf(*plant_);
+  all.insert(all.end(), changes_.effects.begin(), changes_.effects.end());
+  return all;
+}
+
+const Eigen::VectorXd& Machine::rest() const {
+  std::call_once(derived_->rest_once,
+                 [this] { derived_->rest = StaticEquilibrium(*plant_); });
+  return derived_->rest;
+}
+
+const MechanicalModel& Machine::linear() const {
+  std::call_once(derived_->linear_once, [this] {
+    derived_->linear = Linearize(*plant_, channels(), rest());
+  });
+  return derived_->linear;
+}
+
+Machine Machine::With(const Changes& changes) const {
+  Machine changed = *this;
+  if (changes == Changes{}) return changed;
+  ModelPtr model = CopyModel(*plant_);
+  for (const Fault& fault : changes.faults) ApplyFault(*model, fault);
+  for (const EffectSpec& effect : changes.effects) ApplyNativeEffect(*model, effect);
+  changed.setup_ = std::make_shared<Setup>(WithNoiseOf(*setup_, changes.effects));
+  changed.Adopt(std::move(model));
+  auto& [faults, effects] = changed.changes_;
+  faults.insert(faults.end(), changes.faults.begin(), changes.faults.end());
+  effects.insert(effects.end(), changes.effects.begin(), changes.effects.end());
+  return changed;
+}
+
+Machine Machine::WithSubsteps(int substeps) const {
+  Machine changed = *this;
+  Setup setup = *setup_;
+  ModelPtr model = CopyModel(*plant_);
+  model->opt.timestep *= static_cast<double>(setup.rates.substeps) / substeps;
+  setup.rates.substeps = substeps;
+  changed.setup_ = std::make_shared<Setup>(std::move(setup));
+  changed.Adopt(std::move(model));
+  return changed;
+}
+
+Machine Machine::WithSetup(Setup setup) const {
+  Machine changed = *this;
+  changed.setup_ = std::make_shared<Setup>(std::move(setup));
+  return changed;
+}
+
+Machine Machine::WithSensorNoise(const Eigen::VectorXd& sd) const {
+  Setup setup = *setup_;
+  for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
+    setup.channels.sensors[i].noise_sd = sd[static_cast<Eigen::Index>(i)];
+  }
+  return WithSetup(WithNoiseOf(std::move(setup), effects()));
+}
+
+void CheckTimeStep(const Setup& setup, const mjModel& model) {
+  if (model.opt.integrator != mjINT_EULER && model.opt.integrator != mjINT_IMPLICIT) {
+    throw InputError(setup.plant.string(),
+                     "an integrator that evaluates the controls several times a step",
+                     "integrator=\"Euler\" or \"implicit\"");
+  }
+  const double step = setup.rates.step();
+  if (std::abs(model.opt.timestep / step - 1.0) > 1e-9) {
+    throw InputError(setup.plant.string(),
+                     "time step " + std::to_string(model.opt.timestep * 1e6) + " us",
+                     std::to_string(step * 1e6) +
+                         " us, the control tick of the setup over its substeps");
+  }
+}
+
+void PreparePlant(const Physics& physics, mjModel& model) {
+  if (!physics.gravity) model.opt.disableflags |= mjDSBL_GRAVITY;
+  if (!physics.static_friction) {
+    // The plant's own; friction that an effect adds stays.
+    std::fill_n(model.dof_frictionloss, model.nv, 0.0);
+    std::fill_n(model.tendon_frictionloss, model.ntendon, 0.0);
+  }
+  for (const EffectSpec& effect : EffectsOf(model)) ApplyNativeEffect(model, effect);
+  ReserveInstanceSlot(model);
+}
+
+}  // namespace mjdiag

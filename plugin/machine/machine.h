@@ -1,0 +1,86 @@
+#pragma once
+// A machine: a setup with its plant loaded, and what follows from the two. It is made
+// once, does not change, and is cheap to copy and to vary: copies share the model and
+// what has been derived from it.
+//
+//   const Machine bonder(ReadSetup("mjcf/ab383"));
+//   const Machine worn = bonder.With({{{"zeta_x", 1.2}}, {}});
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/plugin/effects/changes.h"
+#include "mjdiag/plugin/plant/fault.h"
+#include "mjdiag/plugin/setup/setup.h"
+
+namespace mjdiag {
+
+class Machine {
+ public:
+  /// Loads the plant and makes it what the setup says: gravity, static friction, the
+  /// effects that the MJCF carries. InputError if its time step does not fit the rates
+  /// or an element that the setup names is missing.
+  explicit Machine(Setup setup);
+  /// Of a copy of a model that PreparePlant has made ready.
+  Machine(Setup setup, const mjModel& prepared);
+
+  /// With the noise that effects add in its channels.
+  const Setup& setup() const { return *setup_; }
+  const Rates& rates() const { return setup_->rates; }
+  const Channels& channels() const { return setup_->channels; }
+  /// The nonlinear plant, native effects and faults in it.
+  const mjModel& plant() const { return *plant_; }
+  /// Index into mjData.sensordata and mjData.ctrl of every sensor and actuator channel.
+  const std::vector<int>& sensor_addresses() const { return sensor_addresses_; }
+  const std::vector<int>& actuator_addresses() const { return actuator_addresses_; }
+
+  /// What With has put in so far.
+  const Changes& changes() const { return changes_; }
+  /// All that act: those that the MJCF carries, then those of the changes.
+  std::vector<EffectSpec> effects() const;
+
+  /// Joint positions at rest without input (StaticEquilibrium), found when first asked
+  /// for. NumericalError as there.
+  const Eigen::VectorXd& rest() const;
+  /// M, D, K, Gamma and b about the rest (Linearize), found when first asked for.
+  const MechanicalModel& linear() const;
+
+  /// This machine with faults and effects besides those that it has. InputError names
+  /// a fault parameter, effect, site or value that the plant does not allow.
+  Machine With(const Changes& changes) const;
+  /// The same physics in that many steps a control tick.
+  Machine WithSubsteps(int substeps) const;
+  /// The same plant under another setup that names the same channels.
+  Machine WithSetup(Setup setup) const;
+  /// The same machine with that noise of the sensors [unit of each]; what effects add
+  /// comes on top.
+  Machine WithSensorNoise(const Eigen::VectorXd& sd) const;
+
+ private:
+  struct Derived;
+
+  void Adopt(std::shared_ptr<const mjModel> plant);
+
+  std::shared_ptr<const Setup> setup_;
+  std::shared_ptr<const mjModel> plant_;
+  std::vector<int> sensor_addresses_;
+  std::vector<int> actuator_addresses_;
+  Changes changes_;
+  std::shared_ptr<Derived> derived_;
+};
+
+/// InputError if the model's time step is not control tick / substeps, or its
+/// integrator evaluates the controls several times a step.
+void CheckTimeStep(const Setup& setup, const mjModel& model);
+
+/// Makes a loaded model the plant of a setup: gravity, static friction, native effects
+/// that the MJCF carries, and the slot for the mark of an instance. Once a model.
+void PreparePlant(const Physics& physics, mjModel& model);
+
+}  // namespace mjdiag

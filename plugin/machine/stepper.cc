@@ -1,0 +1,70 @@
+#include "mjdiag/plugin/machine/stepper.h"
+
+#include <algorithm>
+
+#include "mjdiag/plugin/plant/scenery.h"
+#include "mjdiag/plugin/plant/start_state.h"
+
+namespace mjdiag {
+
+Stepper::Stepper(const Machine& machine)
+    : effects_(machine.channels(), machine.plant(), machine.effects()),
+      tick_(machine.rates().tick()),
+      substeps_(machine.rates().substeps),
+      sensors_(machine.sensor_addresses()),
+      actuators_(machine.actuator_addresses()),
+      outputs_(sensors_.size()),
+      inputs_(actuators_.size()) {}
+
+void Stepper::OnStep(const mjModel& model, mjData& data,
+                     TickControl& control) noexcept {
+  if (substep_ == 0) {
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      outputs_[i] = data.sensordata[sensors_[i]];
+    }
+    effects_.Distort(outputs_, static_cast<double>(ticks_) * tick_);
+    control.Tick(outputs_, inputs_);
+    ++ticks_;
+  }
+  if (++substep_ == substeps_) substep_ = 0;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    data.ctrl[actuators_[i]] = inputs_[i];
+  }
+  effects_.Act(model, data);
+}
+
+void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,
+                      const std::function<void()>& after_step) {
+  for (int i = 0; i < substeps_; ++i) {
+    mj_step1(&model, &data);
+    OnStep(model, data, control);
+    mj_step2(&model, &data);
+    if (after_step) after_step();
+  }
+}
+
+void Stepper::Release(mjData& data) noexcept {
+  for (const int address : actuators_) data.ctrl[address] = 0.0;
+  effects_.Release(data);
+}
+
+StartedPlant StartPlant(const Machine& machine,
+                        const std::map<std::string, double>& start) {
+  StartedPlant plant{CopyModel(machine.plant()), nullptr};
+  const Eigen::VectorXd position =
+      StartPosition(machine.channels(), *plant.model, machine.rest(), start);
+  DropScenery(*plant.model);
+  plant.data = MakeData(*plant.model);
+  std::copy(position.begin(), position.end(), plant.data->qpos);
+  return plant;
+}
+
+// Only the warning counters tell.
+bool HasDiverged(const mjData& data) {
+  return data.warning[mjWARN_BADQPOS].number > 0 ||
+         data.warning[mjWARN_BADQVEL].number > 0 ||
+         data.warning[mjWARN_BADQACC].number > 0 ||
+         data.warning[mjWARN_BADCTRL].number > 0;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,76 @@
+#pragma once
+// A control tick of the nonlinear machine, physics step by physics step: at the first
+// one the sensors are read and the actuator signals decided, which hold for the tick;
+// effects act in every one.
+//
+// The same steps are taken inside MuJoCo's control callback, where a caller's mj_step
+// drives (OnStep), and by Advance, which takes a whole tick by itself.
+
+#include <mujoco/mujoco.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+
+namespace mjdiag {
+
+/// Decides the actuator signals of a tick: a controller, or a record.
+class TickControl {
+ public:
+  virtual ~TickControl() = default;
+  /// Nothing in it may allocate, lock, throw or do I/O.
+  /// @param outputs  readings of the sensor channels at the start of the tick
+  /// @param inputs   receives the signals of the actuator channels until the next tick
+  virtual void Tick(std::span<const double> outputs,
+                    std::span<double> inputs) noexcept = 0;
+};
+
+class Stepper {
+ public:
+  /// InputError as CheckEffect.
+  explicit Stepper(const Machine& machine);
+
+  /// One physics step, after positions and velocities and before accelerations: where
+  /// MuJoCo calls the control callback.
+  void OnStep(const mjModel& model, mjData& data, TickControl& control) noexcept;
+  /// A whole tick. @param after_step  called after every physics step; may be empty
+  void Advance(const mjModel& model, mjData& data, TickControl& control,
+               const std::function<void()>& after_step = {});
+  /// Whether the next physics step is the first of a tick.
+  bool AtTickStart() const { return substep_ == 0; }
+  /// Sets the actuators and the forces of effects to zero.
+  void Release(mjData& data) noexcept;
+
+ private:
+  ActiveEffects effects_;
+  double tick_;  // [s]
+  int substeps_;
+  int substep_ = 0;
+  std::int64_t ticks_ = 0;
+  std::vector<int> sensors_;    // addresses
+  std::vector<int> actuators_;  // addresses
+  std::vector<double> outputs_;
+  std::vector<double> inputs_;
+};
+
+/// A plant about to run.
+struct StartedPlant {
+  ModelPtr model;  ///< without what is only to be looked at
+  DataPtr data;    ///< at rest
+};
+
+/// @param start  sensor channel -> reading at rest (StartPosition)
+StartedPlant StartPlant(const Machine& machine,
+                        const std::map<std::string, double>& start);
+
+/// Whether the run has diverged: MuJoCo resets the state then and goes on.
+bool HasDiverged(const mjData& data);
+
+}  // namespace mjdiag
