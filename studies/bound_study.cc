@@ -31,10 +31,11 @@ std::vector<std::string> FaultNames(const Machine& machine) {
 }
 
 /// Standard deviations that the estimator claims for a healthy run.
-VectorXd EstimatorSd(Setup setup, const mjModel& plant, const Record& record,
+VectorXd EstimatorSd(const Machine& machine, const Record& record,
                      int rows) {
+  Setup setup = machine.setup();
   setup.diagnosis.estimation_rows = rows;
-  const DiagnosisDesign design = DesignFilters(setup, plant);
+  const DiagnosisDesign design = DesignFilters(machine.WithSetup(setup));
   DiagnosisMonitor monitor(design, record.samples());
   Run(monitor, design, record);
   return monitor.estimator().Estimate().covariance.diagonal().cwiseSqrt();
