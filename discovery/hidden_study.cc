@@ -111,6 +111,8 @@ std::vector<std::string> TypesOfRun(int run, int causes) {
   return types;
 }
 
+namespace {
+
 bool Names(const mjModel& plant, const FoundCause& found, const Cause& truth) {
   return Indistinguishable(plant, found.cause, truth);
 }
@@ -124,6 +126,8 @@ bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& t
            Indistinguishable(plant, other.cause, truth);
   });
 }
+
+}  // namespace
 
 HiddenOutcome RunHidden(const Setup& setup, const mjModel& plant,
                         const std::vector<std::string>& types, std::uint64_t seed) {
