@@ -4,6 +4,7 @@ include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)
 find_dependency(Ceres)
+find_dependency(TBB)
 
 # mjdiag_library(<target> HEADER <header> [SUFFIXES <s...>] LIBRARIES <names...>)
 # defines an imported target for a library that ships no usable CMake config.
