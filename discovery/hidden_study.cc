@@ -111,11 +111,11 @@ std::vector<std::string> TypesOfRun(int run, int causes) {
   return types;
 }
 
-namespace {
-
 bool Names(const mjModel& plant, const FoundCause& found, const Cause& truth) {
   return Indistinguishable(plant, found.cause, truth);
 }
+
+namespace {
 
 /// Whether the answer says of a cause it names that the record does not tell it from
 /// this one.
