@@ -1,6 +1,8 @@
 #include "mjdiag/plugin/parallel.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <chrono>
@@ -122,16 +124,20 @@ TEST(ParallelFor, RunsNestedLoopsOnTheSameThreads) {
 }
 
 // A thread that waited for its inner loop and meanwhile began another task of the outer
-// one would have two of them under way.
+// one would have two of them under way. On two threads that hardly ever happens.
 TEST(ParallelFor, TakesUpNoOtherTaskInTheMiddleOfOne) {
+  const tbb::global_control eight(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena arena(8);
   thread_local bool busy = false;
   std::atomic<int> twice{0};
-  ParallelFor(50, [&](int) {
-    if (busy) ++twice;
-    busy = true;
-    ParallelFor(
-        4, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(200)); });
-    busy = false;
+  arena.execute([&] {
+    ParallelFor(50, [&](int) {
+      if (busy) ++twice;
+      busy = true;
+      ParallelFor(
+          4, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(200)); });
+      busy = false;
+    });
   });
   EXPECT_EQ(twice, 0);
 }
