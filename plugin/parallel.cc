@@ -72,7 +72,7 @@ class Loop {
 /// What TBB copies from thread to thread, which the sanitizer is not to look at.
 struct LoopBody {
   Loop* loop;
-  [[gnu::no_sanitize("thread")]] void operator()(
+  [[gnu::no_sanitize_thread]] void operator()(
       const tbb::blocked_range<int>& range) const {
     for (int i = range.begin(); i < range.end(); ++i) loop->DoTask(i);
   }
