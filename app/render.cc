@@ -15,6 +15,7 @@
 #include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/signals/error.h"
@@ -116,7 +117,7 @@ void NoteEstimate(const DiagnosisDesign& design, const DiagnosisMonitor& monitor
     const CalibratedEstimate calibrated = Calibrate(
         design, at, estimate->value[at], std::sqrt(estimate->covariance(at, at)));
     history.value[column] = history.healthy + calibrated.deviation;
-    history.half_width[column] = TwoSidedQuantile(0.05) * calibrated.sd;
+    history.half_width[column] = TwoSidedNormalQuantile(0.05) * calibrated.sd;
   }
 }
 

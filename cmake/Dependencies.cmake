@@ -4,6 +4,7 @@ include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)
 find_dependency(Ceres)
+find_dependency(TBB)
 
 # mjdiag_library(<target> HEADER <header> [SUFFIXES <s...>] LIBRARIES <names...>)
 # defines an imported target for a library that ships no usable CMake config.
@@ -34,6 +35,7 @@ mjdiag_library(mjdiag::opencv_ml_library HEADER opencv2/ml.hpp SUFFIXES opencv4
 mjdiag_library(mjdiag::matio_library HEADER matio.h LIBRARIES matio)
 mjdiag_library(mjdiag::clp_library HEADER ClpSimplex.hpp SUFFIXES coin
                LIBRARIES Clp CoinUtils)
+mjdiag_library(mjdiag::boost_library HEADER boost/math/distributions.hpp LIBRARIES)
 mjdiag_library(mjdiag::toml_library HEADER toml++/toml.h LIBRARIES)
 mjdiag_library(mjdiag::json_library HEADER nlohmann/json.hpp LIBRARIES)
 mjdiag_library(mjdiag::cli_library HEADER CLI/CLI.hpp LIBRARIES)

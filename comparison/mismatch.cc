@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -45,34 +45,6 @@ Eigen::Index WindowLength(const MismatchOptions& options, double sample_time,
   return std::clamp(length, std::min(kShortestWindow, samples), samples);
 }
 
-double FTail(double rms, const NoiseFloor& floor) {
-  // Paulson (1942): the cube roots of both chi-squares are nearly normal, so
-  // z = ((1 - b) F^(1/3) - (1 - a)) / sqrt(b F^(2/3) + a) is standard normal with
-  // a = 2 / (9 freedom of the numerator), b = 2 / (9 freedom of the denominator).
-  const double a = 2.0 / (9.0 * floor.mismatch_freedom);
-  const double b = 2.0 / (9.0 * floor.floor_freedom);
-  const double root = std::cbrt(rms * rms / (floor.rms * floor.rms));
-  const double z = ((1.0 - b) * root - (1.0 - a)) / std::sqrt(b * root * root + a);
-  return 0.5 * std::erfc(z / std::sqrt(2.0));
-}
-
-/// Upper tail of Student's t with n >= 1 degrees of freedom; Abramowitz and Stegun,
-/// 26.7.3 and 26.7.4.
-double StudentTail(double t, int n) {
-  const double angle = std::atan(t / std::sqrt(static_cast<double>(n)));
-  const double cosine = std::cos(angle);
-  const bool odd = n % 2 == 1;
-  double term = odd ? cosine : 1.0;
-  double sum = n == 1 ? 0.0 : term;
-  for (int k = odd ? 3 : 2; k <= n - 2; k += 2) {
-    term *= cosine * cosine * (k - 1) / k;
-    sum += term;
-  }
-  const double within = odd ? (angle + std::sin(angle) * sum) * 2.0 / std::numbers::pi
-                            : std::sin(angle) * sum;
-  return 0.5 * (1.0 - within);
-}
-
 double AnotherDrawTail(double rms, const std::vector<double>& draws) {
   if (draws.size() < 3) return 0.0;
   const Eigen::ArrayXd logs =
@@ -80,7 +52,7 @@ double AnotherDrawTail(double rms, const std::vector<double>& draws) {
   const auto n = static_cast<double>(logs.size());
   const double spread = std::sqrt((logs - logs.mean()).square().sum() / (n - 1.0));
   const double t = (std::log(rms) - logs.mean()) / (spread * std::sqrt(1.0 + 1.0 / n));
-  return StudentTail(t, static_cast<int>(n) - 1);
+  return StudentExceedance(t, n - 1.0);
 }
 
 }  // namespace
@@ -130,7 +102,10 @@ WorstWindow FindWorstWindow(const Eigen::VectorXd& mismatch, double sample_time,
 
 double NoiseProbability(double rms, const NoiseFloor& floor) {
   if (floor.rms == 0.0) return rms > 0.0 ? 0.0 : 1.0;
-  return std::max(FTail(rms, floor), AnotherDrawTail(rms, floor.draws));
+  const double ratio = rms / floor.rms;
+  return std::max(
+      FExceedance(ratio * ratio, floor.mismatch_freedom, floor.floor_freedom),
+      AnotherDrawTail(rms, floor.draws));
 }
 
 ChannelMismatch MeasureMismatch(const Record& measured, const Record& simulated,

@@ -82,10 +82,10 @@ WorstWindow FindWorstWindow(const Eigen::VectorXd& mismatch, double sample_time,
                             double start_time, Eigen::Index length);
 
 /// Chance that a mean square of `rms`^2 or more comes from noise of that floor alone
-/// (upper tail of the F distribution; Paulson's approximation). With three draws or
-/// more it is at least the chance that one more draw reaches it, by Student's t on the
-/// logarithms of their mean squares: noise that makes dry friction slip now and then is
-/// neither stationary nor Gaussian, and only its draws tell how much its power varies.
+/// (upper tail of the F distribution). With three draws or more it is at least the
+/// chance that one more draw reaches it, by Student's t on the logarithms of their mean
+/// squares: noise that makes dry friction slip now and then is neither stationary nor
+/// Gaussian, and only its draws tell how much its power varies.
 double NoiseProbability(double rms, const NoiseFloor& floor);
 
 /// All figures of the channel `name`, which both records must have. InputError if the

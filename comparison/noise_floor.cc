@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <vector>
 
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/noise_level.h"
 
 namespace mjdiag {
@@ -50,23 +50,18 @@ NoiseFloor FloorOf(const std::vector<Eigen::VectorXd>& draws, double sample_time
 /// Runs that differ in the seed of their noise only, in parallel.
 std::vector<Record> NoisyRuns(const Machine& machine,
                               const Excitation& excitation, const RunOptions& options) {
-  std::vector<std::future<Record>> runs;
-  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
-    RunOptions noisy = options;
-    noisy.noise_scale = 1.0;
-    noisy.seed = options.seed + draw;
-    noisy.progress = nullptr;
-    runs.push_back(std::async(std::launch::async, [&, noisy] {
-      return Simulate(machine, excitation, noisy);
-    }));
-  }
-  std::vector<Record> records;
-  for (std::future<Record>& run : runs) {
-    records.push_back(run.get());
-    if (options.progress) {
-      options.progress(static_cast<double>(records.size()) / kDraws);
-    }
-  }
+  std::vector<Record> records(kDraws);
+  ParallelFor(
+      kDraws,
+      [&](int draw) {
+        RunOptions noisy = options;
+        noisy.noise_scale = 1.0;
+        noisy.seed = options.seed + static_cast<std::uint64_t>(draw);
+        noisy.progress = nullptr;
+        records[static_cast<std::size_t>(draw)] =
+            Simulate(machine, excitation, noisy);
+      },
+      options.progress);
   return records;
 }
 

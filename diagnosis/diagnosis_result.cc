@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -19,8 +20,8 @@ std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
                                 const FaultEstimate& estimate) {
   const std::vector<std::string> names = design.FaultNames();
   const auto count = static_cast<double>(names.size());
-  const double reach = TwoSidedQuantile(kFalseFault / count);
-  const double half = TwoSidedQuantile(0.05);
+  const double reach = TwoSidedNormalQuantile(kFalseFault / count);
+  const double half = TwoSidedNormalQuantile(0.05);
   std::vector<FaultVerdict> verdicts;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);
@@ -83,7 +84,7 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
   const Interval& limits = design.limits.estimates[static_cast<std::size_t>(fault)];
   const double middle = 0.5 * (limits.min + limits.max);
   const double spread =
-      0.5 * (limits.max - limits.min) / TwoSidedQuantile(kOutsideLimits);
+      0.5 * (limits.max - limits.min) / TwoSidedNormalQuantile(kOutsideLimits);
   return {deviation - middle, std::hypot(sd, spread), limits.Holds(deviation)};
 }
 

@@ -15,8 +15,8 @@
 //   B(f) = S(f) * median over neighbouring bins of R / S   (bias of the median removed)
 // is the noise density expected in this record (residual_noise.h). R / B follows an F
 // distribution, and the threshold at each frequency (tone_search.h) is
-//   sqrt(threshold) = leak + sqrt(max(F B, F side, (1 + peak_margin) max_i R_i(f -+
-//   df)))
+//   sqrt(threshold) = leak + sqrt(max(F B, F side, (1 + peak_margin) highest))
+//   highest = max_i R_i(f -+ df)
 // where F is the F distribution's quantile at tone_false_alarm / number of bins; `side`
 // is the higher of the medians of R left and right of the bin, so that broadband power
 // of a shape unlike S, such as of an impact, makes no tones on the slopes of S; the

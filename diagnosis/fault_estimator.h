@@ -1,11 +1,11 @@
 #pragma once
 // Fault magnitudes by regression of the residuals on the prefiltered signals,
 //
-//   r_t = sum_i phi_i,t f_i + n_t,   f^ = (G^T G)^-1 G^T r     (Eq. 25 and 26 of the
-//   seed)
+//   r_t = sum_i phi_i,t f_i + n_t,   f^ = (G^T G)^-1 G^T r
 //
-// one sample at a time, with exponential forgetting if wanted: G^T G and G^T r are
-// summed, and solved on request. Without forgetting that is the batch estimate.
+// (Eq. 25 and 26 of the seed) one sample at a time, with exponential forgetting if
+// wanted: G^T G and G^T r are summed, and solved on request. Without forgetting that is
+// the batch estimate.
 //
 // The noise n of the residuals is coloured: white sensor noise w behind the residual
 // filter, xi+ = A xi + B w, n = C xi + D w. Ordinary least squares stays unbiased, but

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/f_distribution.h"
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/diagnosis/sine_fit.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/median.h"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -67,21 +67,10 @@ ThresholdDesign ThresholdsByFalseAlarms(const std::vector<VectorXd>& nominal,
   }
   ThresholdDesign design = Survey(nominal);
   const Interval seen = design.limits;
-  const double reach = TwoSidedQuantile(probability / samples) * design.fit.sd;
+  const double reach = TwoSidedNormalQuantile(probability / samples) * design.fit.sd;
   design.limits = {design.fit.mean - reach, design.fit.mean + reach};
   design.alpha = std::max(design.limits.max / seen.max, design.limits.min / seen.min);
   return design;
-}
-
-double TwoSidedQuantile(double probability) {
-  // erfc is monotonic: bisection over its whole range of normal numbers.
-  double low = 0.0;
-  double high = 40.0;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (low + high);
-    (std::erfc(middle / std::numbers::sqrt2) > probability ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace mjdiag

@@ -1,20 +1,16 @@
 #pragma once
 // Thresholds of a residual, Eq. 20 and 21 of the seed: healthy while
-//   r_min < r(t) < r_max,   r_max = alpha max_i max_t r_i(t),  r_min = alpha min_i
-//   min_t r_i(t)
+//   r_min < r(t) < r_max
+//   r_max = alpha max_i max_t r_i(t),  r_min = alpha min_i min_t r_i(t)
 // over nominal trajectories i. The margin alpha is given, or follows from a normal
 // distribution fitted to the nominal residuals and a wanted rate of false alarms.
 
 #include <Eigen/Core>
 #include <vector>
 
-namespace mjdiag {
+#include "mjdiag/diagnosis/interval.h"
 
-struct Interval {
-  double min = 0.0;
-  double max = 0.0;
-  bool Holds(double value) const { return value > min && value < max; }
-};
+namespace mjdiag {
 
 struct NormalFit {
   double mean = 0.0;
@@ -44,8 +40,5 @@ ThresholdDesign ThresholdsByMargin(const std::vector<Eigen::VectorXd>& nominal,
 /// seen. InputError unless 0 < probability < 1.
 ThresholdDesign ThresholdsByFalseAlarms(const std::vector<Eigen::VectorXd>& nominal,
                                         double probability, double samples);
-
-/// k with P(|X| > k) = probability for a standard normal X.
-double TwoSidedQuantile(double probability);
 
 }  // namespace mjdiag

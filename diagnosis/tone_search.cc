@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mjdiag/diagnosis/f_distribution.h"
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/signals/median.h"
 
 namespace mjdiag {

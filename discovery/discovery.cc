@@ -5,9 +5,10 @@
 #include <cmath>
 #include <optional>
 
+#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
-#include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
@@ -31,7 +32,6 @@ constexpr double kMuch = 4.0;
 constexpr double kFastShare = 0.02;
 constexpr int kFurtherCauses = 3;
 constexpr double kLeastProbability = 0.01;
-constexpr double kNormal95 = 1.959964;
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
     const std::string unit =
         candidate.cause.fault ? "1" : SiteUnit(machine_.plant(), candidate.cause.spec, name);
     parameters.push_back(
-        {name, unit, fitted.value[index], sd, interval.low, interval.high});
+        {name, unit, fitted.value[index], sd, interval.min, interval.max});
   }
   return parameters;
 }
@@ -129,9 +129,9 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
        FindRaisedNoise(machine_.setup(), problem_.observer, innovations, options_.train_share)) {
     FoundCause found;
     found.cause.spec = {"encoder_noise", raised.element, {{"sd", raised.sd}}};
+    const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
     found.parameters = {{"sd", raised.unit, raised.sd, raised.sd_error,
-                         raised.sd - kNormal95 * raised.sd_error,
-                         raised.sd + kNormal95 * raised.sd_error}};
+                         raised.sd - half, raised.sd + half}};
     found.probability = 1.0;
     discovery_.causes.push_back(std::move(found));
   }

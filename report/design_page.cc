@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "mjdiag/report/normal_density.h"
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/report/page.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -125,8 +125,8 @@ HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds) {
   const double last = plot.edges[bins];
   const double area = plot.counts.sum() * (last - first) / static_cast<double>(bins);
   const VectorXd x = VectorXd::LinSpaced(kCurvePoints, first, last);
-  plot.curves = {
-      {"normal distribution", CurveRole::kSimulated, x, area * NormalDensity(fit, x)}};
+  plot.curves = {{"normal distribution", CurveRole::kSimulated, x,
+                  area * NormalDensity(x, fit.mean, fit.sd)}};
   plot.marks = {{thresholds.limits.min, "threshold"},
                 {thresholds.limits.max, "threshold"}};
   return plot;

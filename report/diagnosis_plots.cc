@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/report/normal_density.h"
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -111,7 +111,7 @@ TimePlot EstimatePlot(const DiagnosisDesign& design, const DiagnosisResult& resu
     const CalibratedEstimate calibrated =
         Calibrate(design, row, log.estimates(row, k), sd[k]);
     deviation[k] = calibrated.deviation;
-    half_width[k] = TwoSidedQuantile(0.05) * calibrated.sd;
+    half_width[k] = TwoSidedNormalQuantile(0.05) * calibrated.sd;
   }
   const Index first = FirstShown(half_width);
   const Index shown = sd.size() - first;
@@ -189,7 +189,7 @@ HistogramPlot RunHistogram(const DiagnosisDesign& design, const DiagnosisResult&
   // Its own samples: in bins of a large residual it is a spike.
   const VectorXd x =
       VectorXd::LinSpaced(201, fit.mean - 4.0 * fit.sd, fit.mean + 4.0 * fit.sd);
-  const VectorXd density = NormalDensity(fit, x);
+  const VectorXd density = NormalDensity(x, fit.mean, fit.sd);
   // A bin wider than the distribution holds all of it.
   const double samples = static_cast<double>(log.residual.size());
   plot.curves = {{"healthy runs, normal distribution", CurveRole::kSimulated, x,

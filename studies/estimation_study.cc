@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/diagnosis/refined_estimate.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
@@ -53,7 +54,7 @@ StudyTable Repeat(const Machine& machine,
 
   const VectorXd truth = Truth(machine.setup(), design, sizes);
   const InformationBound bound = FaultBound(machine, motion);
-  const auto band = BinomialBand(options.runs, 0.95, 0.99);
+  const auto band = BinomialInterval(options.runs, 0.95, 0.99);
   StudyTable table{
       "All at once: [studies." + sizes.name + "], " + std::to_string(options.runs) +
           " runs",
@@ -63,7 +64,7 @@ StudyTable Repeat(const Machine& machine,
       {"Errors are shares of the deviation that is there. The bound is that "
        "of the healthy machine."}};
   const std::vector<std::string> names = design.FaultNames();
-  const double half = TwoSidedQuantile(0.05);
+  const double half = TwoSidedNormalQuantile(0.05);
   const auto runs = static_cast<double>(options.runs);
   for (Index i = 0; i < truth.size(); ++i) {
     double mean = 0.0;

@@ -113,6 +113,8 @@ bool Names(const mjModel& plant, const FoundCause& found, const Cause& truth) {
   return Indistinguishable(plant, found.cause, truth);
 }
 
+namespace {
+
 /// Whether the answer says of a cause it names that the record does not tell it from
 /// this one.
 bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& truth) {
@@ -122,6 +124,8 @@ bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& t
            Indistinguishable(plant, other.cause, truth);
   });
 }
+
+}  // namespace
 
 HiddenOutcome RunHidden(const Machine& machine,
                         const std::vector<std::string>& types, std::uint64_t seed) {

@@ -82,23 +82,4 @@ std::optional<double> SmallestDeviation(double seen, double resolution,
   return std::copysign(std::exp(high), seen);
 }
 
-std::pair<int, int> BinomialBand(int runs, double probability, double confidence) {
-  const double tail = 0.5 * (1.0 - confidence);
-  std::vector<double> cumulative;
-  double sum = 0.0;
-  for (int k = 0; k <= runs; ++k) {
-    const double log_choose =
-        std::lgamma(runs + 1.0) - std::lgamma(k + 1.0) - std::lgamma(runs - k + 1.0);
-    sum += std::exp(log_choose + k * std::log(probability) +
-                    (runs - k) * std::log1p(-probability));
-    cumulative.push_back(sum);
-  }
-  const auto first = [&](double level) {
-    return static_cast<int>(
-        std::lower_bound(cumulative.begin(), cumulative.end(), level) -
-        cumulative.begin());
-  };
-  return {first(tail), std::min(runs, first(1.0 - tail))};
-}
-
 }  // namespace mjdiag

@@ -69,8 +69,4 @@ Detection Look(const Detector& detector, const Record& record,
 std::optional<double> SmallestDeviation(double seen, double resolution,
                                         const std::function<bool(double)>& detected);
 
-/// Binomial 99 % band of a rate: how many of `runs` may be counted if each counts with
-/// this probability, lower and upper end.
-std::pair<int, int> BinomialBand(int runs, double probability, double confidence);
-
 }  // namespace mjdiag

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
@@ -86,12 +87,10 @@ std::optional<WindowLag> FindLag(const VectorXd& m, const VectorXd& s, Index fir
   return window;
 }
 
-/// Two-sided 0.1 % point of Student's t.
+/// A trend without scatter has no degrees of freedom, and needs none.
 double SignificantT(double freedom) {
-  constexpr double kTable[] = {636.62, 31.599, 12.924, 8.610, 6.869,
-                               5.959,  5.408,  5.041,  4.781, 4.587};
-  const auto last = static_cast<double>(std::size(kTable));
-  return kTable[static_cast<std::size_t>(std::clamp(freedom, 1.0, last)) - 1];
+  constexpr double kLevel = 1e-3;
+  return StudentQuantile(0.5 * kLevel, std::max(freedom, 1.0));
 }
 
 void RefuseDrift(const std::string& a, const std::string& b, double drift) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
 
@@ -15,8 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNormal95 = 1.959964;
-constexpr double kChiSquared95 = kNormal95 * kNormal95;
+constexpr double kOutside = 0.05;
 
 /// Where the profile of one parameter crosses.
 class Profile {
@@ -153,19 +153,21 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
   const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
   const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const double normal = TwoSidedNormalQuantile(kOutside);
+  const double chi_squared = ChiSquaredQuantile(kOutside, 1.0);
   std::vector<Interval> intervals(parameters.size());
   ParallelFor(2 * static_cast<int>(parameters.size()), [&](int number) {
     const Index i = number / 2;
     const double side = number % 2 == 0 ? -1.0 : 1.0;
     const auto p = static_cast<std::size_t>(i);
-    double& end = side < 0.0 ? intervals[p].low : intervals[p].high;
+    double& end = side < 0.0 ? intervals[p].min : intervals[p].max;
     const double sd = std::sqrt(covariance(i, i));
-    end = theta[i] + side * kNormal95 * sd;
+    end = theta[i] + side * normal * sd;
     if (!needed[p]) return;
     const double colour = covariance(i, i) / C(i, i);
     const Profile profile(seen, candidates, fit, i, C.col(i) / C(i, i),
-                          kChiSquared95 * colour);
-    end = profile.End(side * kNormal95 * sd,
+                          chi_squared * colour);
+    end = profile.End(side * normal * sd,
                       side < 0.0 ? parameters[p].lower : parameters[p].upper);
   });
   return intervals;

@@ -16,16 +16,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/diagnosis/interval.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 
 namespace mjdiag {
-
-struct Interval {
-  double low = 0.0;
-  double high = 0.0;
-};
 
 /// The 95 % intervals of all parameters of the fit: value +- 1.96 sd where the
 /// likelihood is quadratic, for sizes of laws and where the standard deviation is small

@@ -322,6 +322,8 @@ std::vector<Trial> MakeTrials(const mjModel& plant, const MechanicalModel& model
   return TrialMaker(plant, model, candidate, motion).Make();
 }
 
+namespace {
+
 /// Sine and cosine of an angle, of which `name` is the parameter.
 Trial WaveTrial(const MechanicalModel& model, const Candidate& candidate,
                 const VectorXd& angle, const std::string& name, double value) {
@@ -390,6 +392,8 @@ Sweep FrequencySweep(const MechanicalModel& model, const Candidate& candidate,
   };
   return sweep;
 }
+
+}  // namespace
 
 std::optional<Sweep> MakeSweep(const MechanicalModel& model, const Candidate& candidate,
                                const ObservedMotion& motion, double duration) {

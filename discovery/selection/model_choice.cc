@@ -6,6 +6,7 @@
 
 #include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/comparison/noise_floor.h"
+#include "mjdiag/diagnosis/distributions.h"
 
 namespace mjdiag {
 
@@ -43,17 +44,8 @@ VectorXd IndependentShare(const DiscoveryProblem& problem, const VectorXd& resid
   return share;
 }
 
-// Upper tail of chi-squared with 1 to 3 degrees of freedom by exp(-x/2) (x/2)^(f/2 - 1)
-// / gamma(f / 2), exact for 2; solved for x by iteration.
 double GainByChance(double probability, int trials, int freedom) {
-  const double target =
-      std::log(static_cast<double>(std::max(trials, 1)) / probability);
-  const double power = 0.5 * freedom - 1.0;
-  double half = target;
-  for (int i = 0; i < 20; ++i) {
-    half = target + power * std::log(half) - std::lgamma(0.5 * freedom);
-  }
-  return 2.0 * half;
+  return ChiSquaredQuantile(probability / std::max(trials, 1), freedom);
 }
 
 int ParameterCount(const std::vector<FittedCause>& causes) {

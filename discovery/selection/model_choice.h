@@ -26,7 +26,7 @@ Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
                                  const Eigen::VectorXd& residual);
 
 /// Gain that the best of `trials` reaches by chance with that probability where there
-/// is noise only, of a trial with that many degrees of freedom.
+/// is noise only, of a trial with that many degrees of freedom: chi-squared.
 double GainByChance(double probability, int trials, int freedom);
 
 int ParameterCount(const std::vector<FittedCause>& causes);

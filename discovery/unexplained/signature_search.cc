@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "mjdiag/diagnosis/f_distribution.h"
+#include "mjdiag/diagnosis/distributions.h"
 
 namespace mjdiag {
 namespace {
@@ -310,7 +310,7 @@ Explanation SignatureSearch::OverTime(const Variable& time) const {
   // Noise that is alike all through a bin moves its mean by all of its sd.
   const double freedom =
       std::clamp(samples / per_independent_, 1.0, static_cast<double>(kMostBins));
-  const double chance = FQuantile(level_, freedom, 1e6);
+  const double chance = ChiSquaredQuantile(level_, freedom) / freedom;
   const VectorXd about_mean = found.y.array() - f_.mean();
   found.significant = about_mean.squaredNorm() / kMostBins > chance * sd_ * sd_;
   return found;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
@@ -71,7 +72,8 @@ class CrossTerms {
   CrossTerms(const std::vector<FaultVerdict>& faults, std::size_t knobs)
       : faults_(faults),
         knobs_(knobs),
-        reach_(TwoSidedQuantile(kFalseFault / static_cast<double>(faults.size()))),
+        reach_(
+            TwoSidedNormalQuantile(kFalseFault / static_cast<double>(faults.size()))),
         leaks_(VectorXd::Zero(static_cast<Index>(faults.size()))) {}
 
   const std::vector<Named>& named() const { return named_; }

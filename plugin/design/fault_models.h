@@ -13,8 +13,8 @@ namespace mjdiag {
 /// Every knob of the plant at its healthy value.
 std::vector<Fault> HealthyKnobs(const mjModel& plant);
 
-/// Magnitudes c of every knob of the plant, in its order. InputError if the
-/// setup names a knob that the plant does not have.
+/// Magnitudes c of every knob of the plant, in its order. InputError if the setup names
+/// a knob that the plant does not have.
 Eigen::VectorXd Magnitudes(const Machine& machine);
 
 /// The linear model for any knobs without linearising again: knobs scale dampers,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "mjdiag/diagnosis/f_distribution.h"
+#include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/diagnosis/row_choice.h"
 #include "mjdiag/plugin/design/fault_models.h"
@@ -179,8 +179,8 @@ Interval PredictionInterval(const VectorXd& values) {
   const auto n = static_cast<double>(values.size());
   const double mean = values.mean();
   const double variance = (values.array() - mean).square().sum() / (n - 1.0);
-  const double reach =
-      std::sqrt(FQuantile(kOutsideLimits, 1.0, n - 1.0) * variance * (1.0 + 1.0 / n));
+  const double reach = StudentQuantile(0.5 * kOutsideLimits, n - 1.0) *
+                       std::sqrt(variance * (1.0 + 1.0 / n));
   return {mean - reach, mean + reach};
 }
 

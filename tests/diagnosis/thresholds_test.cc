@@ -44,14 +44,6 @@ TEST(Interval, HoldsWhatIsInsideOnly) {
   EXPECT_FALSE(interval.Holds(std::nan("")));
 }
 
-TEST(TwoSidedQuantile, IsThatOfTheNormalDistribution) {
-  EXPECT_NEAR(TwoSidedQuantile(0.05), 1.959963984540054, 1e-12);
-  EXPECT_NEAR(TwoSidedQuantile(0.317310507862914), 1.0, 1e-12);
-  EXPECT_NEAR(TwoSidedQuantile(0.01), 2.575829303548901, 1e-12);
-  EXPECT_NEAR(TwoSidedQuantile(1e-12), 7.130506, 1e-5);
-  EXPECT_NEAR(TwoSidedQuantile(1.0), 0.0, 1e-12);
-}
-
 TEST(ThresholdsByFalseAlarms, AreKeptAtTheWantedRate) {
   // Runs of 1000 independent samples at 5 %: of 2000 runs 100 leave the limits, with a
   // standard deviation of 9.7; four of these are allowed. Bonferroni's bound is 2.5 %

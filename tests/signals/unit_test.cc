@@ -11,7 +11,7 @@
 
 namespace mjdiag {
 
-std::ostream& operator<<(std::ostream& stream, const Unit& unit) {
+static std::ostream& operator<<(std::ostream& stream, const Unit& unit) {
   return stream << unit.factor << " " << unit.si;
 }
 

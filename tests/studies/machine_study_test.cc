@@ -23,13 +23,6 @@ TEST(SmallestDeviation, IsNoneWhereTheLargestIsNotSeen) {
   EXPECT_FALSE(SmallestDeviation(0.5, 1.01, [](double) { return false; }));
 }
 
-TEST(BinomialBand, HoldsTheWantedShare) {
-  // Binomial distribution of 200 draws with 0.95: 0.5 % below 181, 0.5 % above 198.
-  const auto band = BinomialBand(200, 0.95, 0.99);
-  EXPECT_EQ(band.first, 181);
-  EXPECT_EQ(band.second, 197);
-}
-
 TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
   const Cell cell(1.23456789e-7);
   EXPECT_EQ(cell.text, "1.235e-07");

@@ -39,8 +39,8 @@ TEST(ProfileInterval, IsTheNormalOneWhereTheLikelihoodIsQuadratic) {
   const Fitted f = FitOf(stage, "quadratic_drag@load:coefficient=0.5",
                          "quadratic_drag@load", Eigen::VectorXd::Constant(1, 0.5));
   const double half = 1.959964 * std::sqrt(f.covariance(0, 0));
-  EXPECT_NEAR(f.intervals[0].high - f.fit.causes[0].value[0], half, 0.05 * half);
-  EXPECT_NEAR(f.fit.causes[0].value[0] - f.intervals[0].low, half, 0.05 * half);
+  EXPECT_NEAR(f.intervals[0].max - f.fit.causes[0].value[0], half, 0.05 * half);
+  EXPECT_NEAR(f.fit.causes[0].value[0] - f.intervals[0].min, half, 0.05 * half);
 }
 
 // A weak Stribeck law: its velocity is known to a factor, and the interval is skew.
@@ -54,7 +54,7 @@ TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
       f.fit.sensitivities.bottomRows(f.problem.train - f.problem.skip);
   const Eigen::MatrixXd C = Inverse(J.transpose() * J);
   const auto n = static_cast<double>(f.problem.train - f.problem.skip);
-  for (const double end : {f.intervals[2].low, f.intervals[2].high}) {
+  for (const double end : {f.intervals[2].min, f.intervals[2].max}) {
     std::vector<FittedCause> causes = f.fit.causes;
     causes[0].value[2] = end;
     const CauseFit held =
@@ -65,8 +65,8 @@ TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
   }
   const double value = f.fit.causes[0].value[2];
   ASSERT_GT(std::sqrt(f.covariance(2, 2)), 0.05 * value);  // else none is followed
-  const double up = f.intervals[2].high - value;
-  const double down = value - f.intervals[2].low;
+  const double up = f.intervals[2].max - value;
+  const double down = value - f.intervals[2].min;
   EXPECT_GT(std::max(up, down), 1.1 * std::min(up, down));
 }
 

@@ -35,12 +35,11 @@ TEST(Deviance, CountsIndependentValuesOnly) {
               0.25 * Deviance(e, VectorXd::Ones(1), 0, 1000), 1e-9);
 }
 
-// Quantiles of chi-squared from tables; one degree of freedom is exact to 4 %, for the
-// tail is cut after its first term.
+// Quantiles of chi-squared from tables.
 TEST(GainByChance, IsTheQuantileOfChiSquared) {
-  EXPECT_NEAR(GainByChance(1e-4, 1, 2), 18.421, 1e-3);
-  EXPECT_NEAR(GainByChance(1e-4, 1, 1), 15.137, 0.6);
-  EXPECT_NEAR(GainByChance(1e-4, 1, 3), 21.108, 0.9);
+  EXPECT_NEAR(GainByChance(1e-4, 1, 2), 18.4207, 1e-4);
+  EXPECT_NEAR(GainByChance(1e-4, 1, 1), 15.1367, 1e-4);
+  EXPECT_NEAR(GainByChance(1e-4, 1, 3), 21.1075, 1e-4);
   // The best of a hundred.
   EXPECT_NEAR(GainByChance(1e-4, 100, 2), GainByChance(1e-6, 1, 2), 1e-9);
 }

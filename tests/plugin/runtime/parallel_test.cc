@@ -1,6 +1,8 @@
 #include "mjdiag/plugin/runtime/parallel.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <chrono>
@@ -93,6 +95,83 @@ TEST(ParallelFor, TellsItsProgressToTheCallersThread) {
     EXPECT_GT(fractions[i], i == 0 ? 0.0 : fractions[i - 1] - 1e-15);
     EXPECT_LE(fractions[i], 1.0);
   }
+}
+
+TEST(ParallelFor, DoesEveryTaskOfNestedLoopsOnce) {
+  std::vector<std::atomic<int>> done(1000);
+  ParallelFor(10, [&](int i) {
+    ParallelFor(10, [&](int j) {
+      ParallelFor(10, [&](int k) { ++done.at(100 * i + 10 * j + k); });
+    });
+  });
+  for (const auto& times : done) EXPECT_EQ(times, 1);
+}
+
+TEST(ParallelFor, RunsNestedLoopsOnTheSameThreads) {
+  std::atomic<int> running{0};
+  std::atomic<int> most{0};
+  ParallelFor(8, [&](int) {
+    ParallelFor(8, [&](int) {
+      const int now = ++running;
+      int seen = most;
+      while (seen < now && !most.compare_exchange_weak(seen, now)) {
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      --running;
+    });
+  });
+  EXPECT_LE(most, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// A thread that waited for its inner loop and meanwhile began another task of the outer
+// one would have two of them under way. On two threads that hardly ever happens.
+TEST(ParallelFor, TakesUpNoOtherTaskInTheMiddleOfOne) {
+  const tbb::global_control eight(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena arena(8);
+  thread_local bool busy = false;
+  std::atomic<int> twice{0};
+  arena.execute([&] {
+    ParallelFor(50, [&](int) {
+      if (busy) ++twice;
+      busy = true;
+      ParallelFor(
+          4, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(200)); });
+      busy = false;
+    });
+  });
+  EXPECT_EQ(twice, 0);
+}
+
+TEST(ParallelFor, EndsInnerLoopsWhenTheOuterOneFails) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  std::atomic<bool> inside{false};
+  std::atomic<int> done{0};
+  EXPECT_THROW(
+      ParallelFor(2,
+                  [&](int i) {
+                    if (i == 0) {
+                      while (!inside) std::this_thread::yield();
+                      throw std::runtime_error("zero");
+                    }
+                    ParallelFor(100, [&](int) {
+                      inside = true;
+                      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                      ++done;
+                    });
+                    EXPECT_EQ(done, 100);
+                  }),
+      std::runtime_error);
+  EXPECT_EQ(done, 100);
+}
+
+TEST(ParallelFor, PassesTheExceptionOfAnInnerLoopOn) {
+  EXPECT_THROW(ParallelFor(4,
+                           [](int i) {
+                             ParallelFor(4, [i](int j) {
+                               if (i == 2 && j == 2) throw std::runtime_error("inner");
+                             });
+                           }),
+               std::runtime_error);
 }
 
 }  // namespace
