@@ -11,24 +11,22 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
-#include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
 
 namespace mjdiag {
 
 /// A candidate with values to start a fit from.
 struct Start {
   std::size_t candidate = 0;
-  std::map<std::string, double> parameters;
-  double gain = 0.0;  ///< of the squared scaled innovations
-  int freedom = 1;    ///< amplitudes
+  Eigen::VectorXd value;  ///< in the order of the candidate's parameters
+  double gain = 0.0;      ///< of the squared scaled innovations
+  int freedom = 1;        ///< amplitudes
 };
 
 /// The cause of a start, with its values.
