@@ -48,15 +48,16 @@ class Simulator {
 
  private:
   VectorXd Estimates(const std::vector<Named>& named) const {
-    DiagnosisMonitor monitor(design_, motion_.excitation.samples(), motion_.baseline);
+    DiagnosisMonitor monitor(design_, motion_.baseline);
     monitor.RegressFrom(motion_.first_regressed);
+    MonitorObserver observer(monitor);
     RunOptions options;
     options.seed = motion_.runs.seed;
     for (const Named& fault : named) {
       options.faults.push_back(
           {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
     }
-    RunWith(monitor, setup_, plant_, motion_.excitation, options, motion_.runs.linear);
+    RunWith(setup_, plant_, motion_.excitation, observer, options, motion_.runs.linear);
     return monitor.estimator().Estimate().value;
   }
 

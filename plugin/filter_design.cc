@@ -5,7 +5,6 @@
 #include <random>
 
 #include "mjdiag/diagnosis/f_distribution.h"
-#include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/diagnosis/row_choice.h"
 #include "mjdiag/plugin/fault_models.h"
 #include "mjdiag/plugin/linearize.h"
@@ -103,10 +102,10 @@ DisturbanceFilter DesignDisturbanceFilter(const MechanicalModel& healthy,
                                           const Setup& setup) {
   const DiagnosisOptions& wanted = setup.diagnosis;
   SynthesisOptions options = SynthesisOf(setup, healthy);
-  options.denominator = wanted.disturbance_denominator;
+  options.residual.denominator = wanted.disturbance_denominator;
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const FilterBank all =
-      MakeFilterBank(space.rows, options.denominator, options.timing.tick());
+      MakeFilterBank(space.rows, options.residual.denominator, options.timing.tick());
   const VectorXd row = RowForTones(all, options.sensor_noise, Multisines(setup));
   const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
   return {Outputs(bank.filters, 0, 1),
@@ -134,8 +133,9 @@ void RequireBlindness(const DiagnosisDesign& design, const MatrixXd& healthy_run
       FilterSignals(design.bank.filters, healthy_run).topRows(design.bank.residuals);
   const double leak = residuals.cwiseAbs().maxCoeff();
   if (leak > kLeak) {
-    throw NumericalError("rows of degree " + std::to_string(design.options.degree) +
-                         " at " + std::to_string(design.options.denominator.cutoff) +
+    throw NumericalError("rows of degree " +
+                         std::to_string(design.options.residual.degree) + " at " +
+                         std::to_string(design.options.residual.denominator.cutoff) +
                          " Hz lose their digits: a healthy run without noise leaves " +
                          std::to_string(leak) +
                          " times the noise; a lower degree or a higher cut-off "
@@ -153,11 +153,13 @@ struct NominalLog {
 NominalLog RunNominal(const DiagnosisDesign& design, const Setup& setup,
                       const mjModel& plant, const Excitation& excitation,
                       const MatrixXd& baseline, std::uint64_t seed, bool linear) {
-  DiagnosisMonitor monitor(design, excitation.samples(), baseline);
+  DiagnosisRecording recording(design, excitation.samples(), baseline);
+  MonitorObserver observer(recording);
   RunOptions options;
   options.seed = seed;
-  RunWith(monitor, setup, plant, excitation, options, linear);
-  return {monitor.Log(), monitor.estimate(), monitor.ResidualRows()};
+  RunWith(setup, plant, excitation, observer, options, linear);
+  return {recording.recorder.Log(), recording.monitor.estimate(),
+          recording.recorder.ResidualRows()};
 }
 
 /// Runs of one motion that differ in their noise.
@@ -232,8 +234,7 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
 SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy) {
   SynthesisOptions options;
   options.timing = {setup.sample_time() / setup.substeps, setup.substeps};
-  options.degree = setup.diagnosis.degree;
-  options.denominator = setup.diagnosis.denominator;
+  options.residual = setup.diagnosis.residual;
   options.sensor_noise.resize(static_cast<Index>(setup.sensors.size()));
   for (std::size_t i = 0; i < setup.sensors.size(); ++i) {
     options.sensor_noise[static_cast<Index>(i)] = setup.sensors[i].noise_sd;
@@ -267,8 +268,7 @@ DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
   const MechanicalModel healthy = Linearize(plant, setup);
   const std::vector<TurnedModels> turned = TurnModels(plant, setup);
   SynthesisOptions options = SynthesisOf(setup, healthy);
-  options.degree = settings.degree;
-  options.denominator = settings.denominator;
+  options.residual = settings.residual;
   DiagnosisDesign design;
   design.setup = setup.name;
   design.outputs = healthy.outputs;
@@ -276,8 +276,7 @@ DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
   design.offset = SensorReadings(setup, plant, StaticEquilibrium(plant));
   design.sensor_noise = options.sensor_noise;
   design.options = setup.diagnosis;
-  design.options.degree = settings.degree;
-  design.options.denominator = settings.denominator;
+  design.options.residual = settings.residual;
   design.options.estimation_rows = settings.rows;
   design.stride = Stride(setup);
   design.disturbances = Multisines(setup);
@@ -299,8 +298,7 @@ DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant,
 
 DiagnosisDesign DesignFilters(const Setup& setup, const mjModel& plant) {
   const DiagnosisOptions& wanted = setup.diagnosis;
-  return DesignFilters(setup, plant,
-                       {wanted.degree, wanted.denominator, wanted.estimation_rows});
+  return DesignFilters(setup, plant, {wanted.residual, wanted.estimation_rows});
 }
 
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Setup& setup,

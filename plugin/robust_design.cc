@@ -93,8 +93,7 @@ DiagnosisDesign DesignRobustFilters(const Setup& setup, const mjModel& plant,
                                     const std::string& fault,
                                     const Excitation& excitation, bool baseline) {
   const RobustOptions& wanted = setup.diagnosis.robust;
-  DiagnosisDesign design =
-      DesignFilters(setup, plant, {wanted.degree, wanted.denominator, 0});
+  DiagnosisDesign design = DesignFilters(setup, plant, {wanted.residual, 0});
   const MatrixXd response = Response(design, setup, plant, fault);
   const MatrixXd nuisance =
       NuisanceEnergy(NominalResiduals(design, setup, plant, excitation), baseline);

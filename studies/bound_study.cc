@@ -35,8 +35,8 @@ VectorXd EstimatorSd(Setup setup, const mjModel& plant, const Record& record,
                      int rows) {
   setup.diagnosis.estimation_rows = rows;
   const DiagnosisDesign design = DesignFilters(setup, plant);
-  DiagnosisMonitor monitor(design, record.samples());
-  Run(monitor, design, record);
+  DiagnosisMonitor monitor(design);
+  Run(monitor, record);
   return monitor.estimator().Estimate().covariance.diagonal().cwiseSqrt();
 }
 

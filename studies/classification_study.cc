@@ -82,7 +82,7 @@ std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
                              const std::vector<Case>& cases,
                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(setup);
-  const DiagnosisDesign design = LinearDetector(setup, plant).design;
+  const DiagnosisDesign design = LinearDiagnosis(setup, plant).design;
   std::vector<std::string> channels = design.outputs;
   channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
   const auto& kinds = setup.Study("table4_from").values;
@@ -96,9 +96,7 @@ std::vector<Sample> RunCases(const Setup& setup, const mjModel& plant,
             SimulateLinear(setup, plant, motion,
                            WithFaults(setup, plant, drawn.faults,
                                       options.seed + static_cast<std::uint64_t>(i)));
-        DiagnosisMonitor monitor(design, record.samples());
-        Run(monitor, design, record);
-        const DiagnosisResult result = Conclude(design, monitor);
+        const DiagnosisResult result = Conclude(RecordDiagnosis(design, record));
         samples[static_cast<std::size_t>(i)] = {
             Features(record, channels),
             result.first_detection.has_value() || result.disturbance.disturbed,

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/parallel.h"
-#include "mjdiag/plugin/robust_design.h"
 #include "mjdiag/studies/bound_study.h"
 
 namespace mjdiag {
@@ -56,7 +54,7 @@ struct LinearRow {
 std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& plant,
                                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(setup);
-  const Detector detector = LinearDetector(setup, plant);
+  const PreparedDiagnosis detector = LinearDiagnosis(setup, plant);
 
   const auto look = [&](const std::string& fault, double deviation,
                         std::uint64_t seed) {
@@ -129,9 +127,8 @@ std::vector<StudyTable> LinearDetectionStudy(const Setup& setup, const mjModel& 
             setup, plant, motion,
             WithFaults(setup, plant, {},
                        options.seed + 10000 + static_cast<std::uint64_t>(i)));
-        DiagnosisMonitor monitor(detector.design, record.samples());
-        Run(monitor, detector.design, record);
-        const DiagnosisResult result = Conclude(detector.design, monitor);
+        const DiagnosisResult result =
+            Conclude(RecordDiagnosis(detector.design, record));
         auto& run = healthy_runs[static_cast<std::size_t>(i)];
         run.residual = result.first_detection;
         run.spectrum = result.disturbance.disturbed;
@@ -162,22 +159,10 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options) {
   const Excitation motion = DefaultMotion(setup);
-  NominalRuns nominal;
-  nominal.runs = 8;
-  const auto finish = [&](DiagnosisDesign design) {
-    Detector detector{std::move(design), {}};
-    NominalRuns runs = nominal;
-    if (baseline) {
-      detector.baseline = ResidualBaseline(detector.design, setup, plant, motion, runs);
-      runs.seed += static_cast<std::uint64_t>(runs.runs);
-      detector.design.limits = CalibrateLimits(detector.design, setup, plant, motion,
-                                               detector.baseline, runs);
-    } else {
-      detector.design.limits = CalibrateLimits(detector.design, setup, plant, runs);
-    }
-    return detector;
-  };
-  const Detector common = finish(DesignFilters(setup, plant));
+  DiagnosisSource source;
+  source.baseline = baseline;
+  source.nominal.runs = 8;
+  const PreparedDiagnosis common = PrepareDiagnosis(setup, plant, source, motion);
 
   const auto& largest = setup.Study("largest").values;
   const FaultSizes& published = setup.Study(study);
@@ -204,8 +189,8 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Setup& setup,
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const auto& [fault, value] = largest[i];
     const double healthy = HealthyValue(setup, fault);
-    const Detector robust =
-        finish(DesignRobustFilters(setup, plant, fault, motion, baseline));
+    source.robust = fault;
+    const PreparedDiagnosis robust = PrepareDiagnosis(setup, plant, source, motion);
     const auto record_at = [&, &name = fault](double deviation) {
       return Simulate(
           setup, plant, motion,

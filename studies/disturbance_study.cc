@@ -46,7 +46,7 @@ int Found(const std::vector<DiagnosisResult>& results, double frequency, double 
 std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plant,
                                          const StudyOptions& options) {
   const Excitation motion = DefaultMotion(setup);
-  const DiagnosisDesign design = LinearDetector(setup, plant).design;
+  const DiagnosisDesign design = LinearDiagnosis(setup, plant).design;
   const double cell = design.limits.disturbance.nominal.resolution();
 
   StudyTable table{"Disturbances and noise, " + std::to_string(options.runs) +
@@ -65,9 +65,8 @@ std::vector<StudyTable> DisturbanceStudy(const Setup& setup, const mjModel& plan
                                       options.seed + static_cast<std::uint64_t>(i));
           run.noise_scale = scenario.noise;
           const Record record = SimulateLinear(setup, plant, motion, run);
-          DiagnosisMonitor monitor(design, record.samples());
-          Run(monitor, design, record);
-          results[static_cast<std::size_t>(i)] = Conclude(design, monitor);
+          results[static_cast<std::size_t>(i)] =
+              Conclude(RecordDiagnosis(design, record));
         },
         options.progress);
     std::string found;

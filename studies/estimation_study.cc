@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/diagnosis/refined_estimate.h"
-#include "mjdiag/plugin/fault_models.h"
-#include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/parallel.h"
 #include "mjdiag/studies/bound_study.h"
 
@@ -32,10 +29,6 @@ StudyTable Repeat(const Setup& setup, const mjModel& plant,
                   const DiagnosisDesign& design, const FaultSizes& sizes,
                   const StudyOptions& options) {
   const Excitation motion = DefaultMotion(setup);
-  const ModelAt model_at = FaultModels(plant, setup);
-  const VectorXd magnitudes = Magnitudes(plant, setup);
-  const SynthesisOptions synthesis =
-      SynthesisOf(setup, model_at(VectorXd::Ones(magnitudes.size())));
   std::vector<SizedFault> faults;
   for (const auto& [name, value] : sizes.values) faults.push_back({name, value});
 
@@ -48,7 +41,7 @@ StudyTable Repeat(const Setup& setup, const mjModel& plant,
                            WithFaults(setup, plant, faults,
                                       options.seed + static_cast<std::uint64_t>(i)));
         estimates[static_cast<std::size_t>(i)] =
-            RefineEstimate(design, synthesis, model_at, magnitudes, record).estimate;
+            RefineFaults(setup, plant, design, record).estimate;
       },
       options.progress);
 

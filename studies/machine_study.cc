@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/filter_design.h"
 #include "mjdiag/plugin/mujoco_model.h"
 
 namespace mjdiag {
@@ -40,19 +39,16 @@ Excitation DefaultMotion(const Setup& setup) {
   return FollowTrajectory(setup, setup.FindTrajectory(setup.default_trajectory));
 }
 
-Detector LinearDetector(const Setup& setup, const mjModel& plant) {
-  Detector detector{DesignFilters(setup, plant), {}};
-  NominalRuns nominal;
-  nominal.linear = true;
-  detector.design.limits = CalibrateLimits(detector.design, setup, plant, nominal);
-  return detector;
+PreparedDiagnosis LinearDiagnosis(const Setup& setup, const mjModel& plant) {
+  DiagnosisSource source;
+  source.nominal.linear = true;
+  return PrepareDiagnosis(setup, plant, source);
 }
 
-Detection Look(const Detector& detector, const Record& record,
+Detection Look(const PreparedDiagnosis& prepared, const Record& record,
                const std::string& fault) {
-  DiagnosisMonitor monitor(detector.design, record.samples(), detector.baseline);
-  Run(monitor, detector.design, record);
-  const DiagnosisResult result = Conclude(detector.design, monitor);
+  const DiagnosisResult result =
+      Conclude(RecordDiagnosis(prepared.design, record, prepared.baseline));
   Detection detection{result.first_detection, result.disturbance.disturbed, false, 0.0};
   for (const FaultVerdict& verdict : result.faults) {
     if (verdict.name != fault) continue;

@@ -89,9 +89,9 @@ class DiagnosisReader : public testing::Test {
 
 TEST_F(DiagnosisReader, ReadsEveryKey) {
   const DiagnosisOptions options = Read(kDiagnosis);
-  EXPECT_EQ(options.degree, 9);
-  EXPECT_EQ(options.denominator.order, 10);
-  EXPECT_EQ(options.denominator.cutoff, 40.0);
+  EXPECT_EQ(options.residual.degree, 9);
+  EXPECT_EQ(options.residual.denominator.order, 10);
+  EXPECT_EQ(options.residual.denominator.cutoff, 40.0);
   EXPECT_THAT(options.unknown_forces, ElementsAre("X", "Y"));
   EXPECT_EQ(options.margin, 3.0);
   EXPECT_EQ(options.false_alarms, 0.01);
@@ -111,9 +111,9 @@ TEST_F(DiagnosisReader, ReadsEveryKey) {
   EXPECT_EQ(options.disturbance.peak_margin, 0.5);
   EXPECT_EQ(options.disturbance.total_margin, 0.75);
   EXPECT_EQ(options.disturbance.tone_false_alarm, 0.001);
-  EXPECT_EQ(options.robust.degree, 11);
-  EXPECT_EQ(options.robust.denominator.order, 12);
-  EXPECT_EQ(options.robust.denominator.cutoff, 150.0);
+  EXPECT_EQ(options.robust.residual.degree, 11);
+  EXPECT_EQ(options.robust.residual.denominator.order, 12);
+  EXPECT_EQ(options.robust.residual.denominator.cutoff, 150.0);
   EXPECT_EQ(options.robust.runs, 5);
 }
 
@@ -126,9 +126,9 @@ TEST_F(DiagnosisReader, TakesTheFiltersOfTheSeedWithoutKeys) {
     machine.replace(machine.find("1000.0"), 6, "8000.0");
     folder_.Write("setup.toml", machine + text);
     const DiagnosisOptions options = ReadSetup(folder_.path()).diagnosis;
-    EXPECT_EQ(options.degree, 7);
-    EXPECT_EQ(options.denominator.order, 7);
-    EXPECT_EQ(options.denominator.cutoff, 50.0);
+    EXPECT_EQ(options.residual.degree, 7);
+    EXPECT_EQ(options.residual.denominator.order, 7);
+    EXPECT_EQ(options.residual.denominator.cutoff, 50.0);
     EXPECT_EQ(options.disturbance_denominator.order, 7);
     EXPECT_EQ(options.disturbance_denominator.cutoff, 750.0);
     EXPECT_EQ(options.high_pass_order, 3);
@@ -170,11 +170,11 @@ TEST_F(DiagnosisReader, RefusesBadValuesInOneLine) {
        "runs"},
       // the section
       {"degree = 9", "degree = 0", 2,
-       "diagnosis.degree: is 0; expected an integer from 1 to 40"},
+       "diagnosis.residual.degree: is 0; expected an integer from 1 to 40"},
       {"degree = 9", "degree = 41", 2,
-       "diagnosis.degree: is 41; expected an integer from 1 to 40"},
+       "diagnosis.residual.degree: is 41; expected an integer from 1 to 40"},
       {"degree = 9", "degree = 9.5", 2,
-       "diagnosis.degree: is a number; expected an integer from 1 to 40"},
+       "diagnosis.residual.degree: is a number; expected an integer from 1 to 40"},
       {"order = 10", "order = 21", 3,
        "diagnosis.order: is 21; expected an integer from 1 to 20"},
       {"cutoff = 40.0", "cutoff = 0", 4,
@@ -243,7 +243,7 @@ TEST_F(DiagnosisReader, RefusesBadValuesInOneLine) {
        "diagnosis.disturbance.tone_false_alarm: is 0; expected a number > 0 and <= 1"},
       // robust
       {"degree = 11", "degree = 0", 26,
-       "diagnosis.robust.degree: is 0; expected an integer from 1 to 40"},
+       "diagnosis.robust.residual.degree: is 0; expected an integer from 1 to 40"},
       {"order = 12", "order = 21", 27,
        "diagnosis.robust.order: is 21; expected an integer from 1 to 20"},
       {"cutoff = 150.0", "cutoff = -1", 28,
