@@ -31,9 +31,9 @@ void Diagnose(const DiagnoseOptions& options) {
       NeedsMotion(options.source) ? Replay(machine.setup, record) : Excitation{};
   PrepareOutput(options.output);
   const PreparedDiagnosis prepared = Prepare(machine, options.source, motion);
-  const Diagnosis diagnosis =
-      mjdiag::Diagnose(machine.setup, *machine.plant, prepared, record,
-                       options.refine ? Estimates::kRefined : Estimates::kLinear);
+  const Diagnosis diagnosis = mjdiag::Diagnose(
+      machine.setup, *machine.plant, prepared, record,
+      options.refine ? EstimateMethod::kRefined : EstimateMethod::kLinear);
   auto document = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();

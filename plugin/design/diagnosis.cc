@@ -91,8 +91,8 @@ PreparedDiagnosis PrepareDiagnosis(const Setup& setup, const mjModel& plant,
 
 Diagnosis Diagnose(const Setup& setup, const mjModel& plant,
                    const PreparedDiagnosis& prepared, const Record& record,
-                   Estimates estimates) {
-  const bool refined = estimates == Estimates::kRefined;
+                   EstimateMethod method) {
+  const bool refined = method == EstimateMethod::kRefined;
   if (refined && prepared.baseline.size() > 0) {
     throw InputError("refined estimates", "asked for against a baseline",
                      "one of the two: a baseline belongs to the healthy filters");

@@ -72,7 +72,7 @@ struct Diagnosis {
   MonitorLog log;
 };
 
-enum class Estimates {
+enum class EstimateMethod {
   kLinear,   ///< by prefilters about the healthy machine: exact for small faults
   kRefined,  ///< filters made anew about the estimate until it settles (RefineEstimate)
 };
@@ -83,7 +83,7 @@ enum class Estimates {
 /// or refined estimates are asked for against a baseline.
 Diagnosis Diagnose(const Setup& setup, const mjModel& plant,
                    const PreparedDiagnosis& prepared, const Record& record,
-                   Estimates estimates = Estimates::kLinear);
+                   EstimateMethod method = EstimateMethod::kLinear);
 
 /// What a recording says at the end of its run; against a baseline, without the cross
 /// terms of large faults (cross_terms.h).

@@ -170,11 +170,11 @@ TEST_F(DiagnosisReader, RefusesBadValuesInOneLine) {
        "runs"},
       // the section
       {"degree = 9", "degree = 0", 2,
-       "diagnosis.residual.degree: is 0; expected an integer from 1 to 40"},
+       "diagnosis.degree: is 0; expected an integer from 1 to 40"},
       {"degree = 9", "degree = 41", 2,
-       "diagnosis.residual.degree: is 41; expected an integer from 1 to 40"},
+       "diagnosis.degree: is 41; expected an integer from 1 to 40"},
       {"degree = 9", "degree = 9.5", 2,
-       "diagnosis.residual.degree: is a number; expected an integer from 1 to 40"},
+       "diagnosis.degree: is a number; expected an integer from 1 to 40"},
       {"order = 10", "order = 21", 3,
        "diagnosis.order: is 21; expected an integer from 1 to 20"},
       {"cutoff = 40.0", "cutoff = 0", 4,
@@ -243,7 +243,7 @@ TEST_F(DiagnosisReader, RefusesBadValuesInOneLine) {
        "diagnosis.disturbance.tone_false_alarm: is 0; expected a number > 0 and <= 1"},
       // robust
       {"degree = 11", "degree = 0", 26,
-       "diagnosis.robust.residual.degree: is 0; expected an integer from 1 to 40"},
+       "diagnosis.robust.degree: is 0; expected an integer from 1 to 40"},
       {"order = 12", "order = 21", 27,
        "diagnosis.robust.order: is 21; expected an integer from 1 to 20"},
       {"cutoff = 150.0", "cutoff = -1", 28,

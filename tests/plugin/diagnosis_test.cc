@@ -78,19 +78,21 @@ TEST(DiagnoseRun, GivesInsideTheCallbackTheBitsOfTheRecord) {
   EXPECT_TRUE(run.diagnosis.result.detected);
 }
 
-// Half a turn of a knob: prefilters about the healthy machine are off by its square.
+// Prefilters about the healthy machine are off by the square of a fault.
 TEST(Diagnose, RefinesLargeFaultsIfAskedTo) {
   const Bonder bonder;
   const PreparedDiagnosis prepared = bonder.Prepared();
-  const Record record = bonder.LinearRunWith({"zeta_x", 1.5});
-  const auto error = [&](Estimates estimates) {
-    const Diagnosis diagnosis =
-        Diagnose(bonder.setup, *bonder.plant, prepared, record, estimates);
-    return std::abs(diagnosis.result.faults[0].value - 1.5);
-  };
+  const Record record = bonder.LinearRunWith({"zeta_x", 3.0});
   ASSERT_EQ(prepared.design.bank.faults[0], "zeta_x");
-  EXPECT_GT(error(Estimates::kLinear), 0.01);
-  EXPECT_LT(error(Estimates::kRefined), 1e-3);
+  // Error in standard deviations.
+  const auto error = [&](EstimateMethod method) {
+    const Diagnosis diagnosis =
+        Diagnose(bonder.setup, *bonder.plant, prepared, record, method);
+    const FaultVerdict& fault = diagnosis.result.faults[0];
+    return std::abs(fault.value - 3.0) / fault.sd;
+  };
+  EXPECT_GT(error(EstimateMethod::kLinear), 20.0);
+  EXPECT_LT(error(EstimateMethod::kRefined), 5.0);
 }
 
 TEST(Diagnose, RegressesTheHorizonOnly) {
@@ -152,9 +154,10 @@ TEST(Diagnose, RefusesToRefineAgainstABaseline) {
   bonder.source.baseline = true;
   const PreparedDiagnosis prepared = bonder.Prepared();
   EXPECT_EQ(prepared.baseline.cols(), bonder.motion.samples());
-  EXPECT_THROW(Diagnose(bonder.setup, *bonder.plant, prepared,
-                        bonder.LinearRunWith({"zeta_x", 1.01}), Estimates::kRefined),
-               InputError);
+  EXPECT_THROW(
+      Diagnose(bonder.setup, *bonder.plant, prepared,
+               bonder.LinearRunWith({"zeta_x", 1.01}), EstimateMethod::kRefined),
+      InputError);
 }
 
 }  // namespace
