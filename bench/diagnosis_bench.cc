@@ -15,11 +15,11 @@
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/runtime/instance.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/monitor_observer.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/runtime/instance.h"
 
 namespace mjdiag {
 namespace {

@@ -40,7 +40,8 @@ void ReportOfADiagnosis(benchmark::State& state) {
   options.faults = {{"zeta_x", 1.2}};
   const Record record = SimulateLinear(
       setup, *plant,
-      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)), options);
+      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
+      options);
   const Diagnosis diagnosis = Diagnose(setup, *plant, prepared, record);
 
   const test::TemporaryFolder folder;

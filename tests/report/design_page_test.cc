@@ -45,7 +45,7 @@ TEST(ResidualHistogram, HasTheAreaOfItsNormalCurve) {
 TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
   mjdiag::Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
   setup.diagnosis.trajectories.clear();
-  for (Trajectory& trajectory : setup.trajectories.all.all) trajectory.duration = 0.3;
+  for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
   const ModelPtr plant = LoadPlant(setup);
   DiagnosisDesign design = DesignFilters(setup, *plant);
   DesignFacts facts;

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 struct Example {
   explicit Example(double zeta_x) {
     setup.diagnosis.trajectories.clear();
-    for (Trajectory& trajectory : setup.trajectories.all.all.all) trajectory.duration = 0.3;
+    for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
     plant = LoadPlant(setup);
     DiagnosisSource source;
     source.nominal.linear = true;
@@ -25,7 +25,8 @@ struct Example {
     RunOptions options;
     options.faults = {{"zeta_x", zeta_x}};
     const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), options);
+        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")),
+        options);
     design = prepared.design;
     const Diagnosis diagnosis = Diagnose(setup, *plant, prepared, record);
     log = diagnosis.log;

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/diagnosis/diagnosis_recording.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/message_of.h"

@@ -5,9 +5,9 @@
 #include <cstdlib>
 
 #include "mjdiag/diagnosis/diagnosis_recording.h"
-#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
 
@@ -42,10 +42,10 @@ struct Bench {
       : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383")),
         model(LoadPlant(setup)),
         data(MakeData(*model)),
-        instance(
-            setup, *model,
-            FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
-            options) {
+        instance(setup, *model,
+                 FollowTrajectory(setup,
+                                  setup.trajectories.Find(setup.trajectories.fallback)),
+                 options) {
     const Eigen::VectorXd start = StartPosition(setup, *model, {});
     std::copy(start.begin(), start.end(), data->qpos);
   }
