@@ -7,14 +7,14 @@
 
 #include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/discovery/checks/data_check.h"
+#include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
-#include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/model_choice.h"
-#include "mjdiag/discovery/fitting/profile_interval.h"
+#include "mjdiag/discovery/selection/telling_motion.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/discovery/selection/telling_motion.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -48,7 +48,8 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
     const EffectParameter& parameter = candidate.effect->parameters()[i];
     parameters.push_back(
         {parameter.name,
-         SiteUnit(machine_.plant(), *candidate.effect, candidate.site, parameter), fitted.value[index], sd, interval.min, interval.max});
+         SiteUnit(machine_.plant(), *candidate.effect, candidate.site, parameter),
+         fitted.value[index], sd, interval.min, interval.max});
   }
   return parameters;
 }
@@ -125,14 +126,14 @@ void Discoverer::NameCauses() {
 // White noise beyond what the setup says of a sensor. Sensors of which it says nothing
 // cannot be judged.
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
-  for (const RaisedNoise& raised :
-       FindRaisedNoise(machine_.setup(), problem_.observer, innovations, options_.train_share)) {
+  for (const RaisedNoise& raised : FindRaisedNoise(machine_.setup(), problem_.observer,
+                                                   innovations, options_.train_share)) {
     FoundCause found;
     const Effect& noise = NoiseEffect();
     found.cause = {Lasting(noise), raised.element, ValuesOf({raised.sd})};
     const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
-    found.parameters = {{noise.parameters().front().name, raised.unit, raised.sd, raised.sd_error,
-                         raised.sd - half, raised.sd + half}};
+    found.parameters = {{noise.parameters().front().name, raised.unit, raised.sd,
+                         raised.sd_error, raised.sd - half, raised.sd + half}};
     found.probability = 1.0;
     discovery_.causes.push_back(std::move(found));
   }
@@ -205,10 +206,9 @@ void Discoverer::NoteTwins(std::size_t cause,
     }
     std::string note = "the record does not tell " + Describe(found.cause) + " from " +
                        Describe(CauseOf(candidates_, other.cause));
-    const auto motion =
-        FindTellingMotion(machine_.WithSensorNoise(problem_.observer.noise_sd),
-                          ChangesOf({found.cause}),
-                          ChangesOf({CauseOf(candidates_, other.cause)}));
+    const auto motion = FindTellingMotion(
+        machine_.WithSensorNoise(problem_.observer.noise_sd), ChangesOf({found.cause}),
+        ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
     if (!motion || motion->separation < kTells) {
       note += "; no trajectory of the setup would, a larger or faster motion may";

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
 
 namespace mjdiag {
 namespace {
@@ -44,8 +44,7 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
   std::map<std::string, double> limits;
   for (const Candidate& candidate : candidates) {
     if (!candidate.effect->IsFault()) continue;
-    for (const Trial& trial :
-         MakeTrials(problem.machine, candidate, motion)) {
+    for (const Trial& trial : MakeTrials(problem.machine, candidate, motion)) {
       const VectorXd phi =
           dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
       const Index used = phi.size() - skipped;

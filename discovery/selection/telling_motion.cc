@@ -69,7 +69,8 @@ std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
     const TellingMotion& motion = motions[i];
     try {
       const Excitation excitation = FollowTrajectory(
-          machine.setup(), Slower(machine.setup().trajectories.Find(motion.trajectory), motion.slower));
+          machine.setup(),
+          Slower(machine.setup().trajectories.Find(motion.trajectory), motion.slower));
       runs[i][which] = RunOf(machine, excitation, which == 0 ? one : other);
     } catch (const std::exception&) {
       // A motion that cannot be run is not proposed.

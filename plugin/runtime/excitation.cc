@@ -60,6 +60,15 @@ Excitation FollowTrajectory(const Setup& setup, const Trajectory& trajectory) {
   return {SampleTrajectory(trajectory, AxisNames(setup), setup.rates.tick()), {}, {}};
 }
 
+Excitation DefaultMotion(const Setup& setup) {
+  const std::string& fallback = setup.trajectories.fallback;
+  if (fallback.empty()) {
+    throw InputError("setup '" + setup.name + "'", "has no trajectory",
+                     "one under [trajectories]");
+  }
+  return FollowTrajectory(setup, setup.trajectories.Find(fallback));
+}
+
 Excitation Replay(const Setup& setup, const Record& measured) {
   CheckSampleTime(setup, measured);
   Excitation excitation;
@@ -77,11 +86,12 @@ Excitation Replay(const Setup& setup, const Record& measured) {
   }
   excitation.reference.sample_time = setup.rates.tick();
   for (const AxisSetup& axis : setup.control.axes) {
-    excitation.reference.axes.push_back(
-        MeasuredReference(measured, axis.name, setup.channels.Sensor(axis.sensor).unit));
+    excitation.reference.axes.push_back(MeasuredReference(
+        measured, axis.name, setup.channels.Sensor(axis.sensor).unit));
     excitation.start[axis.sensor] = StartReading(
         setup.channels.Sensor(axis.sensor),
-        Measured(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit).samples[0],
+        Measured(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit)
+            .samples[0],
         excitation.reference.axes.back().position[0]);
     if (const Channel* known = measured.Find(axis.known_disturbance)) {
       excitation.inputs.Add(*known);
