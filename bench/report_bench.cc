@@ -16,6 +16,7 @@
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
 #include "mjdiag/report/run_folder.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -30,18 +31,17 @@ double Median(std::vector<double> values) {
 }
 
 void ReportOfADiagnosis(benchmark::State& state) {
-  const Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  const ModelPtr plant = LoadPlant(setup);
-  DiagnosisDesign design = DesignFilters(setup, *plant);
+  const Machine machine = test::Bonder();
+  const Setup& setup = machine.setup();
+  DiagnosisDesign design = DesignFilters(machine);
   NominalRuns nominal;
   nominal.linear = true;
   nominal.runs = 2;
-  design.limits = CalibrateLimits(design, setup, *plant, nominal);
-  RunOptions options;
-  options.faults = {{"zeta_x", 1.2}};
+  design.limits = CalibrateLimits(design, machine, nominal);
   const Record record = SimulateLinear(
-      setup, *plant,
-      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)), options);
+      machine.With({{{"zeta_x", 1.2}}, {}}),
+      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
+      {});
   DiagnosisMonitor monitor(design, record.samples());
   Run(monitor, design, record);
   const DiagnosisResult result = Conclude(design, monitor);

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "gaussian_noise.h"
+#include "support/gaussian_noise.h"
 #include "mjdiag/comparison/mismatch.h"
 
 namespace mjdiag {

@@ -10,6 +10,7 @@
 #include "mjdiag/report/filters_file.h"
 #include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
+#include "support/bonder.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -21,24 +22,23 @@ using ::testing::HasSubstr;
 /// A diagnosis of the bonder over 0.3 s of its linear plant.
 struct Example {
   explicit Example(double zeta_x) {
+    const Machine bonder = test::Bonder();
+    mjdiag::Setup setup = bonder.setup();
     setup.diagnosis.trajectories.clear();
     for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
-    plant = LoadPlant(setup);
-    design = DesignFilters(setup, *plant);
+    const Machine machine = bonder.WithSetup(setup);
+    design = DesignFilters(machine);
     NominalRuns nominal;
     nominal.linear = true;
-    design.limits = CalibrateLimits(design, setup, *plant, nominal);
-    RunOptions options;
-    options.faults = {{"zeta_x", zeta_x}};
+    design.limits = CalibrateLimits(design, machine, nominal);
     const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), options);
+        machine.With({{{"zeta_x", zeta_x}}, {}}),
+        FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
     monitor.emplace(design, record.samples());
     Run(*monitor, design, record);
     result = Conclude(design, *monitor);
   }
 
-  mjdiag::Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  ModelPtr plant;
   DiagnosisDesign design;
   std::optional<DiagnosisMonitor> monitor;
   DiagnosisResult result;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "gaussian_noise.h"
+#include "support/gaussian_noise.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "gaussian_noise.h"
+#include "support/gaussian_noise.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

@@ -17,7 +17,7 @@
 #include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/linearize.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -123,19 +123,15 @@ MatrixXd AsRow(const Denominator& denominator) {
 /// A quarter of a second with a worn x-guide: all three axes move, alone and together.
 struct Diagnosis {
   Diagnosis()
-      : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
-                        {"trajectories.multi.duration=0.25",
-                         "diagnosis.estimation.magnitudes.beta_x=1e-3",
-                         "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
-        plant(LoadPlant(setup)),
-        machine(Linearize(*plant, setup)),
-        options(SynthesisOf(setup, machine)),
-        space(MakeResidualSpace(machine, options)),
-        design(DesignFilters(setup, *plant)) {
-    RunOptions run;
-    run.faults = {{"zeta_x", 1.01}};
+      : machine(test::Bonder({"trajectories.multi.duration=0.25",
+                              "diagnosis.estimation.magnitudes.beta_x=1e-3",
+                              "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
+        options(SynthesisOf(setup, machine.linear())),
+        space(MakeResidualSpace(machine.linear(), options)),
+        design(DesignFilters(machine)) {
     const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), run);
+        machine.With({{{"zeta_x", 1.01}}, {}}),
+        FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
     signals = Signals(design, record);
     DiagnosisMonitor monitor(design, record.samples());
     Run(monitor, design, record);
@@ -144,8 +140,8 @@ struct Diagnosis {
 
   Values ForPython() const {
     Values values;
-    AddMachine(values, "", machine);
-    const std::vector<TurnedModels> turned = TurnModels(*plant, setup);
+    AddMachine(values, "", machine.linear());
+    const std::vector<TurnedModels> turned = TurnModels(machine);
     MatrixXd magnitudes(1, turned.size());
     for (std::size_t i = 0; i < turned.size(); ++i) {
       AddMachine(values, "minus" + std::to_string(i) + ".", turned[i].minus);
@@ -174,9 +170,8 @@ struct Diagnosis {
   }
 
   static constexpr int kSegment = 512;
-  mjdiag::Setup setup;
-  ModelPtr plant;
-  MechanicalModel machine;
+  Machine machine;
+  const Setup& setup = machine.setup();
   SynthesisOptions options;
   ResidualSpace space;
   DiagnosisDesign design;

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/diagnosis/monitor.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
+#include "support/bonder.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -24,7 +24,8 @@ using Eigen::VectorXd;
 using testing::AllOf;
 using testing::HasSubstr;
 
-mjdiag::Setup Bonder(const std::vector<std::string>& more = {}) {
+/// With short motions.
+Machine Bonder(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = {
       R"(diagnosis.thresholds.trajectories=["x", "y", "z", "xy", "xyz"])",
       "trajectories.multi.duration=0.25"};
@@ -32,15 +33,19 @@ mjdiag::Setup Bonder(const std::vector<std::string>& more = {}) {
     overrides.push_back("trajectories." + std::string(name) + ".duration=0.05");
   }
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383", overrides);
+  return test::Bonder(overrides);
 }
 
 struct Bench {
   explicit Bench(const std::vector<std::string>& overrides = {})
-      : setup(Bonder(overrides)),
-        plant(LoadPlant(setup)),
-        design(DesignFilters(setup, *plant)),
-        motion(FollowTrajectory(setup, setup.trajectories.Find("multi"))) {}
+      : machine(Bonder(overrides)),
+        design(DesignFilters(machine)),
+        motion(Follow("multi")) {}
+
+  Excitation Follow(const std::string& trajectory) const {
+    return FollowTrajectory(machine.setup(),
+                            machine.setup().trajectories.Find(trajectory));
+  }
 
   NominalRuns Nominal(bool linear, int runs = 5) const {
     NominalRuns nominal;
@@ -49,22 +54,22 @@ struct Bench {
     return nominal;
   }
   void Calibrate(bool linear) {
-    design.limits = CalibrateLimits(design, setup, *plant, Nominal(linear));
+    design.limits = CalibrateLimits(design, machine, Nominal(linear));
   }
-  /// A run with a monitor in the loop.
-  Record RunWith(DiagnosisMonitor& monitor, RunOptions options, bool linear) const {
+  /// A run of this machine, or of a faulty one, with a monitor in the loop.
+  Record Watch(DiagnosisMonitor& monitor, const Machine& watched, RunOptions options,
+               bool linear) const {
     MonitorObserver observer(monitor);
     options.observer = &observer;
-    return linear ? SimulateLinear(setup, *plant, motion, options)
-                  : Simulate(setup, *plant, motion, options);
+    return linear ? SimulateLinear(watched, motion, options)
+                  : Simulate(watched, motion, options);
   }
   DiagnosisMonitor MonitorOf(const std::vector<Fault>& faults, std::uint64_t seed,
                              bool linear) const {
     DiagnosisMonitor monitor(design, motion.samples());
     RunOptions options;
-    options.faults = faults;
     options.seed = seed;
-    RunWith(monitor, options, linear);
+    Watch(monitor, machine.With({faults, {}}), options, linear);
     return monitor;
   }
   double Estimate(const DiagnosisMonitor& monitor, const std::string& fault) const {
@@ -73,8 +78,7 @@ struct Bench {
         .estimate()[std::find(names.begin(), names.end(), fault) - names.begin()];
   }
 
-  mjdiag::Setup setup;
-  ModelPtr plant;
+  Machine machine;
   DiagnosisDesign design;
   Excitation motion;
 };
@@ -99,9 +103,9 @@ TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
   bench.Calibrate(true);
   DiagnosisMonitor inside(bench.design, bench.motion.samples());
   RunOptions options;
-  options.faults = {{"zeta_x", 1.3}};
   options.disturbances["gamma"] = 0.1;
-  const Record record = bench.RunWith(inside, options, false);
+  const Record record = bench.Watch(
+      inside, bench.machine.With({{{"zeta_x", 1.3}}, {}}), options, false);
   ASSERT_EQ(inside.samples(), 2000);
   ASSERT_TRUE(inside.first_detection().has_value());
   ASSERT_TRUE(inside.first_lasting().has_value());
@@ -123,8 +127,8 @@ TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
 TEST(MonitorObserver, LeavesTheRunAsItIs) {
   const Bench bench;
   DiagnosisMonitor monitor(bench.design, bench.motion.samples());
-  const Record watched = bench.RunWith(monitor, {}, false);
-  const Record alone = Simulate(bench.setup, *bench.plant, bench.motion, {});
+  const Record watched = bench.Watch(monitor, bench.machine, {}, false);
+  const Record alone = Simulate(bench.machine, bench.motion, {});
   for (const Channel& channel : alone.channels()) {
     EXPECT_EQ(channel.samples, watched.At(channel.name).samples) << channel.name;
   }
@@ -135,21 +139,20 @@ TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   const Bench bench;
   const NominalRuns nominal = bench.Nominal(false, 4);
   const DiagnosisLimits limits =
-      CalibrateLimits(bench.design, bench.setup, *bench.plant, nominal);
+      CalibrateLimits(bench.design, bench.machine, nominal);
 
   std::vector<VectorXd> residuals;
   std::vector<VectorXd> disturbances;
   MatrixXd estimates(bench.design.faults(), nominal.runs);
   double integral = 0.0;
   const auto run = [&](const std::string& motion, std::uint64_t seed) {
-    const Excitation excitation =
-        FollowTrajectory(bench.setup, bench.setup.trajectories.Find(motion));
+    const Excitation excitation = bench.Follow(motion);
     DiagnosisMonitor monitor(bench.design, excitation.samples());
     MonitorObserver observer(monitor);
     RunOptions options;
     options.seed = seed;
     options.observer = &observer;
-    Simulate(bench.setup, *bench.plant, excitation, options);
+    Simulate(bench.machine, excitation, options);
     residuals.push_back(monitor.Log().residual);
     integral = std::max(integral, monitor.Log().integral.maxCoeff());
     disturbances.push_back(monitor.Log().disturbance);
@@ -158,7 +161,7 @@ TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   for (int i = 0; i < nominal.runs; ++i) {
     estimates.col(i) = run("multi", nominal.seed + static_cast<std::uint64_t>(i));
   }
-  for (const std::string& name : bench.setup.diagnosis.trajectories) {
+  for (const std::string& name : bench.machine.setup().diagnosis.trajectories) {
     run(name, nominal.seed);
   }
   disturbances.resize(4);
@@ -194,7 +197,7 @@ TEST(CalibrateLimits, ReportsItsProgress) {
   NominalRuns nominal = bench.Nominal(true, 3);
   std::vector<double> fractions;
   nominal.progress = [&](double fraction) { fractions.push_back(fraction); };
-  CalibrateLimits(bench.design, bench.setup, *bench.plant, nominal);
+  CalibrateLimits(bench.design, bench.machine, nominal);
   // Other threads may have done the runs that are not reported, but not all.
   for (const double fraction : fractions) EXPECT_LE(fraction, 1.0);
   EXPECT_LE(fractions.size(), 3);
@@ -242,7 +245,7 @@ TEST(Diagnosis, RaisesNoAlarmOnAHealthyMachine) {
 
 TEST(DesignFilters, LeavesNothingOfALinearRunWithoutNoise) {
   const Bench bench;
-  const MatrixXd signals = Signals(bench.design, LinearRun(bench.setup, *bench.plant));
+  const MatrixXd signals = Signals(bench.design, LinearRun(bench.machine));
   EXPECT_GT(signals.cwiseAbs().maxCoeff(), 100.0) << "does not move";
   const MatrixXd outputs = FilterSignals(bench.design.bank.filters, signals);
   // A small part of the noise that 20 nm leave, which is 1.
@@ -252,7 +255,7 @@ TEST(DesignFilters, LeavesNothingOfALinearRunWithoutNoise) {
 
 TEST(Signals, AreDeviationsFromRest) {
   const Bench bench;
-  Record record(bench.setup.rates.tick());
+  Record record(bench.machine.rates().tick());
   for (const char* name : {"u_z", "z", "u_y", "y", "u_x", "x"}) {
     record.Add(
         {name, "m", VectorXd::LinSpaced(3, 1.0, 3.0) * std::string(name).size()});
@@ -266,7 +269,7 @@ TEST(Signals, AreDeviationsFromRest) {
 
 TEST(ResidualBaseline, TakesOutWhatTheLinearModelLacks) {
   const Bench bench;
-  const MatrixXd baseline = ResidualBaseline(bench.design, bench.setup, *bench.plant,
+  const MatrixXd baseline = ResidualBaseline(bench.design, bench.machine,
                                              bench.motion, bench.Nominal(false, 4));
   ASSERT_EQ(baseline.cols(), bench.motion.samples());
   NominalRuns others = bench.Nominal(false, 4);
@@ -274,9 +277,9 @@ TEST(ResidualBaseline, TakesOutWhatTheLinearModelLacks) {
   const auto width = [](const DiagnosisLimits& limits) {
     return limits.residual.limits.max - limits.residual.limits.min;
   };
-  const double with = width(CalibrateLimits(bench.design, bench.setup, *bench.plant,
+  const double with = width(CalibrateLimits(bench.design, bench.machine,
                                             bench.motion, baseline, others));
-  const double without = width(CalibrateLimits(bench.design, bench.setup, *bench.plant,
+  const double without = width(CalibrateLimits(bench.design, bench.machine,
                                                bench.motion, {}, others));
   EXPECT_LT(with, 0.5 * without);
 }
@@ -288,10 +291,11 @@ TEST(UnknownForces, LeaveResidualsThatAreBlindToThem) {
                  "diagnosis.order=10", "diagnosis.cutoff=200",
                  "diagnosis.disturbance.order=10"});
     DiagnosisMonitor monitor(bench.design, bench.motion.samples());
-    bench.setup.disturbances[0].amplitude = {{"u_x", 100.0}};
+    mjdiag::Setup shaken = bench.machine.setup();
+    shaken.disturbances[0].amplitude = {{"u_x", 100.0}};
     RunOptions options;
     options.disturbances["gamma"] = 0.05;
-    bench.RunWith(monitor, options, true);
+    bench.Watch(monitor, bench.machine.WithSetup(shaken), options, true);
     return monitor.Log().residual.cwiseAbs().maxCoeff();
   };
   EXPECT_GT(disturbed("[]"), 20.0);
@@ -303,9 +307,8 @@ std::string ErrorWith(const std::string& override_text) {
 }
 
 TEST(DesignFilters, NamesTheJointsIfAnUnknownForceActsOnNone) {
-  const mjdiag::Setup setup = Bonder();
   std::string joints;
-  for (const std::string& joint : Linearize(*LoadPlant(setup), setup).coordinates) {
+  for (const std::string& joint : Bonder().linear().coordinates) {
     joints += (joints.empty() ? "" : ", ") + joint;
   }
   EXPECT_EQ(ErrorWith(R"(diagnosis.unknown_forces=["W"])"),

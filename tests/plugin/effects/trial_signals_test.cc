@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "discovery/gaussian_noise.h"
+#include "support/gaussian_noise.h"
 #include "mjdiag/signals/simulate_lti.h"
 
 namespace mjdiag {
