@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "support/changes.h"
 

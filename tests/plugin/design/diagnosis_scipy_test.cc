@@ -225,7 +225,7 @@ TEST_F(DiagnosisScipy, FindsTheSameRows) {
   // Three outputs and twenty states: no row below degree 6, one of 6, four up to 7.
   const MatrixXd& nullity = Value("nullity");
   ASSERT_EQ(nullity.cols(), 8);
-  const StateSpace system = DeltaForm(Ours().machine, Ours().options.timing);
+  const StateSpace system = DeltaForm(Ours().machine.linear(), Ours().options.timing);
   for (int degree = 0; degree <= 7; ++degree) {
     EXPECT_EQ(LeftNullSpace(system, degree).rows.rows(), nullity(0, degree)) << degree;
   }

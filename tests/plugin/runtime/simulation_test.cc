@@ -6,6 +6,7 @@
 #include <functional>
 #include <thread>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
 #include "support/bonder.h"
@@ -217,7 +218,7 @@ TEST(Replay, StartsWhereTheMeasurementStarts) {
 }
 
 TEST(Replay, DrivesTheActuatorsOfASetupWithoutControllers) {
-  const Machine machine = Emps([](Setup& file) { file.control.axes.clear(); });
+  const Machine machine = Emps([](mjdiag::Setup& file) { file.control.axes.clear(); });
   const mjdiag::Setup& setup = machine.setup();
   Record measured(setup.rates.tick());
   measured.Add({"q", "m", Eigen::VectorXd::Zero(2001)});

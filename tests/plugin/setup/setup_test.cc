@@ -230,7 +230,7 @@ TEST_F(SetupFile, IsReadByItsOwnNameToo) {
 
 TEST_F(SetupFile, RunsItsFirstTrajectoryByDefault) {
   EXPECT_EQ(MessageWith("default_trajectory = \"slow\"", ""), "nothing thrown");
-  EXPECT_EQ(ReadSetup(folder_).default_trajectory, "fast");
+  EXPECT_EQ(ReadSetup(folder_).trajectories.fallback, "fast");
 }
 
 TEST_F(SetupFile, TakesOverrides) {
