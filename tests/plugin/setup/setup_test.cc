@@ -284,7 +284,7 @@ TEST_F(SetupFile, OfTheManualsExamplesReads) {
   ASSERT_EQ(examples.size(), 2u);
   Write(examples[0]);
   EXPECT_EQ(Message({}), "nothing thrown");
-  EXPECT_TRUE(ReadSetup(folder_).axes.empty());
+  EXPECT_TRUE(ReadSetup(folder_).control.axes.empty());
   Write(examples[1]);
   EXPECT_EQ(Message({}), "nothing thrown");
   const auto closed = ReadSetup(folder_);
