@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/instance.h"
@@ -81,8 +81,8 @@ void MonitoredOverPlainLoop(benchmark::State& state, bool static_friction) {
   std::vector<double> ratios;
   double added = 0.0;
   for (auto _ : state) {
-    DiagnosisMonitor monitor(design, ticks);
-    MonitorObserver observer(monitor);
+    DiagnosisRecording recording(design, ticks);
+    MonitorObserver observer(recording);
     Loop plain(machine, nullptr);
     Loop monitored(machine, &observer);
     bool plain_first = false;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
@@ -33,25 +33,23 @@ double Median(std::vector<double> values) {
 void ReportOfADiagnosis(benchmark::State& state) {
   const Machine machine = test::Bonder();
   const Setup& setup = machine.setup();
-  DiagnosisDesign design = DesignFilters(machine);
-  NominalRuns nominal;
-  nominal.linear = true;
-  nominal.runs = 2;
-  design.limits = CalibrateLimits(design, machine, nominal);
+  DiagnosisSource source;
+  source.nominal.linear = true;
+  source.nominal.runs = 2;
+  const PreparedDiagnosis prepared = PrepareDiagnosis(machine, source);
   const Record record = SimulateLinear(
       machine.With({{{"zeta_x", 1.2}}, {}}),
       FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
       {});
-  DiagnosisMonitor monitor(design, record.samples());
-  Run(monitor, design, record);
-  const DiagnosisResult result = Conclude(design, monitor);
+  const Diagnosis diagnosis = Diagnose(machine, prepared, record);
 
   const test::TemporaryFolder folder;
   std::vector<double> seconds;
   for (auto _ : state) {
     const auto start = Clock::now();
     WritePage(folder.path(), "diagnosis",
-              DiagnosisPage(design, result, monitor.Log(), {"cmd", "record.csv", {}}));
+              DiagnosisPage(prepared.design, diagnosis.result, diagnosis.log,
+                            {"cmd", "record.csv", {}}));
     WriteReport(folder.path());
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }

@@ -36,8 +36,8 @@ VectorXd EstimatorSd(const Machine& machine, const Record& record,
   Setup setup = machine.setup();
   setup.diagnosis.estimation_rows = rows;
   const DiagnosisDesign design = DesignFilters(machine.WithSetup(setup));
-  DiagnosisMonitor monitor(design, record.samples());
-  Run(monitor, design, record);
+  DiagnosisMonitor monitor(design);
+  Run(monitor, record);
   return monitor.estimator().Estimate().covariance.diagonal().cwiseSqrt();
 }
 

@@ -82,7 +82,7 @@ std::vector<Sample> RunCases(const Machine& machine,
                              const std::vector<Case>& cases,
                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  const DiagnosisDesign design = LinearDetector(machine).design;
+  const DiagnosisDesign design = LinearDiagnosis(machine).design;
   std::vector<std::string> channels = design.outputs;
   channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
   const auto& kinds = machine.setup().Study("table4_from").values;
@@ -95,9 +95,7 @@ std::vector<Sample> RunCases(const Machine& machine,
         const Record record =
             RunLinear(motion, WithFaults(machine, drawn.faults,
                                       options.seed + static_cast<std::uint64_t>(i)));
-        DiagnosisMonitor monitor(design, record.samples());
-        Run(monitor, design, record);
-        const DiagnosisResult result = Conclude(design, monitor);
+        const DiagnosisResult result = Conclude(RecordDiagnosis(design, record));
         samples[static_cast<std::size_t>(i)] = {
             Features(record, channels),
             result.first_detection.has_value() || result.disturbance.disturbed,

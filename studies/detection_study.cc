@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"
-#include "mjdiag/plugin/design/robust_design.h"
 #include "mjdiag/studies/bound_study.h"
 
 namespace mjdiag {
@@ -56,7 +54,7 @@ struct LinearRow {
 std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
                                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  const Detector detector = LinearDetector(machine);
+  const PreparedDiagnosis detector = LinearDiagnosis(machine);
 
   const auto look = [&](const std::string& fault, double deviation,
                         std::uint64_t seed) {
@@ -127,9 +125,8 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
       [&](int i) {
         const Record record = RunLinear(motion, WithFaults(machine, {},
                        options.seed + 10000 + static_cast<std::uint64_t>(i)));
-        DiagnosisMonitor monitor(detector.design, record.samples());
-        Run(monitor, detector.design, record);
-        const DiagnosisResult result = Conclude(detector.design, monitor);
+        const DiagnosisResult result =
+            Conclude(RecordDiagnosis(detector.design, record));
         auto& run = healthy_runs[static_cast<std::size_t>(i)];
         run.residual = result.first_detection;
         run.spectrum = result.disturbance.disturbed;
@@ -159,22 +156,10 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  NominalRuns nominal;
-  nominal.runs = 8;
-  const auto finish = [&](DiagnosisDesign design) {
-    Detector detector{std::move(design), {}};
-    NominalRuns runs = nominal;
-    if (baseline) {
-      detector.baseline = ResidualBaseline(detector.design, machine, motion, runs);
-      runs.seed += static_cast<std::uint64_t>(runs.runs);
-      detector.design.limits = CalibrateLimits(detector.design, machine, motion,
-                                               detector.baseline, runs);
-    } else {
-      detector.design.limits = CalibrateLimits(detector.design, machine, runs);
-    }
-    return detector;
-  };
-  const Detector common = finish(DesignFilters(machine));
+  DiagnosisSource source;
+  source.baseline = baseline;
+  source.nominal.runs = 8;
+  const PreparedDiagnosis common = PrepareDiagnosis(machine, source, motion);
 
   const auto& largest = machine.setup().Study("largest").values;
   const FaultSizes& published = machine.setup().Study(study);
@@ -200,8 +185,8 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const auto& [fault, value] = largest[i];
     const double healthy = HealthyValue(machine.setup(), fault);
-    const Detector robust =
-        finish(DesignRobustFilters(machine, fault, motion, baseline));
+    source.robust = fault;
+    const PreparedDiagnosis robust = PrepareDiagnosis(machine, source, motion);
     const auto record_at = [&, &name = fault](double deviation) {
       return RunNonlinear(motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
     };

@@ -176,9 +176,9 @@ Excitation NominalMotion(const Setup& setup) {
 
 /// A trajectory that the record does not have: the shortest of all axes at once.
 const Trajectory& UnseenTrajectory(const Setup& setup) {
-  const Trajectory* best = &setup.trajectories.all.front();
+  const Trajectory* best = &setup.trajectories.all.all.front();
   std::size_t most = 0;
-  for (const Trajectory& trajectory : setup.trajectories.all) {
+  for (const Trajectory& trajectory : setup.trajectories.all.all) {
     if (trajectory.name == setup.trajectories.fallback) continue;
     if (trajectory.moves.front().by.size() <= most) continue;
     most = trajectory.moves.front().by.size();
@@ -248,7 +248,7 @@ Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate
     if (driven[u] == candidate.joint) motor = u;
   }
   scales.force =
-      nominal.At(problem.machine.setup().channels.actuators[motor].channel).samples.cwiseAbs().maxCoeff();
+      nominal.At(problem.machine.channels().actuators[motor].channel).samples.cwiseAbs().maxCoeff();
   scales.stiffness = plant.jnt_stiffness[id];
   const int address = plant.jnt_qposadr[id];
   scales.strain = (q.array() - plant.qpos_spring[address]).abs().maxCoeff();

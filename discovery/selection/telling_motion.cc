@@ -58,7 +58,7 @@ std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
   // The slowest, which take longest, first.
   std::vector<TellingMotion> motions;
   for (const double slower : {5.0, 2.0, 1.0}) {
-    for (const Trajectory& trajectory : machine.setup().trajectories.all) {
+    for (const Trajectory& trajectory : machine.setup().trajectories.all.all) {
       motions.push_back({trajectory.name, slower, 0.0});
     }
   }

@@ -64,7 +64,7 @@ mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* s
     mjdiag::Setup parts = mjdiag::ReadSetup(Text(setup));
     mjdiag::CheckTimeStep(parts, *model);
     const mjdiag::Machine machine(std::move(parts), *model);
-    const mjdiag::Trajectories& known = machine.setup().trajectories;
+    const mjdiag::Trajectories& known = machine.setup().trajectories.all;
     const mjdiag::Excitation excitation = mjdiag::FollowTrajectory(
         machine.setup(), known.Find(trajectory ? trajectory : known.fallback));
     mjdiag::RunOptions options;

@@ -48,8 +48,9 @@ class Simulator {
 
  private:
   VectorXd Estimates(const std::vector<Named>& named) const {
-    DiagnosisMonitor monitor(design_, motion_.excitation.samples(), motion_.baseline);
+    DiagnosisMonitor monitor(design_, motion_.baseline);
     monitor.RegressFrom(motion_.first_regressed);
+    MonitorObserver observer(monitor);
     RunOptions options;
     options.seed = motion_.runs.seed;
     Changes changes;
@@ -57,7 +58,7 @@ class Simulator {
       changes.faults.push_back(
           {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
     }
-    RunWith(monitor, machine_.With(changes), motion_.excitation, options, motion_.runs.linear);
+    RunWith(machine_.With(changes), motion_.excitation, observer, options, motion_.runs.linear);
     return monitor.estimator().Estimate().value;
   }
 
@@ -72,8 +73,7 @@ class CrossTerms {
   CrossTerms(const std::vector<FaultVerdict>& faults, std::size_t knobs)
       : faults_(faults),
         knobs_(knobs),
-        reach_(
-            TwoSidedNormalQuantile(kFalseFault / static_cast<double>(faults.size()))),
+        reach_(TwoSidedNormalQuantile(kFalseFault / static_cast<double>(faults.size()))),
         leaks_(VectorXd::Zero(static_cast<Index>(faults.size()))) {}
 
   const std::vector<Named>& named() const { return named_; }

@@ -27,8 +27,7 @@ Record LinearRun(const Machine& machine);
 
 /// Which rows the residuals are made of.
 struct RowSettings {
-  int degree = 7;
-  Denominator denominator;
+  ResidualOrder residual;
   int rows = 1;  ///< how many; 0: all of the null space
 };
 

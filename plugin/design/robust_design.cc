@@ -92,8 +92,7 @@ DiagnosisDesign DesignRobustFilters(const Machine& machine,
                                     const std::string& fault,
                                     const Excitation& excitation, bool baseline) {
   const RobustOptions& wanted = machine.setup().diagnosis.robust;
-  DiagnosisDesign design =
-      DesignFilters(machine, {wanted.degree, wanted.denominator, 0});
+  DiagnosisDesign design = DesignFilters(machine, {wanted.residual, 0});
   const MatrixXd response = Response(design, machine, fault);
   const MatrixXd nuisance =
       NuisanceEnergy(NominalResiduals(design, machine, excitation), baseline);

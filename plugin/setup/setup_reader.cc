@@ -321,14 +321,14 @@ Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
 
 void ReadTrajectories(const TomlTable& root, Setup& setup) {
   for (const TomlTable& table : root.NamedTables("trajectories", "<trajectory>")) {
-    setup.trajectories.all.push_back(ReadTrajectory(table, setup));
+    setup.trajectories.all.all.push_back(ReadTrajectory(table, setup));
   }
   if (root.Has("default_trajectory")) {
     setup.trajectories.fallback =
         DeclaredName(root, "default_trajectory", "trajectory",
-                     NamesOf(setup.trajectories.all, &Trajectory::name));
-  } else if (!setup.trajectories.all.empty()) {
-    setup.trajectories.fallback = setup.trajectories.all.front().name;
+                     NamesOf(setup.trajectories.all.all, &Trajectory::name));
+  } else if (!setup.trajectories.all.all.empty()) {
+    setup.trajectories.fallback = setup.trajectories.all.all.front().name;
   }
 }
 
