@@ -38,8 +38,7 @@ std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
   for (const FaultKnob& knob : FaultKnobs(machine.plant())) {
     if (knob.kind != KnobKind::kStiffness) continue;
     changed.push_back({knob.name + " = " + Short(kLostStiffness),
-                       LinearizeFaulty(machine,
-                                       {{knob.name, kLostStiffness}})});
+                       machine.With({{{knob.name, kLostStiffness}}, {}}).linear()});
   }
   return changed;
 }

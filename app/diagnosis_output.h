@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "app/subject.h"
 #include "app/output.h"
+#include "app/subject.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 
 namespace mjdiag::app {

@@ -8,8 +8,8 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/format.h"
-#include "app/subject.h"
 #include "app/output.h"
+#include "app/subject.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/quantity.h"
@@ -104,8 +104,7 @@ void Simulate(const SimulateOptions& options) {
   }
   std::function<NamedPage()> page;
   if (options.diagnose) {
-    const Diagnosis diagnosis =
-        Conclude(subject.nominal, *prepared, *recording);
+    const Diagnosis diagnosis = Conclude(subject.nominal, *prepared, *recording);
     document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
     text += "\n" + Describe(diagnosis.result);
     if (!options.output.folder.empty()) {
@@ -113,8 +112,7 @@ void Simulate(const SimulateOptions& options) {
                     document["diagnosis"].dump(2) + "\n");
     }
     page = [&, diagnosis] {
-      return PageOf(prepared->design, diagnosis,
-                    "simulated: " + Describe(subject));
+      return PageOf(prepared->design, diagnosis, "simulated: " + Describe(subject));
     };
   }
   Publish(options.output, "simulate", document, text, page);

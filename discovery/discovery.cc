@@ -7,13 +7,13 @@
 
 #include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/discovery/checks/data_check.h"
+#include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
-#include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/model_choice.h"
-#include "mjdiag/discovery/fitting/profile_interval.h"
-#include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/discovery/selection/telling_motion.h"
+#include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -46,7 +46,8 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
     const double sd = std::sqrt(covariance(first + index, first + index));
     const std::string& name = candidate.parameters[i].name;
     const std::string unit =
-        candidate.cause.fault ? "1" : SiteUnit(machine_.plant(), candidate.cause.spec, name);
+        candidate.cause.fault ? "1"
+                              : SiteUnit(machine_.plant(), candidate.cause.spec, name);
     parameters.push_back(
         {name, unit, fitted.value[index], sd, interval.min, interval.max});
   }
@@ -125,8 +126,8 @@ void Discoverer::NameCauses() {
 // White noise beyond what the setup says of a sensor. Sensors of which it says nothing
 // cannot be judged.
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
-  for (const RaisedNoise& raised :
-       FindRaisedNoise(machine_.setup(), problem_.observer, innovations, options_.train_share)) {
+  for (const RaisedNoise& raised : FindRaisedNoise(machine_.setup(), problem_.observer,
+                                                   innovations, options_.train_share)) {
     FoundCause found;
     found.cause.spec = {"encoder_noise", raised.element, {{"sd", raised.sd}}};
     const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
@@ -204,10 +205,9 @@ void Discoverer::NoteTwins(std::size_t cause,
     }
     std::string note = "the record does not tell " + Describe(found.cause) + " from " +
                        Describe(CauseOf(candidates_, other.cause));
-    const auto motion =
-        FindTellingMotion(machine_.WithSensorNoise(problem_.observer.noise_sd),
-                          ChangesOf({found.cause}),
-                          ChangesOf({CauseOf(candidates_, other.cause)}));
+    const auto motion = FindTellingMotion(
+        machine_.WithSensorNoise(problem_.observer.noise_sd), ChangesOf({found.cause}),
+        ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
     if (!motion || motion->separation < kTells) {
       note += "; no trajectory of the setup would, a larger or faster motion may";

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
 #include "mjdiag/plugin/machine/machine.h"

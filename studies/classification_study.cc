@@ -78,8 +78,7 @@ int MostSignificant(const DiagnosisResult& result,
   return named;
 }
 
-std::vector<Sample> RunCases(const Machine& machine,
-                             const std::vector<Case>& cases,
+std::vector<Sample> RunCases(const Machine& machine, const std::vector<Case>& cases,
                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
   const DiagnosisDesign design = LinearDiagnosis(machine).design;
@@ -94,7 +93,7 @@ std::vector<Sample> RunCases(const Machine& machine,
         const Case& drawn = cases[static_cast<std::size_t>(i)];
         const Record record =
             RunLinear(motion, WithFaults(machine, drawn.faults,
-                                      options.seed + static_cast<std::uint64_t>(i)));
+                                         options.seed + static_cast<std::uint64_t>(i)));
         const DiagnosisResult result = Conclude(RecordDiagnosis(design, record));
         samples[static_cast<std::size_t>(i)] = {
             Features(record, channels),
@@ -141,7 +140,8 @@ std::vector<Cell> Row(const std::string& method, const Confusion& detection,
 
 std::vector<StudyTable> ClassificationStudy(const Machine& machine,
                                             const StudyOptions& options) {
-  const std::vector<Case> cases = DrawCases(machine.setup(), options.runs, options.seed);
+  const std::vector<Case> cases =
+      DrawCases(machine.setup(), options.runs, options.seed);
   const std::vector<Sample> samples = RunCases(machine, cases, options);
   // Pairs of a healthy and a faulty run go to training and test in turn, a round of all
   // faults at a time.
@@ -186,8 +186,8 @@ std::vector<StudyTable> ClassificationStudy(const Machine& machine,
   StudyTable ranges{"Ranges of the faults", {"fault", "from", "to"}, {}, {}};
   const auto& from = machine.setup().Study("table4_from").values;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    ranges.rows.push_back(
-        {from[i].first, from[i].second, machine.setup().Study("table4_to").values[i].second});
+    ranges.rows.push_back({from[i].first, from[i].second,
+                           machine.setup().Study("table4_to").values[i].second});
   }
   return {table, ranges};
 }

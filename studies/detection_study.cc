@@ -60,8 +60,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
                         std::uint64_t seed) {
     const double healthy = HealthyValue(machine.setup(), fault);
     const std::vector<SizedFault> faults{{fault, healthy + deviation}};
-    const Record record =
-        RunLinear(motion, WithFaults(machine, faults, seed));
+    const Record record = RunLinear(motion, WithFaults(machine, faults, seed));
     return Look(detector, record, fault);
   };
 
@@ -110,8 +109,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
          SizeCell(row.by_residual, healthy), DeviationCell(row.by_residual),
          DeviationCell(row.by_estimate),
          healthy == 0.0 ? SizeCell(row.by_spectrum, 0.0) : Cell("-"),
-         Cell(bound.together[static_cast<Eigen::Index>(
-             BoundIndex(machine, fault))])});
+         Cell(bound.together[static_cast<Eigen::Index>(BoundIndex(machine, fault))])});
   }
   table.notes = {
       "The faults are there from the start: the time is the delay of detection, most "
@@ -123,8 +121,9 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
   ParallelFor(
       options.runs,
       [&](int i) {
-        const Record record = RunLinear(motion, WithFaults(machine, {},
-                       options.seed + 10000 + static_cast<std::uint64_t>(i)));
+        const Record record = RunLinear(
+            motion, WithFaults(machine, {},
+                               options.seed + 10000 + static_cast<std::uint64_t>(i)));
         const DiagnosisResult result =
             Conclude(RecordDiagnosis(detector.design, record));
         auto& run = healthy_runs[static_cast<std::size_t>(i)];
@@ -178,9 +177,9 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                     {}};
   std::vector<Record> healthy_runs(kHealthyRuns);
   ParallelFor(kHealthyRuns, [&](int i) {
-    healthy_runs[static_cast<std::size_t>(i)] =
-        RunNonlinear(motion, WithFaults(machine, {},
-                            options.seed + 20000 + static_cast<std::uint64_t>(i)));
+    healthy_runs[static_cast<std::size_t>(i)] = RunNonlinear(
+        motion,
+        WithFaults(machine, {}, options.seed + 20000 + static_cast<std::uint64_t>(i)));
   });
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const auto& [fault, value] = largest[i];
@@ -188,7 +187,8 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
     source.robust = fault;
     const PreparedDiagnosis robust = PrepareDiagnosis(machine, source, motion);
     const auto record_at = [&, &name = fault](double deviation) {
-      return RunNonlinear(motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
+      return RunNonlinear(
+          motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
     };
     // Three ways to see it; an estimate may come from either row.
     enum Way { kResidual, kRobust, kEstimate, kWays };

@@ -61,9 +61,8 @@ std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
     ParallelFor(
         options.runs,
         [&](int i) {
-          FaultyMachine run =
-              WithFaults(machine, scenario.faults,
-                         options.seed + static_cast<std::uint64_t>(i));
+          FaultyMachine run = WithFaults(machine, scenario.faults,
+                                         options.seed + static_cast<std::uint64_t>(i));
           run.options.noise_scale = scenario.noise;
           const Record record = RunLinear(motion, run);
           results[static_cast<std::size_t>(i)] =

@@ -26,9 +26,8 @@ VectorXd Truth(const Setup& setup, const DiagnosisDesign& design,
   return truth;
 }
 
-StudyTable Repeat(const Machine& machine,
-                  const DiagnosisDesign& design, const FaultSizes& sizes,
-                  const StudyOptions& options) {
+StudyTable Repeat(const Machine& machine, const DiagnosisDesign& design,
+                  const FaultSizes& sizes, const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
   std::vector<SizedFault> faults;
   for (const auto& [name, value] : sizes.values) faults.push_back({name, value});
@@ -37,9 +36,9 @@ StudyTable Repeat(const Machine& machine,
   ParallelFor(
       options.runs,
       [&](int i) {
-        const Record record =
-            RunLinear(motion, WithFaults(machine, faults,
-                                      options.seed + static_cast<std::uint64_t>(i)));
+        const Record record = RunLinear(
+            motion,
+            WithFaults(machine, faults, options.seed + static_cast<std::uint64_t>(i)));
         estimates[static_cast<std::size_t>(i)] =
             RefineFaults(machine, design, record).estimate;
       },

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/fitting/nested_law.h"
-#include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/fitting/wave_period.h"
+#include "mjdiag/discovery/screening/screening.h"
+#include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {

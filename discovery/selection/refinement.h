@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
-#include "mjdiag/discovery/selection/contender.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/discovery/selection/contender.h"
 
 namespace mjdiag {
 

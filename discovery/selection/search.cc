@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/fitting/unsteady_fit.h"
+#include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 

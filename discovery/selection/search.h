@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
-#include "mjdiag/discovery/selection/contender.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
-#include "mjdiag/discovery/selection/refinement.h"
 #include "mjdiag/discovery/screening/screening.h"
+#include "mjdiag/discovery/selection/contender.h"
+#include "mjdiag/discovery/selection/refinement.h"
 
 namespace mjdiag {
 

@@ -58,7 +58,7 @@ std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
   // The slowest, which take longest, first.
   std::vector<TellingMotion> motions;
   for (const double slower : {5.0, 2.0, 1.0}) {
-    for (const Trajectory& trajectory : machine.setup().trajectories.all.all) {
+    for (const Trajectory& trajectory : machine.setup().trajectories.all) {
       motions.push_back({trajectory.name, slower, 0.0});
     }
   }
@@ -69,7 +69,8 @@ std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
     const TellingMotion& motion = motions[i];
     try {
       const Excitation excitation = FollowTrajectory(
-          machine.setup(), Slower(machine.setup().trajectories.Find(motion.trajectory), motion.slower));
+          machine.setup(),
+          Slower(machine.setup().trajectories.Find(motion.trajectory), motion.slower));
       runs[i][which] = RunOf(machine, excitation, which == 0 ? one : other);
     } catch (const std::exception&) {
       // A motion that cannot be run is not proposed.

@@ -48,7 +48,9 @@ const char* mjdiag_version(void) { return MJDIAG_VERSION; }
 const char* mjdiag_last_error(void) { return last_error.c_str(); }
 
 int mjdiag_prepare(mjModel* model, const char* setup) {
-  return Guard([&] { mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)).physics, *model); })
+  return Guard([&] {
+    mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)).physics, *model);
+  })
              ? 0
              : 1;
 }
@@ -64,7 +66,7 @@ mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* s
     mjdiag::Setup parts = mjdiag::ReadSetup(Text(setup));
     mjdiag::CheckTimeStep(parts, *model);
     const mjdiag::Machine machine(std::move(parts), *model);
-    const mjdiag::Trajectories& known = machine.setup().trajectories.all;
+    const mjdiag::Trajectories& known = machine.setup().trajectories;
     const mjdiag::Excitation excitation = mjdiag::FollowTrajectory(
         machine.setup(), known.Find(trajectory ? trajectory : known.fallback));
     mjdiag::RunOptions options;

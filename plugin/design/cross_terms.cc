@@ -36,10 +36,7 @@ class Simulator {
  public:
   Simulator(const DiagnosisDesign& design, const Machine& machine,
             const DiagnosedMotion& motion)
-      : design_(design),
-        machine_(machine),
-        motion_(motion),
-        healthy_(Estimates({})) {}
+      : design_(design), machine_(machine), motion_(motion), healthy_(Estimates({})) {}
 
   /// D(f), a fault each.
   VectorXd EstimatesOf(const std::vector<Named>& named) const {
@@ -58,7 +55,8 @@ class Simulator {
       changes.faults.push_back(
           {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
     }
-    RunWith(machine_.With(changes), motion_.excitation, observer, options, motion_.runs.linear);
+    RunWith(machine_.With(changes), motion_.excitation, observer, options,
+            motion_.runs.linear);
     return monitor.estimator().Estimate().value;
   }
 
@@ -73,7 +71,8 @@ class CrossTerms {
   CrossTerms(const std::vector<FaultVerdict>& faults, std::size_t knobs)
       : faults_(faults),
         knobs_(knobs),
-        reach_(TwoSidedNormalQuantile(kFalseFault / static_cast<double>(faults.size()))),
+        reach_(
+            TwoSidedNormalQuantile(kFalseFault / static_cast<double>(faults.size()))),
         leaks_(VectorXd::Zero(static_cast<Index>(faults.size()))) {}
 
   const std::vector<Named>& named() const { return named_; }
@@ -162,8 +161,7 @@ class CrossTerms {
 }  // namespace
 
 void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
-                      const Machine& machine,
-                      const DiagnosedMotion& motion) {
+                      const Machine& machine, const DiagnosedMotion& motion) {
   constexpr int kRuns = 16;
   CrossTerms terms(result.faults, design.bank.faults.size());
   if (!terms.NameNext()) return;

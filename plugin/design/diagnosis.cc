@@ -6,7 +6,7 @@
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/plugin/design/cross_terms.h"
 #include "mjdiag/plugin/design/fault_models.h"
-#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/design/robust_design.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
@@ -37,8 +37,8 @@ void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
   }
 }
 
-DiagnosisDesign FiltersOf(const Machine& machine,
-                          const DiagnosisSource& source, const Excitation& motion) {
+DiagnosisDesign FiltersOf(const Machine& machine, const DiagnosisSource& source,
+                          const Excitation& motion) {
   if (!source.filters.empty()) {
     DiagnosisDesign design = ReadFilters(source.filters);
     RequireSameMachine(source.filters.string(), design, machine.setup());
@@ -88,9 +88,8 @@ PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
   return prepared;
 }
 
-Diagnosis Diagnose(const Machine& machine,
-                   const PreparedDiagnosis& prepared, const Record& record,
-                   EstimateMethod method) {
+Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
+                   const Record& record, EstimateMethod method) {
   const bool refined = method == EstimateMethod::kRefined;
   if (refined && prepared.baseline.size() > 0) {
     throw InputError("refined estimates", "asked for against a baseline",
@@ -106,8 +105,7 @@ Diagnosis Diagnose(const Machine& machine,
           log};
 }
 
-Diagnosis Conclude(const Machine& machine,
-                   const PreparedDiagnosis& prepared,
+Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
                    const DiagnosisRecording& recording) {
   const DiagnosisMonitor& monitor = recording.monitor;
   Diagnosis diagnosis;
@@ -121,22 +119,19 @@ Diagnosis Conclude(const Machine& machine,
   return diagnosis;
 }
 
-DiagnosedRun DiagnoseRun(const Machine& machine,
-                         const PreparedDiagnosis& prepared, const Excitation& motion,
-                         RunOptions options) {
+DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
+                         const Excitation& motion, RunOptions options) {
   DiagnosisRecording recording(prepared.design, motion.samples(), prepared.baseline);
   MonitorObserver observer(recording);
-  Record record = RunWith(machine, motion, observer, std::move(options),
-                          prepared.nominal.linear);
+  Record record =
+      RunWith(machine, motion, observer, std::move(options), prepared.nominal.linear);
   return {std::move(record), Conclude(machine, prepared, recording)};
 }
 
-RefinedEstimate RefineFaults(const Machine& machine,
-                             const DiagnosisDesign& design, const Record& record,
-                             Index from) {
+RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
+                             const Record& record, Index from) {
   return RefineEstimate(design, SynthesisOf(machine.setup(), machine.linear()),
-                        FaultModels(machine), Magnitudes(machine), record,
-                        from);
+                        FaultModels(machine), Magnitudes(machine), record, from);
 }
 
 }  // namespace mjdiag

@@ -80,14 +80,13 @@ enum class EstimateMethod {
 /// gives. InputError if a channel is missing, the record has another rate than the
 /// filters or is shorter than the horizon, the motion does not tell the faults apart,
 /// or refined estimates are asked for against a baseline.
-Diagnosis Diagnose(const Machine& machine,
-                   const PreparedDiagnosis& prepared, const Record& record,
+Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
+                   const Record& record,
                    EstimateMethod method = EstimateMethod::kLinear);
 
 /// What a recording says at the end of its run; against a baseline, without the cross
 /// terms of large faults (cross_terms.h).
-Diagnosis Conclude(const Machine& machine,
-                   const PreparedDiagnosis& prepared,
+Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
                    const DiagnosisRecording& recording);
 
 struct DiagnosedRun {
@@ -98,14 +97,12 @@ struct DiagnosedRun {
 /// A run of the simulated machine with the diagnosis inside its control callback; on
 /// the linear plant where `prepared` has its healthy runs from there.
 /// @param options  the faults, noise and seed of the run; its observer is replaced
-DiagnosedRun DiagnoseRun(const Machine& machine,
-                         const PreparedDiagnosis& prepared, const Excitation& motion,
-                         RunOptions options = {});
+DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
+                         const Excitation& motion, RunOptions options = {});
 
 /// RefineEstimate with the models of this machine.
 /// @param from  first sample that is regressed
-RefinedEstimate RefineFaults(const Machine& machine,
-                             const DiagnosisDesign& design, const Record& record,
-                             Eigen::Index from = 0);
+RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
+                             const Record& record, Eigen::Index from = 0);
 
 }  // namespace mjdiag

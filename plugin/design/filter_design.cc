@@ -8,8 +8,8 @@
 #include "mjdiag/diagnosis/row_choice.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/error.h"
 
@@ -149,8 +149,9 @@ struct NominalLog {
   MatrixXd rows;
 };
 
-NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                      const MatrixXd& baseline, std::uint64_t seed, bool linear) {
+NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine,
+                      const Excitation& excitation, const MatrixXd& baseline,
+                      std::uint64_t seed, bool linear) {
   DiagnosisRecording recording(design, excitation.samples(), baseline);
   MonitorObserver observer(recording);
   RunOptions options;
@@ -161,8 +162,9 @@ NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine, con
 }
 
 /// Runs of one motion that differ in their noise.
-std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                                const MatrixXd& baseline, const NominalRuns& options) {
+std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Machine& machine,
+                                const Excitation& excitation, const MatrixXd& baseline,
+                                const NominalRuns& options) {
   std::vector<NominalLog> logs(static_cast<std::size_t>(options.runs));
   ParallelFor(
       options.runs,
@@ -260,8 +262,7 @@ Record LinearRun(const Machine& machine) {
   return SimulateLinear(machine, DefaultExcitation(machine.setup()), options);
 }
 
-DiagnosisDesign DesignFilters(const Machine& machine,
-                              const RowSettings& settings) {
+DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings) {
   const MechanicalModel& healthy = machine.linear();
   const std::vector<TurnedModels> turned = TurnModels(machine);
   SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
@@ -298,13 +299,15 @@ DiagnosisDesign DesignFilters(const Machine& machine) {
   return DesignFilters(machine, {wanted.residual, wanted.estimation_rows});
 }
 
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const NominalRuns& options) {
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
+                                const NominalRuns& options) {
   std::vector<NominalLog> others;
   for (const std::string& name : machine.setup().diagnosis.trajectories) {
     NominalRuns single = options;
     single.runs = 1;
     single.progress = nullptr;
-    const Excitation excitation = FollowTrajectory(machine.setup(), machine.setup().trajectories.Find(name));
+    const Excitation excitation =
+        FollowTrajectory(machine.setup(), machine.setup().trajectories.Find(name));
     others.push_back(RunMany(design, machine, excitation, {}, single).front());
   }
   const auto repeated =
@@ -312,17 +315,17 @@ DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& ma
   return LimitsOf(design, repeated, others, options.linear);
 }
 
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                                const MatrixXd& baseline, const NominalRuns& options) {
-  return LimitsOf(design, RunMany(design, machine, excitation, baseline, options),
-                  {}, options.linear);
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
+                                const Excitation& excitation, const MatrixXd& baseline,
+                                const NominalRuns& options) {
+  return LimitsOf(design, RunMany(design, machine, excitation, baseline, options), {},
+                  options.linear);
 }
 
-MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                          const NominalRuns& options) {
+MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine,
+                          const Excitation& excitation, const NominalRuns& options) {
   MatrixXd mean;
-  for (const NominalLog& nominal :
-       RunMany(design, machine, excitation, {}, options)) {
+  for (const NominalLog& nominal : RunMany(design, machine, excitation, {}, options)) {
     mean = mean.size() == 0 ? nominal.rows : (mean + nominal.rows).eval();
   }
   return mean / static_cast<double>(options.runs);

@@ -25,9 +25,8 @@ class MonitorObserver : public TickObserver {
 };
 
 /// A run that an observer watches, of the plant or of its linear model.
-inline Record RunWith(const Machine& machine,
-                      const Excitation& excitation, TickObserver& observer,
-                      RunOptions options, bool linear) {
+inline Record RunWith(const Machine& machine, const Excitation& excitation,
+                      TickObserver& observer, RunOptions options, bool linear) {
   options.observer = &observer;
   return linear ? SimulateLinear(machine, excitation, options)
                 : Simulate(machine, excitation, options);

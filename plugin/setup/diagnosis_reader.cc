@@ -37,7 +37,8 @@ void ReadThresholds(const TomlTable& table, const Setup& setup,
   options.trajectories = table.Texts("trajectories", {});
   for (const std::string& name : options.trajectories) {
     const auto named = [&](const Trajectory& t) { return t.name == name; };
-    if (!std::any_of(setup.trajectories.all.all.begin(), setup.trajectories.all.all.end(), named)) {
+    if (!std::any_of(setup.trajectories.all.begin(), setup.trajectories.all.end(),
+                     named)) {
       table.Fail("trajectories", "there is no trajectory '" + name + "'",
                  "names under [trajectories]");
     }

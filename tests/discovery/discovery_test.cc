@@ -8,6 +8,7 @@
 
 #include "discovery/stage_under_test.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
 namespace {
@@ -37,8 +38,8 @@ const CauseParameter& Parameter(const Discovery& discovery, const std::string& n
 TEST(Discovery, SaysNothingOfNoise) {
   const test::StageUnderTest stage;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const Discovery answer = Discover(
-        stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
+    const Discovery answer =
+        Discover(stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
     EXPECT_EQ(answer.verdict, DiscoveryVerdict::kNoDiscrepancy);
     EXPECT_EQ(Named(answer), "");
   }
@@ -75,12 +76,10 @@ TEST(Discovery, NamesATurnedKnobAsTheFault) {
 TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
   const test::StageUnderTest stage;
   const Record measured = stage.Measure({"force_saturation@drive:limit=1.2"});
-  const Discovery alone =
-      Discover(stage.machine, measured, nullptr, CausesOnly());
+  const Discovery alone = Discover(stage.machine, measured, nullptr, CausesOnly());
   EXPECT_EQ(Named(alone), "force_saturation@drive");
   const Record validation = stage.Measure({}, {}, 2);
-  const Discovery judged =
-      Discover(stage.machine, measured, &validation, CausesOnly());
+  const Discovery judged = Discover(stage.machine, measured, &validation, CausesOnly());
   EXPECT_EQ(Named(judged).find("force_saturation"), std::string::npos);
   EXPECT_TRUE(std::ranges::any_of(judged.notes, [](const std::string& note) {
     return note.find("spoils") != std::string::npos &&
@@ -173,8 +172,7 @@ TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
   const Record record = WithForce(stage, [](double q, double v, double) {
     return -150.0 * std::sin(60.0 * q) * v;
   });
-  const Discovery answer =
-      Discover(stage.machine, record, nullptr, CausesOnly());
+  const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("position"), std::string::npos)
@@ -185,8 +183,7 @@ TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
   const test::StageUnderTest stage;
   const Record record = WithForce(
       stage, [](double, double, double t) { return t > 1.2 && t < 1.9 ? 4.0 : 0.0; });
-  const Discovery answer =
-      Discover(stage.machine, record, nullptr, CausesOnly());
+  const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("time"), std::string::npos)

@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "discovery/candidate_place.h"
-#include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record_file.h"

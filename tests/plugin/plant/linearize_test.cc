@@ -12,10 +12,10 @@
 
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/diagnosis/linear_chain.h"
-#include "mjdiag/plugin/setup/chain_file.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/setup/published_row_file.h"
 #include "mjdiag/plugin/plant/transition.h"
+#include "mjdiag/plugin/setup/chain_file.h"
+#include "mjdiag/plugin/setup/published_row_file.h"
 #include "mjdiag/signals/error.h"
 #include "support/bonder.h"
 #include "support/temporary_folder.h"

@@ -103,7 +103,7 @@ TEST_F(SetupFile, FillsDisturbancesAndTrajectories) {
   EXPECT_THAT(setup.disturbances[0].frequencies, ElementsAre(50.0, 150.0));
   EXPECT_DOUBLE_EQ(setup.disturbances[0].amplitude.at("u"), 4.5);
 
-  ASSERT_EQ(setup.trajectories.all.all.all.size(), 2u);
+  ASSERT_EQ(setup.trajectories.all.size(), 2u);
   EXPECT_EQ(setup.trajectories.fallback, "slow");
   const Trajectory& fast = setup.trajectories.Find("fast");
   EXPECT_EQ(fast.duration, 2.0);
@@ -290,18 +290,18 @@ TEST_F(SetupFile, OfTheManualsExamplesReads) {
   const auto closed = ReadSetup(folder_);
   EXPECT_EQ(closed.control.axes.size(), 1u);
   EXPECT_EQ(closed.diagnosis.residual.degree, 2);
-  EXPECT_NO_THROW(SampleTrajectory(closed.trajectories.Find(closed.trajectories.fallback),
-                                   {"slide"}, 1e-3));
+  EXPECT_NO_THROW(SampleTrajectory(
+      closed.trajectories.Find(closed.trajectories.fallback), {"slide"}, 1e-3));
 }
 
 class ShippedSetup : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedSetup, HasTrajectoriesThatItsAxesCanFollow) {
   const auto setup = ReadSetup(kSource / "mjcf" / GetParam());
-  ASSERT_FALSE(setup.trajectories.all.all.all.empty());
+  ASSERT_FALSE(setup.trajectories.all.empty());
   std::vector<std::string> axes;
   for (const AxisSetup& axis : setup.control.axes) axes.push_back(axis.name);
-  for (const Trajectory& trajectory : setup.trajectories.all.all.all) {
+  for (const Trajectory& trajectory : setup.trajectories.all) {
     const Reference reference = SampleTrajectory(trajectory, axes, setup.rates.tick());
     for (const AxisReference& axis : reference.axes) {
       EXPECT_NEAR(axis.position.tail(1)[0], 0.0, 1e-15) << trajectory.name;
