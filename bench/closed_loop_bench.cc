@@ -30,9 +30,8 @@ double Median(std::vector<double> values) {
 }
 
 void ClosedLoopOverBareSteps(benchmark::State& state, bool static_friction) {
-  const Machine machine =
-      test::Bonder({std::string("physics.static_friction=") +
-                    (static_friction ? "true" : "false")});
+  const Machine machine = test::Bonder(
+      {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
   const Setup& setup = machine.setup();
   const Excitation excitation =
       FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));

@@ -15,8 +15,8 @@
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/runtime/instance.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/runtime/instance.h"
 #include "support/bonder.h"
 
 namespace mjdiag {
@@ -38,8 +38,8 @@ double Median(std::vector<double> values) {
 }
 
 Machine Bonder(bool static_friction) {
-  return test::Bonder({std::string("physics.static_friction=") +
-                       (static_friction ? "true" : "false")});
+  return test::Bonder(
+      {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
 }
 
 Excitation DefaultMotion(const Setup& setup) {

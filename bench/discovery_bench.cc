@@ -35,8 +35,7 @@ double LargestMiB() {
 
 void DiscoverIn(benchmark::State& state, const std::string& folder,
                 const std::vector<std::string>& effects) {
-  const Machine machine(
-      ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" + folder));
+  const Machine machine(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" + folder));
   const Trajectories& motions = machine.setup().trajectories;
   const Record measured =
       Simulate(machine.With(test::With(effects)),

@@ -47,9 +47,9 @@ TEST(Discovery, SaysNothingOfNoise) {
 
 TEST(Discovery, NamesDryFrictionAndItsForce) {
   const test::StageUnderTest stage;
-  const Discovery answer = Discover(stage.machine,
-                                    stage.Measure({"coulomb_friction@load:force=18"}),
-                                    nullptr, CausesOnly());
+  const Discovery answer =
+      Discover(stage.machine, stage.Measure({"coulomb_friction@load:force=18"}),
+               nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kExplained);
   EXPECT_EQ(Named(answer), "coulomb_friction@load");
   // Four standard deviations: 6e-5 of the draws are further off.
@@ -60,9 +60,8 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
 
 TEST(Discovery, NamesATurnedKnobAsTheFault) {
   const test::StageUnderTest stage;
-  const Discovery answer =
-      Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}), nullptr,
-               CausesOnly());
+  const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),
+                                    nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "zeta@load");
   EXPECT_TRUE(answer.causes[0].cause.fault);
   // The same change of the model by another name is said to be one.
@@ -134,9 +133,9 @@ TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
 
 TEST(Discovery, NamesRaisedEncoderNoise) {
   const test::StageUnderTest stage;
-  const Discovery answer = Discover(
-      stage.machine,
-      stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}), nullptr, CausesOnly());
+  const Discovery answer =
+      Discover(stage.machine, stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}),
+               nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "encoder_noise@load_encoder");
   const CauseParameter& sd = Parameter(answer, "sd");
   EXPECT_NEAR(sd.value, 1.5e-8, 4.0 * sd.sd);

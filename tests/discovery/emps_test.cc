@@ -50,9 +50,7 @@ class Emps : public ::testing::Test {
     const Record measured = ReadRecord(DataFolder() / file, nominal.setup().record);
     return Compare(nominal.With(test::With(effects)), measured, {});
   }
-  static Machine Given() {
-    return Machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps"));
-  }
+  static Machine Given() { return Machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps")); }
   /// The plant has them rounded.
   static Machine WithAuthorsMassAndDamping() {
     const Machine given = Given();
@@ -95,9 +93,9 @@ TEST_F(Emps, IncompletePlantIsVisiblyWorseAndSaidToBe) {
 TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
   const Machine machine = Given();
   const mjModel& plant = machine.plant();
-  const DiscoveryProblem problem =
-      PoseProblem(machine,
-                  ReadRecord(DataFolder() / "DATA_EMPS.mat", machine.setup().record), 1.0, 20.0);
+  const DiscoveryProblem problem = PoseProblem(
+      machine, ReadRecord(DataFolder() / "DATA_EMPS.mat", machine.setup().record), 1.0,
+      20.0);
   const auto candidates = ListCandidates(machine);
   const std::vector<FittedCause> start = {
       {test::Place(candidates, "coulomb_friction@load"),

@@ -25,9 +25,9 @@ struct Example {
     DiagnosisSource source;
     source.nominal.linear = true;
     const PreparedDiagnosis prepared = PrepareDiagnosis(machine, source);
-    const Record record = SimulateLinear(
-        machine.With({{{"zeta_x", zeta_x}}, {}}),
-        FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
+    const Record record =
+        SimulateLinear(machine.With({{{"zeta_x", zeta_x}}, {}}),
+                       FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
     design = prepared.design;
     const Diagnosis diagnosis = Diagnose(machine, prepared, record);
     log = diagnosis.log;

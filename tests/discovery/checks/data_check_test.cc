@@ -11,12 +11,12 @@
 #include <limits>
 #include <numbers>
 
-#include "support/gaussian_noise.h"
 #include "mjdiag/discovery/checks/clock_drift.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/changes.h"
+#include "support/gaussian_noise.h"
 #include "support/message_of.h"
 
 namespace mjdiag {

@@ -123,22 +123,22 @@ TEST(ExtendedPlant, IsTestedWithTheWholeCatalogue) {
 }
 
 TEST(ExtendedPlant, MovesAsTheMachineWithEveryFaultTurned) {
-  const Changes ab383 =
-      test::With({}, {{"zeta_x", 1.37}, {"beta_y", 0.91}, {"eta_x", 0.93}, {"eta_z", 1.01}});
+  const Changes ab383 = test::With(
+      {}, {{"zeta_x", 1.37}, {"beta_y", 0.91}, {"eta_x", 0.93}, {"eta_z", 1.01}});
   ExpectSameMotion(Extension(Folder("ab383")), ab383, "AB383");
-  ExpectSameMotion(Extension(Folder("emps")), test::With({}, {{"zeta", 1.3}, {"eta", 0.9}}),
-                   "EMPS");
+  ExpectSameMotion(Extension(Folder("emps")),
+                   test::With({}, {{"zeta", 1.3}, {"eta", 0.9}}), "EMPS");
 }
 
 TEST(ExtendedPlant, HoldsSeveralCausesAtOneSite) {
-  const Changes causes =
-      test::With({"coulomb_friction@load:force=11.1", "coulomb_friction@load:force=7.3",
-            "stribeck_friction@load:coulomb=1.1,breakaway=3.7,velocity=0.0013",
-            "viscous_friction@load:coefficient=3.1", "force_offset@load:force=1.3",
-            "force_ripple@load:amplitude=1.7,period=0.0241,phase=0.3",
-            "force_ripple@load:amplitude=0.3,period=0.0113", "added_mass@load:mass=1.3",
-            "added_mass@load:mass=0.7", "motor_constant@drive:factor=0.97"},
-           {{"zeta", 1.2}});
+  const Changes causes = test::With(
+      {"coulomb_friction@load:force=11.1", "coulomb_friction@load:force=7.3",
+       "stribeck_friction@load:coulomb=1.1,breakaway=3.7,velocity=0.0013",
+       "viscous_friction@load:coefficient=3.1", "force_offset@load:force=1.3",
+       "force_ripple@load:amplitude=1.7,period=0.0241,phase=0.3",
+       "force_ripple@load:amplitude=0.3,period=0.0113", "added_mass@load:mass=1.3",
+       "added_mass@load:mass=0.7", "motor_constant@drive:factor=0.97"},
+      {{"zeta", 1.2}});
   const Extension extension(Folder("emps"));
   ExpectSameMotion(extension, causes, "several");
   EXPECT_THAT(extension.Mjcf(),
@@ -149,12 +149,12 @@ TEST(ExtendedPlant, HoldsSeveralCausesAtOneSite) {
 TEST(ExtendedPlant, IsExtendedOnceMore) {
   const Changes first =
       test::With({"stribeck_friction@load:coulomb=13.1,breakaway=7.7,velocity=0.0013",
-            "force_offset@load:force=1.3", "linear_stiffness@load:stiffness=100"},
-           {{"zeta", 1.2}});
+                  "force_offset@load:force=1.3", "linear_stiffness@load:stiffness=100"},
+                 {{"zeta", 1.2}});
   const Changes second =
       test::With({"stribeck_friction@load:coulomb=1.1,breakaway=0.7,velocity=0.03",
-            "force_offset@load:force=0.4", "coulomb_friction@load:force=2.2"},
-           {{"zeta", 1.1}});
+                  "force_offset@load:force=0.4", "coulomb_friction@load:force=2.2"},
+                 {{"zeta", 1.1}});
   const Extension once(Folder("emps"));
   once.Write(first);
   const Extension twice(once.folder().path());
@@ -188,14 +188,16 @@ TEST(ExtendedPlant, TakesNativeEffectsOfTheNominalPlantIntoItsAttributes) {
 
 TEST(ExtendedPlant, KeepsStaticFrictionOffWhereTheSetupSwitchesItOff) {
   const Extension extension(Folder("ab383"), {"physics.static_friction=false"});
-  ExpectSameMotion(extension, test::With({"coulomb_friction@Y:force=1.7"}), "friction of Y");
+  ExpectSameMotion(extension, test::With({"coulomb_friction@Y:force=1.7"}),
+                   "friction of Y");
 }
 
 TEST(ExtendedPlant, IsLoadedByStockMujoco) {
   for (const char* machine : {"ab383", "emps"}) {
     const Extension extension(Folder(machine));
-    extension.Write(test::With(machine == std::string("ab383") ? test::EveryEffectOfAb383()
-                                                         : test::EveryEffectOfEmps()));
+    extension.Write(test::With(machine == std::string("ab383")
+                                   ? test::EveryEffectOfAb383()
+                                   : test::EveryEffectOfEmps()));
     char error[512] = "";
     const ModelPtr model(mj_loadXML((extension.folder() / "plant.xml").c_str(), nullptr,
                                     error, sizeof(error)));
@@ -249,7 +251,8 @@ TEST(ExtendedPlant, HasASetupThatIsKeptLineByLine) {
 TEST(ExtendedPlant, RefusesToReplaceTheNominalOne) {
   const Extension extension(Folder("emps"));
   const auto mjcf = [&] {
-    ExtendMjcf(extension.setup().plant, extension.machine().plant(), {}, {}, Folder("emps"));
+    ExtendMjcf(extension.setup().plant, extension.machine().plant(), {}, {},
+               Folder("emps"));
   };
   EXPECT_THAT(test::MessageOf<InputError>(mjcf), HasSubstr("holds the nominal plant"));
   const auto setup = [&] {

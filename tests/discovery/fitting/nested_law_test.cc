@@ -11,8 +11,7 @@ namespace {
 class NestedLaw : public testing::Test {
  protected:
   test::StageUnderTest stage_;
-  std::vector<Candidate> candidates_ =
-      ListCandidates(stage_.machine);
+  std::vector<Candidate> candidates_ = ListCandidates(stage_.machine);
 
   std::optional<FittedCause> SimplerOf(const std::string& name,
                                        const Eigen::VectorXd& value) const {

@@ -129,9 +129,9 @@ struct WornGuide {
         options(SynthesisOf(setup, machine.linear())),
         space(MakeResidualSpace(machine.linear(), options)),
         design(DesignFilters(machine)) {
-    const Record record = SimulateLinear(
-        machine.With({{{"zeta_x", 1.01}}, {}}),
-        FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
+    const Record record =
+        SimulateLinear(machine.With({{{"zeta_x", 1.01}}, {}}),
+                       FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
     signals = Signals(design, record);
     log = RecordDiagnosis(design, record).recorder.Log();
   }

@@ -57,8 +57,8 @@ TEST(Diagnose, NamesTheFaultOfARecord) {
 
 TEST(Diagnose, FindsNothingInAHealthyRun) {
   const Bench bonder;
-  const Diagnosis diagnosis = Diagnose(bonder.machine, bonder.Prepared(),
-                                       bonder.LinearRunWith({"eta_z", 1.0}));
+  const Diagnosis diagnosis =
+      Diagnose(bonder.machine, bonder.Prepared(), bonder.LinearRunWith({"eta_z", 1.0}));
   EXPECT_EQ(DiagnosisVerdict(diagnosis.result),
             "Nothing is wrong that this run shows.");
 }
@@ -82,8 +82,7 @@ TEST(Diagnose, RefinesLargeFaultsIfAskedTo) {
   ASSERT_EQ(prepared.design.bank.faults[0], "zeta_x");
   // Error in standard deviations.
   const auto error = [&](EstimateMethod method) {
-    const Diagnosis diagnosis =
-        Diagnose(bonder.machine, prepared, record, method);
+    const Diagnosis diagnosis = Diagnose(bonder.machine, prepared, record, method);
     const FaultVerdict& fault = diagnosis.result.faults[0];
     return std::abs(fault.value - 3.0) / fault.sd;
   };
@@ -94,14 +93,12 @@ TEST(Diagnose, RefinesLargeFaultsIfAskedTo) {
 TEST(Diagnose, RegressesTheHorizonOnly) {
   const Record record = Bench().LinearRunWith({"zeta_x", 1.01});
   const Bench bonder({"diagnosis.estimation.horizon=0.1"});
-  const Diagnosis diagnosis =
-      Diagnose(bonder.machine, bonder.Prepared(), record);
+  const Diagnosis diagnosis = Diagnose(bonder.machine, bonder.Prepared(), record);
   EXPECT_NEAR(diagnosis.log.estimate_time[0], 0.15, 1e-9);
   EXPECT_EQ(diagnosis.log.residual.size(), record.samples());
   const Bench longer({"diagnosis.estimation.horizon=0.3"});
-  EXPECT_THAT(test::MessageOf<InputError>([&] {
-                Diagnose(longer.machine, longer.Prepared(), record);
-              }),
+  EXPECT_THAT(test::MessageOf<InputError>(
+                  [&] { Diagnose(longer.machine, longer.Prepared(), record); }),
               HasSubstr("horizon: 300 ms; expected no more than the record's 250 ms"));
 }
 
@@ -151,8 +148,8 @@ TEST(Diagnose, RefusesToRefineAgainstABaseline) {
   const PreparedDiagnosis prepared = bonder.Prepared();
   EXPECT_EQ(prepared.baseline.cols(), bonder.motion.samples());
   EXPECT_THROW(
-      Diagnose(bonder.machine, prepared,
-               bonder.LinearRunWith({"zeta_x", 1.01}), EstimateMethod::kRefined),
+      Diagnose(bonder.machine, prepared, bonder.LinearRunWith({"zeta_x", 1.01}),
+               EstimateMethod::kRefined),
       InputError);
 }
 

@@ -86,7 +86,8 @@ TEST(FaultyMachine, ScalesTheEntriesOfTheKnobAndNothingElse) {
 TEST(FaultyMachine, ScalesByTheValueOfTheKnob) {
   const Machine machine = test::Bonder();
   const MechanicalModel& healthy = machine.linear();
-  const MechanicalModel faulty = Faulty(machine, {{"zeta_y", 1.25}, {"beta_x", 0.5}, {"eta_z", 0.75}});
+  const MechanicalModel faulty =
+      Faulty(machine, {{"zeta_y", 1.25}, {"beta_x", 0.5}, {"eta_z", 0.75}});
   const Index y = Place(healthy.coordinates, "Y");
   const Index u3 = Place(healthy.coordinates, "u3");
   const Index u_z = Place(healthy.inputs, "u_z");
@@ -109,7 +110,7 @@ TEST(HealthyKnobs, AreTheKnobsOfThePlantAtOne) {
 TEST(Magnitudes, AreThoseOfTheSetupOrOneThousandth) {
   const Machine machine =
       test::Bonder({"diagnosis.estimation.magnitudes={ eta_y = 1e-5, beta_x = 0.02, "
-              "beta_y = 0.03 }"});
+                    "beta_y = 0.03 }"});
   EXPECT_THAT(Magnitudes(machine),
               ElementsAre(1e-3, 1e-3, 0.02, 0.03, 1e-3, 1e-5, 1e-3));
 }
@@ -119,10 +120,8 @@ TEST(Magnitudes, OfAnUnknownKnobListThoseThatThereAre) {
   const auto expected =
       AllOf(HasSubstr("diagnosis.estimation.magnitudes"), HasSubstr("no knob 'zeta_q'"),
             HasSubstr("one of zeta_x, zeta_y, beta_x, beta_y, eta_x, eta_y, eta_z"));
-  EXPECT_THAT(test::MessageOf<InputError>([&] { Magnitudes(machine); }),
-              expected);
-  EXPECT_THAT(test::MessageOf<InputError>([&] { TurnModels(machine); }),
-              expected);
+  EXPECT_THAT(test::MessageOf<InputError>([&] { Magnitudes(machine); }), expected);
+  EXPECT_THAT(test::MessageOf<InputError>([&] { TurnModels(machine); }), expected);
 }
 
 void ExpectSameModel(const MechanicalModel& actual, const MechanicalModel& expected) {
@@ -143,10 +142,8 @@ TEST(TurnModels, TurnsOneKnobAtATimeBothWays) {
     const double c = magnitudes[static_cast<Index>(i)];
     EXPECT_EQ(turned[i].name, knobs[i].name);
     EXPECT_EQ(turned[i].magnitude, c);
-    ExpectSameModel(turned[i].minus,
-                    Faulty(machine, {{knobs[i].name, 1.0 - c}}));
-    ExpectSameModel(turned[i].plus,
-                    Faulty(machine, {{knobs[i].name, 1.0 + c}}));
+    ExpectSameModel(turned[i].minus, Faulty(machine, {{knobs[i].name, 1.0 - c}}));
+    ExpectSameModel(turned[i].plus, Faulty(machine, {{knobs[i].name, 1.0 + c}}));
   }
 }
 
@@ -165,8 +162,7 @@ TEST(FaultModels, AreThoseOfThePlantWithTheKnobsTurned) {
   VectorXd far(7);
   far << 1.7, 0.3, 0.5, 1.4, 0.9, 1.1, 0.2;
   for (const VectorXd& values : {ones, far}) {
-    ExpectSameModel(model_at(values),
-                    Faulty(machine, At(machine.plant(), values)));
+    ExpectSameModel(model_at(values), Faulty(machine, At(machine.plant(), values)));
   }
 }
 
@@ -191,9 +187,8 @@ actuators.u = { element = "motor", unit = "N m" }
 )");
   }
   Machine Load() const {
-    return Machine(
-        ReadSetup(folder_.path(),
-                  {"diagnosis.cutoff=50", "diagnosis.disturbance.cutoff=300"}));
+    return Machine(ReadSetup(
+        folder_.path(), {"diagnosis.cutoff=50", "diagnosis.disturbance.cutoff=300"}));
   }
   const test::TemporaryFolder folder_;
 };

@@ -106,8 +106,8 @@ TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
   DiagnosisRecording inside(bench.design, bench.motion.samples());
   RunOptions options;
   options.disturbances["gamma"] = 0.1;
-  const Record record = bench.Watch(
-      inside, bench.machine.With({{{"zeta_x", 1.3}}, {}}), options, false);
+  const Record record =
+      bench.Watch(inside, bench.machine.With({{{"zeta_x", 1.3}}, {}}), options, false);
   ASSERT_EQ(inside.monitor.samples(), 2000);
   ASSERT_TRUE(inside.monitor.first_detection().has_value());
   ASSERT_TRUE(inside.monitor.first_lasting().has_value());
@@ -137,8 +137,7 @@ TEST(MonitorObserver, LeavesTheRunAsItIs) {
 TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   const Bench bench;
   const NominalRuns nominal = bench.Nominal(false, 4);
-  const DiagnosisLimits limits =
-      CalibrateLimits(bench.design, bench.machine, nominal);
+  const DiagnosisLimits limits = CalibrateLimits(bench.design, bench.machine, nominal);
 
   std::vector<VectorXd> residuals;
   std::vector<VectorXd> disturbances;
@@ -269,18 +268,18 @@ TEST(Signals, AreDeviationsFromRest) {
 
 TEST(ResidualBaseline, TakesOutWhatTheLinearModelLacks) {
   const Bench bench;
-  const MatrixXd baseline = ResidualBaseline(bench.design, bench.machine,
-                                             bench.motion, bench.Nominal(false, 4));
+  const MatrixXd baseline = ResidualBaseline(bench.design, bench.machine, bench.motion,
+                                             bench.Nominal(false, 4));
   ASSERT_EQ(baseline.cols(), bench.motion.samples());
   NominalRuns others = bench.Nominal(false, 4);
   others.seed = 2001;
   const auto width = [](const DiagnosisLimits& limits) {
     return limits.residual.limits.max - limits.residual.limits.min;
   };
-  const double with = width(CalibrateLimits(bench.design, bench.machine,
-                                            bench.motion, baseline, others));
-  const double without = width(CalibrateLimits(bench.design, bench.machine,
-                                               bench.motion, {}, others));
+  const double with = width(
+      CalibrateLimits(bench.design, bench.machine, bench.motion, baseline, others));
+  const double without =
+      width(CalibrateLimits(bench.design, bench.machine, bench.motion, {}, others));
   EXPECT_LT(with, 0.5 * without);
 }
 

@@ -72,9 +72,9 @@ TEST(Machine, WithChangesLeavesTheNominalOneAsItIs) {
   const Machine nominal = test::Bonder();
   const double damping = DampingOf(nominal, "X");
   const Eigen::MatrixXd before = nominal.linear().D;
-  const Machine worn = nominal.With(test::With(
-      {"viscous_friction@Y:coefficient=7", "force_offset@X:force=1"},
-      {{"zeta_x", 1.5}}));
+  const Machine worn = nominal.With(
+      test::With({"viscous_friction@Y:coefficient=7", "force_offset@X:force=1"},
+                 {{"zeta_x", 1.5}}));
   EXPECT_EQ(DampingOf(worn, "X"), 1.5 * damping);
   EXPECT_NE(DampingOf(worn, "Y"), DampingOf(nominal, "Y"));
   EXPECT_EQ(DampingOf(nominal, "X"), damping);
@@ -110,9 +110,8 @@ TEST(Machine, RefusesChangesThatThePlantDoesNotAllow) {
                 machine.With({{{"zeta_q", 1.0}}, {}});
               }),
               HasSubstr("zeta_x, zeta_y, beta_x"));
-  EXPECT_THAT(test::MessageOf<InputError>([&] {
-                machine.With(test::With({"added_mass@nobody:mass=1"}));
-              }),
+  EXPECT_THAT(test::MessageOf<InputError>(
+                  [&] { machine.With(test::With({"added_mass@nobody:mass=1"})); }),
               HasSubstr("nobody"));
 }
 
@@ -147,7 +146,8 @@ TEST(Machine, WithOtherSubstepsIsTheSamePhysics) {
   EXPECT_EQ(fine.rates().substeps, 8);
   EXPECT_DOUBLE_EQ(8.0 * fine.plant().opt.timestep, fine.rates().tick());
   EXPECT_EQ(stage.machine.rates().substeps, 2);
-  EXPECT_DOUBLE_EQ(2.0 * stage.machine.plant().opt.timestep, stage.setup().rates.tick());
+  EXPECT_DOUBLE_EQ(2.0 * stage.machine.plant().opt.timestep,
+                   stage.setup().rates.tick());
   EXPECT_EQ(fine.linear().M, stage.machine.linear().M);
   EXPECT_EQ(fine.linear().D, stage.machine.linear().D);
   EXPECT_EQ(fine.linear().K, stage.machine.linear().K);

@@ -90,7 +90,8 @@ TEST(Stepper, TakesTheStepsOfMjStepWithAControlCallbackToTheBit) {
     EXPECT_EQ(one.data->qpos[i], other.data->qpos[i]) << i;
     EXPECT_EQ(one.data->qvel[i], other.data->qvel[i]) << i;
   }
-  const double moved = VectorXd::Map(one.data->qpos, one.model->nv).cwiseAbs().maxCoeff();
+  const double moved =
+      VectorXd::Map(one.data->qpos, one.model->nv).cwiseAbs().maxCoeff();
   EXPECT_GT(moved, 1e-6) << "does not move";
 }
 

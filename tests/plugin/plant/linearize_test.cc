@@ -99,8 +99,7 @@ TEST(Linearize, BonderIsTheAnalyticModelInNorm) {
 }
 
 TEST(Linearize, BonderIsTheAnalyticModelEntryByEntry) {
-  EXPECT_LT(ElementwiseDifference(LinearBonder(), Analytic()),
-            1e-9);
+  EXPECT_LT(ElementwiseDifference(LinearBonder(), Analytic()), 1e-9);
 }
 
 TEST(Linearize, BonderHasTheRecoveredEntries) {
@@ -175,8 +174,7 @@ TEST(Linearize, ADriftOfAThousandthInAnyParameterIsNoticed) {
   for (const Parameter& parameter : parameters) {
     const ModelPtr drifted = CopyModel(*bonder);
     *parameter.of(*drifted) *= 1.001;
-    const double difference =
-        ElementwiseDifference(LinearBonder(*drifted), Analytic());
+    const double difference = ElementwiseDifference(LinearBonder(*drifted), Analytic());
     EXPECT_GT(difference, 1e-8) << parameter.name;
   }
 }
@@ -202,9 +200,8 @@ TEST(Linearize, BonderHasTheRecoveredModes) {
 }
 
 TEST(Linearize, BonderReproducesEveryPrintedCoefficient) {
-  const PublishedRowComparison comparison =
-      ComparePublishedRow(LinearBonder(),
-                          ReadPublishedRow(kBonder + "published_row.toml"));
+  const PublishedRowComparison comparison = ComparePublishedRow(
+      LinearBonder(), ReadPublishedRow(kBonder + "published_row.toml"));
   EXPECT_EQ(comparison.coefficients.size(), 35u);
   for (const CoefficientComparison& c : comparison.coefficients) {
     EXPECT_LT(c.half_ulps, 2.0) << c.channel << " s^" << c.power;
@@ -291,7 +288,8 @@ TEST(StaticEquilibrium, OfASaggingPendulumBalancesTorques) {
   EXPECT_NEAR(angle, torque * std::cos(angle), 1e-12);
   EXPECT_NEAR(angle, 1.25, 0.01);
   const double stiffness = 1.0 + torque * std::sin(angle);
-  EXPECT_NEAR(Linearize(*model, {}, StaticEquilibrium(*model)).K(0, 0) / stiffness, 1.0, 1e-12);
+  EXPECT_NEAR(Linearize(*model, {}, StaticEquilibrium(*model)).K(0, 0) / stiffness, 1.0,
+              1e-12);
 }
 
 TEST(StaticEquilibrium, NamesTheJointThatFalls) {

@@ -117,17 +117,16 @@ TEST(Tangent, OfAStickingJointIsThatOfThePlantThatFrictionHolds) {
   EXPECT_LT(Difference(recorded.A, differences.A), 1e-5);
   EXPECT_LT(Difference(recorded.B, differences.B), 1e-5);
   // It moves by a small part of what it would without.
-  const TickTangent free =
-      OneTick(stage.nominal).Recorded(stage.nominal, state, force);
+  const TickTangent free = OneTick(stage.nominal).Recorded(stage.nominal, state, force);
   EXPECT_LT(recorded.B(1, 0), 0.2 * free.B(1, 0));
 }
 
 // 5 N below what the friction can hold, and another change of the plant besides.
 TEST(Tangent, IsOfTheMachineWithItsChanges) {
   const Machine nominal = test::Stage().machine;
-  const Machine changed = nominal.With(test::With(
-      {"viscous_friction@load:coefficient=4000", "linear_stiffness@load:stiffness=1e6",
-       "added_mass@load:mass=-60"}));
+  const Machine changed = nominal.With(
+      test::With({"viscous_friction@load:coefficient=4000",
+                  "linear_stiffness@load:stiffness=1e6", "added_mass@load:mass=-60"}));
   const OneTick tick(changed);
   const VectorXd state = Eigen::Vector2d(0.0, 0.1);
   const VectorXd force = VectorXd::Zero(1);

@@ -23,8 +23,8 @@ VectorXd Noise(Index n, unsigned seed) {
 
 Record RunOf(const Machine& machine, const std::string& trajectory) {
   const mjdiag::Setup& setup = machine.setup();
-  return Simulate(machine,
-                  FollowTrajectory(setup, setup.trajectories.Find(trajectory)), {});
+  return Simulate(machine, FollowTrajectory(setup, setup.trajectories.Find(trajectory)),
+                  {});
 }
 
 /// First order of the first samples of a run.

@@ -29,15 +29,14 @@ TEST_F(BonderLoop, HasTheKnownLargestEigenvalue) {
 }
 
 TEST_F(BonderLoop, IsAsStableOnTheMapOfATick) {
-  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(bonder_), setup_)), 0.98758,
-              5e-6);
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(bonder_), setup_)), 0.98758, 5e-6);
 }
 
 // As printed, the y controller cancels its integrator: only marginally stable.
 TEST_F(BonderLoop, IsMarginalWithThePrintedCoefficients) {
-  setup_.control.axes[1].feedback = {{66900.0, -131600.0, 64700.0}, {1.0, -1.828, 0.8277}};
-  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(bonder_), setup_)), 1.0,
-              2e-3);
+  setup_.control.axes[1].feedback = {{66900.0, -131600.0, 64700.0},
+                                     {1.0, -1.828, 0.8277}};
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(bonder_), setup_)), 1.0, 2e-3);
 }
 
 TEST(ClosedLoop, OfTheMotionStageIsStable) {

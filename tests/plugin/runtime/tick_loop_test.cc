@@ -132,9 +132,9 @@ TEST(TickLoop, AddsDisturbancesToThePlantAndNotToTheRecord) {
     bench.Tick();
     double expected = 0.0;
     for (const double frequency : gamma.frequencies) {
-      expected += 0.5 * amplitude *
-                  std::sin(2.0 * std::numbers::pi * frequency * k *
-                           bench.setup.rates.tick());
+      expected +=
+          0.5 * amplitude *
+          std::sin(2.0 * std::numbers::pi * frequency * k * bench.setup.rates.tick());
     }
     const double commanded = bench.loop.ToRecord().At("u_x").samples[k];
     EXPECT_NEAR(bench.inputs[0] - commanded, expected, 1e-9) << k;
