@@ -19,8 +19,7 @@
 #include "support/message_of.h"
 
 // Counts operator new, through which containers allocate. (malloc itself is already
-// replaced in this test program, by
-// count_allocations.h.) Not inlined: GCC would take a
+// replaced in this test program, by count_allocations.h.) Not inlined: GCC would take a
 // malloc that it sees for the partner of a delete that it does not.
 namespace {
 long allocations = 0;
