@@ -10,7 +10,7 @@ namespace {
 
 /// What a search would hand over if it had found these causes.
 struct Found {
-  test::Stage stage;
+  test::StageUnderTest stage;
   DiscoveryProblem problem;
   DiscoveryProblem beginning;
   std::vector<Candidate> candidates;
@@ -21,7 +21,7 @@ struct Found {
         const std::vector<std::pair<std::string, Eigen::VectorXd>>& found)
       : problem(stage.Pose(stage.Measure(hidden))),
         beginning(Beginning(problem, problem.train / 4)),
-        candidates(ListCandidates(stage.machine, problem.machine.linear())) {
+        candidates(ListCandidates(stage.machine)) {
     std::vector<FittedCause> causes;
     for (const auto& [name, value] : found) {
       causes.push_back({test::Place(candidates, name), value});
