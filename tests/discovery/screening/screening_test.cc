@@ -70,9 +70,7 @@ TEST(Screening, PromisesOfASmallEffectWhatItTakesAwayOfTheSquaredInnovations) {
 TEST(Screening, StartsAFitNearTheTruth) {
   const Screened screened({"quadratic_drag@load:coefficient=20"});
   const Screening screening = screened.Beside();
-  EXPECT_NEAR(
-      screened.StartOf(screening, "quadratic_drag@load").parameters.at("coefficient"),
-      20.0, 0.5);
+  EXPECT_NEAR(screened.StartOf(screening, "quadratic_drag@load").value[0], 20.0, 0.5);
 }
 
 TEST(Screening, OfNoiseAloneFindsNothingSignificant) {
