@@ -5,27 +5,27 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
-#include "mjdiag/discovery/selection/search.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/discovery/selection/search.h"
 
 namespace mjdiag {
 
 /// A discovery under way.
 class Discoverer {
  public:
-  Discoverer(const Machine& machine, const Record& measured,
-             const Record* validation, const DiscoverOptions& options)
+  Discoverer(const Machine& machine, const Record& measured, const Record* validation,
+             const DiscoverOptions& options)
       : machine_(machine),
         measured_(measured),
         validation_(validation),
         options_(options),
-        problem_(PoseProblem(machine, measured, options.train_share,
-                             options.bandwidth)),
+        problem_(
+            PoseProblem(machine, measured, options.train_share, options.bandwidth)),
         candidates_(ListCandidates(machine)) {}
 
   Discovery Run();
@@ -47,12 +47,12 @@ class Discoverer {
                                                  const Eigen::MatrixXd& covariance,
                                                  const std::vector<Interval>& intervals,
                                                  Eigen::Index first) const;
-  std::vector<Alternative> AlternativesOf(
-      const FittedCause& fitted, const std::vector<Contender>& contenders) const;
+  std::vector<Alternative> AlternativesOf(const FittedCause& fitted,
+                                          const std::vector<Hypothesis>& rivals) const;
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
   void NoteQuietAxes(const ObservedMotion& motion);
-  void NoteTwins(std::size_t cause, const std::vector<Contender>& contenders);
+  void NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals);
   std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
   void FindWhere(const Track& nominal, const Track& final);
   void SignRest(const ObservedMotion& motion);

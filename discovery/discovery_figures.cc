@@ -3,10 +3,10 @@
 #include <set>
 #include <utility>
 
+#include "mjdiag/comparison/replay_error.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
-#include "mjdiag/comparison/replay_error.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -65,8 +65,9 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
     const int id = FindElement(machine_.plant(), mjOBJ_JOINT, joint);
     units.push_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
   }
-  return UnexplainedForces(problem_.machine.linear(), problem_.observer, problem_.step(),
-                           machine_.rates().substeps, track.innovations, joints, units);
+  return UnexplainedForces(problem_.machine.linear(), problem_.observer,
+                           problem_.step(), machine_.rates().substeps,
+                           track.innovations, joints, units);
 }
 
 void Discoverer::FindWhere(const Track& nominal, const Track& final) {
@@ -86,14 +87,16 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
   const auto worst =
       std::ranges::max_element(discovery_.forces_after, std::less<>(),
                                [&](const UnknownSignal& s) { return strength(s); });
-  const auto joint = std::ranges::find(problem_.machine.linear().coordinates, worst->site) -
-                     problem_.machine.linear().coordinates.begin();
+  const auto joint =
+      std::ranges::find(problem_.machine.linear().coordinates, worst->site) -
+      problem_.machine.linear().coordinates.begin();
   std::vector<Variable> variables;
   const VectorXd own = motion.velocity.row(joint);
   for (const std::string& name : DrivenNames(problem_.machine.linear())) {
     const auto j = std::ranges::find(problem_.machine.linear().coordinates, name) -
                    problem_.machine.linear().coordinates.begin();
-    const bool hinge = machine_.plant().jnt_type[machine_.plant().dof_jntid[j]] == mjJNT_HINGE;
+    const bool hinge =
+        machine_.plant().jnt_type[machine_.plant().dof_jntid[j]] == mjJNT_HINGE;
     const std::string unit = hinge ? "rad" : "m";
     variables.push_back({name + " position", unit, motion.position.row(j), false});
     variables.push_back(
@@ -107,7 +110,8 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
   });
   variables.push_back({"direction", "1", direction, true});
   for (std::size_t u = 0; u < machine_.channels().actuators.size(); ++u) {
-    variables.push_back({machine_.channels().actuators[u].channel, machine_.channels().actuators[u].unit,
+    variables.push_back({machine_.channels().actuators[u].channel,
+                         machine_.channels().actuators[u].unit,
                          motion.inputs.row(static_cast<Index>(u)), false});
   }
   const Index n = motion.samples();
@@ -123,22 +127,25 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
 /// Partial residuals: with several causes at a joint, the force that all of them
 /// explain lies on the law of none.
 LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) const {
-  const Candidate& candidate = candidates_[search_.fit.causes[cause].candidate];
+  const Candidate& candidate = candidates_[search_.fit().causes[cause].candidate];
   LawPlot plot;
   plot.cause = Describe(candidate);
-  plot.site = problem_.machine.linear().coordinates[static_cast<std::size_t>(candidate.joint)];
+  plot.site =
+      problem_.machine.linear().coordinates[static_cast<std::size_t>(candidate.joint)];
   const auto at = [&](const std::vector<UnknownSignal>& forces) {
     return std::ranges::find(forces, plot.site, &UnknownSignal::site);
   };
   if (at(discovery_.forces_before) == discovery_.forces_before.end()) return plot;
-  const std::vector<FittedCause> others = Without(search_.fit.causes, cause);
+  const std::vector<FittedCause> others = Without(search_.fit().causes, cause);
   const auto forces = others.empty()
                           ? discovery_.forces_before
                           : UnexplainedIn(FollowWith(ChangesOf(candidates_, others)));
   const UnknownSignal& without = *at(forces);
   const VectorXd explained = without.value - at(discovery_.forces_after)->value;
 
-  const bool hinge = machine_.plant().jnt_type[machine_.plant().dof_jntid[candidate.joint]] == mjJNT_HINGE;
+  const bool hinge =
+      machine_.plant().jnt_type[machine_.plant().dof_jntid[candidate.joint]] ==
+      mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, problem_.run.inputs.rows() - 1));
   const Cause& named = discovery_.causes[cause].cause;
@@ -158,7 +165,8 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
 }
 
 void Discoverer::AddLaws(const ObservedMotion& motion) {
-  discovery_.laws.resize(std::min(search_.fit.causes.size(), discovery_.causes.size()));
+  discovery_.laws.resize(
+      std::min(search_.fit().causes.size(), discovery_.causes.size()));
   ParallelFor(static_cast<int>(discovery_.laws.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     try {
@@ -170,13 +178,13 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
   std::erase_if(discovery_.laws, [](const LawPlot& law) { return law.x.size() == 0; });
 }
 
-/// Every rung behind the same observer, or they would not compare.
+/// Every step behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
   const Index channels = problem_.run.outputs.rows();
   std::vector<std::pair<std::string, Changes>> steps = {{"nothing", {}}};
-  for (const Rung& rung : search_.ladder) {
-    steps.emplace_back(Describe(candidates_[rung.fit.causes.back().candidate]),
-                       ChangesOf(candidates_, rung.fit.causes));
+  for (const std::vector<FittedCause>& causes : search_.ladder) {
+    steps.emplace_back(Describe(candidates_[causes.back().candidate]),
+                       ChangesOf(candidates_, causes));
   }
   if (!discovery_.causes.empty()) steps.emplace_back("all, fitted together", changes_);
   discovery_.ladder.resize(steps.size());
@@ -204,25 +212,23 @@ void Discoverer::AddLadder() {
 }
 
 void Discoverer::AddComparisons() {
-  RunOptions nominal;
-  nominal.seed = options_.seed;
-  RunOptions extended = nominal;
-  extended.faults = changes_.faults;
-  extended.effects = changes_.effects;
+  RunOptions options;
+  options.seed = options_.seed;
+  const Machine extended = machine_.With(changes_);
   struct Task {
-    const Record* measured;
-    const RunOptions& options;
+    const Machine& machine;
+    const Record& measured;
     Comparison& result;
   };
-  std::vector<Task> tasks{{&measured_, nominal, discovery_.before},
-                          {&measured_, extended, discovery_.after}};
+  std::vector<Task> tasks{{machine_, measured_, discovery_.before},
+                          {extended, measured_, discovery_.after}};
   if (validation_ != nullptr) {
-    tasks.push_back({validation_, nominal, discovery_.validation_before.emplace()});
-    tasks.push_back({validation_, extended, discovery_.validation_after.emplace()});
+    tasks.push_back({machine_, *validation_, discovery_.validation_before.emplace()});
+    tasks.push_back({extended, *validation_, discovery_.validation_after.emplace()});
   }
   ParallelFor(static_cast<int>(tasks.size()), [&](int number) {
     const Task& task = tasks[static_cast<std::size_t>(number)];
-    task.result = Compare(machine_, *task.measured, task.options);
+    task.result = Compare(task.machine, task.measured, options);
   });
   const Index skip = problem_.skip;
   discovery_.mismatch_before.train =
