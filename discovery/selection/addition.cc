@@ -57,7 +57,7 @@ class Contest {
                       int iterations) const;
   /// Jacobian of what has been found, if anything has.
   const MatrixXd* Known() const {
-    const MatrixXd& J = present_.fit().sensitivities;
+    const MatrixXd& J = present_.fit().jacobian;
     return J.cols() > 0 ? &J : nullptr;
   }
 

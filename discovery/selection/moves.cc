@@ -29,22 +29,21 @@ void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
 
 /// The fit of other causes; none if the beginning of the record shows that they explain
 /// far less than the present ones.
-/// @param known  Jacobian of the first of the causes
+/// @param jacobian  of the first of the causes
 std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                                          const Evidence& present,
                                          const std::vector<FittedCause>& causes,
-                                         const MatrixXd& known) {
+                                         const MatrixXd& jacobian) {
   constexpr double kFar = 60.0;  // in units of the deviance
-  const MatrixXd* jacobian = known.cols() > 0 ? &known : nullptr;
+  const MatrixXd* known = jacobian.cols() > 0 ? &jacobian : nullptr;
   const auto early = [&](const CauseFit& fit) {
     return Deviance(fit.residual, present.independent(), data.problem.skip,
                     data.beginning.train);
   };
   const auto rough =
-      TryFit(data.beginning, data.candidates, causes, CompareFrom(jacobian, 8, 1e-3));
+      TryFit(data.beginning, data.candidates, causes, CompareFrom(known, 8, 1e-3));
   if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
-  auto fit =
-      TryFit(data.problem, data.candidates, causes, CompareFrom(jacobian, 8, 1e-5));
+  auto fit = TryFit(data.problem, data.candidates, causes, CompareFrom(known, 8, 1e-5));
   if (!fit) return std::nullopt;
   return present.Changed(std::move(*fit));
 }
@@ -54,13 +53,13 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
 Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::size_t i,
                          const std::vector<FittedCause>& others) {
   const std::vector<FittedCause> rest = Without(present.fit().causes, i);
-  const MatrixXd known = SensitivitiesWithout(present.fit(), i);
+  const MatrixXd jacobian = JacobianWithout(present.fit(), i);
   Proposals proposals(others.size());
   ParallelFor(static_cast<int>(others.size()), [&](int number) {
     const auto k = static_cast<std::size_t>(number);
     std::vector<FittedCause> causes = rest;
     causes.push_back(others[k]);
-    proposals[k] = ProposeUnlessFar(data, present, causes, known);
+    proposals[k] = ProposeUnlessFar(data, present, causes, jacobian);
   });
   return proposals;
 }
@@ -72,7 +71,7 @@ Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
   ParallelFor(static_cast<int>(proposals.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     proposals[i] = ProposeUnlessFar(data, present, Without(fit.causes, i),
-                                    SensitivitiesWithout(fit, i));
+                                    JacobianWithout(fit, i));
   });
   return proposals;
 }
@@ -99,7 +98,7 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   if (simpler) consider(*simpler);
   const Screening without =
       ScreenBeside(data.problem, data.candidates, Without(fit.causes, i),
-                   SensitivitiesWithout(fit, i), 1);
+                   JacobianWithout(fit, i), 1);
   const double explained = without.rest - FittedValues(data.problem) * fit.train;
   for (const Start& start : without.starts) {
     if (start.gain < kNearly * explained - kChance) break;

@@ -101,7 +101,7 @@ bool Search::Keep(Additions additions, const Chance& chance) {
 }
 
 /// If the course of the machine depends on the last digit, the fit is looked for around
-/// where slopes led it, and further causes have to be worth more.
+/// where derivatives led it, and further causes have to be worth more.
 void Search::MeetUnsteadiness() {
   constexpr double kUnsteady = 30.0;  // of a gain, as chance has it
   constexpr int kRounds = 6;
@@ -122,7 +122,7 @@ bool Search::AddCause() {
   const Evidence& present = result_.evidence;
   const Screening screening =
       ScreenBeside(data_.problem, data_.candidates, present.fit().causes,
-                   present.fit().sensitivities, kStarts);
+                   present.fit().jacobian, kStarts);
   const Chance chance = ChanceOf(screening.trials);
   const std::vector<Start> shortlist =
       Shortlist(present, screening, chance, options_.shortlist);
@@ -176,7 +176,7 @@ void Search::FitClosely() {
       FitCauses(data_.problem, data_.candidates, fit.causes,
                 {.iterations = 8,
                  .tolerance = 1e-8,
-                 .known = fit.exact ? &fit.sensitivities : nullptr}));
+                 .known_jacobian = fit.exact ? &fit.jacobian : nullptr}));
 }
 
 SearchResult Search::Run() {

@@ -9,7 +9,7 @@
 //   first that is accepted is added;
 //   tries other periods for waves and drops what has become superfluous (moves.h);
 //   where the course of the machine depends on the last digit, looks for a better fit
-//   around the one that slopes led to (unsteady_fit.h).
+//   around the one that derivatives led to (unsteady_fit.h).
 //
 // When a round adds nothing each hypothesis is exchanged on trial (moves.h); if one is,
 // rounds go on, four times at most. In the end all values are fitted once more, as
