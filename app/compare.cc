@@ -4,9 +4,9 @@
 
 #include "app/command.h"
 #include "app/format.h"
-#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
+#include "app/subject.h"
 #include "mjdiag/comparison/comparison.h"
 #include "mjdiag/report/comparison_json.h"
 #include "mjdiag/report/comparison_page.h"

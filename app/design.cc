@@ -9,12 +9,12 @@
 #include "app/output.h"
 #include "app/row_programs.h"
 #include "mjdiag/diagnosis/delta_form.h"
+#include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/report/design_page.h"
-#include "mjdiag/report/filters_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -23,7 +23,6 @@ struct DesignOptions {
   MachineOptions machine;
   OutputOptions output;
   DiagnosisSource source;
-  bool linear = false;
   std::string method = "svd";
 };
 
@@ -49,7 +48,7 @@ DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
   facts.healthy = machine.linear();
   const SynthesisOptions options = SynthesisOf(machine.setup(), facts.healthy);
   const StateSpace system = DeltaForm(facts.healthy, options.timing);
-  facts.observability_ranks = ObservabilityRanks(system, options.degree);
+  facts.observability_ranks = ObservabilityRanks(system, options.residual.degree);
   facts.states = system.states();
   facts.minimal_degree =
       MinimalDegree(system, UnknownForces(facts.healthy, options), kHighestDegree);
@@ -74,10 +73,11 @@ std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
   std::string text = design.setup + ": residual rows exist from degree " +
                      std::to_string(facts.minimal_degree) + " on; " +
                      std::to_string(design.bank.residuals) + " of degree " +
-                     std::to_string(design.options.degree) +
+                     std::to_string(design.options.residual.degree) +
                      " over a Butterworth low-pass of order " +
-                     std::to_string(design.options.denominator.order) + " at " +
-                     Short(design.options.denominator.cutoff) + " Hz\n\n";
+                     std::to_string(design.options.residual.denominator.order) +
+                     " at " + Short(design.options.residual.denominator.cutoff) +
+                     " Hz\n\n";
   Table table({"limit", "from", "to"});
   table.Add({"residual", Short(residual.limits.min), Short(residual.limits.max)});
   table.Add({"mean of |r|", "0", Short(design.limits.integral)});
@@ -104,24 +104,23 @@ NamedPage PageOf(const Machine& machine, const DiagnosisDesign& design,
 void Design(const DesignOptions& options) {
   const Machine machine = LoadSubject(options.machine).nominal;
   PrepareOutput(options.output);
-  const Excitation excitation = MakeExcitation(machine.setup(), {});
-  const ReadyDiagnosis ready =
-      PrepareDiagnosis(options.source, machine, excitation, options.linear);
+  const PreparedDiagnosis prepared =
+      Prepare(machine, options.source, MakeExcitation(machine.setup(), {}));
   const DesignFacts facts = FactsOf(machine, options.method == "lp");
-  nlohmann::json document = mjdiag::ToJson(ready.design);
+  auto document = nlohmann::json::parse(FiltersJson(prepared.design));
   document["command"] = CommandLine();
   document["observability_ranks"] = facts.observability_ranks;
   document["states"] = facts.states;
   document["minimal_degree"] = facts.minimal_degree;
   if (facts.linear_program) document["linear_program"] = ToJson(*facts.linear_program);
-  std::string text = Summary(ready.design, facts);
+  std::string text = Summary(prepared.design, facts);
   if (!options.output.folder.empty()) {
     text += "filters: " +
             (std::filesystem::path(options.output.folder) / "filters.json").string() +
             "\n";
   }
   Publish(options.output, "filters", document, text,
-          [&] { return PageOf(machine, ready.design, facts); });
+          [&] { return PageOf(machine, prepared.design, facts); });
 }
 
 }  // namespace
@@ -134,7 +133,7 @@ void AddDesign(CLI::App& app) {
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);
   AddDiagnosisOptions(*command, options->source);
-  command->add_flag("--linear", options->linear,
+  command->add_flag("--linear", options->source.nominal.linear,
                     "Thresholds from runs of the linearised plant");
   command
       ->add_option("--method", options->method,

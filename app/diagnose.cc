@@ -6,13 +6,8 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/output.h"
-#include "mjdiag/diagnosis/refined_estimate.h"
-#include "mjdiag/plugin/design/fault_models.h"
-#include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/report/diagnosis_json.h"
+#include "mjdiag/diagnosis/diagnosis_json.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag::app {
 namespace {
@@ -22,32 +17,8 @@ struct DiagnoseOptions {
   OutputOptions output;
   DiagnosisSource source;
   std::string record;
-  bool linear = false;
   bool refine = false;
 };
-
-/// First sample of the horizon at the end of the record.
-Eigen::Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
-  const double horizon = design.options.horizon;
-  if (horizon == 0.0) return 0;
-  if (horizon > record.duration() * (1.0 + 1e-9)) {
-    throw InputError(
-        "horizon", FormatQuantity(horizon, "s"),
-        "no more than the record's " + FormatQuantity(record.duration(), "s"));
-  }
-  return record.samples() -
-         static_cast<Eigen::Index>(horizon / record.sample_time() + 0.5);
-}
-
-DiagnosisResult Refined(const Machine& machine, const DiagnosisDesign& design,
-                        const DiagnosisMonitor& monitor, const Record& record) {
-  const MechanicalModel& healthy = machine.linear();
-  const RefinedEstimate refined = RefineEstimate(
-      design, SynthesisOf(machine.setup(), healthy),
-      FaultModels(machine),
-      Magnitudes(machine), record, HorizonStart(design, record));
-  return Conclude(design, monitor, refined.estimate);
-}
 
 void Diagnose(const DiagnoseOptions& options) {
   if (options.refine && options.source.baseline) {
@@ -56,23 +27,18 @@ void Diagnose(const DiagnoseOptions& options) {
   }
   const Machine machine = LoadSubject(options.machine).nominal;
   const Record record = ReadRecord(options.record, machine.setup().record);
-  const bool needs_motion = options.source.baseline || !options.source.robust.empty();
-  const Excitation excitation =
-      needs_motion ? Replay(machine.setup(), record) : Excitation{};
+  const Excitation motion =
+      NeedsMotion(options.source) ? Replay(machine.setup(), record) : Excitation{};
   PrepareOutput(options.output);
-  const ReadyDiagnosis ready =
-      PrepareDiagnosis(options.source, machine, excitation, options.linear);
-  DiagnosisMonitor monitor(ready.design, record.samples(), ready.baseline);
-  monitor.RegressFrom(HorizonStart(ready.design, record));
-  Run(monitor, ready.design, record);
-  const DiagnosisResult result = options.refine
-                                     ? Refined(machine, ready.design, monitor, record)
-                                     : Conclude(ready, machine, excitation, monitor);
-  nlohmann::json document = ToJson(result);
+  const PreparedDiagnosis prepared = Prepare(machine, options.source, motion);
+  const Diagnosis diagnosis = mjdiag::Diagnose(
+      machine, prepared, record,
+      options.refine ? EstimateMethod::kRefined : EstimateMethod::kLinear);
+  auto document = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
-  Publish(options.output, "diagnosis", document, Describe(result),
-          [&] { return PageOf(ready.design, monitor, result, document["record"]); });
+  Publish(options.output, "diagnosis", document, Describe(diagnosis.result),
+          [&] { return PageOf(prepared.design, diagnosis, document["record"]); });
 }
 
 }  // namespace
@@ -87,7 +53,7 @@ void AddDiagnose(CLI::App& app) {
   AddDiagnosisOptions(*command, options->source);
   command->add_option("--record", options->record, "Record to be diagnosed")
       ->required();
-  command->add_flag("--linear", options->linear,
+  command->add_flag("--linear", options->source.nominal.linear,
                     "Thresholds from runs of the linearised plant");
   command->add_flag("--refine", options->refine,
                     "Make the filters anew about the estimate until it settles: exact "

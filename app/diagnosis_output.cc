@@ -3,38 +3,13 @@
 #include "app/command.h"
 #include "app/format.h"
 #include "app/progress.h"
-#include "mjdiag/plugin/design/cross_terms.h"
-#include "mjdiag/plugin/design/robust_design.h"
+#include "mjdiag/diagnosis/diagnosis_verdict.h"
 #include "mjdiag/report/diagnosis_page.h"
-#include "mjdiag/report/diagnosis_verdict.h"
-#include "mjdiag/report/filters_file.h"
-#include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
 namespace {
 
 constexpr int kMostRuns = 10000;
-
-template <typename Element>
-std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
-  std::vector<std::string> channels;
-  for (const Element& element : elements) channels.push_back(element.channel);
-  return channels;
-}
-
-void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
-                        const Setup& setup) {
-  if (design.outputs != ChannelsOf(setup.channels.sensors) ||
-      design.inputs != ChannelsOf(setup.channels.actuators)) {
-    throw InputError(file, "its channels are not those of '" + setup.name + "'",
-                     "filters designed for this setup");
-  }
-  if (std::abs(design.sample_time() * setup.rates.control - 1.0) > 1e-9) {
-    throw InputError(
-        file, "made for a tick of " + Short(design.sample_time() * 1e3) + " ms",
-        "the control tick of the setup, " + Short(setup.rates.tick() * 1e3) + " ms");
-  }
-}
 
 std::string TimeText(const std::optional<double>& time) {
   return time ? "at " + Short(*time) + " s" : "never";
@@ -55,64 +30,33 @@ std::string SpectrumText(const DisturbanceReport& report) {
 }  // namespace
 
 void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source) {
-  command.add_option("--filters", source.filters,
-                     "filters.json of `mjdiag design` instead of designing now");
+  // A conversion of its own would end the path at its first space.
+  command.add_option_function<std::string>(
+      "--filters", [&source](const std::string& file) { source.filters = file; },
+      "filters.json of `mjdiag design` instead of designing now");
   command.add_flag(
       "--baseline", source.baseline,
       "Subtract the residual that the healthy plant leaves on this motion");
   command.add_option("--robust", source.robust,
                      "Fault to be seen by the residual row that nominal runs of the "
                      "nonlinear plant excite least");
-  command.add_option("--nominal-runs", source.runs, "Healthy runs a limit comes from")
+  command
+      .add_option("--nominal-runs", source.nominal.runs,
+                  "Healthy runs a limit comes from")
       ->check(CLI::Range(2, kMostRuns));
 }
 
-ReadyDiagnosis PrepareDiagnosis(const DiagnosisSource& source, const Machine& machine,
-                                const Excitation& excitation, bool linear) {
-  const Setup& setup = machine.setup();
-  ReadyDiagnosis ready;
-  if (!source.filters.empty()) {
-    ready.design = ReadFilters(source.filters);
-    RequireSameMachine(source.filters, ready.design, setup);
-  } else if (!source.robust.empty()) {
-    ready.design = DesignRobustFilters(machine, source.robust, excitation,
-                                       source.baseline);
-  } else {
-    ready.design = DesignFilters(machine);
-  }
+PreparedDiagnosis Prepare(const Machine& machine, DiagnosisSource source,
+                          const Excitation& motion) {
   ProgressBar bar("healthy runs");
-  ready.runs.linear = linear;
-  ready.runs.runs = source.runs;
-  NominalRuns runs = ready.runs;
-  runs.progress = [&bar](double fraction) { bar.Show(fraction); };
-  if (source.baseline) {
-    ready.baseline =
-        ResidualBaseline(ready.design, machine, excitation, runs);
-    runs.seed += static_cast<std::uint64_t>(source.runs);
-    ready.design.limits = CalibrateLimits(ready.design, machine,
-                                          excitation, ready.baseline, runs);
-  } else if (!ready.design.limits.known) {
-    ready.design.limits = CalibrateLimits(ready.design, machine, runs);
-  }
-  return ready;
+  source.nominal.progress = [&bar](double fraction) { bar.Show(fraction); };
+  return PrepareDiagnosis(machine, source, motion);
 }
 
-DiagnosisResult Conclude(const ReadyDiagnosis& ready, const Machine& machine,
-                         const Excitation& excitation,
-                         const DiagnosisMonitor& monitor) {
-  DiagnosisResult result = Conclude(ready.design, monitor);
-  if (ready.baseline.size() > 0) {
-    RemoveCrossTerms(
-        result, ready.design, machine,
-        {excitation, ready.baseline, monitor.first_regressed(), ready.runs});
-  }
-  return result;
-}
-
-NamedPage PageOf(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
-                 const DiagnosisResult& result, const std::string& record) {
+NamedPage PageOf(const DiagnosisDesign& design, const Diagnosis& diagnosis,
+                 const std::string& record) {
   const RunDescription run{CommandLine(), record, {{"mjdiag", MJDIAG_VERSION}}};
-  return {"diagnosis", DiagnosisPage(design, result, monitor.Log(), run)};
+  return {"diagnosis", DiagnosisPage(design, diagnosis.result, diagnosis.log, run)};
 }
 
 std::string Describe(const DiagnosisResult& result) {

@@ -7,9 +7,9 @@
 #include "app/command.h"
 #include "app/discovery_output.h"
 #include "app/exit_status.h"
-#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
+#include "app/subject.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
@@ -46,8 +46,7 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
   options.progress = [&bar](const std::string& what, double fraction) {
     bar.Show(what, fraction);
   };
-  return Discover(machine, measured, unseen ? &*unseen : nullptr,
-                  options);
+  return Discover(machine, measured, unseen ? &*unseen : nullptr, options);
 }
 
 // A plant that cannot be written must not cost the answer, which took its time.

@@ -8,12 +8,12 @@
 #include "app/command.h"
 #include "app/exit_status.h"
 #include "app/format.h"
-#include "app/subject.h"
 #include "app/output.h"
-#include "mjdiag/plugin/setup/chain_file.h"
-#include "mjdiag/plugin/runtime/closed_loop.h"
-#include "mjdiag/plugin/setup/published_row_file.h"
+#include "app/subject.h"
 #include "mjdiag/plugin/plant/transition.h"
+#include "mjdiag/plugin/runtime/closed_loop.h"
+#include "mjdiag/plugin/setup/chain_file.h"
+#include "mjdiag/plugin/setup/published_row_file.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
@@ -148,7 +148,8 @@ Answer Compare(const Machine& machine, nlohmann::json& document) {
     throw InputError("--compare", "the setup has no analytic model",
                      "a key 'analytic' in setup.toml");
   }
-  const MechanicalModel analytic = Linearize(ReadLinearChain(*machine.setup().analytic));
+  const MechanicalModel analytic =
+      Linearize(ReadLinearChain(*machine.setup().analytic));
   RequireSameChannels(extracted, analytic, machine.setup().analytic->string());
   const nlohmann::json difference = {
       {"M", RelativeDifference(extracted.M, analytic.M)},
@@ -178,8 +179,8 @@ Answer ComparePublished(const Machine& machine, nlohmann::json& document) {
     throw InputError("--published", "the setup has no published residual row",
                      "a key 'published' in setup.toml");
   }
-  const PublishedRowComparison comparison =
-      ComparePublishedRow(machine.linear(), ReadPublishedRow(*machine.setup().published));
+  const PublishedRowComparison comparison = ComparePublishedRow(
+      machine.linear(), ReadPublishedRow(*machine.setup().published));
   nlohmann::json coefficients = nlohmann::json::array();
   Table table({"coefficient", "printed", "computed", "half units of the last digit"});
   for (const CoefficientComparison& c : comparison.coefficients) {
@@ -213,8 +214,8 @@ void Linearize(const LinearizeOptions& options) {
   document["schema"] = "mjdiag.linearize/1";
   document["command"] = CommandLine();
   document["setup"] = machine.setup().name;
-  std::string text = machine.setup().name + ", " + Describe(subject) + "\n\n" +
-                     ModeTable(extracted);
+  std::string text =
+      machine.setup().name + ", " + Describe(subject) + "\n\n" + ModeTable(extracted);
   if (!machine.setup().control.axes.empty()) {
     const double radius =
         SpectralRadius(ClosedLoopMatrix(Tick(machine), machine.setup()));

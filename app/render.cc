@@ -12,9 +12,9 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/format.h"
-#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
+#include "app/subject.h"
 #include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
 #include "mjdiag/render/clip.h"
@@ -102,8 +102,8 @@ std::vector<TitledRecord> ReadRuns(const Machine& machine,
 /// The estimate as the diagnosis would judge it now: about the middle of what healthy
 /// runs gave, and no surer than they agree on. NaN while the motion so far does not
 /// determine the faults.
-void NoteEstimate(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
-                  Eigen::Index column, std::vector<EstimateHistory>& histories) {
+void NoteEstimate(const DiagnosisMonitor& monitor, Eigen::Index column,
+                  std::vector<EstimateHistory>& histories) {
   std::optional<FaultEstimate> estimate;
   if (monitor.estimator().samples() > 0 && monitor.estimator().Inseparable().empty()) {
     estimate = monitor.estimator().Estimate();
@@ -114,8 +114,9 @@ void NoteEstimate(const DiagnosisDesign& design, const DiagnosisMonitor& monitor
     history.value[column] = std::numeric_limits<double>::quiet_NaN();
     history.half_width[column] = std::numeric_limits<double>::quiet_NaN();
     if (!estimate) continue;
-    const CalibratedEstimate calibrated = Calibrate(
-        design, at, estimate->value[at], std::sqrt(estimate->covariance(at, at)));
+    const CalibratedEstimate calibrated =
+        Calibrate(monitor.design(), at, estimate->value[at],
+                  std::sqrt(estimate->covariance(at, at)));
     history.value[column] = history.healthy + calibrated.deviation;
     history.half_width[column] = TwoSidedNormalQuantile(0.05) * calibrated.sd;
   }
@@ -123,9 +124,9 @@ void NoteEstimate(const DiagnosisDesign& design, const DiagnosisMonitor& monitor
 
 /// The monitor of `simulate --diagnose` over a run, sample by sample, with what it knew
 /// at every estimate.
-DiagnosisOverlay DiagnoseRun(const ReadyDiagnosis& ready, const Record& record,
-                             std::size_t run) {
-  const DiagnosisDesign& design = ready.design;
+DiagnosisOverlay OverlayOf(const PreparedDiagnosis& prepared, const Record& record,
+                           std::size_t run) {
+  const DiagnosisDesign& design = prepared.design;
   // A clip shows some hundred moments.
   constexpr Eigen::Index kMostEstimates = 2000;
   const Eigen::Index every =
@@ -142,22 +143,23 @@ DiagnosisOverlay DiagnoseRun(const ReadyDiagnosis& ready, const Record& record,
     overlay.estimates.push_back({names[i], design.Healthy(static_cast<Eigen::Index>(i)),
                                  Eigen::VectorXd(count), Eigen::VectorXd(count)});
   }
-  DiagnosisMonitor monitor(design, record.samples(), ready.baseline);
+  DiagnosisRecording recording(design, record.samples(), prepared.baseline);
+  const DiagnosisMonitor& monitor = recording.monitor;
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index first = k * every;
     const Eigen::Index samples = std::min(every, record.samples() - first);
-    Run(monitor, design, record.Slice(first, samples));
+    Run(recording, record.Slice(first, samples));
     overlay.estimate_time[k] =
         record.start_time() +
         static_cast<double>(first + samples - 1) * record.sample_time();
-    NoteEstimate(design, monitor, k, overlay.estimates);
+    NoteEstimate(monitor, k, overlay.estimates);
   }
   if (const auto sample = monitor.first_detection()) {
     overlay.detection =
         record.start_time() + static_cast<double>(*sample) * record.sample_time();
   }
   overlay.residual = Record(record.sample_time(), record.start_time());
-  overlay.residual.Add({"residual", "1", monitor.Log().residual});
+  overlay.residual.Add({"residual", "1", recording.recorder.Log().residual});
   return overlay;
 }
 
@@ -165,15 +167,14 @@ DiagnosisOverlay DiagnoseRun(const ReadyDiagnosis& ready, const Record& record,
 DiagnosisOverlay Diagnose(const RenderOptions& options, const Machine& machine,
                           const std::vector<TitledRecord>& runs) {
   const Record& record = runs.back().record;
-  const bool needs_motion = options.source.baseline || !options.source.robust.empty();
-  Excitation excitation;
-  if (needs_motion) {
-    excitation = options.records.empty() ? MakeExcitation(machine.setup(), options.motion)
-                                         : Replay(machine.setup(), record);
+  DiagnosisSource source = options.source;
+  source.nominal.linear = options.motion.linear;
+  Excitation motion;
+  if (NeedsMotion(source)) {
+    motion = options.records.empty() ? MakeExcitation(machine.setup(), options.motion)
+                                     : Replay(machine.setup(), record);
   }
-  const ReadyDiagnosis ready =
-      PrepareDiagnosis(options.source, machine, excitation, options.motion.linear);
-  return DiagnoseRun(ready, record, runs.size() - 1);
+  return OverlayOf(Prepare(machine, source, motion), record, runs.size() - 1);
 }
 
 void Render(RenderOptions options) {

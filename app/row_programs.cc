@@ -109,18 +109,18 @@ RowProgramFacts SolveRowPrograms(const Machine& machine,
   const SignalEntry faults = FaultEntry(machine, healthy, options.timing);
   const DaeModel dae = MakeDae(system, unknown, faults);
   RowProgramFacts facts;
-  facts.degree = options.degree;
+  facts.degree = options.residual.degree;
   facts.norm = "one";
   facts.fault_inputs = static_cast<int>(dae.F.cols());
-  const std::optional<LinearProgramRow> row =
-      mjdiag::SolveRowPrograms(dae, options.degree, RowProgramOptions{RowNorm::kOne});
-  facts.programs = facts.fault_inputs * (dae.F.degree() + options.degree + 1);
+  const std::optional<LinearProgramRow> row = mjdiag::SolveRowPrograms(
+      dae, options.residual.degree, RowProgramOptions{RowNorm::kOne});
+  facts.programs = facts.fault_inputs * (dae.F.degree() + options.residual.degree + 1);
   if (!row) return facts;
   facts.programs = row->programs;
   facts.feasible = row->feasible;
   facts.objective = row->objective;
   facts.defect = row->defect;
-  const NullSpace null_space = LeftNullSpace(system, unknown, options.degree);
+  const NullSpace null_space = LeftNullSpace(system, unknown, options.residual.degree);
   facts.angle = Angle(OutputPart(row->N, system.outputs()), null_space.rows);
   return facts;
 }

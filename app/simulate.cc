@@ -8,10 +8,10 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/format.h"
-#include "app/subject.h"
 #include "app/output.h"
+#include "app/subject.h"
+#include "mjdiag/diagnosis/diagnosis_json.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
-#include "mjdiag/report/diagnosis_json.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -66,14 +66,15 @@ void Simulate(const SimulateOptions& options) {
   const Excitation excitation = MakeExcitation(subject.setup(), options.motion);
   PrepareOutput(options.output);
 
-  std::optional<ReadyDiagnosis> ready;
-  std::optional<DiagnosisMonitor> monitor;
+  std::optional<PreparedDiagnosis> prepared;
+  std::optional<DiagnosisRecording> recording;
   std::optional<MonitorObserver> observer;
   if (options.diagnose) {
-    ready =
-        PrepareDiagnosis(options.source, subject.nominal, excitation, options.motion.linear);
-    monitor.emplace(ready->design, excitation.samples(), ready->baseline);
-    observer.emplace(*monitor);
+    DiagnosisSource source = options.source;
+    source.nominal.linear = options.motion.linear;
+    prepared = Prepare(subject.nominal, source, excitation);
+    recording.emplace(prepared->design, excitation.samples(), prepared->baseline);
+    observer.emplace(*recording);
     subject.options.observer = &*observer;
   }
   const auto start = std::chrono::steady_clock::now();
@@ -103,16 +104,15 @@ void Simulate(const SimulateOptions& options) {
   }
   std::function<NamedPage()> page;
   if (options.diagnose) {
-    const DiagnosisResult result = Conclude(*ready, subject.nominal, excitation, *monitor);
-    document["diagnosis"] = ToJson(result);
-    text += "\n" + Describe(result);
+    const Diagnosis diagnosis = Conclude(subject.nominal, *prepared, *recording);
+    document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
+    text += "\n" + Describe(diagnosis.result);
     if (!options.output.folder.empty()) {
       WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
                     document["diagnosis"].dump(2) + "\n");
     }
-    page = [&, result] {
-      return PageOf(ready->design, *monitor, result,
-                    "simulated: " + Describe(subject));
+    page = [&, diagnosis] {
+      return PageOf(prepared->design, diagnosis, "simulated: " + Describe(subject));
     };
   }
   Publish(options.output, "simulate", document, text, page);

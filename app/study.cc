@@ -7,16 +7,16 @@
 
 #include "app/command.h"
 #include "app/format.h"
-#include "app/subject.h"
 #include "app/output.h"
 #include "app/progress.h"
-#include "mjdiag/studies/hidden_table.h"
+#include "app/subject.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
 #include "mjdiag/studies/disturbance_study.h"
 #include "mjdiag/studies/estimation_study.h"
+#include "mjdiag/studies/hidden_table.h"
 
 namespace mjdiag::app {
 namespace {
@@ -29,7 +29,8 @@ struct StudyCommand {
   std::uint64_t seed = 1;
 };
 
-using Study = std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)>;
+using Study =
+    std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)>;
 
 template <int causes>
 std::vector<StudyTable> HiddenEffects(const Machine& machine,

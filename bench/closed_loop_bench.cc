@@ -9,9 +9,9 @@
 #include <chrono>
 #include <vector>
 
-#include "mjdiag/plugin/runtime/instance.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/runtime/instance.h"
 
 namespace mjdiag {
 namespace {

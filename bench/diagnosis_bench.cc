@@ -12,14 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/runtime/instance.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/runtime/instance.h"
 
 namespace mjdiag {
 namespace {
@@ -91,8 +91,8 @@ void MonitoredOverPlainLoop(benchmark::State& state, bool static_friction) {
   std::vector<double> ratios;
   double added = 0.0;
   for (auto _ : state) {
-    DiagnosisMonitor monitor(design, ticks);
-    MonitorObserver observer(monitor);
+    DiagnosisRecording recording(design, ticks);
+    MonitorObserver observer(recording);
     Loop plain(setup, *model, start, nullptr);
     Loop monitored(setup, *model, start, &observer);
     bool plain_first = false;

@@ -41,7 +41,8 @@ void DiscoverIn(benchmark::State& state, const std::string& machine,
     hidden.effects.push_back(ParseEffect(effect));
   const Record measured = Simulate(
       setup, *plant,
-      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)), hidden);
+      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
+      hidden);
   DiscoverOptions options;
   for (auto _ : state) {
     const DiscoveryProblem problem =

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
@@ -32,26 +32,25 @@ double Median(std::vector<double> values) {
 void ReportOfADiagnosis(benchmark::State& state) {
   const Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
   const ModelPtr plant = LoadPlant(setup);
-  DiagnosisDesign design = DesignFilters(setup, *plant);
-  NominalRuns nominal;
-  nominal.linear = true;
-  nominal.runs = 2;
-  design.limits = CalibrateLimits(design, setup, *plant, nominal);
+  DiagnosisSource source;
+  source.nominal.linear = true;
+  source.nominal.runs = 2;
+  const PreparedDiagnosis prepared = PrepareDiagnosis(setup, *plant, source);
   RunOptions options;
   options.faults = {{"zeta_x", 1.2}};
   const Record record = SimulateLinear(
       setup, *plant,
-      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)), options);
-  DiagnosisMonitor monitor(design, record.samples());
-  Run(monitor, design, record);
-  const DiagnosisResult result = Conclude(design, monitor);
+      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
+      options);
+  const Diagnosis diagnosis = Diagnose(setup, *plant, prepared, record);
 
   const test::TemporaryFolder folder;
   std::vector<double> seconds;
   for (auto _ : state) {
     const auto start = Clock::now();
     WritePage(folder.path(), "diagnosis",
-              DiagnosisPage(design, result, monitor.Log(), {"cmd", "record.csv", {}}));
+              DiagnosisPage(prepared.design, diagnosis.result, diagnosis.log,
+                            {"cmd", "record.csv", {}}));
     WriteReport(folder.path());
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }

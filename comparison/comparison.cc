@@ -16,7 +16,8 @@ constexpr Eigen::Index kShortestComparison = 64;
 /// not an answer.
 std::vector<std::string> ComparedChannels(const Setup& setup) {
   std::vector<std::string> names;
-  for (const SensorSetup& sensor : setup.channels.sensors) names.push_back(sensor.channel);
+  for (const SensorSetup& sensor : setup.channels.sensors)
+    names.push_back(sensor.channel);
   if (setup.control.axes.empty()) return names;
   for (const ActuatorSetup& actuator : setup.channels.actuators) {
     names.push_back(actuator.channel);
@@ -116,9 +117,12 @@ Comparison Compare(const Machine& machine, const Record& measured,
     result.channels.push_back(MeasureMismatch(result.measured, result.simulated, name,
                                               floors.at(name), result.options));
   }
-  const std::vector<std::string> positions = Positions(result.measured, machine.setup());
-  result.measured_derived = DeriveChannels(result.measured, positions, machine.setup().compare);
-  result.simulated_derived = DeriveChannels(result.simulated, positions, machine.setup().compare);
+  const std::vector<std::string> positions =
+      Positions(result.measured, machine.setup());
+  result.measured_derived =
+      DeriveChannels(result.measured, positions, machine.setup().compare);
+  result.simulated_derived =
+      DeriveChannels(result.simulated, positions, machine.setup().compare);
   result.derived = MeasureDerived(result.measured_derived, result.simulated_derived,
                                   result.options.skip_samples);
   return result;

@@ -48,8 +48,8 @@ NoiseFloor FloorOf(const std::vector<Eigen::VectorXd>& draws, double sample_time
 }
 
 /// Runs that differ in the seed of their noise only, in parallel.
-std::vector<Record> NoisyRuns(const Machine& machine,
-                              const Excitation& excitation, const RunOptions& options) {
+std::vector<Record> NoisyRuns(const Machine& machine, const Excitation& excitation,
+                              const RunOptions& options) {
   std::vector<Record> records(kDraws);
   ParallelFor(
       kDraws,
@@ -58,8 +58,7 @@ std::vector<Record> NoisyRuns(const Machine& machine,
         noisy.noise_scale = 1.0;
         noisy.seed = options.seed + static_cast<std::uint64_t>(draw);
         noisy.progress = nullptr;
-        records[static_cast<std::size_t>(draw)] =
-            Simulate(machine, excitation, noisy);
+        records[static_cast<std::size_t>(draw)] = Simulate(machine, excitation, noisy);
       },
       options.progress);
   return records;
@@ -88,9 +87,11 @@ Eigen::VectorXd MeasuredNoise(const Channels& channels, const Record& measured) 
   return sd;
 }
 
-std::map<std::string, NoiseFloor> EstimateNoiseFloor(
-    const Machine& machine, const Excitation& excitation,
-    const Record& clean, const RunOptions& options, Eigen::Index skip) {
+std::map<std::string, NoiseFloor> EstimateNoiseFloor(const Machine& machine,
+                                                     const Excitation& excitation,
+                                                     const Record& clean,
+                                                     const RunOptions& options,
+                                                     Eigen::Index skip) {
   const std::vector<Record> noisy = NoisyRuns(machine, excitation, options);
   std::map<std::string, NoiseFloor> floors;
   const auto add = [&](const std::string& channel) {
@@ -103,7 +104,8 @@ std::map<std::string, NoiseFloor> EstimateNoiseFloor(
     floors[channel] = FloorOf(draws, clean.sample_time());
   };
   for (const SensorSetup& sensor : machine.channels().sensors) add(sensor.channel);
-  for (const ActuatorSetup& actuator : machine.channels().actuators) add(actuator.channel);
+  for (const ActuatorSetup& actuator : machine.channels().actuators)
+    add(actuator.channel);
   return floors;
 }
 

@@ -36,8 +36,10 @@ Eigen::VectorXd MeasuredNoise(const Channels& channels, const Record& measured);
 /// @param clean    Simulate of the same excitation and options with noise_scale = 0
 /// @param options  of that run; its seed and the next ones draw the noise, in parallel
 /// @param skip     samples left out at the start
-std::map<std::string, NoiseFloor> EstimateNoiseFloor(
-    const Machine& machine, const Excitation& excitation,
-    const Record& clean, const RunOptions& options, Eigen::Index skip);
+std::map<std::string, NoiseFloor> EstimateNoiseFloor(const Machine& machine,
+                                                     const Excitation& excitation,
+                                                     const Record& clean,
+                                                     const RunOptions& options,
+                                                     Eigen::Index skip);
 
 }  // namespace mjdiag

@@ -29,26 +29,30 @@ std::map<std::string, double> ReplayErrors(const Machine& machine,
   options.noise_scale = 0.0;
   Record simulated;
   try {
-    simulated = Simulate(machine.With(changes), Replay(machine.setup(), measured), options);
+    simulated =
+        Simulate(machine.With(changes), Replay(machine.setup(), measured), options);
   } catch (const NumericalError&) {
-    return {{machine.channels().sensors.front().channel, std::numeric_limits<double>::infinity()}};
+    return {{machine.channels().sensors.front().channel,
+             std::numeric_limits<double>::infinity()}};
   }
   std::map<std::string, double> errors;
   const auto add = [&](const std::string& channel) {
     const Channel* before = measured.Find(channel);
     if (before == nullptr) return;
-    errors[channel] = RelativeErrorPercent(
-        before->samples, simulated.At(channel).samples, machine.setup().compare.skip_samples);
+    errors[channel] =
+        RelativeErrorPercent(before->samples, simulated.At(channel).samples,
+                             machine.setup().compare.skip_samples);
   };
   for (const SensorSetup& sensor : machine.channels().sensors) add(sensor.channel);
   if (!machine.setup().control.axes.empty()) {
-    for (const ActuatorSetup& actuator : machine.channels().actuators) add(actuator.channel);
+    for (const ActuatorSetup& actuator : machine.channels().actuators)
+      add(actuator.channel);
   }
   const std::vector<std::string> positions = Positions(machine.setup(), measured);
   const Record derived = DeriveChannels(measured, positions, machine.setup().compare);
-  for (const DerivedMismatch& signal :
-       MeasureDerived(derived, DeriveChannels(simulated, positions, machine.setup().compare),
-                      machine.setup().compare.skip_samples)) {
+  for (const DerivedMismatch& signal : MeasureDerived(
+           derived, DeriveChannels(simulated, positions, machine.setup().compare),
+           machine.setup().compare.skip_samples)) {
     errors[signal.name] = signal.relative_error_percent;
   }
   return errors;

@@ -6,20 +6,18 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/disturbance_spectrum.h"
-#include "mjdiag/diagnosis/filter_bank.h"
+#include "mjdiag/diagnosis/residual_order.h"
 
 namespace mjdiag {
 
 /// The row for the nonlinear machine.
 struct RobustOptions {
-  int degree = 8;  ///< longer rows leave more to choose from
-  Denominator denominator{8, 200.0};
-  int runs = 8;  ///< nominal runs of the nonlinear plant
+  ResidualOrder residual{8, {8, 200.0}};  ///< longer rows leave more to choose from
+  int runs = 8;                           ///< nominal runs of the nonlinear plant
 };
 
 struct DiagnosisOptions {
-  int degree = 7;           ///< d_N of the residual rows
-  Denominator denominator;  ///< Eq. 31
+  ResidualOrder residual;
   /// Rows that the estimator uses; 0: the whole null space. The detector has one.
   int estimation_rows = 1;
   /// Knob -> c of Eq. 22; knobs that are left out: 1e-3.

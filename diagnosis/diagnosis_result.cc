@@ -88,9 +88,9 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
   return {deviation - middle, std::hypot(sd, spread), limits.Holds(deviation)};
 }
 
-DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log,
                          const FaultEstimate& estimate) {
-  const MonitorLog log = monitor.Log();
+  const DiagnosisDesign& design = monitor.design();
   DiagnosisResult result;
   result.setup = design.setup;
   result.samples = monitor.samples();
@@ -116,10 +116,13 @@ DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& 
   return result;
 }
 
-DiagnosisResult Conclude(const DiagnosisDesign& design,
-                         const DiagnosisMonitor& monitor) {
-  RequireSeparableFaults(design, monitor.estimator());
-  return Conclude(design, monitor, monitor.estimator().Estimate());
+DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log) {
+  RequireSeparableFaults(monitor.design(), monitor.estimator());
+  return Conclude(monitor, log, monitor.estimator().Estimate());
+}
+
+DiagnosisResult Conclude(const DiagnosisRecording& recording) {
+  return Conclude(recording.monitor, recording.recorder.Log());
 }
 
 }  // namespace mjdiag

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 
 namespace mjdiag {
 
@@ -50,13 +50,15 @@ struct CalibratedEstimate {
 CalibratedEstimate Calibrate(const DiagnosisDesign& design, Eigen::Index fault,
                              double deviation, double sd);
 
-/// From a monitor at the end of its run. InputError names the faults that the motion
-/// does not tell apart.
-DiagnosisResult Conclude(const DiagnosisDesign& design,
-                         const DiagnosisMonitor& monitor);
+/// From a monitor at the end of its run.
+/// @param log  what a recorder kept of the whole run
+/// InputError names the faults that the motion does not tell apart.
+DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log);
+
+DiagnosisResult Conclude(const DiagnosisRecording& recording);
 
 /// The same with estimates from elsewhere (RefineEstimate).
-DiagnosisResult Conclude(const DiagnosisDesign& design, const DiagnosisMonitor& monitor,
+DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log,
                          const FaultEstimate& estimate);
 
 }  // namespace mjdiag

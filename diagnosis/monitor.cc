@@ -57,8 +57,7 @@ Index WindowSamples(const DiagnosisDesign& design) {
 
 }  // namespace
 
-DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, Index capacity,
-                                   MatrixXd baseline)
+DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, MatrixXd baseline)
     : design_(design),
       baseline_(std::move(baseline)),
       filters_(design.bank.filters),
@@ -77,12 +76,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, Index capacity
                                 static_cast<Index>(design.disturbances.size()))),
       drive_(VectorXd::Zero(waveforms_.size())),
       estimate_(VectorXd::Zero(design.faults())),
-      window_(VectorXd::Zero(WindowSamples(design))),
-      rows_(design.bank.residuals, capacity),
-      integral_(capacity),
-      disturbance_(capacity),
-      signals_(z_.size(), capacity),
-      estimates_(design.faults(), capacity / design.stride + 1) {
+      window_(VectorXd::Zero(WindowSamples(design))) {
   if (baseline_.size() > 0 && baseline_.rows() != design.bank.residuals) {
     throw InputError("baseline", std::to_string(baseline_.rows()) + " residuals",
                      std::to_string(design.bank.residuals));
@@ -131,21 +125,12 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
       regressors_.row(knobs + i) = response.segment(i * n, n).transpose();
     }
   }
-  const double disturbance = high_pass_.Update(disturbance_filter_.Step(z_)[0]);
+  disturbance_ = high_pass_.Update(disturbance_filter_.Step(z_)[0]);
 
   Detect();
-  if (samples_ >= std::max(settling_, first_regressed_) &&
-      samples_ % design_.stride == 0) {
-    if (estimates_made_ == 0) first_estimate_ = samples_;
-    if (estimates_made_ == 0 && samples_ > 0) estimator_.AssumeStationary();
-    Regress();
-  }
-  if (samples_ < rows_.cols()) {
-    rows_.col(samples_) = residuals_;
-    disturbance_[samples_] = disturbance;
-    signals_.col(samples_) = z_;
-    logged_ = samples_ + 1;
-  }
+  regressed_ = samples_ >= std::max(settling_, first_regressed_) &&
+               samples_ % design_.stride == 0;
+  if (regressed_) Regress();
   ++samples_;
 }
 
@@ -155,24 +140,18 @@ void DiagnosisMonitor::Detect() noexcept {
   const double level = samples_ < settling_ ? 0.0 : std::abs(residual);
   window_sum_ += level - oldest;
   oldest = level;
-  const double integral = window_sum_ / static_cast<double>(window_.size());
-  if (samples_ < integral_.size()) integral_[samples_] = integral;
-  if (!design_.limits.known || samples_ < settling_) return;
-  if (first_detection_ < 0 && !design_.limits.residual.limits.Holds(residual)) {
-    first_detection_ = samples_;
-  }
-  if (first_lasting_ < 0 && integral > design_.limits.integral) {
-    first_lasting_ = samples_;
-  }
+  integral_ = window_sum_ / static_cast<double>(window_.size());
+  const bool judged = design_.limits.known && samples_ >= settling_;
+  residual_alarm_ = judged && !design_.limits.residual.limits.Holds(residual);
+  lasting_alarm_ = judged && integral_ > design_.limits.integral;
+  if (first_detection_ < 0 && residual_alarm_) first_detection_ = samples_;
+  if (first_lasting_ < 0 && lasting_alarm_) first_lasting_ = samples_;
 }
 
 void DiagnosisMonitor::Regress() noexcept {
+  if (estimator_.samples() == 0 && samples_ > 0) estimator_.AssumeStationary();
   estimator_.Add(residuals_, regressors_);
   estimator_.Solve(estimate_);
-  if (estimates_made_ < estimates_.cols()) {
-    estimates_.col(estimates_made_) = estimate_;
-    ++estimates_made_;
-  }
 }
 
 std::optional<Index> DiagnosisMonitor::first_detection() const {
@@ -181,41 +160,6 @@ std::optional<Index> DiagnosisMonitor::first_detection() const {
 
 std::optional<Index> DiagnosisMonitor::first_lasting() const {
   return first_lasting_ < 0 ? std::nullopt : std::optional(first_lasting_);
-}
-
-MonitorLog DiagnosisMonitor::Log() const {
-  const VectorXd index =
-      VectorXd::LinSpaced(estimates_made_, 0.0,
-                          static_cast<double>(std::max<Index>(0, estimates_made_ - 1)));
-  const double tick = design_.sample_time();
-  return {
-      rows_.row(0).head(logged_),
-      integral_.head(logged_),
-      disturbance_.head(logged_),
-      signals_.leftCols(logged_),
-      tick * (index.array() * design_.stride + static_cast<double>(first_estimate_)),
-      estimates_.leftCols(estimates_made_)};
-}
-
-void Run(DiagnosisMonitor& monitor, const DiagnosisDesign& design,
-         const Record& record) {
-  if (std::abs(record.sample_time() / design.sample_time() - 1.0) > 1e-4) {
-    throw InputError(
-        "record", "sampled every " + std::to_string(record.sample_time() * 1e3) + " ms",
-        "the sample time of the filters, " +
-            std::to_string(design.sample_time() * 1e3) + " ms");
-  }
-  std::vector<const Channel*> outputs;
-  std::vector<const Channel*> inputs;
-  for (const auto& name : design.outputs) outputs.push_back(&record.At(name));
-  for (const auto& name : design.inputs) inputs.push_back(&record.At(name));
-  std::vector<double> y(outputs.size());
-  std::vector<double> u(inputs.size());
-  for (Index k = 0; k < record.samples(); ++k) {
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] = outputs[i]->samples[k];
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] = inputs[i]->samples[k];
-    monitor.Add(y, u);
-  }
 }
 
 }  // namespace mjdiag

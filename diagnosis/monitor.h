@@ -1,7 +1,11 @@
 #pragma once
-// A diagnosis at work, sample by sample: residuals and prefilters, detection with
+// A diagnosis at work, tick by tick: residuals and prefilters, detection with
 // thresholds, recursive estimation, and the disturbance residual. The same object runs
 // inside the control callback and over a record, so both give the same bits.
+//
+// It keeps the present only and runs for as long as the machine does. Between ticks its
+// residuals, estimate and alarms can be read; MonitorRecorder (monitor_recorder.h)
+// keeps them for what looks at a whole run.
 
 #include <Eigen/Core>
 #include <optional>
@@ -9,27 +13,16 @@
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 #include "mjdiag/diagnosis/fault_estimator.h"
-#include "mjdiag/signals/record.h"
 
 namespace mjdiag {
 
-/// What a monitor keeps of a run.
-struct MonitorLog {
-  Eigen::VectorXd residual;       ///< r, less the baseline if there is one
-  Eigen::VectorXd integral;       ///< mean of |r| over the window
-  Eigen::VectorXd disturbance;    ///< r_dist behind its high-pass filter
-  Eigen::MatrixXd signals;        ///< z as deviations from rest, nz x samples
-  Eigen::VectorXd estimate_time;  ///< [s]
-  Eigen::MatrixXd estimates;      ///< nf x regressed samples, deviations from healthy
-};
-
 class DiagnosisMonitor {
  public:
-  /// @param capacity  samples that the log can hold; later ones are not kept
   /// @param baseline  residuals of the same motion of the healthy machine, subtracted
-  ///                  sample by sample (section A.6 of the seed): n x N, or empty
-  DiagnosisMonitor(const DiagnosisDesign& design, Eigen::Index capacity,
-                   Eigen::MatrixXd baseline = {});
+  ///                  sample by sample (section A.6 of the seed): n x N, or empty.
+  ///                  InputError if n is not the number of residuals
+  explicit DiagnosisMonitor(const DiagnosisDesign& design,
+                            Eigen::MatrixXd baseline = {});
 
   /// One control tick. Does not allocate, lock, throw or do I/O.
   /// @param outputs  readings y, ny
@@ -40,19 +33,33 @@ class DiagnosisMonitor {
   void RegressFrom(Eigen::Index sample) { first_regressed_ = sample; }
   Eigen::Index first_regressed() const { return first_regressed_; }
 
+  const DiagnosisDesign& design() const { return design_; }
+  /// Ticks so far; what follows is of the last of them.
   Eigen::Index samples() const { return samples_; }
-  /// Residuals of the last sample, n.
+  /// z as deviations from rest, nz.
+  const Eigen::VectorXd& signals() const { return z_; }
+  /// Residuals, less the baseline if there is one, n. The first is judged.
   const Eigen::VectorXd& residuals() const { return residuals_; }
-  const FaultEstimator& estimator() const { return estimator_; }
-  /// Latest recursive estimate, deviations from healthy, nf.
+  /// Mean of |r| over the window.
+  double integral() const { return integral_; }
+  /// r_dist behind its high-pass filter.
+  double disturbance() const { return disturbance_; }
+  /// Whether this tick was regressed, and the estimate is new.
+  bool regressed() const { return regressed_; }
+  /// Latest recursive estimate, deviations from healthy, nf; 0 as long as the motion
+  /// has not told all faults apart.
   const Eigen::VectorXd& estimate() const { return estimate_; }
+  const FaultEstimator& estimator() const { return estimator_; }
+
+  /// Whether the residual is outside its limits now. Never before the filters have
+  /// settled, nor without limits.
+  bool residual_alarm() const { return residual_alarm_; }
+  /// Whether the integral is: the fault is no passing disturbance.
+  bool lasting_alarm() const { return lasting_alarm_; }
   /// First sample at which the residual left its limits, if it did.
   std::optional<Eigen::Index> first_detection() const;
   /// First sample at which the integral did: the fault lasts.
   std::optional<Eigen::Index> first_lasting() const;
-  MonitorLog Log() const;
-  /// Every residual row of the run, n x samples: what becomes a baseline.
-  Eigen::MatrixXd ResidualRows() const { return rows_.leftCols(logged_); }
 
  private:
   void Start() noexcept;
@@ -70,9 +77,6 @@ class DiagnosisMonitor {
   Eigen::Index settling_away_ = 0;  // samples of a transient
   Eigen::Index settling_ = 0;       // samples before which nothing is judged
   Eigen::Index samples_ = 0;
-  Eigen::Index logged_ = 0;
-  Eigen::Index estimates_made_ = 0;
-  Eigen::Index first_estimate_ = 0;
   Eigen::Index first_detection_ = -1;
   Eigen::Index first_lasting_ = -1;
   Eigen::VectorXd z_;
@@ -83,16 +87,11 @@ class DiagnosisMonitor {
   Eigen::VectorXd estimate_;
   Eigen::VectorXd window_;  // ring of |r|
   double window_sum_ = 0.0;
-  Eigen::MatrixXd rows_;         // n x capacity
-  Eigen::VectorXd integral_;     // capacity
-  Eigen::VectorXd disturbance_;  // capacity
-  Eigen::MatrixXd signals_;      // nz x capacity
-  Eigen::MatrixXd estimates_;    // nf x capacity / stride
+  double integral_ = 0.0;
+  double disturbance_ = 0.0;
+  bool regressed_ = false;
+  bool residual_alarm_ = false;
+  bool lasting_alarm_ = false;
 };
-
-/// Runs a monitor over a record. InputError if a channel is missing or the record is
-/// sampled at another rate than the filters.
-void Run(DiagnosisMonitor& monitor, const DiagnosisDesign& design,
-         const Record& record);
 
 }  // namespace mjdiag

@@ -1,6 +1,6 @@
 #include "mjdiag/diagnosis/refined_estimate.h"
 
-#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -40,9 +40,9 @@ RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
           MoveBank(design.bank.rows, MakeResidualSpace(model_at(knobs), options),
                    TurnAbout(design.bank.faults, knobs, magnitudes, model_at), options);
     }
-    DiagnosisMonitor monitor(moved, record.samples());
+    DiagnosisMonitor monitor(moved);
     monitor.RegressFrom(from);
-    Run(monitor, moved, record);
+    Run(monitor, record);
     FaultEstimate estimate = monitor.estimator().Estimate();
     const VectorXd change = estimate.value.head(count);
     const VectorXd sd = estimate.covariance.diagonal().head(count).cwiseSqrt();

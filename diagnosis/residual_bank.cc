@@ -66,7 +66,7 @@ Numerators Stack(const std::vector<Numerators>& parts) {
 
 MatrixXd Covariance(const Numerators& rows, const SynthesisOptions& options) {
   return OutputCovariance(
-      MakeFilterBank(rows, options.denominator, options.timing.tick()),
+      MakeFilterBank(rows, options.residual.denominator, options.timing.tick()),
       SignalNoise(options, rows.front().cols()));
 }
 
@@ -87,8 +87,8 @@ Numerators Orthonormalised(Numerators rows, const SynthesisOptions& options) {
   const MatrixXd covariance = Covariance(rows, options);
   if (!covariance.isIdentity(1e-3)) {
     throw NumericalError("the residual rows of degree " +
-                         std::to_string(options.degree) + " at " +
-                         std::to_string(options.denominator.cutoff) +
+                         std::to_string(options.residual.degree) + " at " +
+                         std::to_string(options.residual.denominator.cutoff) +
                          " Hz cannot be told apart in double precision");
   }
   return rows;
@@ -122,8 +122,8 @@ ResidualBank BankOf(const Numerators& residual, const std::vector<TurnedModels>&
     }
     outputs.push_back(std::move(slope));
   }
-  bank.filters =
-      MakeFilterBank(Stack(outputs), options.denominator, options.timing.tick());
+  bank.filters = MakeFilterBank(Stack(outputs), options.residual.denominator,
+                                options.timing.tick());
   return bank;
 }
 
@@ -155,17 +155,19 @@ ResidualSpace MakeResidualSpace(const MechanicalModel& model,
                                 const SynthesisOptions& options) {
   const StateSpace system = DeltaForm(model, options.timing);
   const SignalEntry unknown = Entry(model, system, options);
-  const NullSpace null = LeftNullSpace(system, unknown, options.degree);
+  const NullSpace null = LeftNullSpace(system, unknown, options.residual.degree);
   if (null.rows.rows() == 0) {
     // Says from which degree on there is one, or that there is none at all.
     constexpr int kHighest = 40;
     const int degree = MinimalDegree(system, unknown, kHighest);
-    throw InputError("residual", "no row of degree " + std::to_string(options.degree),
+    throw InputError("residual",
+                     "no row of degree " + std::to_string(options.residual.degree),
                      "a degree of at least " + std::to_string(degree));
   }
   const PolynomialMatrix residual = CompleteRows(system, null.rows) * MakeDae(system).L;
   Numerators rows(residual.coefficients.begin(), residual.coefficients.end());
-  return {options.degree, null.separation, Orthonormalised(std::move(rows), options)};
+  return {options.residual.degree, null.separation,
+          Orthonormalised(std::move(rows), options)};
 }
 
 ResidualBank SynthesiseBank(const ResidualSpace& space, const MatrixXd& rows,

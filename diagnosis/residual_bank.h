@@ -23,6 +23,7 @@
 
 #include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/filter_bank.h"
+#include "mjdiag/diagnosis/residual_order.h"
 
 namespace mjdiag {
 
@@ -34,8 +35,7 @@ struct UnknownInputs {
 
 struct SynthesisOptions {
   TickTiming timing;
-  int degree = 7;  ///< d_N
-  Denominator denominator;
+  ResidualOrder residual;
   /// ny, standard deviation a sample; all 0: as for equal noise on every sensor
   Eigen::VectorXd sensor_noise;
   UnknownInputs unknown_inputs;

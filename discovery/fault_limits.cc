@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
 
 namespace mjdiag {
 namespace {
@@ -44,8 +44,8 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
   std::map<std::string, double> limits;
   for (const Candidate& candidate : candidates) {
     if (!candidate.cause.fault) continue;
-    for (const Trial& trial :
-         MakeTrials(problem.machine.plant(), problem.machine.linear(), candidate, motion)) {
+    for (const Trial& trial : MakeTrials(problem.machine.plant(),
+                                         problem.machine.linear(), candidate, motion)) {
       const VectorXd phi =
           dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
       const Index used = phi.size() - skipped;

@@ -21,7 +21,7 @@ bool HasNoise(const DiagnosisDesign& design) {
 std::string Verdict(const DiagnosisDesign& design, const DesignFacts& facts) {
   std::string text =
       "Residual rows exist from degree " + std::to_string(facts.minimal_degree) +
-      " on; the residual has degree " + std::to_string(design.options.degree);
+      " on; the residual has degree " + std::to_string(design.options.residual.degree);
   if (!design.limits.known) return text + ".";
   const Interval& limits = design.limits.residual.limits;
   return text + " and is healthy between " + Number(limits.min) + " and " +

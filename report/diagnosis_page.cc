@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include "mjdiag/diagnosis/diagnosis_verdict.h"
 #include "mjdiag/report/diagnosis_plots.h"
-#include "mjdiag/report/diagnosis_verdict.h"
 #include "mjdiag/report/page.h"
 #include "mjdiag/signals/quantity.h"
 

@@ -46,7 +46,7 @@ Bound BoundOf(const DiagnosisDesign& design, const MonitorLog& log) {
   const Index estimates = log.estimates.cols();
   const auto first =
       static_cast<Index>(std::lround(log.estimate_time[0] / design.sample_time()));
-  DiagnosisMonitor monitor(design, 0);
+  DiagnosisMonitor monitor(design);
   monitor.RegressFrom(first);
   const Index outputs = design.offset.size();
   const Index every = std::max<Index>(1, estimates / kBoundPoints);

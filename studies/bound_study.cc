@@ -16,9 +16,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 MatrixXd Commands(const Setup& setup, const Record& record) {
-  MatrixXd commands(static_cast<Index>(setup.channels.actuators.size()), record.samples());
+  MatrixXd commands(static_cast<Index>(setup.channels.actuators.size()),
+                    record.samples());
   for (std::size_t i = 0; i < setup.channels.actuators.size(); ++i) {
-    commands.row(static_cast<Index>(i)) = record.At(setup.channels.actuators[i].channel).samples;
+    commands.row(static_cast<Index>(i)) =
+        record.At(setup.channels.actuators[i].channel).samples;
   }
   return commands;
 }
@@ -26,25 +28,24 @@ MatrixXd Commands(const Setup& setup, const Record& record) {
 std::vector<std::string> FaultNames(const Machine& machine) {
   std::vector<std::string> names;
   for (const Fault& knob : HealthyKnobs(machine.plant())) names.push_back(knob.name);
-  for (const MultisineSetup& source : machine.setup().disturbances) names.push_back(source.name);
+  for (const MultisineSetup& source : machine.setup().disturbances)
+    names.push_back(source.name);
   return names;
 }
 
 /// Standard deviations that the estimator claims for a healthy run.
-VectorXd EstimatorSd(const Machine& machine, const Record& record,
-                     int rows) {
+VectorXd EstimatorSd(const Machine& machine, const Record& record, int rows) {
   Setup setup = machine.setup();
   setup.diagnosis.estimation_rows = rows;
   const DiagnosisDesign design = DesignFilters(machine.WithSetup(setup));
-  DiagnosisMonitor monitor(design, record.samples());
-  Run(monitor, design, record);
+  DiagnosisMonitor monitor(design);
+  Run(monitor, record);
   return monitor.estimator().Estimate().covariance.diagonal().cwiseSqrt();
 }
 
 }  // namespace
 
-InformationBound FaultBound(const Machine& machine,
-                            const Excitation& motion) {
+InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
   const MechanicalModel healthy = machine.linear();
   const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
   RunOptions quiet;
@@ -66,8 +67,7 @@ InformationBound FaultBound(const Machine& machine,
   return CramerRaoBound(sensitivities, options.sensor_noise);
 }
 
-std::ptrdiff_t BoundIndex(const Machine& machine,
-                          const std::string& fault) {
+std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault) {
   const std::vector<std::string> names = FaultNames(machine);
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {

@@ -78,11 +78,10 @@ int MostSignificant(const DiagnosisResult& result,
   return named;
 }
 
-std::vector<Sample> RunCases(const Machine& machine,
-                             const std::vector<Case>& cases,
+std::vector<Sample> RunCases(const Machine& machine, const std::vector<Case>& cases,
                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  const DiagnosisDesign design = LinearDetector(machine).design;
+  const DiagnosisDesign design = LinearDiagnosis(machine).design;
   std::vector<std::string> channels = design.outputs;
   channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
   const auto& kinds = machine.setup().Study("table4_from").values;
@@ -94,10 +93,8 @@ std::vector<Sample> RunCases(const Machine& machine,
         const Case& drawn = cases[static_cast<std::size_t>(i)];
         const Record record =
             RunLinear(motion, WithFaults(machine, drawn.faults,
-                                      options.seed + static_cast<std::uint64_t>(i)));
-        DiagnosisMonitor monitor(design, record.samples());
-        Run(monitor, design, record);
-        const DiagnosisResult result = Conclude(design, monitor);
+                                         options.seed + static_cast<std::uint64_t>(i)));
+        const DiagnosisResult result = Conclude(RecordDiagnosis(design, record));
         samples[static_cast<std::size_t>(i)] = {
             Features(record, channels),
             result.first_detection.has_value() || result.disturbance.disturbed,
@@ -143,7 +140,8 @@ std::vector<Cell> Row(const std::string& method, const Confusion& detection,
 
 std::vector<StudyTable> ClassificationStudy(const Machine& machine,
                                             const StudyOptions& options) {
-  const std::vector<Case> cases = DrawCases(machine.setup(), options.runs, options.seed);
+  const std::vector<Case> cases =
+      DrawCases(machine.setup(), options.runs, options.seed);
   const std::vector<Sample> samples = RunCases(machine, cases, options);
   // Pairs of a healthy and a faulty run go to training and test in turn, a round of all
   // faults at a time.
@@ -188,8 +186,8 @@ std::vector<StudyTable> ClassificationStudy(const Machine& machine,
   StudyTable ranges{"Ranges of the faults", {"fault", "from", "to"}, {}, {}};
   const auto& from = machine.setup().Study("table4_from").values;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    ranges.rows.push_back(
-        {from[i].first, from[i].second, machine.setup().Study("table4_to").values[i].second});
+    ranges.rows.push_back({from[i].first, from[i].second,
+                           machine.setup().Study("table4_to").values[i].second});
   }
   return {table, ranges};
 }

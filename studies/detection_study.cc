@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"
-#include "mjdiag/plugin/design/robust_design.h"
 #include "mjdiag/studies/bound_study.h"
 
 namespace mjdiag {
@@ -56,14 +54,13 @@ struct LinearRow {
 std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
                                              const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  const Detector detector = LinearDetector(machine);
+  const PreparedDiagnosis detector = LinearDiagnosis(machine);
 
   const auto look = [&](const std::string& fault, double deviation,
                         std::uint64_t seed) {
     const double healthy = HealthyValue(machine.setup(), fault);
     const std::vector<SizedFault> faults{{fault, healthy + deviation}};
-    const Record record =
-        RunLinear(motion, WithFaults(machine, faults, seed));
+    const Record record = RunLinear(motion, WithFaults(machine, faults, seed));
     return Look(detector, record, fault);
   };
 
@@ -112,8 +109,7 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
          SizeCell(row.by_residual, healthy), DeviationCell(row.by_residual),
          DeviationCell(row.by_estimate),
          healthy == 0.0 ? SizeCell(row.by_spectrum, 0.0) : Cell("-"),
-         Cell(bound.together[static_cast<Eigen::Index>(
-             BoundIndex(machine, fault))])});
+         Cell(bound.together[static_cast<Eigen::Index>(BoundIndex(machine, fault))])});
   }
   table.notes = {
       "The faults are there from the start: the time is the delay of detection, most "
@@ -125,11 +121,11 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
   ParallelFor(
       options.runs,
       [&](int i) {
-        const Record record = RunLinear(motion, WithFaults(machine, {},
-                       options.seed + 10000 + static_cast<std::uint64_t>(i)));
-        DiagnosisMonitor monitor(detector.design, record.samples());
-        Run(monitor, detector.design, record);
-        const DiagnosisResult result = Conclude(detector.design, monitor);
+        const Record record = RunLinear(
+            motion, WithFaults(machine, {},
+                               options.seed + 10000 + static_cast<std::uint64_t>(i)));
+        const DiagnosisResult result =
+            Conclude(RecordDiagnosis(detector.design, record));
         auto& run = healthy_runs[static_cast<std::size_t>(i)];
         run.residual = result.first_detection;
         run.spectrum = result.disturbance.disturbed;
@@ -159,22 +155,10 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  NominalRuns nominal;
-  nominal.runs = 8;
-  const auto finish = [&](DiagnosisDesign design) {
-    Detector detector{std::move(design), {}};
-    NominalRuns runs = nominal;
-    if (baseline) {
-      detector.baseline = ResidualBaseline(detector.design, machine, motion, runs);
-      runs.seed += static_cast<std::uint64_t>(runs.runs);
-      detector.design.limits = CalibrateLimits(detector.design, machine, motion,
-                                               detector.baseline, runs);
-    } else {
-      detector.design.limits = CalibrateLimits(detector.design, machine, runs);
-    }
-    return detector;
-  };
-  const Detector common = finish(DesignFilters(machine));
+  DiagnosisSource source;
+  source.baseline = baseline;
+  source.nominal.runs = 8;
+  const PreparedDiagnosis common = PrepareDiagnosis(machine, source, motion);
 
   const auto& largest = machine.setup().Study("largest").values;
   const FaultSizes& published = machine.setup().Study(study);
@@ -193,17 +177,18 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                     {}};
   std::vector<Record> healthy_runs(kHealthyRuns);
   ParallelFor(kHealthyRuns, [&](int i) {
-    healthy_runs[static_cast<std::size_t>(i)] =
-        RunNonlinear(motion, WithFaults(machine, {},
-                            options.seed + 20000 + static_cast<std::uint64_t>(i)));
+    healthy_runs[static_cast<std::size_t>(i)] = RunNonlinear(
+        motion,
+        WithFaults(machine, {}, options.seed + 20000 + static_cast<std::uint64_t>(i)));
   });
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const auto& [fault, value] = largest[i];
     const double healthy = HealthyValue(machine.setup(), fault);
-    const Detector robust =
-        finish(DesignRobustFilters(machine, fault, motion, baseline));
+    source.robust = fault;
+    const PreparedDiagnosis robust = PrepareDiagnosis(machine, source, motion);
     const auto record_at = [&, &name = fault](double deviation) {
-      return RunNonlinear(motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
+      return RunNonlinear(
+          motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
     };
     // Three ways to see it; an estimate may come from either row.
     enum Way { kResidual, kRobust, kEstimate, kWays };

@@ -46,7 +46,7 @@ int Found(const std::vector<DiagnosisResult>& results, double frequency, double 
 std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
                                          const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  const DiagnosisDesign design = LinearDetector(machine).design;
+  const DiagnosisDesign design = LinearDiagnosis(machine).design;
   const double cell = design.limits.disturbance.nominal.resolution();
 
   StudyTable table{"Disturbances and noise, " + std::to_string(options.runs) +
@@ -61,14 +61,12 @@ std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
     ParallelFor(
         options.runs,
         [&](int i) {
-          FaultyMachine run =
-              WithFaults(machine, scenario.faults,
-                         options.seed + static_cast<std::uint64_t>(i));
+          FaultyMachine run = WithFaults(machine, scenario.faults,
+                                         options.seed + static_cast<std::uint64_t>(i));
           run.options.noise_scale = scenario.noise;
           const Record record = RunLinear(motion, run);
-          DiagnosisMonitor monitor(design, record.samples());
-          Run(monitor, design, record);
-          results[static_cast<std::size_t>(i)] = Conclude(design, monitor);
+          results[static_cast<std::size_t>(i)] =
+              Conclude(RecordDiagnosis(design, record));
         },
         options.progress);
     std::string found;

@@ -4,9 +4,6 @@
 #include <cmath>
 
 #include "mjdiag/diagnosis/distributions.h"
-#include "mjdiag/diagnosis/refined_estimate.h"
-#include "mjdiag/plugin/design/fault_models.h"
-#include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/bound_study.h"
 
@@ -29,14 +26,9 @@ VectorXd Truth(const Setup& setup, const DiagnosisDesign& design,
   return truth;
 }
 
-StudyTable Repeat(const Machine& machine,
-                  const DiagnosisDesign& design, const FaultSizes& sizes,
-                  const StudyOptions& options) {
+StudyTable Repeat(const Machine& machine, const DiagnosisDesign& design,
+                  const FaultSizes& sizes, const StudyOptions& options) {
   const Excitation motion = DefaultMotion(machine.setup());
-  const ModelAt model_at = FaultModels(machine);
-  const VectorXd magnitudes = Magnitudes(machine);
-  const SynthesisOptions synthesis =
-      SynthesisOf(machine.setup(), model_at(VectorXd::Ones(magnitudes.size())));
   std::vector<SizedFault> faults;
   for (const auto& [name, value] : sizes.values) faults.push_back({name, value});
 
@@ -44,11 +36,11 @@ StudyTable Repeat(const Machine& machine,
   ParallelFor(
       options.runs,
       [&](int i) {
-        const Record record =
-            RunLinear(motion, WithFaults(machine, faults,
-                                      options.seed + static_cast<std::uint64_t>(i)));
+        const Record record = RunLinear(
+            motion,
+            WithFaults(machine, faults, options.seed + static_cast<std::uint64_t>(i)));
         estimates[static_cast<std::size_t>(i)] =
-            RefineEstimate(design, synthesis, model_at, magnitudes, record).estimate;
+            RefineFaults(machine, design, record).estimate;
       },
       options.progress);
 

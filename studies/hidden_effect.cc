@@ -197,8 +197,7 @@ Record RunWithCauses(const Machine& machine, const std::vector<Cause>& causes,
 }
 
 /// The nominal motion posed with the noise of that seed.
-DiscoveryProblem PoseNominal(const Machine& machine,
-                             std::uint64_t seed) {
+DiscoveryProblem PoseNominal(const Machine& machine, std::uint64_t seed) {
   RunOptions noisy;
   noisy.seed = seed;
   return PoseProblem(machine, Simulate(machine, NominalMotion(machine.setup()), noisy),
@@ -210,8 +209,8 @@ DiscoveryProblem PoseNominal(const Machine& machine,
 VectorXd CleanResidual(const DiscoveryProblem& problem, const Cause& cause) {
   const Setup& setup = problem.machine.setup();
   DiscoveryProblem clean = problem;
-  clean.run = ToMeasuredRun(setup, RunWithCauses(problem.machine, {cause},
-                                                 NominalMotion(setup), 1, 0.0));
+  clean.run = ToMeasuredRun(
+      setup, RunWithCauses(problem.machine, {cause}, NominalMotion(setup), 1, 0.0));
   return clean.Residual({});
 }
 
@@ -247,8 +246,9 @@ Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate
   for (std::size_t u = 0; u < driven.size(); ++u) {
     if (driven[u] == candidate.joint) motor = u;
   }
-  scales.force =
-      nominal.At(problem.machine.setup().channels.actuators[motor].channel).samples.cwiseAbs().maxCoeff();
+  scales.force = nominal.At(problem.machine.channels().actuators[motor].channel)
+                     .samples.cwiseAbs()
+                     .maxCoeff();
   scales.stiffness = plant.jnt_stiffness[id];
   const int address = plant.jnt_qposadr[id];
   scales.strain = (q.array() - plant.qpos_spring[address]).abs().maxCoeff();
@@ -284,7 +284,8 @@ Cause DrawEffect(const Machine& machine, const std::string& type,
   const DiscoveryProblem problem = PoseNominal(machine, seed);
 
   if (type == "encoder_noise") {
-    const SensorSetup& sensor = machine.channels().sensors[random.Index(machine.channels().sensors.size())];
+    const SensorSetup& sensor =
+        machine.channels().sensors[random.Index(machine.channels().sensors.size())];
     return {{type, sensor.element, {{"sd", sensor.noise_sd * random.Log(0.5, 10.0)}}},
             false};
   }

@@ -31,8 +31,8 @@ struct HiddenSize {
 };
 
 /// A case with these causes; `seed` draws the noise.
-HiddenCase MakeCase(const Machine& machine,
-                    const std::vector<Cause>& truth, std::uint64_t seed);
+HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
+                    std::uint64_t seed);
 
 /// One effect of that type (a name of the catalogue, or "fault" for a knob) at a random
 /// site, with random shape and a size drawn from `size`. The same seed, the same

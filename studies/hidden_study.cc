@@ -81,7 +81,8 @@ double UnseenRatio(const Machine& machine, const HiddenCase& hidden,
   options.noise_scale = 0.0;
   Record simulated;
   try {
-    simulated = Simulate(machine.With(changes), Replay(machine.setup(), hidden.unseen), options);
+    simulated = Simulate(machine.With(changes), Replay(machine.setup(), hidden.unseen),
+                         options);
   } catch (const NumericalError&) {
     return std::numeric_limits<double>::infinity();
   }
@@ -127,8 +128,8 @@ bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& t
 
 }  // namespace
 
-HiddenOutcome RunHidden(const Machine& machine,
-                        const std::vector<std::string>& types, std::uint64_t seed) {
+HiddenOutcome RunHidden(const Machine& machine, const std::vector<std::string>& types,
+                        std::uint64_t seed) {
   HiddenOutcome outcome;
   const std::vector<Cause> truth = DrawEffects(machine, types, {}, seed);
   outcome.hidden = MakeCase(machine, truth, seed);
@@ -138,7 +139,8 @@ HiddenOutcome RunHidden(const Machine& machine,
   for (const Cause& cause : truth) {
     outcome.considered +=
         std::ranges::any_of(outcome.answer.causes, [&](const FoundCause& f) {
-          return Names(machine.plant(), f, cause) || IsAlternative(machine.plant(), f, cause);
+          return Names(machine.plant(), f, cause) ||
+                 IsAlternative(machine.plant(), f, cause);
         });
     const auto found = std::ranges::find_if(
         outcome.answer.causes,

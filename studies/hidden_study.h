@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/studies/hidden_effect.h"
 #include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/studies/hidden_effect.h"
 
 namespace mjdiag {
 
@@ -36,8 +36,8 @@ struct HiddenOutcome {
 
 /// @param causes  how many effects are hidden: 0, 1 or 2
 /// @param types   of the effects, as many as causes (see DrawEffect)
-HiddenOutcome RunHidden(const Machine& machine,
-                        const std::vector<std::string>& types, std::uint64_t seed);
+HiddenOutcome RunHidden(const Machine& machine, const std::vector<std::string>& types,
+                        std::uint64_t seed);
 
 /// The types of run number `run`: one after the other of the catalogue.
 std::vector<std::string> TypesOfRun(int run, int causes);

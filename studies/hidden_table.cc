@@ -4,8 +4,8 @@
 #include <chrono>
 #include <string>
 
-#include "mjdiag/studies/hidden_study.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
 namespace {
@@ -74,8 +74,8 @@ StudyTable Summary(const Count& count, int causes) {
 
 }  // namespace
 
-std::vector<StudyTable> HiddenStudy(const Machine& machine,
-                                    int causes, const StudyOptions& options) {
+std::vector<StudyTable> HiddenStudy(const Machine& machine, int causes,
+                                    const StudyOptions& options) {
   using Clock = std::chrono::steady_clock;
   StudyTable runs;
   runs.title = "Effects hidden in simulated measurements of " + machine.setup().name;
@@ -96,8 +96,8 @@ std::vector<StudyTable> HiddenStudy(const Machine& machine,
         const auto i = static_cast<std::size_t>(run);
         const std::uint64_t seed = options.seed + i;
         const auto start = Clock::now();
-        outcomes[i] = RunHidden(machine,
-                                TypesOfRun(static_cast<int>(seed - 1), causes), seed);
+        outcomes[i] =
+            RunHidden(machine, TypesOfRun(static_cast<int>(seed - 1), causes), seed);
         seconds[i] = std::chrono::duration<double>(Clock::now() - start).count();
       },
       options.progress);

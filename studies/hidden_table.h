@@ -13,7 +13,7 @@ namespace mjdiag {
 
 /// options.runs runs with `causes` hidden effects each (0, 1 or 2), seeds from
 /// options.seed on: one row a run, and how many were right.
-std::vector<StudyTable> HiddenStudy(const Machine& machine,
-                                    int causes, const StudyOptions& options);
+std::vector<StudyTable> HiddenStudy(const Machine& machine, int causes,
+                                    const StudyOptions& options);
 
 }  // namespace mjdiag

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/design/filter_design.h"
-
 namespace mjdiag {
 namespace {
 
@@ -46,19 +44,16 @@ Excitation DefaultMotion(const Setup& setup) {
   return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
 }
 
-Detector LinearDetector(const Machine& machine) {
-  Detector detector{DesignFilters(machine), {}};
-  NominalRuns nominal;
-  nominal.linear = true;
-  detector.design.limits = CalibrateLimits(detector.design, machine, nominal);
-  return detector;
+PreparedDiagnosis LinearDiagnosis(const Machine& machine) {
+  DiagnosisSource source;
+  source.nominal.linear = true;
+  return PrepareDiagnosis(machine, source);
 }
 
-Detection Look(const Detector& detector, const Record& record,
+Detection Look(const PreparedDiagnosis& prepared, const Record& record,
                const std::string& fault) {
-  DiagnosisMonitor monitor(detector.design, record.samples(), detector.baseline);
-  Run(monitor, detector.design, record);
-  const DiagnosisResult result = Conclude(detector.design, monitor);
+  const DiagnosisResult result =
+      Conclude(RecordDiagnosis(prepared.design, record, prepared.baseline));
   Detection detection{result.first_detection, result.disturbance.disturbed, false, 0.0};
   for (const FaultVerdict& verdict : result.faults) {
     if (verdict.name != fault) continue;

@@ -1,13 +1,13 @@
 #pragma once
-// What all studies share: the machine, its design, runs with a fault, and what several
-// detectors say to a run.
+// What all studies share: the machine, its diagnosis, runs with a fault, and what is
+// seen in them.
 
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/diagnosis_result.h"
+#include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
@@ -40,19 +40,13 @@ Record RunNonlinear(const Excitation& motion, const FaultyMachine& faulty);
 /// 0 for a disturbance of the setup, else 1.
 double HealthyValue(const Setup& setup, const std::string& fault);
 
-/// One way to look at a record.
-struct Detector {
-  DiagnosisDesign design;
-  Eigen::MatrixXd baseline;  ///< or empty
-};
-
 /// The default trajectory of a setup.
 Excitation DefaultMotion(const Setup& setup);
 
 /// The setup's filters with limits from nominal runs of the linear plant.
-Detector LinearDetector(const Machine& machine);
+PreparedDiagnosis LinearDiagnosis(const Machine& machine);
 
-/// What it sees.
+/// What a diagnosis sees.
 struct Detection {
   std::optional<double> residual;  ///< when the residual left its limits [s]
   bool spectrum = false;           ///< tones or raised noise
@@ -60,7 +54,9 @@ struct Detection {
   double value = 0.0;              ///< its estimate
 };
 
-Detection Look(const Detector& detector, const Record& record,
+/// In a record, all of which is regressed. Cross terms of large faults stay in: the
+/// faults here are single ones.
+Detection Look(const PreparedDiagnosis& prepared, const Record& record,
                const std::string& fault);
 
 /// The smallest deviation from healthy, by bisection on its logarithm between `seen`

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "mjdiag/discovery/checks/clock_drift.h"
-#include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
@@ -124,7 +124,8 @@ void RecordCheck::CheckLength() const {
 
 void RecordCheck::CheckFinite() const {
   std::set<std::string> needed;
-  for (const SensorSetup& sensor : setup().channels.sensors) needed.insert(sensor.channel);
+  for (const SensorSetup& sensor : setup().channels.sensors)
+    needed.insert(sensor.channel);
   for (const ActuatorSetup& actuator : setup().channels.actuators) {
     needed.insert(actuator.channel);
   }
@@ -360,8 +361,8 @@ void RecordCheck::CheckUnits() const {
     for (const AxisSetup& axis : setup().control.axes) {
       const Likeness likeness =
           Liken(Reading(axis.actuator), Counted(*simulated_, axis.actuator));
-      const auto mistake =
-          FindMistake(likeness.factor, IsAngle(setup().channels.Sensor(axis.sensor).unit));
+      const auto mistake = FindMistake(
+          likeness.factor, IsAngle(setup().channels.Sensor(axis.sensor).unit));
       if (!mistake || likeness.correlation < kInputLike) continue;
       RefuseUnit(axis.actuator, setup().channels.Actuator(axis.actuator).unit, *mistake,
                  "what the plant needs for that motion",
@@ -389,8 +390,7 @@ void RecordCheck::CheckUnits() const {
 
 }  // namespace
 
-std::vector<std::string> CheckRecord(const Machine& machine,
-                                     const Record& measured) {
+std::vector<std::string> CheckRecord(const Machine& machine, const Record& measured) {
   return RecordCheck(machine, measured).Check();
 }
 

@@ -37,7 +37,6 @@ namespace mjdiag {
 /// @return what one should know and can live with, sentences for people
 /// InputError names the channel and what is wrong with it; also if the record lacks
 /// what the replay needs (see ToMeasuredRun).
-std::vector<std::string> CheckRecord(const Machine& machine,
-                                     const Record& measured);
+std::vector<std::string> CheckRecord(const Machine& machine, const Record& measured);
 
 }  // namespace mjdiag

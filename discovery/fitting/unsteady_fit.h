@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 
 namespace mjdiag {

@@ -115,8 +115,8 @@ std::vector<Candidate> KnobCandidates(const Machine& machine) {
     const int element = knob.elements.front();
     if (knob.kind == KnobKind::kGear) {
       const std::string name = ElementName(machine.plant(), mjOBJ_ACTUATOR, element);
-      const auto place =
-          std::ranges::find(machine.channels().actuators, name, &ActuatorSetup::element);
+      const auto place = std::ranges::find(machine.channels().actuators, name,
+                                           &ActuatorSetup::element);
       if (place == machine.channels().actuators.end()) continue;
       candidate.channel = place - machine.channels().actuators.begin();
       candidate.joint =
@@ -156,13 +156,14 @@ std::vector<Candidate> AllSites(const Machine& machine) {
     if (type.name == "encoder_noise") continue;
     if (type.site == EffectSite::kActuator) {
       for (std::size_t u = 0; u < machine.channels().actuators.size(); ++u) {
-        add(MakeCandidate(machine.plant(), type, machine.channels().actuators[u].element, driven[u],
+        add(MakeCandidate(machine.plant(), type,
+                          machine.channels().actuators[u].element, driven[u],
                           static_cast<Index>(u)));
       }
     } else if (type.site == EffectSite::kSensor) {
       for (std::size_t y = 0; y < machine.channels().sensors.size(); ++y) {
-        add(MakeCandidate(machine.plant(), type, machine.channels().sensors[y].element, seen[y],
-                          static_cast<Index>(y)));
+        add(MakeCandidate(machine.plant(), type, machine.channels().sensors[y].element,
+                          seen[y], static_cast<Index>(y)));
       }
     } else {
       for (const Index joint : JointSites(machine.plant(), model, type)) {

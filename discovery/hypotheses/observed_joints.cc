@@ -13,15 +13,14 @@ constexpr double kBandwidth = 0.02;
 
 }  // namespace
 
-Record WithObservedJoints(const Machine& machine,
-                          const Record& measured) {
+Record WithObservedJoints(const Machine& machine, const Record& measured) {
   const DiscoveryProblem problem =
       PoseProblem(machine, measured, 1.0, kBandwidth * machine.rates().control);
   const Track track = FollowRun(machine, {}, problem.run, problem.observer, true);
   Record seen = measured;
   for (int joint = 0; joint < machine.plant().njnt; ++joint) {
-    Channel channel =
-        JointChannel(machine.plant(), joint, track.position.row(machine.plant().jnt_dofadr[joint]));
+    Channel channel = JointChannel(
+        machine.plant(), joint, track.position.row(machine.plant().jnt_dofadr[joint]));
     if (!seen.Find(channel.name)) seen.Add(std::move(channel));
   }
   return seen;

@@ -12,7 +12,6 @@ namespace mjdiag {
 
 /// The record with a channel "joint.<name>" for every joint that it has none of.
 /// InputError where a sensor or an actuator of the setup is missing in it.
-Record WithObservedJoints(const Machine& machine,
-                          const Record& measured);
+Record WithObservedJoints(const Machine& machine, const Record& measured);
 
 }  // namespace mjdiag

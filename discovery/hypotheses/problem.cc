@@ -54,15 +54,15 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
     const double of_record = NoiseLevel(run.outputs.row(i));
     const double of_innovations =
         innovations.size() > 0 ? NoiseLevel(innovations.row(i)) : of_record;
-    sd[i] = std::max(std::min(of_record, of_innovations),
-                     Floor(channels.sensors[static_cast<std::size_t>(i)], run.outputs, i));
+    sd[i] =
+        std::max(std::min(of_record, of_innovations),
+                 Floor(channels.sensors[static_cast<std::size_t>(i)], run.outputs, i));
   }
   return sd;
 }
 
-DiscoveryProblem PoseProblem(const Machine& machine,
-                             const Record& measured, double train_share,
-                             double bandwidth) {
+DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
+                             double train_share, double bandwidth) {
   DiscoveryProblem problem{.machine = machine,
                            .run = ToMeasuredRun(machine.setup(), measured)};
   problem.skip = machine.setup().compare.skip_samples;
@@ -74,9 +74,9 @@ DiscoveryProblem PoseProblem(const Machine& machine,
   // Twice: the noise is known better once the motion is taken out.
   Eigen::MatrixXd innovations;
   for (int round = 0; round < 2; ++round) {
-    problem.observer =
-        DesignObserver(machine.linear(), problem.step(), machine.rates().substeps,
-                       SensorNoise(machine.channels(), problem.run, innovations), hertz);
+    problem.observer = DesignObserver(
+        machine.linear(), problem.step(), machine.rates().substeps,
+        SensorNoise(machine.channels(), problem.run, innovations), hertz);
     if (round == 0) {
       innovations =
           FollowRun(machine, {}, problem.run, problem.observer, false).innovations;

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/tracking.h"
-#include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
 
@@ -41,9 +41,8 @@ Eigen::VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
 
 /// @param train_share  of the record that fits see, 0 to 1
 /// @param bandwidth    of the observer [Hz]; 0: 25 over the duration of the record
-DiscoveryProblem PoseProblem(const Machine& machine,
-                             const Record& measured, double train_share,
-                             double bandwidth);
+DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
+                             double train_share, double bandwidth);
 
 /// The problem cut to the first `samples` samples, all of them for the fit.
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Eigen::Index samples);

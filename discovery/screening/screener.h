@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
 
 namespace mjdiag {
 

@@ -54,12 +54,14 @@ Screening Screen(const DiscoveryProblem& problem,
     const double duration =
         static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
     std::vector<Trial> trials;
-    if (const auto sweep = MakeSweep(problem.machine.linear(), candidate, motion, duration)) {
+    if (const auto sweep =
+            MakeSweep(problem.machine.linear(), candidate, motion, duration)) {
       tried[c] = static_cast<int>(sweep->values.size());
       trials =
           screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
     } else {
-      trials = MakeTrials(problem.machine.plant(), problem.machine.linear(), candidate, motion);
+      trials = MakeTrials(problem.machine.plant(), problem.machine.linear(), candidate,
+                          motion);
       tried[c] = static_cast<int>(trials.size());
     }
     for (auto& start : screener.Judge(trials, candidate)) {
@@ -84,8 +86,8 @@ Screening ScreenBeside(const DiscoveryProblem& problem,
                        const MatrixXd& sensitivities, int starts_each) {
   const DiscoveryProblem seen = Beginning(problem, problem.train);
   const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, causes));
-  return Screen(seen, candidates, ObserveMotion(seen.machine, seen.run, track), dynamics,
-                seen.Scaled(track), sensitivities, starts_each);
+  return Screen(seen, candidates, ObserveMotion(seen.machine, seen.run, track),
+                dynamics, seen.Scaled(track), sensitivities, starts_each);
 }
 
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
@@ -105,7 +107,8 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
       trials.push_back(sweep->make(screener.ValueAt(*sweep, place)));
     }
   } else {
-    trials = MakeTrials(problem.machine.plant(), problem.machine.linear(), wave, motion);
+    trials =
+        MakeTrials(problem.machine.plant(), problem.machine.linear(), wave, motion);
   }
   std::vector<Start> starts;
   for (auto& start : screener.Judge(trials, wave)) {

@@ -17,9 +17,9 @@
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
-#include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
 
 namespace mjdiag {
 

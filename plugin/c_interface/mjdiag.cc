@@ -48,7 +48,9 @@ const char* mjdiag_version(void) { return MJDIAG_VERSION; }
 const char* mjdiag_last_error(void) { return last_error.c_str(); }
 
 int mjdiag_prepare(mjModel* model, const char* setup) {
-  return Guard([&] { mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)).physics, *model); })
+  return Guard([&] {
+    mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)).physics, *model);
+  })
              ? 0
              : 1;
 }

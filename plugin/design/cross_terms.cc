@@ -36,10 +36,7 @@ class Simulator {
  public:
   Simulator(const DiagnosisDesign& design, const Machine& machine,
             const DiagnosedMotion& motion)
-      : design_(design),
-        machine_(machine),
-        motion_(motion),
-        healthy_(Estimates({})) {}
+      : design_(design), machine_(machine), motion_(motion), healthy_(Estimates({})) {}
 
   /// D(f), a fault each.
   VectorXd EstimatesOf(const std::vector<Named>& named) const {
@@ -48,8 +45,9 @@ class Simulator {
 
  private:
   VectorXd Estimates(const std::vector<Named>& named) const {
-    DiagnosisMonitor monitor(design_, motion_.excitation.samples(), motion_.baseline);
+    DiagnosisMonitor monitor(design_, motion_.baseline);
     monitor.RegressFrom(motion_.first_regressed);
+    MonitorObserver observer(monitor);
     RunOptions options;
     options.seed = motion_.runs.seed;
     Changes changes;
@@ -57,7 +55,8 @@ class Simulator {
       changes.faults.push_back(
           {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
     }
-    RunWith(monitor, machine_.With(changes), motion_.excitation, options, motion_.runs.linear);
+    RunWith(machine_.With(changes), motion_.excitation, observer, options,
+            motion_.runs.linear);
     return monitor.estimator().Estimate().value;
   }
 
@@ -162,8 +161,7 @@ class CrossTerms {
 }  // namespace
 
 void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
-                      const Machine& machine,
-                      const DiagnosedMotion& motion) {
+                      const Machine& machine, const DiagnosedMotion& motion) {
   constexpr int kRuns = 16;
   CrossTerms terms(result.faults, design.bank.faults.size());
   if (!terms.NameNext()) return;

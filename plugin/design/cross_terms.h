@@ -30,7 +30,6 @@ struct DiagnosedMotion {
 /// `cross_term` and are no longer `detected`, the others have the value f. Nothing
 /// changes where no such f is found.
 void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
-                      const Machine& machine,
-                      const DiagnosedMotion& motion);
+                      const Machine& machine, const DiagnosedMotion& motion);
 
 }  // namespace mjdiag

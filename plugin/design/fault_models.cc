@@ -44,8 +44,9 @@ Eigen::VectorXd Magnitudes(const Machine& machine) {
         std::find_if(knobs.begin(), knobs.end(),
                      [&n = name](const Fault& knob) { return knob.name == n; });
     if (found == knobs.end()) {
-      throw InputError("setup '" + machine.setup().name + "': diagnosis.estimation.magnitudes",
-                       "the plant has no knob '" + name + "'", "one of " + known);
+      throw InputError(
+          "setup '" + machine.setup().name + "': diagnosis.estimation.magnitudes",
+          "the plant has no knob '" + name + "'", "one of " + known);
     }
     magnitudes[found - knobs.begin()] = magnitude;
   }
@@ -98,8 +99,8 @@ std::vector<TurnedModels> TurnModels(const Machine& machine) {
 std::vector<Multisine> Multisines(const Setup& setup) {
   std::vector<Multisine> sines;
   for (const MultisineSetup& source : setup.disturbances) {
-    Eigen::VectorXd amplitude =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.channels.actuators.size()));
+    Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(
+        static_cast<Eigen::Index>(setup.channels.actuators.size()));
     for (const auto& [channel, value] : source.amplitude) {
       amplitude[setup.channels.ActuatorIndex(channel)] = value;
     }

@@ -5,12 +5,11 @@
 #include <random>
 
 #include "mjdiag/diagnosis/distributions.h"
-#include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/diagnosis/row_choice.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/error.h"
 
@@ -102,10 +101,10 @@ DisturbanceFilter DesignDisturbanceFilter(const MechanicalModel& healthy,
                                           const Setup& setup) {
   const DiagnosisOptions& wanted = setup.diagnosis;
   SynthesisOptions options = SynthesisOf(setup, healthy);
-  options.denominator = wanted.disturbance_denominator;
+  options.residual.denominator = wanted.disturbance_denominator;
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const FilterBank all =
-      MakeFilterBank(space.rows, options.denominator, options.timing.tick());
+      MakeFilterBank(space.rows, options.residual.denominator, options.timing.tick());
   const VectorXd row = RowForTones(all, options.sensor_noise, Multisines(setup));
   const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
   return {Outputs(bank.filters, 0, 1),
@@ -133,8 +132,9 @@ void RequireBlindness(const DiagnosisDesign& design, const MatrixXd& healthy_run
       FilterSignals(design.bank.filters, healthy_run).topRows(design.bank.residuals);
   const double leak = residuals.cwiseAbs().maxCoeff();
   if (leak > kLeak) {
-    throw NumericalError("rows of degree " + std::to_string(design.options.degree) +
-                         " at " + std::to_string(design.options.denominator.cutoff) +
+    throw NumericalError("rows of degree " +
+                         std::to_string(design.options.residual.degree) + " at " +
+                         std::to_string(design.options.residual.denominator.cutoff) +
                          " Hz lose their digits: a healthy run without noise leaves " +
                          std::to_string(leak) +
                          " times the noise; a lower degree or a higher cut-off "
@@ -149,18 +149,22 @@ struct NominalLog {
   MatrixXd rows;
 };
 
-NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                      const MatrixXd& baseline, std::uint64_t seed, bool linear) {
-  DiagnosisMonitor monitor(design, excitation.samples(), baseline);
+NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine,
+                      const Excitation& excitation, const MatrixXd& baseline,
+                      std::uint64_t seed, bool linear) {
+  DiagnosisRecording recording(design, excitation.samples(), baseline);
+  MonitorObserver observer(recording);
   RunOptions options;
   options.seed = seed;
-  RunWith(monitor, machine, excitation, options, linear);
-  return {monitor.Log(), monitor.estimate(), monitor.ResidualRows()};
+  RunWith(machine, excitation, observer, options, linear);
+  return {recording.recorder.Log(), recording.monitor.estimate(),
+          recording.recorder.ResidualRows()};
 }
 
 /// Runs of one motion that differ in their noise.
-std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                                const MatrixXd& baseline, const NominalRuns& options) {
+std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Machine& machine,
+                                const Excitation& excitation, const MatrixXd& baseline,
+                                const NominalRuns& options) {
   std::vector<NominalLog> logs(static_cast<std::size_t>(options.runs));
   ParallelFor(
       options.runs,
@@ -229,8 +233,7 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
 SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy) {
   SynthesisOptions options;
   options.timing = {setup.rates.step(), setup.rates.substeps};
-  options.degree = setup.diagnosis.degree;
-  options.denominator = setup.diagnosis.denominator;
+  options.residual = setup.diagnosis.residual;
   options.sensor_noise.resize(static_cast<Index>(setup.channels.sensors.size()));
   for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
     options.sensor_noise[static_cast<Index>(i)] = setup.channels.sensors[i].noise_sd;
@@ -259,13 +262,11 @@ Record LinearRun(const Machine& machine) {
   return SimulateLinear(machine, DefaultExcitation(machine.setup()), options);
 }
 
-DiagnosisDesign DesignFilters(const Machine& machine,
-                              const RowSettings& settings) {
-  const MechanicalModel healthy = machine.linear();
+DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings) {
+  const MechanicalModel& healthy = machine.linear();
   const std::vector<TurnedModels> turned = TurnModels(machine);
   SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
-  options.degree = settings.degree;
-  options.denominator = settings.denominator;
+  options.residual = settings.residual;
   DiagnosisDesign design;
   design.setup = machine.setup().name;
   design.outputs = healthy.outputs;
@@ -273,8 +274,7 @@ DiagnosisDesign DesignFilters(const Machine& machine,
   design.offset = SensorReadings(machine.channels(), machine.plant(), machine.rest());
   design.sensor_noise = options.sensor_noise;
   design.options = machine.setup().diagnosis;
-  design.options.degree = settings.degree;
-  design.options.denominator = settings.denominator;
+  design.options.residual = settings.residual;
   design.options.estimation_rows = settings.rows;
   design.stride = Stride(machine.setup());
   design.disturbances = Multisines(machine.setup());
@@ -296,17 +296,18 @@ DiagnosisDesign DesignFilters(const Machine& machine,
 
 DiagnosisDesign DesignFilters(const Machine& machine) {
   const DiagnosisOptions& wanted = machine.setup().diagnosis;
-  return DesignFilters(machine,
-                       {wanted.degree, wanted.denominator, wanted.estimation_rows});
+  return DesignFilters(machine, {wanted.residual, wanted.estimation_rows});
 }
 
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const NominalRuns& options) {
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
+                                const NominalRuns& options) {
   std::vector<NominalLog> others;
   for (const std::string& name : machine.setup().diagnosis.trajectories) {
     NominalRuns single = options;
     single.runs = 1;
     single.progress = nullptr;
-    const Excitation excitation = FollowTrajectory(machine.setup(), machine.setup().trajectories.Find(name));
+    const Excitation excitation =
+        FollowTrajectory(machine.setup(), machine.setup().trajectories.Find(name));
     others.push_back(RunMany(design, machine, excitation, {}, single).front());
   }
   const auto repeated =
@@ -314,17 +315,17 @@ DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& ma
   return LimitsOf(design, repeated, others, options.linear);
 }
 
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                                const MatrixXd& baseline, const NominalRuns& options) {
-  return LimitsOf(design, RunMany(design, machine, excitation, baseline, options),
-                  {}, options.linear);
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
+                                const Excitation& excitation, const MatrixXd& baseline,
+                                const NominalRuns& options) {
+  return LimitsOf(design, RunMany(design, machine, excitation, baseline, options), {},
+                  options.linear);
 }
 
-MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
-                          const NominalRuns& options) {
+MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine,
+                          const Excitation& excitation, const NominalRuns& options) {
   MatrixXd mean;
-  for (const NominalLog& nominal :
-       RunMany(design, machine, excitation, {}, options)) {
+  for (const NominalLog& nominal : RunMany(design, machine, excitation, {}, options)) {
     mean = mean.size() == 0 ? nominal.rows : (mean + nominal.rows).eval();
   }
   return mean / static_cast<double>(options.runs);

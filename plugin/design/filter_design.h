@@ -27,15 +27,13 @@ Record LinearRun(const Machine& machine);
 
 /// Which rows the residuals are made of.
 struct RowSettings {
-  int degree = 7;
-  Denominator denominator;
+  ResidualOrder residual;
   int rows = 1;  ///< how many; 0: all of the null space
 };
 
 /// Residual row, prefilters and disturbance filter of the healthy plant, without
 /// limits. The row is the one that sees all faults best on LinearRun.
-DiagnosisDesign DesignFilters(const Machine& machine,
-                              const RowSettings& settings);
+DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings);
 /// With the rows that the setup asks for.
 DiagnosisDesign DesignFilters(const Machine& machine);
 
@@ -49,16 +47,19 @@ struct NominalRuns {
 
 /// Limits (Eq. 20, 21, 29, 30) from one run of every trajectory that the setup lists
 /// for thresholds and some of its default one.
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const NominalRuns& options);
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
+                                const NominalRuns& options);
 
 /// Limits for one motion, with its baseline subtracted in every run (section A.6 of the
 /// seed); the runs do not share seeds with those of the baseline.
-DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
+DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
+                                const Excitation& excitation,
                                 const Eigen::MatrixXd& baseline,
                                 const NominalRuns& options);
 
 /// Mean residuals of the healthy plant over this motion, n x samples.
-Eigen::MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine, const Excitation& excitation,
+Eigen::MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine,
+                                 const Excitation& excitation,
                                  const NominalRuns& options);
 
 }  // namespace mjdiag

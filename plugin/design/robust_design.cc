@@ -67,7 +67,8 @@ MatrixXd DisturbanceResponse(const DiagnosisDesign& design, Index source,
 }
 
 /// Residuals that a unit of the fault leaves over the healthy linear run, k x N.
-MatrixXd Response(const DiagnosisDesign& design, const Machine& machine, const std::string& fault) {
+MatrixXd Response(const DiagnosisDesign& design, const Machine& machine,
+                  const std::string& fault) {
   const std::vector<std::string> names = design.FaultNames();
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {
@@ -88,12 +89,10 @@ MatrixXd Response(const DiagnosisDesign& design, const Machine& machine, const s
 
 }  // namespace
 
-DiagnosisDesign DesignRobustFilters(const Machine& machine,
-                                    const std::string& fault,
+DiagnosisDesign DesignRobustFilters(const Machine& machine, const std::string& fault,
                                     const Excitation& excitation, bool baseline) {
   const RobustOptions& wanted = machine.setup().diagnosis.robust;
-  DiagnosisDesign design =
-      DesignFilters(machine, {wanted.degree, wanted.denominator, 0});
+  DiagnosisDesign design = DesignFilters(machine, {wanted.residual, 0});
   const MatrixXd response = Response(design, machine, fault);
   const MatrixXd nuisance =
       NuisanceEnergy(NominalResiduals(design, machine, excitation), baseline);

@@ -20,8 +20,7 @@ namespace mjdiag {
 /// @param excitation  motion of the nominal runs
 /// @param baseline    judge the rows by what differs between runs, for a diagnosis that
 ///                    subtracts a baseline
-DiagnosisDesign DesignRobustFilters(const Machine& machine,
-                                    const std::string& fault,
+DiagnosisDesign DesignRobustFilters(const Machine& machine, const std::string& fault,
                                     const Excitation& excitation, bool baseline);
 
 }  // namespace mjdiag

@@ -73,9 +73,8 @@ const Eigen::VectorXd& Machine::rest() const {
 }
 
 const MechanicalModel& Machine::linear() const {
-  std::call_once(derived_->linear_once, [this] {
-    derived_->linear = Linearize(*plant_, channels(), rest());
-  });
+  std::call_once(derived_->linear_once,
+                 [this] { derived_->linear = Linearize(*plant_, channels(), rest()); });
   return derived_->linear;
 }
 

@@ -17,8 +17,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/plant/tangent.h"
+#include "mjdiag/plugin/replay/observer.h"
 
 namespace mjdiag {
 

@@ -114,27 +114,29 @@ MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   MeasuredRun run;
   run.sample_time = setup.rates.tick();
   run.start = Replay(setup, measured).start;
-  run.outputs.resize(static_cast<Index>(setup.channels.sensors.size()), measured.samples());
-  run.inputs.resize(static_cast<Index>(setup.channels.actuators.size()), measured.samples());
+  run.outputs.resize(static_cast<Index>(setup.channels.sensors.size()),
+                     measured.samples());
+  run.inputs.resize(static_cast<Index>(setup.channels.actuators.size()),
+                    measured.samples());
   for (Index i = 0; i < run.outputs.rows(); ++i) {
     const SensorSetup& sensor = setup.channels.sensors[static_cast<std::size_t>(i)];
     run.outputs.row(i) = Samples(measured, sensor.channel, sensor.unit);
   }
   for (Index i = 0; i < run.inputs.rows(); ++i) {
-    const ActuatorSetup& actuator = setup.channels.actuators[static_cast<std::size_t>(i)];
+    const ActuatorSetup& actuator =
+        setup.channels.actuators[static_cast<std::size_t>(i)];
     run.inputs.row(i) = Samples(measured, actuator.channel, actuator.unit);
   }
   return run;
 }
 
-Track FollowRun(const Machine& machine, const Changes& changes,
-                const MeasuredRun& run, const Observer& observer, bool states) {
+Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
+                const Observer& observer, bool states) {
   return Follow(machine, changes, run, observer, states, {});
 }
 
-Track FollowRun(const Machine& machine, const Changes& changes,
-                const MeasuredRun& run, const Observer& observer,
-                ErrorDynamics& dynamics) {
+Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
+                const Observer& observer, ErrorDynamics& dynamics) {
   TangentRecorder recorder(machine.plant(), machine.linear());
   const Watch watch{[&recorder](const mjModel& changed, const mjData& data) {
                       recorder.Substep(changed, data);

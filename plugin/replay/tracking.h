@@ -7,9 +7,9 @@
 
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/plugin/replay/observer.h"
-#include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -37,14 +37,13 @@ struct Track {
 /// @param machine  the nominal one
 /// @param states   whether to keep the trajectory of the joints
 /// NumericalError if the run diverges.
-Track FollowRun(const Machine& machine, const Changes& changes,
-                const MeasuredRun& run, const Observer& observer, bool states);
+Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
+                const Observer& observer, bool states);
 
 /// The same, and the first order of it.
 /// @param dynamics  every tick is added to it
-Track FollowRun(const Machine& machine, const Changes& changes,
-                const MeasuredRun& run, const Observer& observer,
-                ErrorDynamics& dynamics);
+Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
+                const Observer& observer, ErrorDynamics& dynamics);
 
 /// The motion that the joints of a track made, with what was measured beside it.
 ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,

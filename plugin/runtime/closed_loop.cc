@@ -26,7 +26,8 @@ Eigen::MatrixXd ClosedLoopMatrix(const StateSpace& plant, const Setup& setup) {
     // u = drive_gain (C_c x_c - D_c y), y = c x
     const Eigen::VectorXd input =
         axis.drive_gain * plant.B.col(setup.channels.ActuatorIndex(axis.actuator));
-    const Eigen::RowVectorXd output = plant.C.row(setup.channels.SensorIndex(axis.sensor));
+    const Eigen::RowVectorXd output =
+        plant.C.row(setup.channels.SensorIndex(axis.sensor));
     Eigen::MatrixXd next = Eigen::MatrixXd::Zero(n + nc, n + nc);
     next.topLeftCorner(n, n) = closed;
     next.topLeftCorner(plant.states(), plant.states()) -=

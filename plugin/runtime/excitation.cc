@@ -77,11 +77,12 @@ Excitation Replay(const Setup& setup, const Record& measured) {
   }
   excitation.reference.sample_time = setup.rates.tick();
   for (const AxisSetup& axis : setup.control.axes) {
-    excitation.reference.axes.push_back(
-        MeasuredReference(measured, axis.name, setup.channels.Sensor(axis.sensor).unit));
+    excitation.reference.axes.push_back(MeasuredReference(
+        measured, axis.name, setup.channels.Sensor(axis.sensor).unit));
     excitation.start[axis.sensor] = StartReading(
         setup.channels.Sensor(axis.sensor),
-        Measured(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit).samples[0],
+        Measured(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit)
+            .samples[0],
         excitation.reference.axes.back().position[0]);
     if (const Channel* known = measured.Find(axis.known_disturbance)) {
       excitation.inputs.Add(*known);

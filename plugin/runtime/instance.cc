@@ -15,7 +15,9 @@ constexpr double kMark = 7.2657474e-169;
 static_assert(sizeof(mjtNum) == sizeof(std::uintptr_t), "a slot must hold a pointer");
 
 mjtNum* Slots(const mjModel& model, const mjData& data) {
-  return model.nuserdata < kInstanceSlots ? nullptr : data.userdata + model.nuserdata - kInstanceSlots;
+  return model.nuserdata < kInstanceSlots
+             ? nullptr
+             : data.userdata + model.nuserdata - kInstanceSlots;
 }
 
 // What was installed before; serves the data that carry no mark.

@@ -6,8 +6,8 @@
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/runtime/instance.h"
 #include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/runtime/instance.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -107,9 +107,8 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
   const Eigen::Index nq = linear.M.rows();
   const Eigen::Index ticks = excitation.samples();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * nq);
-  x.head(nq) = StartPosition(machine.channels(), machine.plant(), rest,
-                             excitation.start) -
-               rest;
+  x.head(nq) =
+      StartPosition(machine.channels(), machine.plant(), rest, excitation.start) - rest;
   Eigen::VectorXd next(2 * nq);
   Eigen::VectorXd y(rest_reading.size());
   Eigen::VectorXd u = Eigen::VectorXd::Zero(tick_model.inputs());
@@ -126,10 +125,9 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
     next.noalias() += tick_model.B * u;
     x.swap(next);
     if (Eigen::Index worst; !(x.cwiseAbs().maxCoeff(&worst) < mjMAXVAL)) {
-      throw NumericalError(
-          "simulation: linear plant diverged at " +
-          std::to_string(static_cast<double>(tick) * rates.tick()) +
-          " s in joint '" + linear.coordinates[worst % nq] + "'");
+      throw NumericalError("simulation: linear plant diverged at " +
+                           std::to_string(static_cast<double>(tick) * rates.tick()) +
+                           " s in joint '" + linear.coordinates[worst % nq] + "'");
     }
     ReportProgress(options, tick, ticks);
   }

@@ -21,6 +21,13 @@ double Cutoff(const TomlTable& table, const Setup& setup, double fallback) {
   return cutoff;
 }
 
+void ReadOrder(const TomlTable& table, const Setup& setup, ResidualOrder& residual) {
+  residual.degree = table.Integer("degree", 1, kHighestDegree, residual.degree);
+  Denominator& denominator = residual.denominator;
+  denominator.order = table.Integer("order", 1, kHighestOrder, denominator.order);
+  denominator.cutoff = Cutoff(table, setup, denominator.cutoff);
+}
+
 void ReadThresholds(const TomlTable& table, const Setup& setup,
                     DiagnosisOptions& options) {
   options.margin = table.Number("margin", kMargin, options.margin);
@@ -30,7 +37,8 @@ void ReadThresholds(const TomlTable& table, const Setup& setup,
   options.trajectories = table.Texts("trajectories", {});
   for (const std::string& name : options.trajectories) {
     const auto named = [&](const Trajectory& t) { return t.name == name; };
-    if (!std::any_of(setup.trajectories.all.begin(), setup.trajectories.all.end(), named)) {
+    if (!std::any_of(setup.trajectories.all.begin(), setup.trajectories.all.end(),
+                     named)) {
       table.Fail("trajectories", "there is no trajectory '" + name + "'",
                  "names under [trajectories]");
     }
@@ -71,10 +79,7 @@ void ReadDisturbance(const TomlTable& table, const Setup& setup,
 }
 
 void ReadRobust(const TomlTable& table, const Setup& setup, RobustOptions& robust) {
-  robust.degree = table.Integer("degree", 1, kHighestDegree, robust.degree);
-  Denominator& denominator = robust.denominator;
-  denominator.order = table.Integer("order", 1, kHighestOrder, denominator.order);
-  denominator.cutoff = Cutoff(table, setup, denominator.cutoff);
+  ReadOrder(table, setup, robust.residual);
   robust.runs = table.Integer("runs", 2, 1000, robust.runs);
 }
 
@@ -82,10 +87,7 @@ void ReadRobust(const TomlTable& table, const Setup& setup, RobustOptions& robus
 
 DiagnosisOptions ReadDiagnosis(const TomlTable& table, const Setup& setup) {
   DiagnosisOptions options;
-  options.degree = table.Integer("degree", 1, kHighestDegree, options.degree);
-  options.denominator.order =
-      table.Integer("order", 1, kHighestOrder, options.denominator.order);
-  options.denominator.cutoff = Cutoff(table, setup, options.denominator.cutoff);
+  ReadOrder(table, setup, options.residual);
   options.unknown_forces = table.Texts("unknown_forces", {});
   if (const auto thresholds = table.FindTable("thresholds")) {
     ReadThresholds(*thresholds, setup, options);

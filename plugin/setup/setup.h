@@ -84,7 +84,7 @@ struct Rates {
   double control = 0.0;  ///< [Hz]
   int substeps = 1;      ///< physics steps a control tick
 
-  double tick() const { return 1.0 / control; }           ///< [s]
+  double tick() const { return 1.0 / control; }             ///< [s]
   double step() const { return 1.0 / control / substeps; }  ///< of the physics [s]
 };
 

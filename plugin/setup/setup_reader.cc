@@ -123,7 +123,8 @@ void ReadPhysics(const TomlTable& root, Setup& setup) {
   const std::optional<TomlTable> physics = root.FindTable("physics");
   if (!physics) return;
   setup.physics.gravity = physics->Flag("gravity", setup.physics.gravity);
-  setup.physics.static_friction = physics->Flag("static_friction", setup.physics.static_friction);
+  setup.physics.static_friction =
+      physics->Flag("static_friction", setup.physics.static_friction);
 }
 
 void RequireBelowNyquist(const TomlTable& table, std::string_view key, double frequency,
@@ -157,7 +158,8 @@ void ReadSensors(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
     DeclareChannel(table, sensor.channel, sensor.unit, channels);
     setup.channels.sensors.push_back(sensor);
   }
-  if (setup.channels.sensors.empty()) root.Fail("sensors", "is empty", "a sensor at least");
+  if (setup.channels.sensors.empty())
+    root.Fail("sensors", "is empty", "a sensor at least");
 }
 
 void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
@@ -215,8 +217,9 @@ AxisSetup ReadAxis(const TomlTable& table, const Setup& setup) {
   axis.name = table.name();
   axis.sensor = DeclaredName(table, "sensor", "sensor channel",
                              NamesOf(setup.channels.sensors, &SensorSetup::channel));
-  axis.actuator = DeclaredName(table, "actuator", "actuator channel",
-                               NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
+  axis.actuator =
+      DeclaredName(table, "actuator", "actuator channel",
+                   NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
   for (const AxisSetup& other : setup.control.axes) {
     if (other.actuator == axis.actuator) {
       table.Fail("actuator", "'" + axis.actuator + "' drives axis '" + other.name + "'",
@@ -371,8 +374,9 @@ void ReadRecordMap(const TomlTable& root, Setup& setup, const ChannelUnits& chan
 CompareSetup::Derived ReadDerivedForce(const TomlTable& table, const Setup& setup) {
   CompareSetup::Derived force;
   force.name = table.name();
-  force.channel = DeclaredName(table, "channel", "actuator channel",
-                               NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
+  force.channel =
+      DeclaredName(table, "channel", "actuator channel",
+                   NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
   force.factor = table.Number("factor", kNonZero, 1.0);
   force.unit = SiUnit(table, "unit");
   return force;

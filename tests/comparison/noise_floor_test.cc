@@ -48,7 +48,7 @@ TEST(NoiseFloor, OfColouredNoiseIsRarelyExceeded) {
 TEST(MeasuredNoise, IsFoundInTheRecord) {
   mjdiag::Setup setup;
   setup.channels.sensors = {{"x", "x_encoder", 0, "m", 0.0, 0.0},
-                   {"y", "y_encoder", 0, "m", 3e-9, 0.0}};
+                            {"y", "y_encoder", 0, "m", 3e-9, 0.0}};
   Record measured(1e-3);
   const Eigen::ArrayXd phase = Eigen::ArrayXd::LinSpaced(kSamples, 0.0, 50.0);
   measured.Add(

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/test_design.h"
-#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "support/count_allocations.h"
 
 namespace mjdiag {
@@ -61,13 +61,13 @@ TEST_F(DiagnosisAllocation, DoesNotHappenInAnEstimatorOfManyRows) {
   EXPECT_GT(value.norm(), 0.0);
 }
 
-TEST_F(DiagnosisAllocation, DoesNotHappenInDiagnosisMonitor) {
+TEST_F(DiagnosisAllocation, DoesNotHappenInADiagnosisAndItsRecorder) {
   const DiagnosisDesign design = test::StageDesign();
   const MatrixXd signals =
       test::Measured(test::Motion(test::Stage(), test::Drive(1000)), 1);
-  // Both starts, and samples beyond the log.
+  // Both starts, and ticks beyond the room of the recorder.
   for (const double start : {0.0, 5e-3}) {
-    DiagnosisMonitor monitor(design, 900, MatrixXd::Zero(test::kRows, 500));
+    DiagnosisRecording recording(design, 900, MatrixXd::Zero(test::kRows, 500));
     std::vector<double> y(2);
     std::vector<double> u(2);
     EXPECT_EQ(CountAllocations([&] {
@@ -77,11 +77,12 @@ TEST_F(DiagnosisAllocation, DoesNotHappenInDiagnosisMonitor) {
                     y[at] = signals(i, k) + design.offset[i] + start;
                     u[at] = signals(2 + i, k);
                   }
-                  monitor.Add(y, u);
+                  recording.Add(y, u);
                 }
               }),
               0);
-    EXPECT_GT(monitor.estimator().samples(), 0);
+    EXPECT_GT(recording.monitor.estimator().samples(), 0);
+    EXPECT_EQ(recording.recorder.samples(), 900);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnosis/test_design.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 
@@ -37,10 +38,22 @@ Record RecordOf(const MatrixXd& signals, double sample_time = test::kTiming.tick
   return record;
 }
 
+DiagnosisRecording Recorded(const MatrixXd& signals, const MatrixXd& baseline = {}) {
+  return RecordDiagnosis(Design(), RecordOf(signals), baseline);
+}
+
 DiagnosisMonitor Diagnosed(const MatrixXd& signals, const MatrixXd& baseline = {}) {
-  DiagnosisMonitor monitor(Design(), signals.cols(), baseline);
-  mjdiag::Run(monitor, Design(), RecordOf(signals));
+  DiagnosisMonitor monitor(Design(), baseline);
+  mjdiag::Run(monitor, RecordOf(signals));
   return monitor;
+}
+
+/// One tick with the readings and commands of a column of z.
+template <typename Watcher>
+void AddTick(Watcher& watcher, const VectorXd& z) {
+  const Vector2d y = z.head(2) + Design().offset;
+  const Vector2d u = z.tail(2);
+  watcher.Add({y.data(), 2}, {u.data(), 2});
 }
 
 /// A motion with noise, with another machine's share of the motor force from a sample
@@ -54,44 +67,80 @@ MatrixXd MotionWithExtraForce(const VectorXd& extra) {
   return signals;
 }
 
-TEST(DiagnosisMonitor, GivesTheSameBitsSampleBySampleAndOverARecord) {
+TEST(DiagnosisMonitor, GivesTheSameBitsTickByTickAndOverARecord) {
   const MatrixXd signals = test::Measured(
       test::Motion(test::Stage({.damping = 1.01}), test::Drive(kSamples)), 1);
-  const DiagnosisMonitor offline = Diagnosed(signals);
+  const DiagnosisRecording offline = Recorded(signals);
   const Record record = RecordOf(signals);
-  DiagnosisMonitor online(Design(), kSamples);
+  DiagnosisRecording online(Design(), kSamples);
   for (Index k = 0; k < kSamples; ++k) {
     const std::vector<double> y{record.At("stage").samples[k],
                                 record.At("load").samples[k]};
     const std::vector<double> u{signals(2, k), signals(3, k)};
     online.Add(y, u);
   }
-  EXPECT_EQ(offline.ResidualRows(), online.ResidualRows());
-  EXPECT_EQ(offline.Log().residual, online.Log().residual);
-  EXPECT_EQ(offline.Log().integral, online.Log().integral);
-  EXPECT_EQ(offline.Log().disturbance, online.Log().disturbance);
-  EXPECT_EQ(offline.Log().estimates, online.Log().estimates);
-  EXPECT_EQ(offline.estimator().Estimate().covariance,
-            online.estimator().Estimate().covariance);
-  EXPECT_EQ(offline.first_detection(), online.first_detection());
+  const MonitorLog one = offline.recorder.Log();
+  const MonitorLog other = online.recorder.Log();
+  EXPECT_EQ(offline.recorder.ResidualRows(), online.recorder.ResidualRows());
+  EXPECT_EQ(one.residual, other.residual);
+  EXPECT_EQ(one.integral, other.integral);
+  EXPECT_EQ(one.disturbance, other.disturbance);
+  EXPECT_EQ(one.estimates, other.estimates);
+  EXPECT_EQ(offline.monitor.estimator().Estimate().covariance,
+            online.monitor.estimator().Estimate().covariance);
+  EXPECT_EQ(offline.monitor.first_detection(), online.monitor.first_detection());
 }
 
-TEST(DiagnosisMonitor, LogsTheResidualsOfItsFilters) {
+TEST(DiagnosisMonitor, GivesTheSameBitsWithoutARecorder) {
   const MatrixXd signals = test::Measured(
-      test::Motion(test::Stage({.gain = 1.01}), test::Drive(kSamples)), 1);
-  const DiagnosisMonitor monitor = Diagnosed(signals);
+      test::Motion(test::Stage({.damping = 1.01}), test::Drive(kSamples)), 1);
+  const DiagnosisMonitor alone = Diagnosed(signals);
+  const DiagnosisMonitor recorded = Recorded(signals).monitor;
+  EXPECT_EQ(alone.residuals(), recorded.residuals());
+  EXPECT_EQ(alone.estimate(), recorded.estimate());
+  EXPECT_EQ(alone.first_detection(), recorded.first_detection());
+  EXPECT_EQ(alone.first_lasting(), recorded.first_lasting());
+}
+
+TEST(DiagnosisMonitor, SaysBetweenTicksWhatItKnows) {
+  // The fault comes in the middle and goes: the alarm does, too, its first moment
+  // stays.
+  constexpr Index kOnset = 1500;
+  constexpr Index kEnd = 2500;
+  VectorXd extra = VectorXd::Zero(kSamples);
+  extra.segment(kOnset, kEnd - kOnset) =
+      -0.1 * test::Drive(kSamples).row(0).segment(kOnset, kEnd - kOnset).transpose();
+  const MatrixXd signals = MotionWithExtraForce(extra);
   const MatrixXd expected =
       FilterSignals(Design().bank.filters, signals).topRows(test::kRows);
-  // The offset was added and taken off again: a rounding of 1e-17 m under 20 nm.
-  EXPECT_LT((monitor.ResidualRows() - expected).cwiseAbs().maxCoeff(), 1e-6);
-  const MonitorLog log = monitor.Log();
-  EXPECT_EQ(log.residual, monitor.ResidualRows().row(0).transpose());
-  EXPECT_TRUE(log.signals.isApprox(signals, 1e-12));
-  const Index window = 800;
-  EXPECT_NEAR(log.integral[kSamples - 1],
-              expected.row(0).tail(window).cwiseAbs().mean(), 1e-6);
-  EXPECT_NEAR(log.integral[99], expected.row(0).head(100).cwiseAbs().sum() / window,
-              1e-6);
+  DiagnosisMonitor monitor(Design());
+  Index alarms = 0;
+  for (Index k = 0; k < kSamples; ++k) {
+    AddTick(monitor, signals.col(k));
+    ASSERT_EQ(monitor.samples(), k + 1);
+    ASSERT_LT((monitor.residuals() - expected.col(k)).cwiseAbs().maxCoeff(), 1e-6);
+    ASSERT_EQ(monitor.residual_alarm(), std::abs(monitor.residuals()[0]) >= 6.0);
+    ASSERT_EQ(monitor.lasting_alarm(), monitor.integral() > 2.0);
+    ASSERT_EQ(monitor.regressed(), k % Design().stride == 0);
+    if (monitor.residual_alarm() && alarms++ == 0) {
+      EXPECT_EQ(monitor.first_detection(), k);
+    }
+    ASSERT_EQ(monitor.first_detection().has_value(), alarms > 0);
+  }
+  EXPECT_GT(alarms, 0);
+  EXPECT_FALSE(monitor.residual_alarm());
+  EXPECT_TRUE(monitor.first_detection().has_value());
+}
+
+TEST(DiagnosisMonitor, RaisesNoAlarmWithoutLimits) {
+  DiagnosisDesign design = Design();
+  design.limits.known = false;
+  DiagnosisMonitor monitor(design);
+  for (Index k = 0; k < 1000; ++k)
+    AddTick(monitor, VectorXd::Constant(4, 1e-3 * static_cast<double>(k)));
+  EXPECT_GT(std::abs(monitor.residuals()[0]), 6.0);
+  EXPECT_FALSE(monitor.residual_alarm());
+  EXPECT_EQ(monitor.first_detection(), std::nullopt);
 }
 
 TEST(DiagnosisMonitor, SeesNothingInNominalMotion) {
@@ -137,17 +186,24 @@ TEST(DiagnosisMonitor, SubtractsTheBaseline) {
   // A machine that its linear model does not quite describe, and its next run.
   const MatrixXd motion =
       test::Motion(test::Stage({.damping = 1.05}), test::Drive(kSamples));
-  const DiagnosisMonitor first = Diagnosed(motion);
-  EXPECT_TRUE(first.first_detection().has_value());
-  const DiagnosisMonitor same = Diagnosed(motion, first.ResidualRows());
-  EXPECT_TRUE(same.ResidualRows().isZero(0.0));
-  const DiagnosisMonitor next =
-      Diagnosed(test::Measured(motion, 5), first.ResidualRows());
-  EXPECT_EQ(next.first_detection(), std::nullopt);
+  const DiagnosisRecording first = Recorded(motion);
+  EXPECT_TRUE(first.monitor.first_detection().has_value());
+  const MatrixXd baseline = first.recorder.ResidualRows();
+  EXPECT_TRUE(Recorded(motion, baseline).recorder.ResidualRows().isZero(0.0));
+  EXPECT_EQ(Diagnosed(test::Measured(motion, 5), baseline).first_detection(),
+            std::nullopt);
 }
 
 TEST(DiagnosisMonitor, RefusesABaselineOfOtherResiduals) {
-  EXPECT_THROW(DiagnosisMonitor(Design(), 10, MatrixXd::Zero(1, 10)), InputError);
+  EXPECT_THROW(DiagnosisMonitor(Design(), MatrixXd::Zero(1, 10)), InputError);
+}
+
+TEST(DiagnosisMonitor, RunsOnBeyondItsBaseline) {
+  const MatrixXd signals = test::Motion(test::Stage(), test::Drive(100));
+  const DiagnosisMonitor monitor =
+      Diagnosed(signals, MatrixXd::Constant(test::kRows, 99, 1e3));
+  EXPECT_EQ(monitor.samples(), 100);
+  EXPECT_LT(monitor.residuals().cwiseAbs().maxCoeff(), 1.0);
 }
 
 TEST(DiagnosisMonitor, RaisesNoAlarmOnAStartAwayFromRest) {
@@ -155,10 +211,10 @@ TEST(DiagnosisMonitor, RaisesNoAlarmOnAStartAwayFromRest) {
   const MatrixXd commands = test::Drive(kSamples);
   MatrixXd signals = test::Motion(test::Stage(), commands);
   signals.topRows(2).array() += 5e-3;
-  const DiagnosisMonitor monitor = Diagnosed(test::Measured(signals, 6));
-  EXPECT_EQ(monitor.first_detection(), std::nullopt);
-  EXPECT_EQ(monitor.first_lasting(), std::nullopt);
-  EXPECT_GT(monitor.Log().estimate_time[0], 0.0);
+  const DiagnosisRecording recording = Recorded(test::Measured(signals, 6));
+  EXPECT_EQ(recording.monitor.first_detection(), std::nullopt);
+  EXPECT_EQ(recording.monitor.first_lasting(), std::nullopt);
+  EXPECT_GT(recording.recorder.Log().estimate_time[0], 0.0);
   // Unsettled filters would see a step of 5 mm.
   EXPECT_GT(FilterSignals(Design().bank.filters, signals).row(0).cwiseAbs().maxCoeff(),
             1e3);
@@ -189,30 +245,15 @@ TEST(DiagnosisMonitor, EstimatesFaultsAndDisturbanceWithinTheirErrors) {
     EXPECT_LT(sd[i], 0.1 * std::abs(expected)) << design.FaultNames()[i];
   }
   EXPECT_TRUE(monitor.estimate().isApprox(estimate.value, 1e-9));
-  const MonitorLog log = monitor.Log();
-  ASSERT_EQ(log.estimates.cols(), kSamples / design.stride);
-  EXPECT_EQ(log.estimates.rightCols(1), monitor.estimate());
-  EXPECT_DOUBLE_EQ(log.estimate_time[0], 0.0);
-  EXPECT_NEAR(log.estimate_time[999], 999 * 4 / 8000.0, 1e-12);
 }
 
 TEST(DiagnosisMonitor, RegressesFromTheSampleThatItIsTold) {
   const MatrixXd signals = test::Motion(test::Stage(), test::Drive(1000));
-  DiagnosisMonitor monitor(Design(), 1000);
-  monitor.RegressFrom(601);
-  mjdiag::Run(monitor, Design(), RecordOf(signals));
-  EXPECT_EQ(monitor.estimator().samples(), 99);
-  EXPECT_DOUBLE_EQ(monitor.Log().estimate_time[0], 604 / 8000.0);
-  EXPECT_EQ(monitor.Log().residual.size(), 1000);
-}
-
-TEST(DiagnosisMonitor, KeepsOnlyWhatItsLogHolds) {
-  const MatrixXd signals = test::Motion(test::Stage(), test::Drive(100));
-  DiagnosisMonitor monitor(Design(), 40);
-  mjdiag::Run(monitor, Design(), RecordOf(signals));
-  EXPECT_EQ(monitor.samples(), 100);
-  EXPECT_EQ(monitor.Log().residual.size(), 40);
-  EXPECT_EQ(monitor.ResidualRows().cols(), 40);
+  const DiagnosisRecording recording =
+      RecordDiagnosis(Design(), RecordOf(signals), {}, 601);
+  EXPECT_EQ(recording.monitor.estimator().samples(), 99);
+  EXPECT_DOUBLE_EQ(recording.recorder.Log().estimate_time[0], 604 / 8000.0);
+  EXPECT_EQ(recording.recorder.Log().residual.size(), 1000);
 }
 
 TEST(DiagnosisMonitor, NamesKnobsAndDisturbances) {
@@ -232,22 +273,21 @@ TEST(Waveforms, AreSumsOfSinesOnEveryCommand) {
 }
 
 TEST(Run, RefusesARecordOfAnotherRate) {
-  DiagnosisMonitor monitor(Design(), 10);
+  DiagnosisMonitor monitor(Design());
   const Record record = RecordOf(MatrixXd::Zero(4, 10), 1e-3);
-  EXPECT_EQ(
-      test::MessageOf<InputError>([&] { mjdiag::Run(monitor, Design(), record); }),
-      "record: sampled every 1.000000 ms; expected the sample time of the "
-      "filters, 0.125000 ms");
+  EXPECT_EQ(test::MessageOf<InputError>([&] { mjdiag::Run(monitor, record); }),
+            "record: sampled every 1.000000 ms; expected the sample time of the "
+            "filters, 0.125000 ms");
 }
 
 TEST(Run, RefusesARecordWithoutAChannel) {
-  DiagnosisMonitor monitor(Design(), 10);
+  DiagnosisMonitor monitor(Design());
   Record record(test::kTiming.tick());
   for (const char* name : {"stage", "load", "motor"}) {
     record.Add({name, "1", VectorXd::Zero(10)});
   }
   const std::string message =
-      test::MessageOf<InputError>([&] { mjdiag::Run(monitor, Design(), record); });
+      test::MessageOf<InputError>([&] { mjdiag::Run(monitor, record); });
   EXPECT_NE(message.find("small_motor"), std::string::npos) << message;
   EXPECT_EQ(monitor.samples(), 0);
 }

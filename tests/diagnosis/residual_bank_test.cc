@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 constexpr Index kSamples = 4000;
 
 FilterBank Filters(const Numerators& rows, const SynthesisOptions& options) {
-  return MakeFilterBank(rows, options.denominator, options.timing.tick());
+  return MakeFilterBank(rows, options.residual.denominator, options.timing.tick());
 }
 
 /// Largest |r| of every row of the machine's residual space over a noise-free motion,
@@ -52,11 +52,11 @@ class ResidualDegree : public testing::TestWithParam<int> {};
 
 TEST_P(ResidualDegree, IsBlindToNominalMotionAtUnitNoise) {
   SynthesisOptions options = test::StageOptions();
-  options.degree = GetParam();
-  options.denominator.order = GetParam();
+  options.residual.degree = GetParam();
+  options.residual.denominator.order = GetParam();
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
   const FilterBank bank = Filters(space.rows, options);
-  ASSERT_EQ(bank.outputs(), 2 * (options.degree + 1) - 6);
+  ASSERT_EQ(bank.outputs(), 2 * (options.residual.degree + 1) - 6);
   const VectorXd noise =
       (VectorXd(4) << test::kNoise, test::kNoise, 0.0, 0.0).finished();
   EXPECT_TRUE(OutputCovariance(bank, noise).isIdentity(1e-6));
@@ -80,8 +80,8 @@ TEST(ResidualSpace, DecoupledFromAForceIsBlindToItAndToNoOther) {
   const Vector3d on_base = Vector3d::UnitX();
   const Vector3d on_load = Vector3d::UnitZ();
   SynthesisOptions decoupled = test::StageOptions();
-  decoupled.degree = 6;
-  decoupled.denominator.order = 6;
+  decoupled.residual.degree = 6;
+  decoupled.residual.denominator.order = 6;
   EXPECT_GT(Seen(decoupled, MotionWithForce(on_base)), 10.0);
   decoupled.unknown_inputs.forces = on_base;
   EXPECT_LT(Seen(decoupled, MotionWithForce(on_base)), 1e-3);
@@ -95,8 +95,8 @@ TEST(ResidualSpace, DecoupledFromAReadingIsBlindToItAndToNoOther) {
     return signals;
   };
   SynthesisOptions decoupled = test::StageOptions();
-  decoupled.degree = 6;
-  decoupled.denominator.order = 6;
+  decoupled.residual.degree = 6;
+  decoupled.residual.denominator.order = 6;
   EXPECT_GT(Seen(decoupled, motion_with_error(1)), 10.0);
   decoupled.unknown_inputs.readings = Eigen::Vector2d(0.0, 1.0);
   EXPECT_LT(Seen(decoupled, motion_with_error(1)), 1e-3);
@@ -116,7 +116,7 @@ TEST(ResidualSpace, RefusesUnknownInputsThatDoNotFitTheMachine) {
 
 TEST(ResidualSpace, SaysWhichDegreeIsEnough) {
   SynthesisOptions options = test::StageOptions();
-  options.degree = 2;
+  options.residual.degree = 2;
   EXPECT_EQ(
       test::MessageOf<InputError>([&] { MakeResidualSpace(test::Stage(), options); }),
       "residual: no row of degree 2; expected a degree of at least 3");
@@ -124,7 +124,7 @@ TEST(ResidualSpace, SaysWhichDegreeIsEnough) {
 
 TEST(ResidualSpace, RefusesADenominatorOfLowerOrder) {
   SynthesisOptions options = test::StageOptions();
-  options.denominator.order = 2;
+  options.residual.denominator.order = 2;
   EXPECT_THROW(MakeResidualSpace(test::Stage(), options), InputError);
 }
 
@@ -171,8 +171,8 @@ TEST(ResidualBank, PhiIsEquation24UpToRowsThatAreBlind) {
   // hence residual rows to phi; both are compared in the complement of those. The
   // cut-off of 640 Hz makes powers of p comparable.
   SynthesisOptions options = test::StageOptions();
-  options.denominator = {4, 640.0};
-  const int degree = options.degree;
+  options.residual.denominator = {4, 640.0};
+  const int degree = options.residual.degree;
   constexpr double kStep = 1e-4;
   const StateSpace system = DeltaForm(test::Stage(), options.timing);
   const MatrixXd output_part = LeftNullSpace(system, degree).rows;

@@ -77,8 +77,8 @@ inline std::vector<TurnedModels> TurnedStages(double magnitude = 1e-3) {
 inline SynthesisOptions StageOptions() {
   SynthesisOptions options;
   options.timing = kTiming;
-  options.degree = kDegree;
-  options.denominator = {5, 120.0};
+  options.residual.degree = kDegree;
+  options.residual.denominator = {5, 120.0};
   options.sensor_noise = Eigen::Vector2d::Constant(kNoise);
   return options;
 }

@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "discovery/stage_under_test.h"
-#include "mjdiag/studies/hidden_study.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
 namespace {
@@ -38,8 +38,8 @@ const CauseParameter& Parameter(const Discovery& discovery, const std::string& n
 TEST(Discovery, SaysNothingOfNoise) {
   const test::Stage stage;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const Discovery answer = Discover(
-        stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
+    const Discovery answer =
+        Discover(stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
     EXPECT_EQ(answer.verdict, DiscoveryVerdict::kNoDiscrepancy);
     EXPECT_EQ(Named(answer), "");
   }
@@ -47,9 +47,9 @@ TEST(Discovery, SaysNothingOfNoise) {
 
 TEST(Discovery, NamesDryFrictionAndItsForce) {
   const test::Stage stage;
-  const Discovery answer = Discover(stage.machine,
-                                    stage.Measure({"coulomb_friction@load:force=18"}),
-                                    nullptr, CausesOnly());
+  const Discovery answer =
+      Discover(stage.machine, stage.Measure({"coulomb_friction@load:force=18"}),
+               nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kExplained);
   EXPECT_EQ(Named(answer), "coulomb_friction@load");
   // Four standard deviations: 6e-5 of the draws are further off.
@@ -60,9 +60,8 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
 
 TEST(Discovery, NamesATurnedKnobAsTheFault) {
   const test::Stage stage;
-  const Discovery answer =
-      Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}), nullptr,
-               CausesOnly());
+  const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),
+                                    nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "zeta@load");
   EXPECT_TRUE(answer.causes[0].cause.fault);
   // The same change of the model by another name is said to be one.
@@ -76,12 +75,10 @@ TEST(Discovery, NamesATurnedKnobAsTheFault) {
 TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
   const test::Stage stage;
   const Record measured = stage.Measure({"force_saturation@drive:limit=1.2"});
-  const Discovery alone =
-      Discover(stage.machine, measured, nullptr, CausesOnly());
+  const Discovery alone = Discover(stage.machine, measured, nullptr, CausesOnly());
   EXPECT_EQ(Named(alone), "force_saturation@drive");
   const Record validation = stage.Measure({}, {}, 2);
-  const Discovery judged =
-      Discover(stage.machine, measured, &validation, CausesOnly());
+  const Discovery judged = Discover(stage.machine, measured, &validation, CausesOnly());
   EXPECT_EQ(Named(judged).find("force_saturation"), std::string::npos);
   EXPECT_TRUE(std::ranges::any_of(judged.notes, [](const std::string& note) {
     return note.find("spoils") != std::string::npos &&
@@ -136,9 +133,9 @@ TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
 
 TEST(Discovery, NamesRaisedEncoderNoise) {
   const test::Stage stage;
-  const Discovery answer = Discover(
-      stage.machine,
-      stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}), nullptr, CausesOnly());
+  const Discovery answer =
+      Discover(stage.machine, stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}),
+               nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "encoder_noise@load_encoder");
   const CauseParameter& sd = Parameter(answer, "sd");
   EXPECT_NEAR(sd.value, 1.5e-8, 4.0 * sd.sd);
@@ -175,8 +172,7 @@ TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
   const Record record = WithForce(stage, [](double q, double v, double) {
     return -150.0 * std::sin(60.0 * q) * v;
   });
-  const Discovery answer =
-      Discover(stage.machine, record, nullptr, CausesOnly());
+  const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("position"), std::string::npos)
@@ -187,8 +183,7 @@ TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
   const test::Stage stage;
   const Record record = WithForce(
       stage, [](double, double, double t) { return t > 1.2 && t < 1.9 ? 4.0 : 0.0; });
-  const Discovery answer =
-      Discover(stage.machine, record, nullptr, CausesOnly());
+  const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("time"), std::string::npos)

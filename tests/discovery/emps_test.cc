@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "discovery/candidate_place.h"
-#include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record_file.h"
@@ -52,8 +52,7 @@ class Emps : public ::testing::Test {
     for (const std::string& effect : effects) {
       options.effects.push_back(ParseEffect(effect));
     }
-    return Compare(machine, ReadRecord(DataFolder() / file, setup.record),
-                   options);
+    return Compare(machine, ReadRecord(DataFolder() / file, setup.record), options);
   }
   /// The plant has them rounded.
   static void SetAuthorsMassAndDamping(mjModel& plant) {
@@ -94,9 +93,8 @@ TEST_F(Emps, IncompletePlantIsVisiblyWorseAndSaidToBe) {
 TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
   const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
   const ModelPtr plant = LoadPlant(setup);
-  const DiscoveryProblem problem =
-      PoseProblem(machine,
-                  ReadRecord(DataFolder() / "DATA_EMPS.mat", setup.record), 1.0, 20.0);
+  const DiscoveryProblem problem = PoseProblem(
+      machine, ReadRecord(DataFolder() / "DATA_EMPS.mat", setup.record), 1.0, 20.0);
   const auto candidates = ListCandidates(machine, problem.machine.linear());
   const std::vector<FittedCause> start = {
       {test::Place(candidates, "coulomb_friction@load"),

@@ -25,8 +25,8 @@ struct Stage {
     }
     options.faults = faults;
     options.seed = seed;
-    return Simulate(machine,
-                    FollowTrajectory(setup, setup.trajectories.Find("default")), options);
+    return Simulate(
+        machine, FollowTrajectory(setup, setup.trajectories.Find("default")), options);
   }
 
   DiscoveryProblem Pose(const Record& measured) const {

@@ -3,15 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/report/diagnosis_json.h"
+#include "mjdiag/diagnosis/diagnosis_verdict.h"
+#include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/report/diagnosis_plots.h"
-#include "mjdiag/report/diagnosis_verdict.h"
-#include "mjdiag/report/filters_file.h"
 #include "mjdiag/report/report.h"
-#include "mjdiag/signals/error.h"
-#include "support/message_of.h"
-#include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
@@ -24,30 +19,31 @@ struct Example {
     setup.diagnosis.trajectories.clear();
     for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
     plant = LoadPlant(setup);
-    design = DesignFilters(setup, *plant);
-    NominalRuns nominal;
-    nominal.linear = true;
-    design.limits = CalibrateLimits(design, setup, *plant, nominal);
+    DiagnosisSource source;
+    source.nominal.linear = true;
+    const PreparedDiagnosis prepared = PrepareDiagnosis(setup, *plant, source);
     RunOptions options;
     options.faults = {{"zeta_x", zeta_x}};
     const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), options);
-    monitor.emplace(design, record.samples());
-    Run(*monitor, design, record);
-    result = Conclude(design, *monitor);
+        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")),
+        options);
+    design = prepared.design;
+    const Diagnosis diagnosis = Diagnose(setup, *plant, prepared, record);
+    log = diagnosis.log;
+    result = diagnosis.result;
   }
 
   mjdiag::Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
   ModelPtr plant;
   DiagnosisDesign design;
-  std::optional<DiagnosisMonitor> monitor;
+  MonitorLog log;
   DiagnosisResult result;
 };
 
 TEST(DiagnosisPage, SaysWhatIsWrongFirst) {
   const Example faulty(1.01);
-  const std::string page = ReportHtml(DiagnosisPage(
-      faulty.design, faulty.result, faulty.monitor->Log(), {"cmd", "r", {}}));
+  const std::string page = ReportHtml(
+      DiagnosisPage(faulty.design, faulty.result, faulty.log, {"cmd", "r", {}}));
   EXPECT_EQ(DiagnosisVerdict(faulty.result), "Detected: zeta_x = 1.01.");
   EXPECT_LT(page.find("Detected: zeta_x"), page.find("<table"));
   EXPECT_THAT(page, HasSubstr("threshold"));
@@ -56,17 +52,16 @@ TEST(DiagnosisPage, SaysWhatIsWrongFirst) {
 TEST(DiagnosisPlots, MarkTheMomentOfDetection) {
   const Example faulty(1.01);
   ASSERT_TRUE(faulty.result.first_detection.has_value());
-  const TimePlot plot = ResidualPlot(faulty.result, faulty.monitor->Log());
+  const TimePlot plot = ResidualPlot(faulty.result, faulty.log);
   ASSERT_FALSE(plot.marks.empty());
   EXPECT_EQ(plot.marks[0].value, *faulty.result.first_detection);
   const Example healthy(1.0);
-  EXPECT_TRUE(ResidualPlot(healthy.result, healthy.monitor->Log()).marks.empty());
+  EXPECT_TRUE(ResidualPlot(healthy.result, healthy.log).marks.empty());
 }
 
 TEST(DiagnosisPlots, CountEverySampleOfTheResidual) {
   const Example faulty(1.01);
-  const HistogramPlot plot =
-      RunHistogram(faulty.design, faulty.result, faulty.monitor->Log());
+  const HistogramPlot plot = RunHistogram(faulty.design, faulty.result, faulty.log);
   EXPECT_EQ(plot.counts.sum(), static_cast<double>(faulty.result.samples));
 }
 
@@ -75,7 +70,7 @@ TEST(DiagnosisPlots, CountEverySampleOfTheResidual) {
 TEST(DiagnosisPlots, EndTheEstimatesAndTheirBoundAtTheVerdict) {
   const Example faulty(1.01);
   const std::vector<TimePlot> plots =
-      EstimatePlots(faulty.design, faulty.result, faulty.monitor->Log());
+      EstimatePlots(faulty.design, faulty.result, faulty.log);
   ASSERT_EQ(plots.size(), faulty.result.faults.size());
   for (std::size_t i = 0; i < plots.size(); ++i) {
     const TimePlot& plot = plots[i];
@@ -94,48 +89,6 @@ TEST(DiagnosisPlots, EndTheEstimatesAndTheirBoundAtTheVerdict) {
 TEST(DiagnosisPage, SaysThatNothingIsWrong) {
   EXPECT_EQ(DiagnosisVerdict(Example(1.0).result),
             "Nothing is wrong that this run shows.");
-}
-
-TEST(DiagnosisJson, HasTheFieldsThatOtherProgramsRead) {
-  const nlohmann::json document = ToJson(Example(1.01).result);
-  EXPECT_EQ(document["schema"], "mjdiag.diagnosis/1");
-  for (const char* key : {"setup", "samples", "sample_time", "detected",
-                          "first_detection", "residual", "faults", "disturbance"}) {
-    EXPECT_TRUE(document.contains(key)) << key;
-  }
-  for (const char* key : {"min", "max", "threshold_min", "threshold_max"}) {
-    EXPECT_TRUE(document["residual"].contains(key)) << key;
-  }
-  for (const char* key : {"name", "value", "sd", "ci95", "detected"}) {
-    EXPECT_TRUE(document["faults"][0].contains(key)) << key;
-  }
-  for (const char* key : {"peaks", "total", "total_threshold"}) {
-    EXPECT_TRUE(document["disturbance"].contains(key)) << key;
-  }
-}
-
-TEST(FiltersFile, GivesBackTheSameDiagnosis) {
-  const Example faulty(1.01);
-  const test::TemporaryFolder folder;
-  const std::string file = folder.Write("filters.json", ToJson(faulty.design).dump());
-  const DiagnosisDesign read = ReadFilters(file);
-  EXPECT_EQ(ToJson(read), ToJson(faulty.design));
-  EXPECT_EQ(read.bank.filters.B, faulty.design.bank.filters.B);
-  EXPECT_EQ(read.limits.disturbance.highest, faulty.design.limits.disturbance.highest);
-}
-
-TEST(FiltersFile, NamesWhatIsMissing) {
-  const Example faulty(1.0);
-  nlohmann::json document = ToJson(faulty.design);
-  document.erase("stride");
-  const test::TemporaryFolder folder;
-  const std::string file = folder.Write("filters.json", document.dump());
-  EXPECT_THAT(test::MessageOf<InputError>([&] { ReadFilters(file); }),
-              HasSubstr("stride"));
-  document["schema"] = "something/1";
-  EXPECT_THAT(test::MessageOf<InputError>(
-                  [&] { ReadFilters(folder.Write("other.json", document.dump())); }),
-              HasSubstr("schema"));
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/discovery/extension/extended_plant.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"

@@ -298,7 +298,8 @@ TEST(ExtendedPlant, HasEncoderNoiseInTheSetup) {
   // 20 nm of its own.
   const mjdiag::Setup noisy = ReadSetup(ab383.folder().path());
   EXPECT_NEAR(noisy.channels.Sensor("x").noise_sd, std::hypot(2e-8, 3e-8), 1e-20);
-  EXPECT_EQ(noisy.channels.Sensor("y").noise_sd, ab383.setup().channels.Sensor("y").noise_sd);
+  EXPECT_EQ(noisy.channels.Sensor("y").noise_sd,
+            ab383.setup().channels.Sensor("y").noise_sd);
 
   const Extension emps(Folder("emps"));
   emps.Write(With({"encoder_noise@load_encoder:sd=3e-6"}));

@@ -21,8 +21,7 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   auto candidates = ListCandidates(stage.machine, problem.machine.linear());
   const auto before = candidates;
-  const Track track =
-      FollowRun(stage.machine, {}, problem.run, problem.observer, true);
+  const Track track = FollowRun(stage.machine, {}, problem.run, problem.observer, true);
   const ObservedMotion motion = ObserveMotion(*stage.plant, problem.run, track);
   BoundByRecord(candidates, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();

@@ -13,8 +13,8 @@
 #include <string>
 
 #include "mjdiag/diagnosis/delta_form.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/diagnosis/monitor.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/plant/linearize.h"
@@ -121,8 +121,8 @@ MatrixXd AsRow(const Denominator& denominator) {
 }
 
 /// A quarter of a second with a worn x-guide: all three axes move, alone and together.
-struct Diagnosis {
-  Diagnosis()
+struct WornGuide {
+  WornGuide()
       : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
                         {"trajectories.multi.duration=0.25",
                          "diagnosis.estimation.magnitudes.beta_x=1e-3",
@@ -137,9 +137,7 @@ struct Diagnosis {
     const Record record = SimulateLinear(
         setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), run);
     signals = Signals(design, record);
-    DiagnosisMonitor monitor(design, record.samples());
-    Run(monitor, design, record);
-    log = monitor.Log();
+    log = RecordDiagnosis(design, record).recorder.Log();
   }
 
   Values ForPython() const {
@@ -156,15 +154,15 @@ struct Diagnosis {
     values["step"] = Scalar(options.timing.step);
     values["substeps"] = Scalar(options.timing.substeps);
     values["delta_scale"] = Scalar(kDeltaScale);
-    values["degree"] = Scalar(options.degree);
+    values["degree"] = Scalar(options.residual.degree);
     values["noise"] = VectorXd::Zero(signals.rows()).transpose();
     values["noise"].leftCols(design.sensor_noise.size()) =
         design.sensor_noise.transpose();
     values["record"] = signals;
     values["space"] = SideBySide(space.rows);
-    values["space.denominator"] = AsRow(options.denominator);
+    values["space.denominator"] = AsRow(options.residual.denominator);
     values["bank"] = SideBySide(NumeratorsOf(design.bank.filters));
-    values["bank.denominator"] = AsRow(options.denominator);
+    values["bank.denominator"] = AsRow(options.residual.denominator);
     values["disturbance"] = SideBySide(NumeratorsOf(design.disturbance.filter));
     values["disturbance.denominator"] = AsRow(setup.diagnosis.disturbance_denominator);
     values["high_pass"] =
@@ -190,7 +188,7 @@ class DiagnosisScipy : public testing::Test {
     const std::string python(kPython);
     present_ = RunCommand(python + " -c 'import scipy.signal' 2>/dev/null").status == 0;
     if (!present_) return;
-    ours_ = new Diagnosis;
+    ours_ = new WornGuide;
     const test::TemporaryFolder folder;
     const std::string given = folder.Write("given.txt", Text(ours_->ForPython()));
     const Output output = RunCommand(python + " " + MJDIAG_SOURCE_DIR +
@@ -207,13 +205,13 @@ class DiagnosisScipy : public testing::Test {
     GTEST_SKIP() << "python3-scipy is not installed: no comparison with SciPy";
   }
 
-  static const Diagnosis& Ours() { return *ours_; }
+  static const WornGuide& Ours() { return *ours_; }
   static const MatrixXd& Value(const std::string& name) { return values_.at(name); }
   static double Number(const std::string& name) { return Value(name)(0, 0); }
 
  private:
   inline static bool present_ = false;
-  inline static Diagnosis* ours_ = nullptr;
+  inline static WornGuide* ours_ = nullptr;
   inline static Values values_;
 };
 
@@ -309,7 +307,7 @@ TEST_F(DiagnosisScipy, HasTheSameDensityOfTheDisturbanceResidual) {
   const VectorXd& ours = Ours().log.disturbance;
   EXPECT_LT(Difference(ours.transpose(), Value("high_passed")), kRounding);
   const Spectrum spectrum =
-      WelchDensity(ours, Ours().setup.rates.tick(), Diagnosis::kSegment);
+      WelchDensity(ours, Ours().setup.rates.tick(), WornGuide::kSegment);
   EXPECT_LT(Difference(spectrum.frequency.transpose(), Value("density").row(0)), 1e-14);
   EXPECT_LT(Difference(spectrum.density.transpose(), Value("density").row(1)),
             kRounding);

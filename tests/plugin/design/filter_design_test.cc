@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mjdiag/diagnosis/monitor.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
+#include "mjdiag/plugin/monitor_observer.h"
 #include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/message_of.h"
@@ -52,15 +52,14 @@ struct Bench {
     design.limits = CalibrateLimits(design, setup, *plant, Nominal(linear));
   }
   /// A run with a monitor in the loop.
-  Record RunWith(DiagnosisMonitor& monitor, RunOptions options, bool linear) const {
-    MonitorObserver observer(monitor);
-    options.observer = &observer;
-    return linear ? SimulateLinear(setup, *plant, motion, options)
-                  : Simulate(setup, *plant, motion, options);
+  template <typename Watcher>
+  Record RunWith(Watcher& watcher, const RunOptions& options, bool linear) const {
+    MonitorObserver observer(watcher);
+    return mjdiag::RunWith(setup, *plant, motion, observer, options, linear);
   }
   DiagnosisMonitor MonitorOf(const std::vector<Fault>& faults, std::uint64_t seed,
                              bool linear) const {
-    DiagnosisMonitor monitor(design, motion.samples());
+    DiagnosisMonitor monitor(design);
     RunOptions options;
     options.faults = faults;
     options.seed = seed;
@@ -79,9 +78,12 @@ struct Bench {
   Excitation motion;
 };
 
-void ExpectSameBits(const DiagnosisMonitor& one, const DiagnosisMonitor& other) {
-  const MonitorLog a = one.Log();
-  const MonitorLog b = other.Log();
+void ExpectSameBits(const DiagnosisRecording& recording,
+                    const DiagnosisRecording& offline) {
+  const MonitorLog a = recording.recorder.Log();
+  const MonitorLog b = offline.recorder.Log();
+  const DiagnosisMonitor& one = recording.monitor;
+  const DiagnosisMonitor& other = offline.monitor;
   EXPECT_EQ(one.samples(), other.samples());
   EXPECT_EQ(a.residual, b.residual);
   EXPECT_EQ(a.integral, b.integral);
@@ -97,32 +99,29 @@ void ExpectSameBits(const DiagnosisMonitor& one, const DiagnosisMonitor& other) 
 TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
   Bench bench({"diagnosis.thresholds.integral_window=0.02"});
   bench.Calibrate(true);
-  DiagnosisMonitor inside(bench.design, bench.motion.samples());
+  DiagnosisRecording inside(bench.design, bench.motion.samples());
   RunOptions options;
   options.faults = {{"zeta_x", 1.3}};
   options.disturbances["gamma"] = 0.1;
   const Record record = bench.RunWith(inside, options, false);
-  ASSERT_EQ(inside.samples(), 2000);
-  ASSERT_TRUE(inside.first_detection().has_value());
-  ASSERT_TRUE(inside.first_lasting().has_value());
-  ASSERT_GT(inside.estimate().norm(), 0.0);
+  ASSERT_EQ(inside.monitor.samples(), 2000);
+  ASSERT_TRUE(inside.monitor.first_detection().has_value());
+  ASSERT_TRUE(inside.monitor.first_lasting().has_value());
+  ASSERT_GT(inside.monitor.estimate().norm(), 0.0);
 
-  DiagnosisMonitor offline(bench.design, record.samples());
-  mjdiag::Run(offline, bench.design, record);
-  ExpectSameBits(inside, offline);
+  ExpectSameBits(inside, RecordDiagnosis(bench.design, record));
 
   const test::TemporaryFolder folder;
   for (const RecordFormat format : {RecordFormat::kCsv, RecordFormat::kMat5}) {
     WriteRecord(folder / "record", record, format);
-    DiagnosisMonitor from_file(bench.design, record.samples());
-    mjdiag::Run(from_file, bench.design, ReadRecord(folder / "record"));
-    ExpectSameBits(inside, from_file);
+    ExpectSameBits(inside,
+                   RecordDiagnosis(bench.design, ReadRecord(folder / "record")));
   }
 }
 
 TEST(MonitorObserver, LeavesTheRunAsItIs) {
   const Bench bench;
-  DiagnosisMonitor monitor(bench.design, bench.motion.samples());
+  DiagnosisMonitor monitor(bench.design);
   const Record watched = bench.RunWith(monitor, {}, false);
   const Record alone = Simulate(bench.setup, *bench.plant, bench.motion, {});
   for (const Channel& channel : alone.channels()) {
@@ -144,16 +143,17 @@ TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   const auto run = [&](const std::string& motion, std::uint64_t seed) {
     const Excitation excitation =
         FollowTrajectory(bench.setup, bench.setup.trajectories.Find(motion));
-    DiagnosisMonitor monitor(bench.design, excitation.samples());
-    MonitorObserver observer(monitor);
+    DiagnosisRecording recording(bench.design, excitation.samples());
+    MonitorObserver observer(recording);
     RunOptions options;
     options.seed = seed;
     options.observer = &observer;
     Simulate(bench.setup, *bench.plant, excitation, options);
-    residuals.push_back(monitor.Log().residual);
-    integral = std::max(integral, monitor.Log().integral.maxCoeff());
-    disturbances.push_back(monitor.Log().disturbance);
-    return monitor.estimate();
+    const MonitorLog log = recording.recorder.Log();
+    residuals.push_back(log.residual);
+    integral = std::max(integral, log.integral.maxCoeff());
+    disturbances.push_back(log.disturbance);
+    return recording.monitor.estimate();
   };
   for (int i = 0; i < nominal.runs; ++i) {
     estimates.col(i) = run("multi", nominal.seed + static_cast<std::uint64_t>(i));
@@ -287,12 +287,12 @@ TEST(UnknownForces, LeaveResidualsThatAreBlindToThem) {
     Bench bench({"diagnosis.unknown_forces=" + unknown, "diagnosis.degree=10",
                  "diagnosis.order=10", "diagnosis.cutoff=200",
                  "diagnosis.disturbance.order=10"});
-    DiagnosisMonitor monitor(bench.design, bench.motion.samples());
+    DiagnosisRecording recording(bench.design, bench.motion.samples());
     bench.setup.disturbances[0].amplitude = {{"u_x", 100.0}};
     RunOptions options;
     options.disturbances["gamma"] = 0.05;
-    bench.RunWith(monitor, options, true);
-    return monitor.Log().residual.cwiseAbs().maxCoeff();
+    bench.RunWith(recording, options, true);
+    return recording.recorder.Log().residual.cwiseAbs().maxCoeff();
   };
   EXPECT_GT(disturbed("[]"), 20.0);
   EXPECT_LT(disturbed(R"(["X"])"), 6.0);  // noise of standard deviation 1
@@ -343,12 +343,11 @@ TEST(DesignFilters, RefusesASamplingThatIsNoMultipleOfTheTick) {
 
 TEST(Run, RefusesARecordAtAnotherRate) {
   const Bench bench;
-  DiagnosisMonitor monitor(bench.design, 10);
+  DiagnosisMonitor monitor(bench.design);
   Record record(1e-3);
   record.Add({"x", "m", VectorXd::Zero(10)});
-  EXPECT_THAT(
-      test::MessageOf<InputError>([&] { mjdiag::Run(monitor, bench.design, record); }),
-      AllOf(HasSubstr("sampled every 1.0"), HasSubstr("0.125")));
+  EXPECT_THAT(test::MessageOf<InputError>([&] { mjdiag::Run(monitor, record); }),
+              AllOf(HasSubstr("sampled every 1.0"), HasSubstr("0.125")));
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/active_effect.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag::test {
 

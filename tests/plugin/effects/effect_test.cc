@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "mjdiag/plugin/effects/active_effect.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 

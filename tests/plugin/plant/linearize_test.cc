@@ -12,10 +12,10 @@
 
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/diagnosis/linear_chain.h"
-#include "mjdiag/plugin/setup/chain_file.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/setup/published_row_file.h"
 #include "mjdiag/plugin/plant/transition.h"
+#include "mjdiag/plugin/setup/chain_file.h"
+#include "mjdiag/plugin/setup/published_row_file.h"
 #include "mjdiag/signals/error.h"
 #include "support/temporary_folder.h"
 
@@ -32,8 +32,8 @@ Setup BonderSetup() {
   setup.rates.control = 8000.0;
   setup.rates.substeps = 4;
   setup.channels.sensors = {{"x", "x_encoder", 0, "m"},
-                   {"y", "y_encoder", 1, "m"},
-                   {"z", "z_encoder", 0, "rad"}};
+                            {"y", "y_encoder", 1, "m"},
+                            {"z", "z_encoder", 0, "rad"}};
   setup.channels.actuators = {
       {"u_x", "x_motor", "N"}, {"u_y", "y_motor", "N"}, {"u_z", "z_motor", "N m"}};
   return setup;

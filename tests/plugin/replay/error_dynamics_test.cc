@@ -24,8 +24,9 @@ VectorXd Noise(Index n, unsigned seed) {
 /// First order of the run of a problem, its first samples.
 ErrorDynamics DynamicsOf(const DiscoveryProblem& problem, Index samples, Index block) {
   ErrorDynamics dynamics(problem.observer, block);
-  FollowRun(problem.machine.setup(), problem.machine.plant(), {}, Beginning(problem, samples).run,
-            problem.observer, problem.machine.linear(), dynamics);
+  FollowRun(problem.machine.setup(), problem.machine.plant(), {},
+            Beginning(problem, samples).run, problem.observer, problem.machine.linear(),
+            dynamics);
   return dynamics;
 }
 
@@ -39,11 +40,10 @@ TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
   const Excitation motion =
       FollowTrajectory(stage.setup, stage.setup.trajectories.Find("default"));
   DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  problem.run =
-      ToMeasuredRun(stage.setup, Simulate(stage.machine, motion, quiet));
+  problem.run = ToMeasuredRun(stage.setup, Simulate(stage.machine, motion, quiet));
   ErrorDynamics dynamics(problem.observer, 1);
-  const Track track = FollowRun(stage.machine, {}, problem.run,
-                                problem.observer, problem.machine.linear(), dynamics);
+  const Track track = FollowRun(stage.machine, {}, problem.run, problem.observer,
+                                problem.machine.linear(), dynamics);
   const ObservedMotion observed = ObserveMotion(*stage.plant, problem.run, track);
   const MatrixXd force = -0.5 * observed.velocity.transpose();
   const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
@@ -101,8 +101,8 @@ TEST(ErrorDynamics, HasAnAdjoint) {
 TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
   const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
   const ModelPtr plant = LoadPlant(setup);
-  const Record measured = Simulate(
-      machine, FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
+  const Record measured =
+      Simulate(machine, FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
   const DiscoveryProblem problem =
       Beginning(PoseProblem(machine, measured, 0.8, 0.0), 6000);
   for (const Index block : {1, 3}) {

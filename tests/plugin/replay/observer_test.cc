@@ -23,8 +23,8 @@ TEST(Observer, IsStableOnTheBonderAtAnyBandwidth) {
   const MechanicalModel model = Bonder(setup);
   for (const double bandwidth : {2.0, 10.0, 160.0, 800.0}) {
     const Observer observer =
-        DesignObserver(model, setup.rates.tick() / setup.rates.substeps, setup.rates.substeps,
-                       VectorXd::Constant(3, 2e-8), bandwidth);
+        DesignObserver(model, setup.rates.tick() / setup.rates.substeps,
+                       setup.rates.substeps, VectorXd::Constant(3, 2e-8), bandwidth);
     const MatrixXd F = observer.tick.A - observer.L * observer.tick.C;
     EXPECT_LT(SpectralRadius(F), 1.0) << bandwidth;
   }

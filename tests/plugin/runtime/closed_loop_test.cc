@@ -12,7 +12,8 @@ namespace mjdiag {
 namespace {
 
 StateSpace Tick(const MechanicalModel& model, const mjdiag::Setup& setup) {
-  return TickModel(model, setup.rates.tick() / setup.rates.substeps, setup.rates.substeps);
+  return TickModel(model, setup.rates.tick() / setup.rates.substeps,
+                   setup.rates.substeps);
 }
 
 class BonderLoop : public ::testing::Test {
@@ -35,7 +36,8 @@ TEST_F(BonderLoop, IsAsStableOnTheMapOfATick) {
 
 // As printed, the y controller cancels its integrator: only marginally stable.
 TEST_F(BonderLoop, IsMarginalWithThePrintedCoefficients) {
-  setup_.control.axes[1].feedback = {{66900.0, -131600.0, 64700.0}, {1.0, -1.828, 0.8277}};
+  setup_.control.axes[1].feedback = {{66900.0, -131600.0, 64700.0},
+                                     {1.0, -1.828, 0.8277}};
   EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(model_, setup_), setup_)), 1.0,
               2e-3);
 }

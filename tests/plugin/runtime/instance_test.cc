@@ -4,10 +4,10 @@
 
 #include <cstdlib>
 
-#include "mjdiag/diagnosis/monitor.h"
-#include "mjdiag/plugin/plant/channels.h"
+#include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
 
@@ -42,10 +42,10 @@ struct Bench {
       : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383")),
         model(LoadPlant(setup)),
         data(MakeData(*model)),
-        instance(
-            setup, *model,
-            FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
-            options) {
+        instance(setup, *model,
+                 FollowTrajectory(setup,
+                                  setup.trajectories.Find(setup.trajectories.fallback)),
+                 options) {
     const Eigen::VectorXd start = StartPosition(setup, *model, {});
     std::copy(start.begin(), start.end(), data->qpos);
   }
@@ -92,7 +92,8 @@ TEST(ControlCallback, DoesNotAllocate) {
 }
 
 TEST(ControlCallback, DoesNotAllocateWithADiagnosisInIt) {
-  // With every row of the null space, a baseline and a log that ends before the run.
+  // With every row of the null space, a baseline and a recorder that is full before the
+  // run ends.
   const mjdiag::Setup setup =
       ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
                 {"diagnosis.estimation.rows=0", "diagnosis.estimation.forgetting=0.1"});
@@ -102,15 +103,15 @@ TEST(ControlCallback, DoesNotAllocateWithADiagnosisInIt) {
     if (!at_rest) design.offset.array() += 1e-3;
     design.limits.residual.limits = {-1.0, 1.0};
     design.limits.known = true;
-    DiagnosisMonitor monitor(design, 500,
-                             Eigen::MatrixXd::Zero(design.bank.residuals, 700));
-    MonitorObserver observer(monitor);
+    DiagnosisRecording recording(design, 500,
+                                 Eigen::MatrixXd::Zero(design.bank.residuals, 700));
+    MonitorObserver observer(recording);
     RunOptions options;
     options.observer = &observer;
     EXPECT_EQ(AllocationsInTheCallback(options), 0);
-    EXPECT_EQ(monitor.samples(), 1000);
-    EXPECT_EQ(monitor.Log().residual.size(), 500);
-    EXPECT_TRUE(!at_rest || monitor.estimate().norm() > 0.0);
+    EXPECT_EQ(recording.monitor.samples(), 1000);
+    EXPECT_EQ(recording.recorder.Log().residual.size(), 500);
+    EXPECT_TRUE(!at_rest || recording.monitor.estimate().norm() > 0.0);
   }
 }
 #endif

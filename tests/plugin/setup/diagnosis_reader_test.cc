@@ -89,9 +89,9 @@ class DiagnosisReader : public testing::Test {
 
 TEST_F(DiagnosisReader, ReadsEveryKey) {
   const DiagnosisOptions options = Read(kDiagnosis);
-  EXPECT_EQ(options.degree, 9);
-  EXPECT_EQ(options.denominator.order, 10);
-  EXPECT_EQ(options.denominator.cutoff, 40.0);
+  EXPECT_EQ(options.residual.degree, 9);
+  EXPECT_EQ(options.residual.denominator.order, 10);
+  EXPECT_EQ(options.residual.denominator.cutoff, 40.0);
   EXPECT_THAT(options.unknown_forces, ElementsAre("X", "Y"));
   EXPECT_EQ(options.margin, 3.0);
   EXPECT_EQ(options.false_alarms, 0.01);
@@ -111,9 +111,9 @@ TEST_F(DiagnosisReader, ReadsEveryKey) {
   EXPECT_EQ(options.disturbance.peak_margin, 0.5);
   EXPECT_EQ(options.disturbance.total_margin, 0.75);
   EXPECT_EQ(options.disturbance.tone_false_alarm, 0.001);
-  EXPECT_EQ(options.robust.degree, 11);
-  EXPECT_EQ(options.robust.denominator.order, 12);
-  EXPECT_EQ(options.robust.denominator.cutoff, 150.0);
+  EXPECT_EQ(options.robust.residual.degree, 11);
+  EXPECT_EQ(options.robust.residual.denominator.order, 12);
+  EXPECT_EQ(options.robust.residual.denominator.cutoff, 150.0);
   EXPECT_EQ(options.robust.runs, 5);
 }
 
@@ -126,9 +126,9 @@ TEST_F(DiagnosisReader, TakesTheFiltersOfTheSeedWithoutKeys) {
     machine.replace(machine.find("1000.0"), 6, "8000.0");
     folder_.Write("setup.toml", machine + text);
     const DiagnosisOptions options = ReadSetup(folder_.path()).diagnosis;
-    EXPECT_EQ(options.degree, 7);
-    EXPECT_EQ(options.denominator.order, 7);
-    EXPECT_EQ(options.denominator.cutoff, 50.0);
+    EXPECT_EQ(options.residual.degree, 7);
+    EXPECT_EQ(options.residual.denominator.order, 7);
+    EXPECT_EQ(options.residual.denominator.cutoff, 50.0);
     EXPECT_EQ(options.disturbance_denominator.order, 7);
     EXPECT_EQ(options.disturbance_denominator.cutoff, 750.0);
     EXPECT_EQ(options.high_pass_order, 3);

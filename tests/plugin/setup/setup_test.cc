@@ -146,17 +146,17 @@ TEST_F(SetupFile, FillsRecordAndCompare) {
 
 TEST_F(SetupFile, FillsTheFiltersAndThresholdsOfTheDiagnosis) {
   const DiagnosisOptions diagnosis = ReadSetup(folder_).diagnosis;
-  EXPECT_EQ(diagnosis.degree, 3);
-  EXPECT_EQ(diagnosis.denominator.order, 5);
-  EXPECT_EQ(diagnosis.denominator.cutoff, 60.0);
+  EXPECT_EQ(diagnosis.residual.degree, 3);
+  EXPECT_EQ(diagnosis.residual.denominator.order, 5);
+  EXPECT_EQ(diagnosis.residual.denominator.cutoff, 60.0);
   EXPECT_THAT(diagnosis.unknown_forces, ElementsAre("slide", "hinge"));
   EXPECT_EQ(diagnosis.margin, 3.0);
   EXPECT_EQ(diagnosis.false_alarms, 0.01);
   EXPECT_EQ(diagnosis.integral_window, 0.125);
   EXPECT_THAT(diagnosis.trajectories, ElementsAre("slow", "fast"));
-  EXPECT_EQ(diagnosis.robust.degree, 9);
-  EXPECT_EQ(diagnosis.robust.denominator.order, 10);
-  EXPECT_EQ(diagnosis.robust.denominator.cutoff, 150.0);
+  EXPECT_EQ(diagnosis.robust.residual.degree, 9);
+  EXPECT_EQ(diagnosis.robust.residual.denominator.order, 10);
+  EXPECT_EQ(diagnosis.robust.residual.denominator.cutoff, 150.0);
   EXPECT_EQ(diagnosis.robust.runs, 12);
 }
 
@@ -197,9 +197,9 @@ TEST_F(SetupFile, WithoutDiagnosisHasTheDefaultsOfTheManual) {
   const auto setup = ReadSetup(folder_);
   const DiagnosisOptions& diagnosis = setup.diagnosis;
   EXPECT_THAT(setup.studies, IsEmpty());
-  EXPECT_EQ(diagnosis.degree, 7);
-  EXPECT_EQ(diagnosis.denominator.order, 7);
-  EXPECT_EQ(diagnosis.denominator.cutoff, 50.0);
+  EXPECT_EQ(diagnosis.residual.degree, 7);
+  EXPECT_EQ(diagnosis.residual.denominator.order, 7);
+  EXPECT_EQ(diagnosis.residual.denominator.cutoff, 50.0);
   EXPECT_THAT(diagnosis.unknown_forces, IsEmpty());
   EXPECT_EQ(diagnosis.margin, 2.0);
   EXPECT_EQ(diagnosis.false_alarms, 0.0);
@@ -218,9 +218,9 @@ TEST_F(SetupFile, WithoutDiagnosisHasTheDefaultsOfTheManual) {
   EXPECT_EQ(diagnosis.disturbance.peak_margin, 1.0);
   EXPECT_EQ(diagnosis.disturbance.total_margin, 0.25);
   EXPECT_EQ(diagnosis.disturbance.tone_false_alarm, 1e-4);
-  EXPECT_EQ(diagnosis.robust.degree, 8);
-  EXPECT_EQ(diagnosis.robust.denominator.order, 8);
-  EXPECT_EQ(diagnosis.robust.denominator.cutoff, 200.0);
+  EXPECT_EQ(diagnosis.robust.residual.degree, 8);
+  EXPECT_EQ(diagnosis.robust.residual.denominator.order, 8);
+  EXPECT_EQ(diagnosis.robust.residual.denominator.cutoff, 200.0);
   EXPECT_EQ(diagnosis.robust.runs, 8);
 }
 
@@ -289,9 +289,9 @@ TEST_F(SetupFile, OfTheManualsExamplesReads) {
   EXPECT_EQ(Message({}), "nothing thrown");
   const auto closed = ReadSetup(folder_);
   EXPECT_EQ(closed.control.axes.size(), 1u);
-  EXPECT_EQ(closed.diagnosis.degree, 2);
-  EXPECT_NO_THROW(SampleTrajectory(closed.trajectories.Find(closed.trajectories.fallback),
-                                   {"slide"}, 1e-3));
+  EXPECT_EQ(closed.diagnosis.residual.degree, 2);
+  EXPECT_NO_THROW(SampleTrajectory(
+      closed.trajectories.Find(closed.trajectories.fallback), {"slide"}, 1e-3));
 }
 
 class ShippedSetup : public ::testing::TestWithParam<const char*> {};

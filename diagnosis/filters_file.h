@@ -8,13 +8,17 @@
 // p^k); stride; disturbances; disturbance {filters, high_pass}; options; limits.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <string>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 
 namespace mjdiag {
 
-nlohmann::json ToJson(const DiagnosisDesign& design);
+/// The document as text; other members may be added to it.
+std::string FiltersJson(const DiagnosisDesign& design);
+
+/// Replaces the file. InputError if it cannot be written.
+void WriteFilters(const std::filesystem::path& file, const DiagnosisDesign& design);
 
 /// InputError with file and key: not JSON, another schema, a missing key, shapes that
 /// do not fit.

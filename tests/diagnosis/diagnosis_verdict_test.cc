@@ -1,4 +1,4 @@
-#include "mjdiag/report/diagnosis_verdict.h"
+#include "mjdiag/diagnosis/diagnosis_verdict.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "mjdiag/report/diagnosis_verdict.h"
+#include "mjdiag/diagnosis/diagnosis_verdict.h"
 
 #include <algorithm>
 #include <array>

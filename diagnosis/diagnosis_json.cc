@@ -1,4 +1,6 @@
-#include "mjdiag/report/diagnosis_json.h"
+#include "mjdiag/diagnosis/diagnosis_json.h"
+
+#include <nlohmann/json.hpp>
 
 namespace mjdiag {
 namespace {
@@ -40,21 +42,22 @@ nlohmann::json Disturbance(const DisturbanceReport& report) {
 
 }  // namespace
 
-nlohmann::json ToJson(const DiagnosisResult& result) {
-  return {{"schema", "mjdiag.diagnosis/1"},
-          {"setup", result.setup},
-          {"samples", result.samples},
-          {"sample_time", result.sample_time},
-          {"detected", result.detected},
-          {"first_detection", OrNull(result.first_detection)},
-          {"lasting_since", OrNull(result.lasting)},
-          {"residual",
-           {{"min", result.residual.min},
-            {"max", result.residual.max},
-            {"threshold_min", result.limits.min},
-            {"threshold_max", result.limits.max}}},
-          {"faults", Faults(result.faults)},
-          {"disturbance", Disturbance(result.disturbance)}};
+std::string DiagnosisJson(const DiagnosisResult& result) {
+  const nlohmann::json document{{"schema", "mjdiag.diagnosis/1"},
+                                {"setup", result.setup},
+                                {"samples", result.samples},
+                                {"sample_time", result.sample_time},
+                                {"detected", result.detected},
+                                {"first_detection", OrNull(result.first_detection)},
+                                {"lasting_since", OrNull(result.lasting)},
+                                {"residual",
+                                 {{"min", result.residual.min},
+                                  {"max", result.residual.max},
+                                  {"threshold_min", result.limits.min},
+                                  {"threshold_max", result.limits.max}}},
+                                {"faults", Faults(result.faults)},
+                                {"disturbance", Disturbance(result.disturbance)}};
+  return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace mjdiag

@@ -1,10 +1,12 @@
-#include "mjdiag/report/filters_file.h"
+#include "mjdiag/diagnosis/filters_file.h"
 
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag {
 namespace {
@@ -218,9 +220,7 @@ void RequireShapes(const std::string& file, const DiagnosisDesign& design) {
   }
 }
 
-}  // namespace
-
-json ToJson(const DiagnosisDesign& design) {
+json Json(const DiagnosisDesign& design) {
   json disturbances = json::array();
   for (const Multisine& source : design.disturbances)
     disturbances.push_back(Json(source));
@@ -247,6 +247,16 @@ json ToJson(const DiagnosisDesign& design) {
             {"horizon", design.options.horizon},
             {"disturbance", Json(design.options.disturbance)}}},
           {"limits", design.limits.known ? Json(design.limits) : json()}};
+}
+
+}  // namespace
+
+std::string FiltersJson(const DiagnosisDesign& design) {
+  return Json(design).dump(2, ' ', false, json::error_handler_t::replace);
+}
+
+void WriteFilters(const std::filesystem::path& file, const DiagnosisDesign& design) {
+  WriteTextFile(file, FiltersJson(design) + "\n");
 }
 
 DiagnosisDesign ReadFilters(const std::filesystem::path& file) {

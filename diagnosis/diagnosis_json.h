@@ -2,12 +2,13 @@
 // diagnosis.json: the answer of a diagnosis for other programs, schema
 // "mjdiag.diagnosis/1".
 
-#include <nlohmann/json.hpp>
+#include <string>
 
 #include "mjdiag/diagnosis/diagnosis_result.h"
 
 namespace mjdiag {
 
-nlohmann::json ToJson(const DiagnosisResult& result);
+/// The document as text; other members may be added to it.
+std::string DiagnosisJson(const DiagnosisResult& result);
 
 }  // namespace mjdiag

@@ -1,0 +1,48 @@
+#include "mjdiag/diagnosis/monitor_recorder.h"
+
+#include <algorithm>
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+MonitorRecorder::MonitorRecorder(const DiagnosisDesign& design, Index capacity)
+    : sample_time_(design.sample_time()),
+      stride_(design.stride),
+      residuals_(design.bank.residuals, capacity),
+      integral_(capacity),
+      disturbance_(capacity),
+      signals_(design.bank.filters.inputs(), capacity),
+      estimates_(design.faults(), capacity / design.stride + 1) {}
+
+void MonitorRecorder::Add(const DiagnosisMonitor& monitor) noexcept {
+  if (samples_ < residuals_.cols()) {
+    residuals_.col(samples_) = monitor.residuals();
+    integral_[samples_] = monitor.integral();
+    disturbance_[samples_] = monitor.disturbance();
+    signals_.col(samples_) = monitor.signals();
+    ++samples_;
+  }
+  if (monitor.regressed() && estimates_made_ < estimates_.cols()) {
+    if (estimates_made_ == 0) first_estimate_ = seen_;
+    estimates_.col(estimates_made_) = monitor.estimate();
+    ++estimates_made_;
+  }
+  ++seen_;
+}
+
+MonitorLog MonitorRecorder::Log() const {
+  const VectorXd index =
+      VectorXd::LinSpaced(estimates_made_, 0.0,
+                          static_cast<double>(std::max<Index>(0, estimates_made_ - 1)));
+  return {
+      residuals_.row(0).head(samples_),
+      integral_.head(samples_),
+      disturbance_.head(samples_),
+      signals_.leftCols(samples_),
+      sample_time_ * (index.array() * stride_ + static_cast<double>(first_estimate_)),
+      estimates_.leftCols(estimates_made_)};
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,15 @@
+#pragma once
+// How long a residual generator r = d(p)^-1 N(p) z is: the degree of its numerators N,
+// which decides what rows there are, and the denominator d that makes it a proper
+// filter.
+
+#include "mjdiag/diagnosis/filter_bank.h"
+
+namespace mjdiag {
+
+struct ResidualOrder {
+  int degree = 7;           ///< d_N, no more than the order of the denominator
+  Denominator denominator;  ///< Eq. 31 of the seed
+};
+
+}  // namespace mjdiag

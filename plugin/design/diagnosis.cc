@@ -1,0 +1,137 @@
+#include "mjdiag/plugin/design/diagnosis.h"
+
+#include <cmath>
+#include <vector>
+
+#include "mjdiag/diagnosis/filters_file.h"
+#include "mjdiag/plugin/design/cross_terms.h"
+#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/design/robust_design.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+
+template <typename Element>
+std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
+  std::vector<std::string> channels;
+  for (const Element& element : elements) channels.push_back(element.channel);
+  return channels;
+}
+
+void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
+                        const Setup& setup) {
+  if (design.outputs != ChannelsOf(setup.channels.sensors) ||
+      design.inputs != ChannelsOf(setup.channels.actuators)) {
+    throw InputError(file, "its channels are not those of '" + setup.name + "'",
+                     "filters designed for this setup");
+  }
+  if (std::abs(design.sample_time() * setup.rates.control - 1.0) > 1e-9) {
+    throw InputError(
+        file, "made for a tick of " + FormatQuantity(design.sample_time(), "s"),
+        "the control tick of the setup, " + FormatQuantity(setup.rates.tick(), "s"));
+  }
+}
+
+DiagnosisDesign FiltersOf(const Machine& machine, const DiagnosisSource& source,
+                          const Excitation& motion) {
+  if (!source.filters.empty()) {
+    DiagnosisDesign design = ReadFilters(source.filters);
+    RequireSameMachine(source.filters.string(), design, machine.setup());
+    return design;
+  }
+  if (!source.robust.empty()) {
+    return DesignRobustFilters(machine, source.robust, motion, source.baseline);
+  }
+  return DesignFilters(machine);
+}
+
+/// First sample of the horizon at the end of the record.
+Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
+  const double horizon = design.options.horizon;
+  if (horizon == 0.0) return 0;
+  if (horizon > record.duration() * (1.0 + 1e-9)) {
+    throw InputError(
+        "horizon", FormatQuantity(horizon, "s"),
+        "no more than the record's " + FormatQuantity(record.duration(), "s"));
+  }
+  return record.samples() - static_cast<Index>(horizon / record.sample_time() + 0.5);
+}
+
+}  // namespace
+
+bool NeedsMotion(const DiagnosisSource& source) {
+  return source.baseline || !source.robust.empty();
+}
+
+PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
+                                   const DiagnosisSource& source,
+                                   const Excitation& motion) {
+  PreparedDiagnosis prepared;
+  prepared.design = FiltersOf(machine, source, motion);
+  prepared.nominal = source.nominal;
+  prepared.nominal.progress = nullptr;  // belongs to this call
+  NominalRuns runs = source.nominal;
+  if (source.baseline) {
+    prepared.motion = motion;
+    prepared.baseline = ResidualBaseline(prepared.design, machine, motion, runs);
+    runs.seed += static_cast<std::uint64_t>(runs.runs);
+    prepared.design.limits =
+        CalibrateLimits(prepared.design, machine, motion, prepared.baseline, runs);
+  } else if (!prepared.design.limits.known) {
+    prepared.design.limits = CalibrateLimits(prepared.design, machine, runs);
+  }
+  return prepared;
+}
+
+Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
+                   const Record& record, EstimateMethod method) {
+  const bool refined = method == EstimateMethod::kRefined;
+  if (refined && prepared.baseline.size() > 0) {
+    throw InputError("refined estimates", "asked for against a baseline",
+                     "one of the two: a baseline belongs to the healthy filters");
+  }
+  const Index from = HorizonStart(prepared.design, record);
+  const DiagnosisRecording recording =
+      RecordDiagnosis(prepared.design, record, prepared.baseline, from);
+  if (!refined) return Conclude(machine, prepared, recording);
+  const MonitorLog log = recording.recorder.Log();
+  return {Conclude(recording.monitor, log,
+                   RefineFaults(machine, prepared.design, record, from).estimate),
+          log};
+}
+
+Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
+                   const DiagnosisRecording& recording) {
+  const DiagnosisMonitor& monitor = recording.monitor;
+  Diagnosis diagnosis;
+  diagnosis.log = recording.recorder.Log();
+  diagnosis.result = Conclude(monitor, diagnosis.log);
+  if (prepared.baseline.size() > 0) {
+    RemoveCrossTerms(diagnosis.result, prepared.design, machine,
+                     {prepared.motion, prepared.baseline, monitor.first_regressed(),
+                      prepared.nominal});
+  }
+  return diagnosis;
+}
+
+DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
+                         const Excitation& motion, RunOptions options) {
+  DiagnosisRecording recording(prepared.design, motion.samples(), prepared.baseline);
+  MonitorObserver observer(recording);
+  Record record =
+      RunWith(machine, motion, observer, std::move(options), prepared.nominal.linear);
+  return {std::move(record), Conclude(machine, prepared, recording)};
+}
+
+RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
+                             const Record& record, Index from) {
+  return RefineEstimate(design, SynthesisOf(machine.setup(), machine.linear()),
+                        FaultModels(machine), Magnitudes(machine), record, from);
+}
+
+}  // namespace mjdiag

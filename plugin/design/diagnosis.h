@@ -1,0 +1,108 @@
+#pragma once
+// A whole diagnosis of a machine, from its setup to a verdict. Three steps:
+//
+//   const Machine machine(ReadSetup("mjcf/ab383"));
+//   const PreparedDiagnosis prepared = PrepareDiagnosis(machine);
+//   const Diagnosis diagnosis = Diagnose(machine, prepared, record);
+//   std::cout << DiagnosisVerdict(diagnosis.result) << "\n";
+//
+// 1. Prepare: residual generators and prefilters from the linearised plant
+//    (filter_design.h), or for a machine with friction from its nominal runs, too
+//    (robust_design.h), or read from a file; and limits from healthy runs. Once a
+//    machine, or once a motion if a baseline is wanted.
+// 2. Watch: a monitor (mjdiag/diagnosis/monitor.h) sees every control tick of a record
+//    (Diagnose) or of a run of the simulated machine (DiagnoseRun). The bits are the
+//    same.
+// 3. Conclude: which limits were left and when, which fault is how large, which tones
+//    are there. DiagnosisVerdict says it in a sentence (diagnosis_verdict.h), and
+//    DiagnosisJson for other programs (diagnosis_json.h).
+//
+// Times are in seconds since the first sample, faults in knobs (1: healthy) and
+// disturbances in their magnitude gamma (0: healthy).
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+
+#include "mjdiag/diagnosis/diagnosis_recording.h"
+#include "mjdiag/diagnosis/diagnosis_result.h"
+#include "mjdiag/diagnosis/refined_estimate.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+
+namespace mjdiag {
+
+/// Where filters and limits come from.
+struct DiagnosisSource {
+  std::filesystem::path filters;  ///< filters.json; empty: designed on the spot
+  /// Fault for which the residual is the one that nominal runs of the nonlinear plant
+  /// excite least; empty: one residual for all faults. Needs the motion.
+  std::string robust;
+  /// Subtract the residual that the healthy plant leaves on this very motion. Needs the
+  /// motion.
+  bool baseline = false;
+  NominalRuns nominal;  ///< the healthy runs: on which plant, how many
+};
+
+/// Whether that source asks for the motion that is going to be diagnosed.
+bool NeedsMotion(const DiagnosisSource& source);
+
+/// Filters with limits, ready to watch a machine.
+struct PreparedDiagnosis {
+  DiagnosisDesign design;
+  Eigen::MatrixXd baseline;  ///< subtracted from the residuals, n x samples, or empty
+  Excitation motion;         ///< to which the baseline belongs, if there is one
+  NominalRuns nominal;       ///< as healthy runs of that motion are made
+};
+
+/// @param motion  where NeedsMotion(source), else left out; Replay makes it of a record
+/// InputError if the file of filters belongs to other channels or another control tick
+/// than the setup, or the setup cannot be diagnosed (DesignFilters).
+PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
+                                   const DiagnosisSource& source = {},
+                                   const Excitation& motion = {});
+
+/// The answer, and the run that it was drawn from as pages show it.
+struct Diagnosis {
+  DiagnosisResult result;
+  MonitorLog log;
+};
+
+enum class EstimateMethod {
+  kLinear,   ///< by prefilters about the healthy machine: exact for small faults
+  kRefined,  ///< filters made anew about the estimate until it settles (RefineEstimate)
+};
+
+/// The diagnosis of a measured or simulated record, over the horizon that the setup
+/// gives. InputError if a channel is missing, the record has another rate than the
+/// filters or is shorter than the horizon, the motion does not tell the faults apart,
+/// or refined estimates are asked for against a baseline.
+Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
+                   const Record& record,
+                   EstimateMethod method = EstimateMethod::kLinear);
+
+/// What a recording says at the end of its run; against a baseline, without the cross
+/// terms of large faults (cross_terms.h).
+Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
+                   const DiagnosisRecording& recording);
+
+struct DiagnosedRun {
+  Record record;
+  Diagnosis diagnosis;
+};
+
+/// A run of the simulated machine with the diagnosis inside its control callback; on
+/// the linear plant where `prepared` has its healthy runs from there.
+/// @param options  the faults, noise and seed of the run; its observer is replaced
+DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
+                         const Excitation& motion, RunOptions options = {});
+
+/// RefineEstimate with the models of this machine.
+/// @param from  first sample that is regressed
+RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
+                             const Record& record, Eigen::Index from = 0);
+
+}  // namespace mjdiag
