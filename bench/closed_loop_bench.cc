@@ -9,9 +9,8 @@
 #include <chrono>
 #include <vector>
 
-#include "mjdiag/plugin/plant/scenery.h"
-#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/runtime/instance.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -31,30 +30,30 @@ double Median(std::vector<double> values) {
 }
 
 void ClosedLoopOverBareSteps(benchmark::State& state, bool static_friction) {
-  Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  setup.physics.static_friction = static_friction;
-  const ModelPtr model = LoadPlant(setup);
+  const Machine machine = test::Bonder(
+      {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
+  const Setup& setup = machine.setup();
   const Excitation excitation =
       FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
-  const Eigen::VectorXd start = StartPosition(setup, *model, {});
-  DropScenery(*model);
+  const StartedPlant started = StartPlant(machine, {});
+  const mjModel& model = *started.model;
   const int steps = kTicksPerSlice * setup.rates.substeps;
   std::vector<double> ratios;
   double bare_seconds = 0.0;
   for (auto _ : state) {
-    Instance instance(setup, *model, excitation, {});
-    const DataPtr closed = MakeData(*model);
-    const DataPtr bare = MakeData(*model);
-    std::copy(start.begin(), start.end(), closed->qpos);
-    Attach(*model, *closed, instance);
+    Instance instance(machine, excitation, {});
+    const DataPtr closed = MakeData(model);
+    const DataPtr bare = MakeData(model);
+    mj_copyData(closed.get(), &model, started.data.get());
+    Attach(model, *closed, instance);
     for (Eigen::Index tick = 0; tick + kTicksPerSlice <= excitation.samples();
          tick += kTicksPerSlice) {
       // The bare machine starts each slice where the controlled one is, so both solve
       // the same problem.
-      mj_copyData(bare.get(), model.get(), closed.get());
-      Detach(*model, *bare);
-      const double with_control = Seconds(*model, *closed, steps);
-      const double without = Seconds(*model, *bare, steps);
+      mj_copyData(bare.get(), &model, closed.get());
+      Detach(model, *bare);
+      const double with_control = Seconds(model, *closed, steps);
+      const double without = Seconds(model, *bare, steps);
       bare_seconds += without;
       ratios.push_back(with_control / without);
     }

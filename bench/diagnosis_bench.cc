@@ -16,10 +16,8 @@
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
-#include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/plant/scenery.h"
-#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/runtime/instance.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -39,9 +37,8 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Setup Bonder(bool static_friction) {
-  return ReadSetup(
-      std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
+Machine Bonder(bool static_friction) {
+  return test::Bonder(
       {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
 }
 
@@ -52,17 +49,14 @@ Excitation DefaultMotion(const Setup& setup) {
 /// A closed loop that stands at its first tick.
 class Loop {
  public:
-  Loop(const Setup& setup, const mjModel& model, const Eigen::VectorXd& start,
-       TickObserver* observer)
-      : model_(model),
-        instance_(setup, model, DefaultMotion(setup), Options(observer)),
-        data_(MakeData(model)) {
-    std::copy(start.begin(), start.end(), data_->qpos);
-    Attach(model, *data_, instance_);
+  Loop(const Machine& machine, TickObserver* observer)
+      : plant_(StartPlant(machine, {})),
+        instance_(machine, DefaultMotion(machine.setup()), Options(observer)) {
+    Attach(*plant_.model, *plant_.data, instance_);
   }
   double TimeSteps(int steps) {
     return Seconds([&] {
-      for (int i = 0; i < steps; ++i) mj_step(&model_, data_.get());
+      for (int i = 0; i < steps; ++i) mj_step(plant_.model.get(), plant_.data.get());
     });
   }
 
@@ -72,29 +66,25 @@ class Loop {
     options.observer = observer;
     return options;
   }
-  const mjModel& model_;
+  StartedPlant plant_;
   Instance instance_;
-  DataPtr data_;
 };
 
 void MonitoredOverPlainLoop(benchmark::State& state, bool static_friction) {
-  const Setup setup = Bonder(static_friction);
-  const ModelPtr model = LoadPlant(setup);
-  const Eigen::Index ticks = DefaultMotion(setup).samples();
-  DiagnosisDesign design = DesignFilters(setup, *model);
+  const Machine machine = Bonder(static_friction);
+  const Eigen::Index ticks = DefaultMotion(machine.setup()).samples();
+  DiagnosisDesign design = DesignFilters(machine);
   NominalRuns nominal;
   nominal.linear = true;
-  design.limits = CalibrateLimits(design, setup, *model, nominal);
-  const Eigen::VectorXd start = StartPosition(setup, *model, {});
-  DropScenery(*model);
-  const int steps = kTicksPerSlice * setup.rates.substeps;
+  design.limits = CalibrateLimits(design, machine, nominal);
+  const int steps = kTicksPerSlice * machine.rates().substeps;
   std::vector<double> ratios;
   double added = 0.0;
   for (auto _ : state) {
     DiagnosisRecording recording(design, ticks);
     MonitorObserver observer(recording);
-    Loop plain(setup, *model, start, nullptr);
-    Loop monitored(setup, *model, start, &observer);
+    Loop plain(machine, nullptr);
+    Loop monitored(machine, &observer);
     bool plain_first = false;
     for (Eigen::Index tick = 0; tick + kTicksPerSlice <= ticks;
          tick += kTicksPerSlice) {
@@ -119,16 +109,15 @@ BENCHMARK_CAPTURE(MonitoredOverPlainLoop, without_friction, false)
     ->Iterations(5);
 
 void Synthesis(benchmark::State& state) {
-  const Setup setup = Bonder(true);
-  const ModelPtr plant = LoadPlant(setup);
-  const MechanicalModel healthy = Linearize(*plant, setup);
-  const SynthesisOptions options = SynthesisOf(setup, healthy);
+  const Machine machine = Bonder(true);
+  const MechanicalModel& healthy = machine.linear();
+  const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
   std::vector<TurnedModels> turned;
   std::vector<double> linearise;
   std::vector<double> synthesise;
   std::vector<double> design;
   for (auto _ : state) {
-    linearise.push_back(Seconds([&] { turned = TurnModels(*plant, setup); }));
+    linearise.push_back(Seconds([&] { turned = TurnModels(machine); }));
     synthesise.push_back(Seconds([&] {
       const ResidualSpace space = MakeResidualSpace(healthy, options);
       const Eigen::Index size = space.rows.front().rows();
@@ -136,7 +125,7 @@ void Synthesis(benchmark::State& state) {
           space, Eigen::MatrixXd::Identity(size, size), turned, options));
     }));
     design.push_back(
-        Seconds([&] { benchmark::DoNotOptimize(DesignFilters(setup, *plant)); }));
+        Seconds([&] { benchmark::DoNotOptimize(DesignFilters(machine)); }));
   }
   state.counters["ms_linearisations"] = 1e3 * Median(linearise);
   state.counters["ms_bank"] = 1e3 * Median(synthesise);

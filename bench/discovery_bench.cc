@@ -16,6 +16,7 @@
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "support/changes.h"
 
 namespace mjdiag {
 namespace {
@@ -32,26 +33,22 @@ double LargestMiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void DiscoverIn(benchmark::State& state, const std::string& machine,
+void DiscoverIn(benchmark::State& state, const std::string& folder,
                 const std::vector<std::string>& effects) {
-  const Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" + machine);
-  const ModelPtr plant = LoadPlant(setup);
-  RunOptions hidden;
-  for (const std::string& effect : effects)
-    hidden.effects.push_back(ParseEffect(effect));
-  const Record measured = Simulate(
-      setup, *plant,
-      FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
-      hidden);
+  const Machine machine(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" + folder));
+  const Trajectories& motions = machine.setup().trajectories;
+  const Record measured =
+      Simulate(machine.With(test::With(effects)),
+               FollowTrajectory(machine.setup(), motions.Find(motions.fallback)), {});
   DiscoverOptions options;
   for (auto _ : state) {
     const DiscoveryProblem problem =
-        PoseProblem(setup, *plant, measured, options.train_share, options.bandwidth);
+        PoseProblem(machine, measured, options.train_share, options.bandwidth);
     auto start = Clock::now();
     benchmark::DoNotOptimize(problem.Residual({}));
     const double replay = Since(start);
     start = Clock::now();
-    const Discovery discovery = Discover(setup, *plant, measured, nullptr, options);
+    const Discovery discovery = Discover(machine, measured, nullptr, options);
     const double seconds = Since(start);
     state.counters["seconds"] = seconds;
     state.counters["runs"] = seconds / replay;

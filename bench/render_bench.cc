@@ -30,6 +30,7 @@
 #include "mjdiag/render/clip.h"
 #include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/render/offscreen_context.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -69,11 +70,12 @@ struct Subject {
   Subject() {
     RunOptions options;
     options.log_joints = true;
-    Excitation excitation =
+    const Setup& setup = machine.setup();
+    const Excitation excitation =
         FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
-    healthy = Simulate(setup, *model, excitation, options).Slice(0, 1600);
+    healthy = Simulate(machine, excitation, options).Slice(0, 1600);
     options.seed = 2;
-    worn = Simulate(setup, *model, excitation, options).Slice(0, 1600);
+    worn = Simulate(machine, excitation, options).Slice(0, 1600);
     overlay.run = 1;
     overlay.residual = Record(worn.sample_time());
     overlay.residual.Add({"residual", "1", worn.At("x").samples});
@@ -86,8 +88,8 @@ struct Subject {
                                    Eigen::VectorXd::Constant(400, 0.05)});
     }
   }
-  Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  ModelPtr model = LoadPlant(setup);
+  Machine machine = test::Bonder();
+  const mjModel& model = machine.plant();
   Record healthy;
   Record worn;
   DiagnosisOverlay overlay;
@@ -104,7 +106,7 @@ Seconds ClipSeconds(const Subject& subject, bool everything,
   const double last = subject.healthy.duration() - subject.healthy.sample_time();
   options.speed = last * kFps / (kFrames - 1);
   const Stopwatch watch;
-  const ClipSummary summary = RenderClip(*subject.model, runs, options, file);
+  const ClipSummary summary = RenderClip(subject.model, runs, options, file);
   const Seconds seconds = watch.Read();
   if (summary.frames != kFrames) throw std::runtime_error("not the frames expected");
   return seconds;
@@ -115,7 +117,7 @@ Seconds ClipSeconds(const Subject& subject, bool everything,
 Seconds BareSeconds(const Subject& subject, bool overlap_nothing,
                     const std::filesystem::path& file) {
   const Stopwatch watch;
-  const ModelPtr model = CopyModel(*subject.model);
+  const ModelPtr model = CopyModel(subject.model);
   model->vis.global.offwidth = kWidth;
   model->vis.global.offheight = kHeight;
   model->vis.quality.offsamples = 0;

@@ -16,6 +16,7 @@
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
 #include "mjdiag/report/run_folder.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -30,19 +31,17 @@ double Median(std::vector<double> values) {
 }
 
 void ReportOfADiagnosis(benchmark::State& state) {
-  const Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine = test::Bonder();
+  const Setup& setup = machine.setup();
   DiagnosisSource source;
   source.nominal.linear = true;
   source.nominal.runs = 2;
-  const PreparedDiagnosis prepared = PrepareDiagnosis(setup, *plant, source);
-  RunOptions options;
-  options.faults = {{"zeta_x", 1.2}};
+  const PreparedDiagnosis prepared = PrepareDiagnosis(machine, source);
   const Record record = SimulateLinear(
-      setup, *plant,
+      machine.With({{{"zeta_x", 1.2}}, {}}),
       FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback)),
-      options);
-  const Diagnosis diagnosis = Diagnose(setup, *plant, prepared, record);
+      {});
+  const Diagnosis diagnosis = Diagnose(machine, prepared, record);
 
   const test::TemporaryFolder folder;
   std::vector<double> seconds;

@@ -21,7 +21,7 @@ double LargestError(const Eigen::VectorXd& error, const Eigen::VectorXd& target)
 Channels PositionSensors(const Channels& channels, const mjModel& model,
                          const std::map<std::string, double>& start) {
   Channels placed = channels;
-  std::erase_if(placed.channels.sensors, [&](const SensorSetup& sensor) {
+  std::erase_if(placed.sensors, [&](const SensorSetup& sensor) {
     const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
     return !start.contains(sensor.channel) || model.sensor_needstage[id] != mjSTAGE_POS;
   });
@@ -51,11 +51,11 @@ Eigen::VectorXd StartPosition(const Channels& channels, const mjModel& model,
   if (start.empty()) return qpos;
 
   const Channels placed = PositionSensors(channels, model, start);
-  const auto sensors = static_cast<Eigen::Index>(placed.channels.sensors.size());
+  const auto sensors = static_cast<Eigen::Index>(placed.sensors.size());
   if (sensors == 0) return qpos;
   Eigen::VectorXd target(sensors);
   for (Eigen::Index i = 0; i < sensors; ++i) {
-    target[i] = start.at(placed.channels.sensors[static_cast<std::size_t>(i)].channel);
+    target[i] = start.at(placed.sensors[static_cast<std::size_t>(i)].channel);
   }
   const Eigen::MatrixXd rows = OutputMatrix(model, placed, qpos).transpose();
 

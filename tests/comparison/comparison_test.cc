@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "mjdiag/signals/error.h"
+#include "support/changes.h"
 
 namespace mjdiag {
 namespace {
@@ -14,32 +15,33 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-Setup Emps() {
-  return ReadSetup(std::filesystem::path(MJDIAG_SOURCE_DIR) / "mjcf/emps",
-                   {"sensors.q.noise_sd=2e-8"});
+Machine Emps() {
+  return Machine(ReadSetup(std::filesystem::path(MJDIAG_SOURCE_DIR) / "mjcf/emps",
+                           {"sensors.q.noise_sd=2e-8"}));
 }
 
-Record Measurement(const Setup& setup, const RunOptions& options) {
-  const ModelPtr plant = LoadPlant(setup);
-  const Trajectory& trajectory = setup.trajectories.Find(setup.trajectories.fallback);
-  return Simulate(setup, *plant, FollowTrajectory(setup, trajectory), options);
+Record Measurement(const Machine& machine, const RunOptions& options = {}) {
+  const Trajectories& motions = machine.setup().trajectories;
+  return Simulate(machine,
+                  FollowTrajectory(machine.setup(), motions.Find(motions.fallback)),
+                  options);
 }
 
-Comparison CompareToNominal(const Setup& setup, const Record& measured) {
+Comparison CompareToNominal(const Machine& machine, const Record& measured) {
   RunOptions options;
   options.seed = 12345;
-  return Compare(setup, *LoadPlant(setup), measured, options);
+  return Compare(machine, measured, options);
 }
 
 // 20 runs of 2 channels at a level of 1 %: more than 3 false alarms have a chance of
 // 7e-4.
 TEST(Comparison, OfTheSameMachineRarelyExceedsTheNoise) {
-  const mjdiag::Setup setup = Emps();
+  const Machine machine = Emps();
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RunOptions options;
     options.seed = seed;
-    const Comparison result = CompareToNominal(setup, Measurement(setup, options));
+    const Comparison result = CompareToNominal(machine, Measurement(machine, options));
     ASSERT_EQ(result.channels.size(), 2U);
     for (const ChannelMismatch& channel : result.channels) {
       alarms += channel.exceeds_noise;
@@ -50,10 +52,10 @@ TEST(Comparison, OfTheSameMachineRarelyExceedsTheNoise) {
 }
 
 TEST(Comparison, SeesDryFriction) {
-  const mjdiag::Setup setup = Emps();
-  RunOptions options;
-  options.effects = {ParseEffect("coulomb_friction@load:force=20.4")};
-  const Comparison result = CompareToNominal(setup, Measurement(setup, options));
+  const Machine machine = Emps();
+  const Machine rubbing =
+      machine.With(test::With({"coulomb_friction@load:force=20.4"}));
+  const Comparison result = CompareToNominal(machine, Measurement(rubbing));
   EXPECT_TRUE(result.exceeds_noise());
   ASSERT_NE(result.Worst(), nullptr);
   EXPECT_GT(result.Worst()->rms, 50.0 * result.Worst()->noise_floor.rms);
@@ -61,40 +63,40 @@ TEST(Comparison, SeesDryFriction) {
 }
 
 TEST(Comparison, NamesDerivedSignals) {
-  const mjdiag::Setup setup = Emps();
-  const Comparison result = CompareToNominal(setup, Measurement(setup, {}));
+  const Machine machine = Emps();
+  const Comparison result = CompareToNominal(machine, Measurement(machine));
   std::vector<std::string> names;
   for (const DerivedMismatch& derived : result.derived) names.push_back(derived.name);
   EXPECT_THAT(names, ElementsAre("q_velocity", "q_acceleration", "force"));
 }
 
 TEST(Comparison, GoesOnWithoutAChannelThatWasNotMeasured) {
-  const mjdiag::Setup setup = Emps();
-  const Record full = Measurement(setup, {});
+  const Machine machine = Emps();
+  const Record full = Measurement(machine);
   Record measured(full.sample_time());
   measured.Add(full.At("q"));
   measured.Add(full.At("q_ref"));
-  const Comparison result = CompareToNominal(setup, measured);
+  const Comparison result = CompareToNominal(machine, measured);
   EXPECT_EQ(result.channels.size(), 1U);
   EXPECT_THAT(result.not_measured, ElementsAre("u"));
 }
 
 TEST(Comparison, RefusesARecordThatIsTooShort) {
-  const mjdiag::Setup setup = Emps();
-  const Record measured = Measurement(setup, {}).Slice(0, 60);
-  EXPECT_THAT([&] { CompareToNominal(setup, measured); },
+  const Machine machine = Emps();
+  const Record measured = Measurement(machine).Slice(0, 60);
+  EXPECT_THAT([&] { CompareToNominal(machine, measured); },
               ThrowsMessage<InputError>(HasSubstr("at least 64")));
 }
 
 TEST(Comparison, RefusesAChannelInAnotherUnit) {
-  const mjdiag::Setup setup = Emps();
-  const Record full = Measurement(setup, {});
+  const Machine machine = Emps();
+  const Record full = Measurement(machine);
   Record measured(full.sample_time());
   for (Channel channel : full.channels()) {
     if (channel.name == "u") channel.unit = "A";
     measured.Add(channel);
   }
-  EXPECT_THAT([&] { CompareToNominal(setup, measured); },
+  EXPECT_THAT([&] { CompareToNominal(machine, measured); },
               ThrowsMessage<InputError>(HasSubstr("unit V as in the setup")));
 }
 

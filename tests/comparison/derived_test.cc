@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "gaussian_noise.h"
 #include "mjdiag/comparison/mismatch.h"
+#include "support/gaussian_noise.h"
 
 namespace mjdiag {
 namespace {

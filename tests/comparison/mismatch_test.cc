@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussian_noise.h"
 #include "mjdiag/signals/error.h"
+#include "support/gaussian_noise.h"
 
 namespace mjdiag {
 namespace {

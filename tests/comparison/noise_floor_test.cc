@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gaussian_noise.h"
+#include "support/gaussian_noise.h"
 
 namespace mjdiag {
 namespace {
@@ -46,16 +46,16 @@ TEST(NoiseFloor, OfColouredNoiseIsRarelyExceeded) {
 }
 
 TEST(MeasuredNoise, IsFoundInTheRecord) {
-  mjdiag::Setup setup;
-  setup.channels.sensors = {{"x", "x_encoder", 0, "m", 0.0, 0.0},
-                            {"y", "y_encoder", 0, "m", 3e-9, 0.0}};
+  Channels channels;
+  channels.sensors = {{"x", "x_encoder", 0, "m", 0.0, 0.0},
+                      {"y", "y_encoder", 0, "m", 3e-9, 0.0}};
   Record measured(1e-3);
   const Eigen::ArrayXd phase = Eigen::ArrayXd::LinSpaced(kSamples, 0.0, 50.0);
   measured.Add(
       {"x", "m", 0.01 * phase.sin().matrix() + GaussianNoise(kSamples, 2e-8, 5)});
-  const mjdiag::Setup noisy = WithMeasuredNoise(setup, measured);
-  EXPECT_NEAR(noisy.channels.sensors[0].noise_sd, 2e-8, 0.1 * 2e-8);
-  EXPECT_EQ(noisy.channels.sensors[1].noise_sd, 3e-9) << "y was not measured";
+  const Eigen::VectorXd noise = MeasuredNoise(channels, measured);
+  EXPECT_NEAR(noise[0], 2e-8, 0.1 * 2e-8);
+  EXPECT_EQ(noise[1], 3e-9) << "y was not measured";
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ const CauseParameter& Parameter(const Discovery& discovery, const std::string& n
 }
 
 TEST(Discovery, SaysNothingOfNoise) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Discovery answer =
         Discover(stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
@@ -46,7 +46,7 @@ TEST(Discovery, SaysNothingOfNoise) {
 }
 
 TEST(Discovery, NamesDryFrictionAndItsForce) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Discovery answer =
       Discover(stage.machine, stage.Measure({"coulomb_friction@load:force=18"}),
                nullptr, CausesOnly());
@@ -59,7 +59,7 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
 }
 
 TEST(Discovery, NamesATurnedKnobAsTheFault) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),
                                     nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "zeta@load");
@@ -73,7 +73,7 @@ TEST(Discovery, NamesATurnedKnobAsTheFault) {
 // A drive that was limited in one record and is not in the other: the machine has no
 // such limit.
 TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Record measured = stage.Measure({"force_saturation@drive:limit=1.2"});
   const Discovery alone = Discover(stage.machine, measured, nullptr, CausesOnly());
   EXPECT_EQ(Named(alone), "force_saturation@drive");
@@ -87,7 +87,7 @@ TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
 }
 
 TEST(Discovery, FindsTwoCausesAtOnce) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Discovery answer =
       Discover(stage.machine,
                stage.Measure({"coulomb_friction@load:force=18",
@@ -118,7 +118,7 @@ double MedianMiss(const LawPlot& plot) {
 // Of all that the plant as given lacks, the friction is twelve times the ripple.
 TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
   constexpr double kRipple = 1.5;
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Discovery answer =
       Discover(stage.machine,
                stage.Measure({"coulomb_friction@load:force=18",
@@ -132,7 +132,7 @@ TEST(Discovery, DrawsTheLawOfOneCauseThroughWhatTheOtherLeaves) {
 }
 
 TEST(Discovery, NamesRaisedEncoderNoise) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Discovery answer =
       Discover(stage.machine, stage.Measure({"encoder_noise@load_encoder:sd=1.5e-8"}),
                nullptr, CausesOnly());
@@ -144,18 +144,17 @@ TEST(Discovery, NamesRaisedEncoderNoise) {
 /// A measurement with a force that no entry of the catalogue makes, as a function of
 /// the reference's position and velocity and of time. It goes in through the known
 /// disturbance of the drive, of which the record then says nothing.
-Record WithForce(const test::Stage& stage,
+Record WithForce(const test::StageUnderTest& stage,
                  const std::function<double(double q, double v, double t)>& force) {
-  Excitation motion =
-      FollowTrajectory(stage.setup, stage.setup.trajectories.Find("default"));
+  Excitation motion = stage.Motion();
   const AxisReference& reference = motion.reference.axes[0];
   Channel hidden{"pulse", "V", Eigen::VectorXd(motion.samples())};
   for (Eigen::Index k = 0; k < motion.samples(); ++k) {
     hidden.samples[k] = force(reference.position[k], reference.velocity[k],
-                              static_cast<double>(k) * stage.setup.rates.tick()) /
-                        stage.plant->actuator_gear[0];
+                              static_cast<double>(k) * stage.setup().rates.tick()) /
+                        stage.machine.plant().actuator_gear[0];
   }
-  motion.inputs = Record(stage.setup.rates.tick());
+  motion.inputs = Record(stage.setup().rates.tick());
   motion.inputs.Add(hidden);
   const Record run = Simulate(stage.machine, motion, {});
   Record shown(run.sample_time());
@@ -168,7 +167,7 @@ Record WithForce(const test::Stage& stage,
 }
 
 TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Record record = WithForce(stage, [](double q, double v, double) {
     return -150.0 * std::sin(60.0 * q) * v;
   });
@@ -180,7 +179,7 @@ TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
 }
 
 TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Record record = WithForce(
       stage, [](double, double, double t) { return t > 1.2 && t < 1.9 ? 4.0 : 0.0; });
   const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
@@ -189,24 +188,6 @@ TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
   EXPECT_NE(answer.unexplained->text.find("time"), std::string::npos)
       << answer.unexplained->text;
 }
-
-// A fixed handful of the benchmark `mjdiag study --preset hidden`, on shorter records:
-// dry friction, an offset, a spring, an encoder's scale.
-class HiddenInTheBonder : public ::testing::TestWithParam<int> {};
-
-TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
-  const mjdiag::Setup setup =
-      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383", {"trajectories.multi.duration=0.75"});
-  const ModelPtr plant = LoadPlant(setup);
-  const int run = GetParam();
-  const HiddenOutcome outcome =
-      RunHidden(machine, TypesOfRun(run, 1), static_cast<std::uint64_t>(run + 1));
-  EXPECT_TRUE(outcome.right) << "hidden: " << Describe(outcome.hidden.truth[0])
-                             << ", found: " << Named(outcome.answer);
-  EXPECT_LT(outcome.unseen_ratio, 1.2);
-}
-
-INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 7, 15, 22));
 
 }  // namespace
 }  // namespace mjdiag

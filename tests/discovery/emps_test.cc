@@ -15,6 +15,7 @@
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record_file.h"
+#include "support/changes.h"
 
 namespace mjdiag {
 namespace {
@@ -45,19 +46,18 @@ class Emps : public ::testing::Test {
   /// The closed loop on the measured reference, with effects on the incomplete plant.
   static Comparison CompareWith(const std::string& file,
                                 const std::vector<std::string>& effects) {
-    const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
-    const ModelPtr plant = LoadPlant(setup);
-    if (!effects.empty()) SetAuthorsMassAndDamping(*plant);
-    RunOptions options;
-    for (const std::string& effect : effects) {
-      options.effects.push_back(ParseEffect(effect));
-    }
-    return Compare(machine, ReadRecord(DataFolder() / file, setup.record), options);
+    const Machine nominal = effects.empty() ? Given() : WithAuthorsMassAndDamping();
+    const Record measured = ReadRecord(DataFolder() / file, nominal.setup().record);
+    return Compare(nominal.With(test::With(effects)), measured, {});
   }
+  static Machine Given() { return Machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps")); }
   /// The plant has them rounded.
-  static void SetAuthorsMassAndDamping(mjModel& plant) {
+  static Machine WithAuthorsMassAndDamping() {
+    const Machine given = Given();
+    const ModelPtr plant = CopyModel(given.plant());
     plant.body_mass[FindElement(plant, mjOBJ_BODY, "load")] = 95.1089;
-    plant.dof_damping[0] = 203.5034;
+    plant->dof_damping[0] = 203.5034;
+    return Machine(given.setup(), *plant);
   }
   /// The other two of the authors' symmetric model. A positive offset of theirs opposes
   /// the motor.
@@ -91,11 +91,12 @@ TEST_F(Emps, IncompletePlantIsVisiblyWorseAndSaidToBe) {
 // of both directions and the offset that their two Coulomb forces are. Both have an
 // uncertainty; theirs is printed for the symmetric model only.
 TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
-  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine = Given();
+  const mjModel& plant = machine.plant();
   const DiscoveryProblem problem = PoseProblem(
-      machine, ReadRecord(DataFolder() / "DATA_EMPS.mat", setup.record), 1.0, 20.0);
-  const auto candidates = ListCandidates(machine, problem.machine.linear());
+      machine, ReadRecord(DataFolder() / "DATA_EMPS.mat", machine.setup().record), 1.0,
+      20.0);
+  const auto candidates = ListCandidates(machine);
   const std::vector<FittedCause> start = {
       {test::Place(candidates, "coulomb_friction@load"),
        Eigen::VectorXd::Constant(1, 15.0)},
@@ -107,9 +108,9 @@ TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
   const CauseFit fit =
       FitCauses(problem, candidates, start, {.iterations = 30, .tolerance = 1e-8});
   Eigen::VectorXd authors(5);
-  authors << 0.5 * (20.1440 + 20.6277), 166.7061 - plant->dof_damping[0],
-      240.4236 - plant->dof_damping[0],
-      95.1540 - plant->body_mass[FindElement(*plant, mjOBJ_BODY, "load")],
+  authors << 0.5 * (20.1440 + 20.6277), 166.7061 - plant.dof_damping[0],
+      240.4236 - plant.dof_damping[0],
+      95.1540 - plant.body_mass[FindElement(plant, mjOBJ_BODY, "load")],
       0.5 * (20.6277 - 20.1440);
   Eigen::VectorXd sd(5);
   sd << 0.10, 1.15, 1.15, 0.11, 0.04;

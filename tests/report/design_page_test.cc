@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/report/report.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -43,16 +43,17 @@ TEST(ResidualHistogram, HasTheAreaOfItsNormalCurve) {
 }
 
 TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
-  mjdiag::Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
+  const Machine bonder = test::Bonder();
+  mjdiag::Setup setup = bonder.setup();
   setup.diagnosis.trajectories.clear();
   for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
-  const ModelPtr plant = LoadPlant(setup);
-  DiagnosisDesign design = DesignFilters(setup, *plant);
+  const Machine machine = bonder.WithSetup(setup);
+  DiagnosisDesign design = DesignFilters(machine);
   DesignFacts facts;
   facts.minimal_degree = 6;
   facts.observability_ranks = {3, 6, 20};
   facts.states = 20;
-  facts.healthy = Linearize(*plant, setup);
+  facts.healthy = machine.linear();
   const RunDescription run{"mjdiag design", "", {}};
 
   const std::string without = ReportHtml(DesignPage(design, facts, run));
@@ -64,7 +65,7 @@ TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
 
   NominalRuns nominal;
   nominal.linear = true;
-  design.limits = CalibrateLimits(design, setup, *plant, nominal);
+  design.limits = CalibrateLimits(design, machine, nominal);
   facts.changed = {{"beta = 0.01", facts.healthy}};
   facts.linear_program = Solved();
   const std::string whole = ReportHtml(DesignPage(design, facts, run));

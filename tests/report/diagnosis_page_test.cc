@@ -7,6 +7,7 @@
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/report/diagnosis_plots.h"
 #include "mjdiag/report/report.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -16,25 +17,23 @@ using ::testing::HasSubstr;
 /// A diagnosis of the bonder over 0.3 s of its linear plant.
 struct Example {
   explicit Example(double zeta_x) {
+    const Machine bonder = test::Bonder();
+    mjdiag::Setup setup = bonder.setup();
     setup.diagnosis.trajectories.clear();
     for (Trajectory& trajectory : setup.trajectories.all) trajectory.duration = 0.3;
-    plant = LoadPlant(setup);
+    const Machine machine = bonder.WithSetup(setup);
     DiagnosisSource source;
     source.nominal.linear = true;
-    const PreparedDiagnosis prepared = PrepareDiagnosis(setup, *plant, source);
-    RunOptions options;
-    options.faults = {{"zeta_x", zeta_x}};
-    const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")),
-        options);
+    const PreparedDiagnosis prepared = PrepareDiagnosis(machine, source);
+    const Record record =
+        SimulateLinear(machine.With({{{"zeta_x", zeta_x}}, {}}),
+                       FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
     design = prepared.design;
-    const Diagnosis diagnosis = Diagnose(setup, *plant, prepared, record);
+    const Diagnosis diagnosis = Diagnose(machine, prepared, record);
     log = diagnosis.log;
     result = diagnosis.result;
   }
 
-  mjdiag::Setup setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  ModelPtr plant;
   DiagnosisDesign design;
   MonitorLog log;
   DiagnosisResult result;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/studies/estimation_study.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -33,8 +34,7 @@ TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
 
 // Section 5.5 of the seed in small: 6 runs of each size.
 TEST(EstimationStudy, FindsAllFaultsAtOnceWithinOnePerCent) {
-  const auto setup = ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383");
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine = test::Bonder();
   StudyOptions options;
   options.runs = 6;
   for (const StudyTable& table : EstimationStudy(machine, options)) {

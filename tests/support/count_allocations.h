@@ -1,7 +1,7 @@
 #pragma once
 // Counts calls of malloc: what runs inside a control callback may not allocate. Puts
-// its own malloc in front of glibc's, so only one source file of a test program may
-// include it.
+// its own malloc in front of glibc's, weak, so that any number of source files of a
+// test program may include it.
 
 #include <atomic>
 #include <cstdlib>
@@ -19,9 +19,14 @@ inline std::atomic<long> allocations{0};
 #if MJDIAG_COUNTS_ALLOCATIONS
 // Eigen and operator new both end here.
 extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
+extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
+extern "C" [[gnu::weak]] void* malloc(std::size_t size) {
   ++mjdiag::test::allocations;
   return __libc_malloc(size);
+}
+extern "C" [[gnu::weak]] void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++mjdiag::test::allocations;
+  return __libc_memalign(alignment, size);
 }
 #endif
 

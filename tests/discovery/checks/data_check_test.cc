@@ -11,11 +11,12 @@
 #include <limits>
 #include <numbers>
 
-#include "gaussian_noise.h"
 #include "mjdiag/discovery/checks/clock_drift.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
+#include "support/changes.h"
+#include "support/gaussian_noise.h"
 #include "support/message_of.h"
 
 namespace mjdiag {
@@ -29,21 +30,23 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 /// A machine with its default run as the measured record.
-struct Machine {
-  mjdiag::Setup setup;
-  ModelPtr plant;
+struct Subject {
+  Machine machine;
 
-  explicit Machine(const std::string& name,
+  explicit Subject(const std::string& name,
                    const std::vector<std::string>& overrides = {})
-      : setup(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/" + name, overrides)),
-        plant(LoadPlant(setup)) {}
+      : machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/" + name, overrides)) {}
 
+  Machine With(const std::string& effect) const {
+    return effect.empty() ? machine : machine.With(test::With({effect}));
+  }
   Record Run(const std::string& effect = "", double noise_scale = 1.0) const {
     RunOptions options;
     options.noise_scale = noise_scale;
-    if (!effect.empty()) options.effects.push_back(ParseEffect(effect));
-    const Trajectory& motion = setup.trajectories.Find(setup.trajectories.fallback);
-    return Simulate(machine, FollowTrajectory(setup, motion), options);
+    const Trajectories& motions = machine.setup().trajectories;
+    return Simulate(With(effect),
+                    FollowTrajectory(machine.setup(), motions.Find(motions.fallback)),
+                    options);
   }
   std::vector<std::string> Check(const Record& record) const {
     return CheckRecord(machine, record);
@@ -87,19 +90,19 @@ Record Drifting(const Record& record, const std::string& name, double drift) {
 class EmpsRecord : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    machine_ = new Machine("emps", {"sensors.q.noise_sd=1e-8"});
-    record_ = new Record(machine_->Run());
+    subject_ = new Subject("emps", {"sensors.q.noise_sd=1e-8"});
+    record_ = new Record(subject_->Run());
   }
   static void TearDownTestSuite() {
     delete record_;
-    delete machine_;
+    delete subject_;
   }
-  static inline Machine* machine_ = nullptr;
+  static inline Subject* subject_ = nullptr;
   static inline Record* record_ = nullptr;
 };
 
 TEST_F(EmpsRecord, PassesWithoutANote) {
-  EXPECT_THAT(machine_->Check(*record_), IsEmpty());
+  EXPECT_THAT(subject_->Check(*record_), IsEmpty());
 }
 
 TEST_F(EmpsRecord, PassesWithWhateverCauseIsInIt) {
@@ -124,15 +127,15 @@ TEST_F(EmpsRecord, PassesWithWhateverCauseIsInIt) {
         "encoder_periodic_error@load_encoder:amplitude=1e-4,period=0.01",
         "encoder_drift@load_encoder:rate=0.001",
         "encoder_noise@load_encoder:sd=1e-6"}) {
-    const Record record = machine_->Run(effect);
+    const Record record = subject_->Run(effect);
     std::vector<std::string> notes;
-    EXPECT_NO_THROW(notes = machine_->Check(record)) << effect;
+    EXPECT_NO_THROW(notes = subject_->Check(record)) << effect;
     EXPECT_THAT(notes, IsEmpty()) << effect;
   }
 }
 
 TEST_F(EmpsRecord, WithTooFewSamplesIsRefused) {
-  EXPECT_THAT(machine_->Refusal(record_->Slice(0, 540)),
+  EXPECT_THAT(subject_->Refusal(record_->Slice(0, 540)),
               AllOf(HasSubstr("too short: 540 samples of which the first 49"),
                     HasSubstr("at least 500")));
 }
@@ -143,7 +146,7 @@ TEST_F(EmpsRecord, WithSamplesThatAreNoNumbersIsRefused) {
       x[1234] = std::nan("");
       x[2000] = std::numeric_limits<double>::infinity();
     });
-    EXPECT_THAT(machine_->Refusal(record),
+    EXPECT_THAT(subject_->Refusal(record),
                 AllOf(HasSubstr("2 missing samples of '" + channel + "'"),
                       HasSubstr("sample 1234 (1.234 s)")));
   }
@@ -154,7 +157,7 @@ TEST_F(EmpsRecord, ThatHoldsSamplesIsRefused) {
     x.segment(1000, 7).setConstant(x[1000]);
     x.segment(3500, 40).setConstant(x[3500]);
   });
-  EXPECT_THAT(machine_->Refusal(record),
+  EXPECT_THAT(subject_->Refusal(record),
               AllOf(HasSubstr("missing samples: 'q' repeats one value 7 times from "
                               "sample 1000 (1 s)"),
                     HasSubstr("2 such gaps")));
@@ -162,36 +165,36 @@ TEST_F(EmpsRecord, ThatHoldsSamplesIsRefused) {
 
 // At rest and slowly moving, a quantised sensor repeats its values without a fault.
 TEST(QuantisedRecord, Passes) {
-  const Machine machine("emps", {"sensors.q.resolution=1e-6"});
+  const Subject subject("emps", {"sensors.q.resolution=1e-6"});
   for (const char* effect : {"", "coulomb_friction@load:force=20"}) {
-    const Record record = machine.Run(effect);
+    const Record record = subject.Run(effect);
     EXPECT_EQ(record.At("q").samples[2600], record.At("q").samples[2610]);
-    EXPECT_THAT(machine.Check(record), IsEmpty()) << effect;
+    EXPECT_THAT(subject.Check(record), IsEmpty()) << effect;
   }
 }
 
 TEST(QuantisedRecord, ThatSaturatesInMotionIsRefused) {
-  const Machine machine("emps", {"sensors.q.resolution=1e-6"});
+  const Subject subject("emps", {"sensors.q.resolution=1e-6"});
   const Record record =
-      With(machine.Run(), "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
-  EXPECT_THAT(machine.Refusal(record),
+      With(subject.Run(), "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
+  EXPECT_THAT(subject.Refusal(record),
               HasSubstr("saturated: 'q' sits at exactly 0.15"));
 }
 
 TEST(QuantisedRecord, WithoutNoiseThatSaturatesAtRestPasses) {
-  const Machine machine("emps", {"sensors.q.resolution=1e-6"});
-  const double rest = machine.Run().At("q").samples[2600];
+  const Subject subject("emps", {"sensors.q.resolution=1e-6"});
+  const double rest = subject.Run().At("q").samples[2600];
   const Record record =
-      With(machine.Run(), "q", [&](VectorXd& x) { x = x.cwiseMin(rest - 1e-6); });
-  EXPECT_THAT(machine.Check(record), IsEmpty());
+      With(subject.Run(), "q", [&](VectorXd& x) { x = x.cwiseMin(rest - 1e-6); });
+  EXPECT_THAT(subject.Check(record), IsEmpty());
 }
 
 TEST_F(EmpsRecord, WithASaturatedEncoderIsRefused) {
   const Record high = With(*record_, "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
-  EXPECT_THAT(machine_->Refusal(high),
+  EXPECT_THAT(subject_->Refusal(high),
               HasSubstr("saturated: 'q' sits at exactly 0.15 m for "));
   const Record low = With(*record_, "q", [](VectorXd& x) { x = x.cwiseMax(0.02); });
-  EXPECT_THAT(machine_->Refusal(low),
+  EXPECT_THAT(subject_->Refusal(low),
               HasSubstr("saturated: 'q' sits at exactly 0.02 m for "));
 }
 
@@ -200,50 +203,50 @@ TEST_F(EmpsRecord, ThatLosesItsNoiseAtTheEndOfTheStrokeIsRefused) {
   const double limit = record_->At("q").samples[2600] - 1e-6;
   const Record record =
       With(*record_, "q", [&](VectorXd& x) { x = x.cwiseMin(limit); });
-  EXPECT_THAT(machine_->Refusal(record), HasSubstr("saturated: 'q'"));
+  EXPECT_THAT(subject_->Refusal(record), HasSubstr("saturated: 'q'"));
 }
 
 TEST_F(EmpsRecord, WithAReadingInWrongUnitsIsRefusedByTheFactor) {
-  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "q", 1e3)),
+  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "q", 1e3)),
               AllOf(HasSubstr("wrong units: 'q' reads 1000 times"),
                     HasSubstr("mm taken for m")));
-  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "q", 1e6)),
+  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "q", 1e6)),
               HasSubstr("'q' reads 1000000 times"));
-  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "q_ref", 1e3)),
+  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "q_ref", 1e3)),
               HasSubstr("'q' reads 0.001 times what its reference 'q_ref' does"));
 }
 
 TEST_F(EmpsRecord, WithAnInputInWrongUnitsIsRefusedByTheFactor) {
-  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "u", 1e3)),
+  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "u", 1e3)),
               AllOf(HasSubstr("wrong units: 'u' reads 1000 times"),
                     HasSubstr("mV taken for V")));
-  EXPECT_THAT(machine_->Refusal(Scaled(*record_, "u", 1e-3)),
+  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "u", 1e-3)),
               HasSubstr("'u' reads 0.001 times"));
 }
 
 TEST_F(EmpsRecord, WithReadingAndReferenceInMillimetresIsRefused) {
   const Record record = Scaled(Scaled(*record_, "q", 1e3), "q_ref", 1e3);
-  EXPECT_THAT(machine_->Refusal(record),
+  EXPECT_THAT(subject_->Refusal(record),
               AllOf(HasSubstr("'u' reads 0.001 times"), HasSubstr("'q' and 'q_ref'")));
 }
 
 TEST_F(EmpsRecord, WithDriftingClocksIsRefused) {
   for (const double drift : {1.0, -1.0, 5.0}) {
-    EXPECT_THAT(machine_->Refusal(Drifting(*record_, "q", drift)),
+    EXPECT_THAT(subject_->Refusal(Drifting(*record_, "q", drift)),
                 AllOf(HasSubstr("clocks of 'q' and 'u' drift by "),
                       HasSubstr(drift == 5.0 ? "by 5.0 samples" : "by 1.0 samples")))
         << drift;
   }
-  EXPECT_THAT(machine_->Refusal(Drifting(*record_, "u", 2.0)),
+  EXPECT_THAT(subject_->Refusal(Drifting(*record_, "u", 2.0)),
               HasSubstr("clocks of 'q' and 'u' drift by 2.0 samples"));
 }
 
 TEST_F(EmpsRecord, WithAConstantLagOrAQuarterSampleOfDriftPasses) {
-  EXPECT_THAT(machine_->Check(Drifting(*record_, "q", 0.25)), IsEmpty());
+  EXPECT_THAT(subject_->Check(Drifting(*record_, "q", 0.25)), IsEmpty());
   const Record late = With(*record_, "u", [](VectorXd& x) {
     x.tail(x.size() - 3) = x.head(x.size() - 3).eval();
   });
-  EXPECT_THAT(machine_->Check(late), IsEmpty());
+  EXPECT_THAT(subject_->Check(late), IsEmpty());
 }
 
 /// Under a chirp of 2 to 30 Hz, across the resonance at 13.8 Hz.
@@ -253,17 +256,15 @@ class OpenLoopRecord : public ::testing::Test {
     constexpr Index kSamples = 20000;
     VectorXd current(kSamples);
     for (Index k = 0; k < kSamples; ++k) {
-      const double t = static_cast<double>(k) * machine_.setup.rates.tick();
+      const double t = static_cast<double>(k) * subject_.machine.rates().tick();
       current[k] = 0.3 * std::sin(2.0 * std::numbers::pi * (2.0 + 3.5 * t) * t);
     }
     Excitation excitation;
-    excitation.inputs = Record(machine_.setup.rates.tick());
+    excitation.inputs = Record(subject_.machine.rates().tick());
     excitation.inputs.Add({"i", "A", current});
-    RunOptions options;
-    if (!effect.empty()) options.effects.push_back(ParseEffect(effect));
-    return Simulate(machine_.setup, *machine_.plant, excitation, options);
+    return Simulate(subject_.With(effect), excitation, {});
   }
-  const Machine machine_{"voice_coil"};
+  const Subject subject_{"voice_coil"};
 };
 
 TEST_F(OpenLoopRecord, PassesWithWhateverCauseIsInIt) {
@@ -277,28 +278,28 @@ TEST_F(OpenLoopRecord, PassesWithWhateverCauseIsInIt) {
         "encoder_drift@encoder:rate=1e-4"}) {
     const Record record = Run(effect);
     std::vector<std::string> notes;
-    EXPECT_NO_THROW(notes = machine_.Check(record)) << effect;
+    EXPECT_NO_THROW(notes = subject_.Check(record)) << effect;
     EXPECT_THAT(notes, IsEmpty()) << effect;
   }
 }
 
 TEST_F(OpenLoopRecord, InWrongUnitsIsRefusedByTheFactor) {
   const Record record = Run("coulomb_friction@stage:force=0.3");
-  EXPECT_THAT(machine_.Refusal(Scaled(record, "x", 1e3)),
+  EXPECT_THAT(subject_.Refusal(Scaled(record, "x", 1e3)),
               AllOf(HasSubstr("'x' reads 1000 times what the plant does"),
                     HasSubstr("mm taken for m, or 'i'")));
-  EXPECT_THAT(machine_.Refusal(Scaled(record, "i", 1e3)),
+  EXPECT_THAT(subject_.Refusal(Scaled(record, "i", 1e3)),
               HasSubstr("'x' reads 0.001 times what the plant does"));
 }
 
 TEST_F(OpenLoopRecord, WithDriftingClocksIsRefused) {
-  EXPECT_THAT(machine_.Refusal(Drifting(Run(), "x", 3.0)),
+  EXPECT_THAT(subject_.Refusal(Drifting(Run(), "x", 3.0)),
               HasSubstr("clocks of 'x' and 'i' drift by 3."));
 }
 
 class BonderRecord : public ::testing::Test {
  protected:
-  const Machine machine_{"ab383"};
+  const Subject subject_{"ab383"};
 };
 
 TEST_F(BonderRecord, PassesWithAndWithoutCauses) {
@@ -308,22 +309,22 @@ TEST_F(BonderRecord, PassesWithAndWithoutCauses) {
         "motor_constant@z_motor:factor=0.5",
         "floor_vibration@X:amplitude=30,frequency=33.3",
         "encoder_drift@x_encoder:rate=0.0001"}) {
-    const Record record = machine_.Run(effect);
+    const Record record = subject_.Run(effect);
     std::vector<std::string> notes;
-    EXPECT_NO_THROW(notes = machine_.Check(record)) << effect;
+    EXPECT_NO_THROW(notes = subject_.Check(record)) << effect;
     EXPECT_THAT(notes, IsEmpty()) << effect;
   }
 }
 
 TEST_F(BonderRecord, InDegreesOrWithADriftingClockIsRefused) {
-  const Record record = machine_.Run("coulomb_friction@X:force=20");
+  const Record record = subject_.Run("coulomb_friction@X:force=20");
   const double degrees = 180.0 / std::numbers::pi;
   EXPECT_THAT(
-      machine_.Refusal(Scaled(record, "z", degrees)),
+      subject_.Refusal(Scaled(record, "z", degrees)),
       AllOf(HasSubstr("'z' reads 180 / pi times"), HasSubstr("degrees taken for rad")));
-  EXPECT_THAT(machine_.Refusal(Scaled(Scaled(record, "z", degrees), "z_ref", degrees)),
+  EXPECT_THAT(subject_.Refusal(Scaled(Scaled(record, "z", degrees), "z_ref", degrees)),
               HasSubstr("'u_z' reads pi / 180 times"));
-  EXPECT_THAT(machine_.Refusal(Drifting(record, "x", 2.0)),
+  EXPECT_THAT(subject_.Refusal(Drifting(record, "x", 2.0)),
               HasSubstr("clocks of 'x' and 'u_x' drift by "));
 }
 
@@ -334,13 +335,13 @@ TEST(MeasuredEmpsRecord, PassesWithoutANote) {
     ASSERT_EQ(std::getenv("CI"), nullptr) << "no EMPS data in " << folder;
     GTEST_SKIP() << "no EMPS data: MJDIAG_EMPS_DATA names no folder with DATA_EMPS.mat";
   }
-  const Machine machine("emps");
+  const Subject subject("emps");
   for (const char* file : {"DATA_EMPS.mat", "DATA_EMPS_PULSES.mat"}) {
-    const Record record = ReadRecord(folder / file, machine.setup.record);
-    EXPECT_THAT(machine.Check(record), IsEmpty()) << file;
-    EXPECT_THAT(machine.Refusal(Drifting(record, "q", 3.0)), HasSubstr("clocks of 'q'"))
+    const Record record = ReadRecord(folder / file, subject.machine.setup().record);
+    EXPECT_THAT(subject.Check(record), IsEmpty()) << file;
+    EXPECT_THAT(subject.Refusal(Drifting(record, "q", 3.0)), HasSubstr("clocks of 'q'"))
         << file;
-    EXPECT_THAT(machine.Refusal(Scaled(record, "u", 1e3)),
+    EXPECT_THAT(subject.Refusal(Scaled(record, "u", 1e3)),
                 HasSubstr("'u' reads 1000 times"))
         << file;
   }

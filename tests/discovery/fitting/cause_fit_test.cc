@@ -14,12 +14,12 @@ using test::Place;
 // 40 draws of noise: the 95 % interval covers at least 32 (the binomial chance of fewer
 // is 1e-4).
 TEST(CauseFit, HasIntervalsThatHold) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   int covered = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const DiscoveryProblem problem =
         stage.Pose(stage.Measure({"quadratic_drag@load:coefficient=0.5"}, {}, seed));
-    const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+    const auto candidates = ListCandidates(stage.machine);
     const std::size_t place = Place(candidates, "quadratic_drag@load");
     const CauseFit fit = FitCauses(problem, candidates,
                                    {{place, Eigen::VectorXd::Constant(1, 0.4)}}, {});
@@ -30,10 +30,10 @@ TEST(CauseFit, HasIntervalsThatHold) {
 }
 
 TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
-  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+  const auto candidates = ListCandidates(stage.machine);
   const std::size_t place = Place(candidates, "stribeck_friction@load");
   const CauseFit fit =
       FitCauses(problem, candidates, {{place, Eigen::Vector3d(8.0, 4.0, 0.02)}},
@@ -46,10 +46,10 @@ TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
 
 // Broyden's updates change the way, not the place: within a tenth of the interval.
 TEST(CauseFit, BySecantsFindsTheSamePlace) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
-  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+  const auto candidates = ListCandidates(stage.machine);
   const std::vector<FittedCause> start = {
       {Place(candidates, "stribeck_friction@load"), Eigen::Vector3d(11.0, 7.0, 0.012)}};
   const CauseFit full =
@@ -64,10 +64,10 @@ TEST(CauseFit, BySecantsFindsTheSamePlace) {
 }
 
 TEST(CauseFit, StaysWithinItsBounds) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   // Less damping than the plant has; more cannot be taken away.
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}, {{"zeta", 0.0}}));
-  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+  const auto candidates = ListCandidates(stage.machine);
   const std::size_t place = Place(candidates, "coulomb_friction@load");
   const CauseFit fit =
       FitCauses(problem, candidates, {{place, Eigen::VectorXd::Constant(1, 5.0)}}, {});

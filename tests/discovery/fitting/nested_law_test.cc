@@ -10,14 +10,12 @@ namespace {
 
 class NestedLaw : public testing::Test {
  protected:
-  test::Stage stage_;
-  DiscoveryProblem problem_ = stage_.Pose(stage_.Measure({}));
-  std::vector<Candidate> candidates_ =
-      ListCandidates(stage_.machine, problem_.machine.linear());
+  test::StageUnderTest stage_;
+  std::vector<Candidate> candidates_ = ListCandidates(stage_.machine);
 
   std::optional<FittedCause> SimplerOf(const std::string& name,
                                        const Eigen::VectorXd& value) const {
-    return SimplerLaw(*stage_.plant, candidates_,
+    return SimplerLaw(stage_.machine.plant(), candidates_,
                       {test::Place(candidates_, name), value});
   }
 };
@@ -32,7 +30,7 @@ TEST_F(NestedLaw, AResonanceThatIsEverStifferIsAMass) {
 
 // 203.5 N s/m is the damping of the stage: 10 % more on average is zeta = 1.1.
 TEST_F(NestedLaw, TheKnobStandsForTheSymmetricLawThatItIs) {
-  const double damping = stage_.plant->dof_damping[0];
+  const double damping = stage_.machine.plant().dof_damping[0];
   const auto simpler = SimplerOf("asymmetric_viscous_friction@load",
                                  Eigen::Vector2d(0.05 * damping, 0.15 * damping));
   ASSERT_TRUE(simpler);

@@ -21,11 +21,10 @@ struct Fitted {
 };
 
 /// Of one effect, from its true values.
-Fitted FitOf(const test::Stage& stage, const std::string& effect,
+Fitted FitOf(const test::StageUnderTest& stage, const std::string& effect,
              const std::string& site, const Eigen::VectorXd& start) {
-  Fitted f;
-  f.problem = stage.Pose(stage.Measure({effect}));
-  f.candidates = ListCandidates(stage.machine, f.problem.machine.linear());
+  Fitted f{.problem = stage.Pose(stage.Measure({effect})),
+           .candidates = ListCandidates(stage.machine)};
   const std::size_t place = test::Place(f.candidates, site);
   f.fit = FitCauses(f.problem, f.candidates, {{place, start}},
                     {.iterations = 30, .tolerance = 1e-10});
@@ -35,7 +34,7 @@ Fitted FitOf(const test::Stage& stage, const std::string& effect,
 }
 
 TEST(ProfileInterval, IsTheNormalOneWhereTheLikelihoodIsQuadratic) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Fitted f = FitOf(stage, "quadratic_drag@load:coefficient=0.5",
                          "quadratic_drag@load", Eigen::VectorXd::Constant(1, 0.5));
   const double half = 1.959964 * std::sqrt(f.covariance(0, 0));
@@ -45,7 +44,7 @@ TEST(ProfileInterval, IsTheNormalOneWhereTheLikelihoodIsQuadratic) {
 
 // A weak Stribeck law: its velocity is known to a factor, and the interval is skew.
 TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Fitted f = FitOf(
       stage, "stribeck_friction@load:coulomb=0.0002,breakaway=0.0004,velocity=0.02",
       "stribeck_friction@load", Eigen::Vector3d(0.0002, 0.0004, 0.02));

@@ -4,7 +4,7 @@
 
 #include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
-#include "mjdiag/studies/hidden_effect.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -20,10 +20,10 @@ CauseFit FitAt(const DiscoveryProblem& problem,
 }
 
 TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const DiscoveryProblem problem =
       stage.Pose(stage.Measure({"quadratic_drag@load:coefficient=20"}));
-  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+  const auto candidates = ListCandidates(stage.machine);
   const CauseFit truth = FitAt(problem, candidates, "quadratic_drag@load", 20.0);
   EXPECT_LT(Unsteadiness(problem, candidates, truth), 1.0);
   EXPECT_FALSE(LookAround(problem, candidates, truth, 10.0));
@@ -35,12 +35,13 @@ TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {
 
 // A gap of a nanoradian in a stiff guide: no change is too small to change the course.
 TEST(UnsteadyFit, SeesThatACourseDependsOnTheLastDigit) {
-  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
-  const ModelPtr plant = LoadPlant(setup);
-  const HiddenCase hidden =
-      MakeCase(machine, {{ParseEffect("backlash@u4:gap=8.9e-10")}}, 1);
-  const DiscoveryProblem problem = PoseProblem(machine, hidden.record, 0.7, 0.0);
-  const auto candidates = ListCandidates(machine, problem.machine.linear());
+  const Machine machine = test::Bonder();
+  const Trajectories& motions = machine.setup().trajectories;
+  const Record measured =
+      Simulate(machine.With(test::With({"backlash@u4:gap=8.9e-10"})),
+               FollowTrajectory(machine.setup(), motions.Find(motions.fallback)), {});
+  const DiscoveryProblem problem = PoseProblem(machine, measured, 0.7, 0.0);
+  const auto candidates = ListCandidates(machine);
   const CauseFit truth = FitAt(problem, candidates, "backlash@u4", 8.9e-10);
   EXPECT_GT(Unsteadiness(problem, candidates, truth), 30.0);
 }

@@ -9,10 +9,10 @@ namespace mjdiag {
 namespace {
 
 TEST(WavePeriod, LeavesAWrongPeriodThatAFitCannotLeave) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"force_ripple@load:amplitude=0.3,period=0.02,phase=0.4"}));
-  const auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+  const auto candidates = ListCandidates(stage.machine);
   const std::size_t place = test::Place(candidates, "force_ripple@load");
   ASSERT_TRUE(HasPeriod(candidates[place]));
   ASSERT_EQ(candidates[place].parameters[1].name, "period");

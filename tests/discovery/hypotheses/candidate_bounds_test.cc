@@ -17,12 +17,12 @@ const FitParameter& Parameter(const std::vector<Candidate>& candidates,
 }
 
 TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  auto candidates = ListCandidates(stage.machine, problem.machine.linear());
+  auto candidates = ListCandidates(stage.machine);
   const auto before = candidates;
   const Track track = FollowRun(stage.machine, {}, problem.run, problem.observer, true);
-  const ObservedMotion motion = ObserveMotion(*stage.plant, problem.run, track);
+  const ObservedMotion motion = ObserveMotion(stage.machine, problem.run, track);
   BoundByRecord(candidates, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();
   const FitParameter& velocity =

@@ -11,7 +11,7 @@ namespace {
 // Friction of 20 N, of which the plant at hand knows nothing, moves the stage by more
 // than ten micrometres off what that plant would do.
 TEST(ObservedJoints, FollowTheEncoderWhateverTheModelLacks) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Record measured = stage.Measure({"coulomb_friction@load:force=20"});
   const Record seen = WithObservedJoints(stage.machine, measured);
   const Channel& joint = seen.At("joint.load");
@@ -22,7 +22,7 @@ TEST(ObservedJoints, FollowTheEncoderWhateverTheModelLacks) {
 }
 
 TEST(ObservedJoints, ARecordWithoutTheInputIsRefused) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const Record measured = stage.Measure({});
   Record cut(measured.sample_time());
   cut.Add(measured.At("q"));

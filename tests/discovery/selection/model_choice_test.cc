@@ -47,7 +47,7 @@ TEST(GainByChance, IsTheQuantileOfChiSquared) {
 // 14,000 samples of a first-order low-pass with 20 samples of memory hold about one
 // independent value in 40.
 TEST(IndependentShare, IsOneOfWhiteNoiseAndSmallOfSlowNoise) {
-  const test::Stage stage;
+  const test::StageUnderTest stage;
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   VectorXd e = White(problem.run.samples(), 1.0);
   EXPECT_GT(IndependentShare(problem, e)[0], 0.9);

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "discovery/gaussian_noise.h"
-#include "discovery/stage_under_test.h"
+#include "support/gaussian_noise.h"
+#include "support/stage.h"
 
 namespace mjdiag {
 namespace {
@@ -17,7 +17,7 @@ std::vector<RaisedNoise> FindIn(const Eigen::VectorXd& innovations) {
   Observer observer;
   observer.noise_sd = Eigen::VectorXd::Constant(1, 1e-8);
   observer.innovation_sd = observer.noise_sd;
-  return FindRaisedNoise(stage.setup, observer, innovations.transpose(), 1.0);
+  return FindRaisedNoise(stage.setup(), observer, innovations.transpose(), 1.0);
 }
 
 TEST(SensorNoise, WhiteNoiseBeyondTheSetupIsFoundWithItsSize) {

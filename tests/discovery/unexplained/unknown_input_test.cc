@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "gaussian_noise.h"
 #include "mjdiag/signals/error.h"
+#include "support/gaussian_noise.h"
 
 namespace mjdiag {
 namespace {

@@ -17,7 +17,7 @@
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/plugin/design/fault_models.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/linearize.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -123,27 +123,23 @@ MatrixXd AsRow(const Denominator& denominator) {
 /// A quarter of a second with a worn x-guide: all three axes move, alone and together.
 struct WornGuide {
   WornGuide()
-      : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
-                        {"trajectories.multi.duration=0.25",
-                         "diagnosis.estimation.magnitudes.beta_x=1e-3",
-                         "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
-        plant(LoadPlant(setup)),
-        machine(Linearize(*plant, setup)),
-        options(SynthesisOf(setup, machine)),
-        space(MakeResidualSpace(machine, options)),
-        design(DesignFilters(setup, *plant)) {
-    RunOptions run;
-    run.faults = {{"zeta_x", 1.01}};
-    const Record record = SimulateLinear(
-        setup, *plant, FollowTrajectory(setup, setup.trajectories.Find("multi")), run);
+      : machine(test::Bonder({"trajectories.multi.duration=0.25",
+                              "diagnosis.estimation.magnitudes.beta_x=1e-3",
+                              "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
+        options(SynthesisOf(setup, machine.linear())),
+        space(MakeResidualSpace(machine.linear(), options)),
+        design(DesignFilters(machine)) {
+    const Record record =
+        SimulateLinear(machine.With({{{"zeta_x", 1.01}}, {}}),
+                       FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
     signals = Signals(design, record);
     log = RecordDiagnosis(design, record).recorder.Log();
   }
 
   Values ForPython() const {
     Values values;
-    AddMachine(values, "", machine);
-    const std::vector<TurnedModels> turned = TurnModels(*plant, setup);
+    AddMachine(values, "", machine.linear());
+    const std::vector<TurnedModels> turned = TurnModels(machine);
     MatrixXd magnitudes(1, turned.size());
     for (std::size_t i = 0; i < turned.size(); ++i) {
       AddMachine(values, "minus" + std::to_string(i) + ".", turned[i].minus);
@@ -172,9 +168,8 @@ struct WornGuide {
   }
 
   static constexpr int kSegment = 512;
-  mjdiag::Setup setup;
-  ModelPtr plant;
-  MechanicalModel machine;
+  Machine machine;
+  const Setup& setup = machine.setup();
   SynthesisOptions options;
   ResidualSpace space;
   DiagnosisDesign design;
@@ -228,7 +223,7 @@ TEST_F(DiagnosisScipy, FindsTheSameRows) {
   // Three outputs and twenty states: no row below degree 6, one of 6, four up to 7.
   const MatrixXd& nullity = Value("nullity");
   ASSERT_EQ(nullity.cols(), 8);
-  const StateSpace system = DeltaForm(Ours().machine, Ours().options.timing);
+  const StateSpace system = DeltaForm(Ours().machine.linear(), Ours().options.timing);
   for (int degree = 0; degree <= 7; ++degree) {
     EXPECT_EQ(LeftNullSpace(system, degree).rows.rows(), nullity(0, degree)) << degree;
   }

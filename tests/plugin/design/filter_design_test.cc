@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/diagnosis/diagnosis_recording.h"
-#include "mjdiag/plugin/monitor_observer.h"
-#include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
+#include "support/bonder.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -24,7 +24,8 @@ using Eigen::VectorXd;
 using testing::AllOf;
 using testing::HasSubstr;
 
-mjdiag::Setup Bonder(const std::vector<std::string>& more = {}) {
+/// With short motions.
+Machine Bonder(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = {
       R"(diagnosis.thresholds.trajectories=["x", "y", "z", "xy", "xyz"])",
       "trajectories.multi.duration=0.25"};
@@ -32,15 +33,19 @@ mjdiag::Setup Bonder(const std::vector<std::string>& more = {}) {
     overrides.push_back("trajectories." + std::string(name) + ".duration=0.05");
   }
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383", overrides);
+  return test::Bonder(overrides);
 }
 
 struct Bench {
   explicit Bench(const std::vector<std::string>& overrides = {})
-      : setup(Bonder(overrides)),
-        plant(LoadPlant(setup)),
-        design(DesignFilters(setup, *plant)),
-        motion(FollowTrajectory(setup, setup.trajectories.Find("multi"))) {}
+      : machine(Bonder(overrides)),
+        design(DesignFilters(machine)),
+        motion(Follow("multi")) {}
+
+  Excitation Follow(const std::string& trajectory) const {
+    return FollowTrajectory(machine.setup(),
+                            machine.setup().trajectories.Find(trajectory));
+  }
 
   NominalRuns Nominal(bool linear, int runs = 5) const {
     NominalRuns nominal;
@@ -49,21 +54,21 @@ struct Bench {
     return nominal;
   }
   void Calibrate(bool linear) {
-    design.limits = CalibrateLimits(design, setup, *plant, Nominal(linear));
+    design.limits = CalibrateLimits(design, machine, Nominal(linear));
   }
-  /// A run with a monitor in the loop.
+  /// A run of this machine, or of a faulty one, with a monitor in the loop.
   template <typename Watcher>
-  Record RunWith(Watcher& watcher, const RunOptions& options, bool linear) const {
+  Record Watch(Watcher& watcher, const Machine& watched, const RunOptions& options,
+               bool linear) const {
     MonitorObserver observer(watcher);
-    return mjdiag::RunWith(setup, *plant, motion, observer, options, linear);
+    return RunWith(watched, motion, observer, options, linear);
   }
   DiagnosisMonitor MonitorOf(const std::vector<Fault>& faults, std::uint64_t seed,
                              bool linear) const {
     DiagnosisMonitor monitor(design);
     RunOptions options;
-    options.faults = faults;
     options.seed = seed;
-    RunWith(monitor, options, linear);
+    Watch(monitor, machine.With({faults, {}}), options, linear);
     return monitor;
   }
   double Estimate(const DiagnosisMonitor& monitor, const std::string& fault) const {
@@ -72,8 +77,7 @@ struct Bench {
         .estimate()[std::find(names.begin(), names.end(), fault) - names.begin()];
   }
 
-  mjdiag::Setup setup;
-  ModelPtr plant;
+  Machine machine;
   DiagnosisDesign design;
   Excitation motion;
 };
@@ -101,9 +105,9 @@ TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
   bench.Calibrate(true);
   DiagnosisRecording inside(bench.design, bench.motion.samples());
   RunOptions options;
-  options.faults = {{"zeta_x", 1.3}};
   options.disturbances["gamma"] = 0.1;
-  const Record record = bench.RunWith(inside, options, false);
+  const Record record =
+      bench.Watch(inside, bench.machine.With({{{"zeta_x", 1.3}}, {}}), options, false);
   ASSERT_EQ(inside.monitor.samples(), 2000);
   ASSERT_TRUE(inside.monitor.first_detection().has_value());
   ASSERT_TRUE(inside.monitor.first_lasting().has_value());
@@ -122,8 +126,8 @@ TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
 TEST(MonitorObserver, LeavesTheRunAsItIs) {
   const Bench bench;
   DiagnosisMonitor monitor(bench.design);
-  const Record watched = bench.RunWith(monitor, {}, false);
-  const Record alone = Simulate(bench.setup, *bench.plant, bench.motion, {});
+  const Record watched = bench.Watch(monitor, bench.machine, {}, false);
+  const Record alone = Simulate(bench.machine, bench.motion, {});
   for (const Channel& channel : alone.channels()) {
     EXPECT_EQ(channel.samples, watched.At(channel.name).samples) << channel.name;
   }
@@ -133,22 +137,20 @@ TEST(MonitorObserver, LeavesTheRunAsItIs) {
 TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   const Bench bench;
   const NominalRuns nominal = bench.Nominal(false, 4);
-  const DiagnosisLimits limits =
-      CalibrateLimits(bench.design, bench.setup, *bench.plant, nominal);
+  const DiagnosisLimits limits = CalibrateLimits(bench.design, bench.machine, nominal);
 
   std::vector<VectorXd> residuals;
   std::vector<VectorXd> disturbances;
   MatrixXd estimates(bench.design.faults(), nominal.runs);
   double integral = 0.0;
   const auto run = [&](const std::string& motion, std::uint64_t seed) {
-    const Excitation excitation =
-        FollowTrajectory(bench.setup, bench.setup.trajectories.Find(motion));
+    const Excitation excitation = bench.Follow(motion);
     DiagnosisRecording recording(bench.design, excitation.samples());
     MonitorObserver observer(recording);
     RunOptions options;
     options.seed = seed;
     options.observer = &observer;
-    Simulate(bench.setup, *bench.plant, excitation, options);
+    Simulate(bench.machine, excitation, options);
     const MonitorLog log = recording.recorder.Log();
     residuals.push_back(log.residual);
     integral = std::max(integral, log.integral.maxCoeff());
@@ -158,7 +160,7 @@ TEST(CalibrateLimits, GivesInParallelTheBitsOfSerialRuns) {
   for (int i = 0; i < nominal.runs; ++i) {
     estimates.col(i) = run("multi", nominal.seed + static_cast<std::uint64_t>(i));
   }
-  for (const std::string& name : bench.setup.diagnosis.trajectories) {
+  for (const std::string& name : bench.machine.setup().diagnosis.trajectories) {
     run(name, nominal.seed);
   }
   disturbances.resize(4);
@@ -194,7 +196,7 @@ TEST(CalibrateLimits, ReportsItsProgress) {
   NominalRuns nominal = bench.Nominal(true, 3);
   std::vector<double> fractions;
   nominal.progress = [&](double fraction) { fractions.push_back(fraction); };
-  CalibrateLimits(bench.design, bench.setup, *bench.plant, nominal);
+  CalibrateLimits(bench.design, bench.machine, nominal);
   // Other threads may have done the runs that are not reported, but not all.
   for (const double fraction : fractions) EXPECT_LE(fraction, 1.0);
   EXPECT_LE(fractions.size(), 3);
@@ -242,7 +244,7 @@ TEST(Diagnosis, RaisesNoAlarmOnAHealthyMachine) {
 
 TEST(DesignFilters, LeavesNothingOfALinearRunWithoutNoise) {
   const Bench bench;
-  const MatrixXd signals = Signals(bench.design, LinearRun(bench.setup, *bench.plant));
+  const MatrixXd signals = Signals(bench.design, LinearRun(bench.machine));
   EXPECT_GT(signals.cwiseAbs().maxCoeff(), 100.0) << "does not move";
   const MatrixXd outputs = FilterSignals(bench.design.bank.filters, signals);
   // A small part of the noise that 20 nm leave, which is 1.
@@ -252,7 +254,7 @@ TEST(DesignFilters, LeavesNothingOfALinearRunWithoutNoise) {
 
 TEST(Signals, AreDeviationsFromRest) {
   const Bench bench;
-  Record record(bench.setup.rates.tick());
+  Record record(bench.machine.rates().tick());
   for (const char* name : {"u_z", "z", "u_y", "y", "u_x", "x"}) {
     record.Add(
         {name, "m", VectorXd::LinSpaced(3, 1.0, 3.0) * std::string(name).size()});
@@ -266,18 +268,18 @@ TEST(Signals, AreDeviationsFromRest) {
 
 TEST(ResidualBaseline, TakesOutWhatTheLinearModelLacks) {
   const Bench bench;
-  const MatrixXd baseline = ResidualBaseline(bench.design, bench.setup, *bench.plant,
-                                             bench.motion, bench.Nominal(false, 4));
+  const MatrixXd baseline = ResidualBaseline(bench.design, bench.machine, bench.motion,
+                                             bench.Nominal(false, 4));
   ASSERT_EQ(baseline.cols(), bench.motion.samples());
   NominalRuns others = bench.Nominal(false, 4);
   others.seed = 2001;
   const auto width = [](const DiagnosisLimits& limits) {
     return limits.residual.limits.max - limits.residual.limits.min;
   };
-  const double with = width(CalibrateLimits(bench.design, bench.setup, *bench.plant,
-                                            bench.motion, baseline, others));
-  const double without = width(CalibrateLimits(bench.design, bench.setup, *bench.plant,
-                                               bench.motion, {}, others));
+  const double with = width(
+      CalibrateLimits(bench.design, bench.machine, bench.motion, baseline, others));
+  const double without =
+      width(CalibrateLimits(bench.design, bench.machine, bench.motion, {}, others));
   EXPECT_LT(with, 0.5 * without);
 }
 
@@ -288,10 +290,11 @@ TEST(UnknownForces, LeaveResidualsThatAreBlindToThem) {
                  "diagnosis.order=10", "diagnosis.cutoff=200",
                  "diagnosis.disturbance.order=10"});
     DiagnosisRecording recording(bench.design, bench.motion.samples());
-    bench.setup.disturbances[0].amplitude = {{"u_x", 100.0}};
+    mjdiag::Setup shaken = bench.machine.setup();
+    shaken.disturbances[0].amplitude = {{"u_x", 100.0}};
     RunOptions options;
     options.disturbances["gamma"] = 0.05;
-    bench.RunWith(recording, options, true);
+    bench.Watch(recording, bench.machine.WithSetup(shaken), options, true);
     return recording.recorder.Log().residual.cwiseAbs().maxCoeff();
   };
   EXPECT_GT(disturbed("[]"), 20.0);
@@ -303,9 +306,8 @@ std::string ErrorWith(const std::string& override_text) {
 }
 
 TEST(DesignFilters, NamesTheJointsIfAnUnknownForceActsOnNone) {
-  const mjdiag::Setup setup = Bonder();
   std::string joints;
-  for (const std::string& joint : Linearize(*LoadPlant(setup), setup).coordinates) {
+  for (const std::string& joint : Bonder().linear().coordinates) {
     joints += (joints.empty() ? "" : ", ") + joint;
   }
   EXPECT_EQ(ErrorWith(R"(diagnosis.unknown_forces=["W"])"),

@@ -52,7 +52,7 @@ class EffectBench {
       ApplyNativeEffect(*model_, specs.back());
     }
     data_ = MakeData(*model_);
-    effects_ = std::make_unique<ActiveEffects>(Setup{}, *model_, specs);
+    effects_ = std::make_unique<ActiveEffects>(Channels{}, *model_, specs);
   }
 
   double& q() { return data_->qpos[0]; }

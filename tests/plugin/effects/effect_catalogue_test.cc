@@ -15,10 +15,11 @@
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
+#include "support/bonder.h"
 #include "support/message_of.h"
 
 // Counts operator new, through which containers allocate. (malloc itself is already
-// replaced in this test program, by instance_test.cc.) Not inlined: GCC would take a
+// replaced in this test program, by count_allocations.h.) Not inlined: GCC would take a
 // malloc that it sees for the partner of a delete that it does not.
 namespace {
 long allocations = 0;
@@ -131,8 +132,8 @@ class CheckedEffect : public ::testing::Test {
   std::string Refusal(const EffectSpec& spec) const {
     return test::MessageOf<InputError>([&] { CheckEffect(*plant_, spec); });
   }
-  const mjdiag::Setup setup_ = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
-  const ModelPtr plant_ = LoadPlant(setup_);
+  const Machine machine_ = test::Bonder();
+  const ModelPtr plant_ = CopyModel(machine_.plant());
 };
 
 TEST_F(CheckedEffect, IsAcceptedAtASiteOfItsKindOnly) {
@@ -200,7 +201,7 @@ TEST_F(CheckedEffect, ActsWithoutAllocating) {
     specs.push_back(Example(type, SiteOf(type, "X")));
     ApplyNativeEffect(*plant_, specs.back());
   }
-  ActiveEffects effects(setup_, *plant_, specs);
+  ActiveEffects effects(machine_.channels(), *plant_, specs);
   const DataPtr data = MakeData(*plant_);
   std::array<double, 3> readings{};
   for (int step = 0; step < 100; ++step) {

@@ -8,19 +8,20 @@
 
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "support/bonder.h"
+#include "support/changes.h"
 
 namespace mjdiag {
 namespace {
 
-mjdiag::Setup EmpsSetup() { return ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps"); }
-mjdiag::Setup BonderSetup() { return ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"); }
+Setup Emps() { return ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps"); }
 
 /// Readings of x, y and z of the bonder with one effect.
 std::array<double, 3> Read(const std::string& effect, std::array<double, 3> readings,
                            double time) {
-  const mjdiag::Setup setup = BonderSetup();
-  const ModelPtr plant = LoadPlant(setup);
-  ActiveEffects(setup, *plant, {ParseEffect(effect)}).Distort(readings, time);
+  const Machine bonder = test::Bonder();
+  ActiveEffects(bonder.channels(), bonder.plant(), {ParseEffect(effect)})
+      .Distort(readings, time);
   return readings;
 }
 
@@ -47,15 +48,14 @@ TEST(EncoderEffects, DriftGrowsWithTime) {
 // The controller holds the distorted reading on its reference, so the load itself goes
 // the other way: 0.2 m / 1.001.
 TEST(EncoderEffects, AreWhatTheControllerSees) {
-  const mjdiag::Setup setup = EmpsSetup();
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine(Emps());
   RunOptions options;
-  options.effects = {ParseEffect("encoder_scale@load_encoder:factor=1.001")};
   options.log_joints = true;
-  Trajectory motion = setup.trajectories.Find("default");
+  Trajectory motion = machine.setup().trajectories.Find("default");
   motion.duration = 2.6;
   const Record record =
-      Simulate(setup, *plant, FollowTrajectory(setup, motion), options);
+      Simulate(machine.With(test::With({"encoder_scale@load_encoder:factor=1.001"})),
+               FollowTrajectory(machine.setup(), motion), options);
   const Eigen::Index last = record.samples() - 1;
   EXPECT_NEAR(record.At("q").samples[last], 0.2, 1e-6);
   EXPECT_NEAR(record.At("joint.load").samples[last], 0.2 / 1.001, 1e-6);
@@ -63,18 +63,14 @@ TEST(EncoderEffects, AreWhatTheControllerSees) {
 
 /// What the encoder of EMPS reads while the load rests without input.
 Eigen::VectorXd AtRest(const std::vector<std::string>& effects, double own_noise) {
-  mjdiag::Setup setup = EmpsSetup();
+  Setup setup = Emps();
   setup.control.axes.clear();
   setup.channels.sensors[0].noise_sd = own_noise;
-  const ModelPtr plant = LoadPlant(setup);
   Excitation rest;
   rest.inputs = Record(setup.rates.tick());
   rest.inputs.Add({"u", "V", Eigen::VectorXd::Zero(4000)});
-  RunOptions options;
-  for (const std::string& effect : effects) {
-    options.effects.push_back(ParseEffect(effect));
-  }
-  return Simulate(setup, *plant, rest, options).At("q").samples;
+  const Machine machine = Machine(setup).With(test::With(effects));
+  return Simulate(machine, rest, {}).At("q").samples;
 }
 
 // The standard deviation of 4000 samples is known to 1 / sqrt(2 * 4000) = 1.1 %: bounds

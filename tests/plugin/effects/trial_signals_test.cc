@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "discovery/gaussian_noise.h"
 #include "mjdiag/signals/simulate_lti.h"
+#include "support/gaussian_noise.h"
 
 namespace mjdiag {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -18,9 +19,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-ModelPtr Bonder() {
-  return LoadModel(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383/plant.xml");
-}
+ModelPtr Bonder() { return CopyModel(test::Bonder().plant()); }
 
 /// A model whose only knob is `data`.
 ModelPtr WithKnob(const std::string& data) {

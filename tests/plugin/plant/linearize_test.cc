@@ -17,6 +17,7 @@
 #include "mjdiag/plugin/setup/chain_file.h"
 #include "mjdiag/plugin/setup/published_row_file.h"
 #include "mjdiag/signals/error.h"
+#include "support/bonder.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -27,19 +28,17 @@ using Eigen::VectorXd;
 
 const std::string kBonder = std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383/";
 
-Setup BonderSetup() {
-  Setup setup;
-  setup.rates.control = 8000.0;
-  setup.rates.substeps = 4;
-  setup.channels.sensors = {{"x", "x_encoder", 0, "m"},
-                            {"y", "y_encoder", 1, "m"},
-                            {"z", "z_encoder", 0, "rad"}};
-  setup.channels.actuators = {
-      {"u_x", "x_motor", "N"}, {"u_y", "y_motor", "N"}, {"u_z", "z_motor", "N m"}};
-  return setup;
+const Machine& Bonder() {
+  static const Machine machine = test::Bonder();
+  return machine;
 }
 
-ModelPtr Bonder() { return LoadModel(kBonder + "plant.xml"); }
+/// A plant with the bonder's channels, about its own rest.
+MechanicalModel LinearBonder(const mjModel& plant) {
+  return Linearize(plant, Bonder().channels(), StaticEquilibrium(plant));
+}
+
+MechanicalModel LinearBonder() { return LinearBonder(Bonder().plant()); }
 
 const MechanicalModel& Analytic() {
   static const MechanicalModel model =
@@ -84,11 +83,11 @@ double ElementwiseDifference(const MechanicalModel& a, const MechanicalModel& b)
 }
 
 TEST(Linearize, BonderRestsInItsReferenceConfiguration) {
-  EXPECT_LT(StaticEquilibrium(*Bonder()).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT(StaticEquilibrium(Bonder().plant()).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 TEST(Linearize, BonderIsTheAnalyticModelInNorm) {
-  const MechanicalModel model = Linearize(*Bonder(), BonderSetup());
+  const MechanicalModel model = LinearBonder();
   EXPECT_EQ(model.coordinates, Analytic().coordinates);
   EXPECT_EQ(model.inputs, Analytic().inputs);
   EXPECT_EQ(model.outputs, Analytic().outputs);
@@ -100,14 +99,13 @@ TEST(Linearize, BonderIsTheAnalyticModelInNorm) {
 }
 
 TEST(Linearize, BonderIsTheAnalyticModelEntryByEntry) {
-  EXPECT_LT(ElementwiseDifference(Linearize(*Bonder(), BonderSetup()), Analytic()),
-            1e-9);
+  EXPECT_LT(ElementwiseDifference(LinearBonder(), Analytic()), 1e-9);
 }
 
 TEST(Linearize, BonderHasTheRecoveredEntries) {
   // Spot checks against the recovered parameters themselves, so that the two models
   // cannot drift together.
-  const MechanicalModel model = Linearize(*Bonder(), BonderSetup());
+  const MechanicalModel model = LinearBonder();
   EXPECT_NEAR(model.M(0, 0), 311.7715591307104, 1e-9);
   EXPECT_NEAR(model.M(2, 2), 21.906616071379435, 1e-10);
   EXPECT_NEAR(model.M(8, 8), 0.003922618363166893, 1e-14);
@@ -168,7 +166,7 @@ std::vector<Parameter> PhysicalParameters(mjModel& bonder) {
 }
 
 TEST(Linearize, ADriftOfAThousandthInAnyParameterIsNoticed) {
-  const ModelPtr bonder = Bonder();
+  const ModelPtr bonder = CopyModel(Bonder().plant());
   const std::vector<Parameter> parameters = PhysicalParameters(*bonder);
   // 8 springs, 10 dampers, a preload, 4 masses, 5 inertias, 14 offsets of bodies and
   // centres, 3 gears, 4 sites, gravity.
@@ -176,8 +174,7 @@ TEST(Linearize, ADriftOfAThousandthInAnyParameterIsNoticed) {
   for (const Parameter& parameter : parameters) {
     const ModelPtr drifted = CopyModel(*bonder);
     *parameter.of(*drifted) *= 1.001;
-    const double difference =
-        ElementwiseDifference(Linearize(*drifted, BonderSetup()), Analytic());
+    const double difference = ElementwiseDifference(LinearBonder(*drifted), Analytic());
     EXPECT_GT(difference, 1e-8) << parameter.name;
   }
 }
@@ -194,7 +191,7 @@ TEST(Linearize, BonderHasTheRecoveredModes) {
       {2038.5705802120367, 0.04604403319215007},
       {2262.769151806461, 0.05525516102722934},
       {2952.555986161789, 0.07095760350867782}};
-  const std::vector<Mode> modes = Modes(Linearize(*Bonder(), BonderSetup()));
+  const std::vector<Mode> modes = Modes(LinearBonder());
   ASSERT_EQ(modes.size(), expected.size());
   for (std::size_t i = 0; i < modes.size(); ++i) {
     EXPECT_NEAR(modes[i].frequency / expected[i].first, 1.0, 1e-9);
@@ -203,9 +200,8 @@ TEST(Linearize, BonderHasTheRecoveredModes) {
 }
 
 TEST(Linearize, BonderReproducesEveryPrintedCoefficient) {
-  const PublishedRowComparison comparison =
-      ComparePublishedRow(Linearize(*Bonder(), BonderSetup()),
-                          ReadPublishedRow(kBonder + "published_row.toml"));
+  const PublishedRowComparison comparison = ComparePublishedRow(
+      LinearBonder(), ReadPublishedRow(kBonder + "published_row.toml"));
   EXPECT_EQ(comparison.coefficients.size(), 35u);
   for (const CoefficientComparison& c : comparison.coefficients) {
     EXPECT_LT(c.half_ulps, 2.0) << c.channel << " s^" << c.power;
@@ -214,51 +210,52 @@ TEST(Linearize, BonderReproducesEveryPrintedCoefficient) {
 }
 
 TEST(Linearize, BonderOnePercentOffMissesThePrint) {
-  const ModelPtr bonder = Bonder();
+  const ModelPtr bonder = CopyModel(Bonder().plant());
   const int y_stage = FindElement(*bonder, mjOBJ_BODY, "y_stage");
   bonder->body_mass[y_stage] *= 1.01;
-  EXPECT_GT(ComparePublishedRow(Linearize(*bonder, BonderSetup()),
+  EXPECT_GT(ComparePublishedRow(LinearBonder(*bonder),
                                 ReadPublishedRow(kBonder + "published_row.toml"))
                 .worst_half_ulp,
             2.0);
 }
 
 TEST(Linearize, BonderIsSeenAfterSevenDerivatives) {
-  const MechanicalModel model = Linearize(*Bonder(), BonderSetup());
+  const MechanicalModel model = LinearBonder();
   EXPECT_EQ(ObservabilityRanks(UnitMassStateSpace(model, FastTimeUnit(model)), 7),
             (std::vector<int>{3, 6, 9, 12, 15, 18, 20, 20}));
 }
 
 TEST(Linearize, TickModelIsMujocosOwnStep) {
-  const ModelPtr bonder = Bonder();
-  const auto setup = BonderSetup();
+  const Machine& bonder = Bonder();
+  const int substeps = bonder.rates().substeps;
   const StateSpace exact =
-      TickModel(Linearize(*bonder, setup), bonder->opt.timestep, setup.rates.substeps);
-  const StateSpace differences = TickByFiniteDifferences(*bonder, setup);
+      TickModel(LinearBonder(), bonder.plant().opt.timestep, substeps);
+  const StateSpace differences =
+      TickByFiniteDifferences(bonder.plant(), bonder.channels(), substeps);
   EXPECT_LT(Relative(exact.A, differences.A), 1e-8);
   EXPECT_LT(Relative(exact.B, differences.B), 1e-8);
   EXPECT_LT(Relative(exact.C, differences.C), 1e-8);
 }
 
 TEST(Linearize, EncodersReadZeroAtRest) {
-  const ModelPtr bonder = Bonder();
-  const DataPtr data = MakeData(*bonder);
-  mj_forward(bonder.get(), data.get());
-  for (int i = 0; i < bonder->nsensordata; ++i) {
+  const mjModel& bonder = Bonder().plant();
+  const DataPtr data = MakeData(bonder);
+  mj_forward(&bonder, data.get());
+  for (int i = 0; i < bonder.nsensordata; ++i) {
     EXPECT_NEAR(data->sensordata[i], 0.0, 1e-16);
   }
 }
 
 TEST(Linearize, LeavesTheControlCallbackAlone) {
   static int calls = 0;
-  const ModelPtr bonder = Bonder();  // before: MuJoCo's compiler runs a step
+  const Machine& bonder = Bonder();  // before: MuJoCo's compiler runs a step
   mjcb_control = [](const mjModel*, mjData* data) {
     ++calls;
     data->ctrl[0] = 1e6;
   };
   const mjfGeneric installed = mjcb_control;
-  const MechanicalModel model = Linearize(*bonder, BonderSetup());
-  TickByFiniteDifferences(*bonder, BonderSetup());
+  const MechanicalModel model = LinearBonder();
+  TickByFiniteDifferences(bonder.plant(), bonder.channels(), 4);
   EXPECT_EQ(mjcb_control, installed);
   mjcb_control = nullptr;
   EXPECT_EQ(calls, 0);
@@ -291,7 +288,8 @@ TEST(StaticEquilibrium, OfASaggingPendulumBalancesTorques) {
   EXPECT_NEAR(angle, torque * std::cos(angle), 1e-12);
   EXPECT_NEAR(angle, 1.25, 0.01);
   const double stiffness = 1.0 + torque * std::sin(angle);
-  EXPECT_NEAR(Linearize(*model, {}).K(0, 0) / stiffness, 1.0, 1e-12);
+  EXPECT_NEAR(Linearize(*model, {}, StaticEquilibrium(*model)).K(0, 0) / stiffness, 1.0,
+              1e-12);
 }
 
 TEST(StaticEquilibrium, NamesTheJointThatFalls) {
@@ -311,7 +309,7 @@ TEST(Linearize, RefusesJointsThatAreNotSlidesOrHinges) {
   const ModelPtr model = FromText("free", R"(<mujoco><worldbody><body>
       <freejoint name="loose"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
     </body></worldbody></mujoco>)");
-  EXPECT_THROW(Linearize(*model, {}), InputError);
+  EXPECT_THROW(Linearize(*model, {}, VectorXd::Zero(model->nq)), InputError);
 }
 
 TEST(Linearize, RefusesSensorsThatDoNotReadPositions) {
@@ -319,9 +317,9 @@ TEST(Linearize, RefusesSensorsThatDoNotReadPositions) {
       <joint type="slide" axis="1 0 0" name="x"/>
       <inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
     </body></worldbody><sensor><jointvel name="speed" joint="x"/></sensor></mujoco>)");
-  mjdiag::Setup setup;
-  setup.channels.sensors = {{"v", "speed", 0, "m/s"}};
-  EXPECT_THROW(Linearize(*model, setup), InputError);
+  Channels channels;
+  channels.sensors = {{"v", "speed", 0, "m/s"}};
+  EXPECT_THROW(Linearize(*model, channels, VectorXd::Zero(model->nq)), InputError);
 }
 
 }  // namespace

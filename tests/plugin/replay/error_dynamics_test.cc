@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include "discovery/stage_under_test.h"
-#include "mjdiag/discovery/fitting/cause_fit.h"
-#include "mjdiag/discovery/screening/trial.h"
+#include "plugin/replay/replay.h"
+#include "support/bonder.h"
+#include "support/stage.h"
 
 namespace mjdiag {
 namespace {
@@ -21,11 +21,16 @@ VectorXd Noise(Index n, unsigned seed) {
   return VectorXd::NullaryExpr(n, [&] { return normal(generator); });
 }
 
-/// First order of the run of a problem, its first samples.
-ErrorDynamics DynamicsOf(const DiscoveryProblem& problem, Index samples, Index block) {
-  ErrorDynamics dynamics(problem.observer, block);
-  FollowRun(problem.machine.setup(), problem.machine.plant(), {},
-            Beginning(problem, samples).run, problem.observer, problem.machine.linear(),
+Record RunOf(const Machine& machine, const std::string& trajectory) {
+  const mjdiag::Setup& setup = machine.setup();
+  return Simulate(machine, FollowTrajectory(setup, setup.trajectories.Find(trajectory)),
+                  {});
+}
+
+/// First order of the first samples of a run.
+ErrorDynamics DynamicsOf(const test::Replay& replay, Index samples, Index block) {
+  ErrorDynamics dynamics(replay.observer, block);
+  FollowRun(replay.machine, {}, replay.Beginning(samples).run, replay.observer,
             dynamics);
   return dynamics;
 }
@@ -36,29 +41,27 @@ TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
   const test::Stage stage;
   RunOptions quiet;
   quiet.noise_scale = 0.0;
-  quiet.effects = {ParseEffect("viscous_friction@load:coefficient=0.5")};
-  const Excitation motion =
-      FollowTrajectory(stage.setup, stage.setup.trajectories.Find("default"));
-  DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  problem.run = ToMeasuredRun(stage.setup, Simulate(stage.machine, motion, quiet));
-  ErrorDynamics dynamics(problem.observer, 1);
-  const Track track = FollowRun(stage.machine, {}, problem.run, problem.observer,
-                                problem.machine.linear(), dynamics);
-  const ObservedMotion observed = ObserveMotion(*stage.plant, problem.run, track);
+  const Machine damped =
+      stage.machine.With(test::With({"viscous_friction@load:coefficient=0.5"}));
+  const test::Replay replay(stage.machine, Simulate(damped, stage.Motion(), quiet));
+  ErrorDynamics dynamics(replay.observer, 1);
+  const Track track =
+      FollowRun(replay.machine, {}, replay.run, replay.observer, dynamics);
+  const ObservedMotion observed = ObserveMotion(replay.machine, replay.run, track);
   const MatrixXd force = -0.5 * observed.velocity.transpose();
   const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
-  const VectorXd seen = problem.Scaled(track);
+  const VectorXd seen = replay.Scaled(track);
   EXPECT_LT((predicted - seen).norm(), 0.02 * seen.norm());
 }
 
 TEST(ErrorDynamics, LosesLittleByBlocks) {
   const test::Stage stage;
-  const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
+  const test::Replay replay(stage.machine, stage.Measure({}));
   const Index n = 2000;
   const MatrixXd force =
       VectorXd::LinSpaced(n, 0.0, 20.0).array().sin().matrix();  // 3 Hz
   const auto response = [&](Index block) {
-    const ErrorDynamics dynamics = DynamicsOf(problem, n, block);
+    const ErrorDynamics dynamics = DynamicsOf(replay, n, block);
     return dynamics.OfForces(MatrixXd::Ones(1, 1), force);
   };
   const MatrixXd fine = Averaged(response(1), 1, 4);
@@ -66,22 +69,19 @@ TEST(ErrorDynamics, LosesLittleByBlocks) {
 }
 
 TEST(ErrorDynamics, HasAnAdjoint) {
-  mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
-  const ModelPtr plant = LoadPlant(setup);
-  RunOptions options;
-  const Excitation motion = FollowTrajectory(setup, setup.trajectories.Find("x"));
-  const DiscoveryProblem problem =
-      PoseProblem(machine, Simulate(machine, motion, options), 0.7, 0.0);
+  const Machine machine = test::Bonder();
+  const mjModel& plant = machine.plant();
+  const test::Replay replay(machine, RunOf(machine, "x"));
   const Index n = 600;
   for (const Index block : {1, 3}) {
-    const ErrorDynamics dynamics = DynamicsOf(problem, n, block);
+    const ErrorDynamics dynamics = DynamicsOf(replay, n, block);
     const VectorXd e = Noise(3 * (n / block), 1);
     const ErrorDynamics::Adjoint adjoint = dynamics.AdjointOf(e);
     const VectorXd signal = Noise(n, 2);
     const VectorXd mean =
         Averaged(signal, 1, block) / std::sqrt(static_cast<double>(block));
-    for (Index joint = 0; joint < plant->nv; ++joint) {
-      const MatrixXd entry = VectorXd::Unit(plant->nv, joint);
+    for (Index joint = 0; joint < plant.nv; ++joint) {
+      const MatrixXd entry = VectorXd::Unit(plant.nv, joint);
       const double forward = e.dot(dynamics.OfForces(entry, signal).col(0));
       EXPECT_NEAR(forward, adjoint.forces.col(joint).dot(mean),
                   1e-9 * (1.0 + std::abs(forward)))
@@ -99,26 +99,23 @@ TEST(ErrorDynamics, HasAnAdjoint) {
 // The bonder's guides and its Z bearing stick and slide in turn: the first order has to
 // know when. Y stands still most of the time, held by 2 N.
 TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
-  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
-  const ModelPtr plant = LoadPlant(setup);
-  const Record measured =
-      Simulate(machine, FollowTrajectory(setup, setup.trajectories.Find("multi")), {});
-  const DiscoveryProblem problem =
-      Beginning(PoseProblem(machine, measured, 0.8, 0.0), 6000);
+  const Machine machine = test::Bonder();
+  const mjModel& plant = machine.plant();
+  const test::Replay replay =
+      test::Replay(machine, RunOf(machine, "multi")).Beginning(6000);
   for (const Index block : {1, 3}) {
-    ErrorDynamics dynamics(problem.observer, block);
-    const Track track = FollowRun(machine, {}, problem.run, problem.observer,
-                                  problem.machine.linear(), dynamics);
-    const ObservedMotion motion = ObserveMotion(*plant, problem.run, track);
+    ErrorDynamics dynamics(replay.observer, block);
+    const Track track = FollowRun(machine, {}, replay.run, replay.observer, dynamics);
+    const ObservedMotion motion = ObserveMotion(machine, replay.run, track);
     for (const char* name : {"X", "Y", "Z"}) {
-      const int joint = mj_name2id(plant.get(), mjOBJ_JOINT, name);
-      const double coefficient = 1e-5 * plant->dof_damping[joint];
+      const int joint = mj_name2id(&plant, mjOBJ_JOINT, name);
+      const double coefficient = 1e-5 * plant.dof_damping[joint];
       const EffectSpec effect{"viscous_friction", name, {{"coefficient", coefficient}}};
       const VectorXd response =
-          problem.Residual({{}, {effect}}) - problem.Scaled(track);
+          replay.Scaled(replay.Follow({{}, {effect}})) - replay.Scaled(track);
       const VectorXd blocks = Averaged(response, 3, block);
       const VectorXd predicted =
-          dynamics.OfForces(VectorXd::Unit(plant->nv, joint),
+          dynamics.OfForces(VectorXd::Unit(plant.nv, joint),
                             -coefficient * motion.velocity.row(joint).transpose());
       EXPECT_LT((predicted + blocks).norm(), 0.05 * blocks.norm())
           << name << ", block " << block;

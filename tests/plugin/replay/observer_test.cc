@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "discovery/stage_under_test.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
+#include "plugin/replay/replay.h"
+#include "support/bonder.h"
+#include "support/stage.h"
 
 namespace mjdiag {
 namespace {
@@ -13,18 +14,17 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MechanicalModel Bonder(Setup& setup) {
-  setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
-  return Linearize(*LoadPlant(setup), setup);
+Observer Design(const Machine& machine, const MechanicalModel& model,
+                const VectorXd& noise_sd, double bandwidth) {
+  const Rates& rates = machine.rates();
+  return DesignObserver(model, rates.step(), rates.substeps, noise_sd, bandwidth);
 }
 
 TEST(Observer, IsStableOnTheBonderAtAnyBandwidth) {
-  mjdiag::Setup setup;
-  const MechanicalModel model = Bonder(setup);
+  const Machine bonder = test::Bonder();
   for (const double bandwidth : {2.0, 10.0, 160.0, 800.0}) {
     const Observer observer =
-        DesignObserver(model, setup.rates.tick() / setup.rates.substeps,
-                       setup.rates.substeps, VectorXd::Constant(3, 2e-8), bandwidth);
+        Design(bonder, bonder.linear(), VectorXd::Constant(3, 2e-8), bandwidth);
     const MatrixXd F = observer.tick.A - observer.L * observer.tick.C;
     EXPECT_LT(SpectralRadius(F), 1.0) << bandwidth;
   }
@@ -34,12 +34,11 @@ TEST(Observer, IsStableOnTheBonderAtAnyBandwidth) {
 // covariance, rebuilt from the gain by a Lyapunov sum, gives the same gain again.
 TEST(Observer, HasTheStationaryGainOfTheKalmanPredictor) {
   const test::Stage stage;
-  const MechanicalModel model = Linearize(*stage.plant, stage.setup);
+  const MechanicalModel& model = stage.machine.linear();
   const double r = 1e-8;
   const double bandwidth = 5.0;
   const Observer observer =
-      DesignObserver(model, stage.setup.rates.tick() / stage.setup.rates.substeps,
-                     stage.setup.rates.substeps, VectorXd::Constant(1, r), bandwidth);
+      Design(stage.machine, model, VectorXd::Constant(1, r), bandwidth);
   const double omega = 2.0 * 3.141592653589793 * bandwidth;
   const double acceleration = (model.b.transpose() * Solve(model.M, model.Gamma))(0);
   const double force = omega * omega * r / std::abs(acceleration);
@@ -58,15 +57,15 @@ TEST(Observer, HasTheStationaryGainOfTheKalmanPredictor) {
 // Bound: of n samples the variance is known to sqrt(2 / n) of itself; five of them.
 TEST(Observer, KnowsTheSpreadOfInnovationsOfATrueModel) {
   const test::Stage stage;
-  const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  const VectorXd residual = problem.Residual({});
+  const test::Replay replay(stage.machine, stage.Measure({}));
+  const VectorXd residual = replay.Scaled(replay.Follow({}));
   const double n = static_cast<double>(residual.size());
   EXPECT_NEAR(residual.squaredNorm() / n, 1.0, 5.0 * std::sqrt(2.0 / n) + 0.03);
 }
 
 TEST(Observer, RefusesAMotionThatNoSensorSees) {
   const test::Stage stage;
-  MechanicalModel model = Linearize(*stage.plant, stage.setup);
+  MechanicalModel model = stage.machine.linear();
   model.b.setZero();
   EXPECT_THROW(DesignObserver(model, 5e-4, 1, VectorXd::Constant(1, 1e-8), 5.0),
                NumericalError);

@@ -3,49 +3,45 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/controllers/realisation.h"
-#include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/discretize.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
 
-StateSpace Tick(const MechanicalModel& model, const mjdiag::Setup& setup) {
-  return TickModel(model, setup.rates.tick() / setup.rates.substeps,
-                   setup.rates.substeps);
+StateSpace Tick(const Machine& machine) {
+  const Rates& rates = machine.rates();
+  return TickModel(machine.linear(), rates.step(), rates.substeps);
 }
 
 class BonderLoop : public ::testing::Test {
  protected:
-  mjdiag::Setup setup_ = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383");
-  MechanicalModel model_ = Linearize(*LoadPlant(setup_), setup_);
+  const Machine bonder_ = test::Bonder();
+  mjdiag::Setup setup_ = bonder_.setup();
 };
 
 // The figure that is known of this plant, 0.98754, is of its zero-order hold.
 TEST_F(BonderLoop, HasTheKnownLargestEigenvalue) {
   const StateSpace hold =
-      DiscretizeZoh(ContinuousStateSpace(model_), setup_.rates.tick());
+      DiscretizeZoh(ContinuousStateSpace(bonder_.linear()), setup_.rates.tick());
   EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(hold, setup_)), 0.98754, 5e-6);
 }
 
 TEST_F(BonderLoop, IsAsStableOnTheMapOfATick) {
-  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(model_, setup_), setup_)), 0.98758,
-              5e-6);
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(bonder_), setup_)), 0.98758, 5e-6);
 }
 
 // As printed, the y controller cancels its integrator: only marginally stable.
 TEST_F(BonderLoop, IsMarginalWithThePrintedCoefficients) {
   setup_.control.axes[1].feedback = {{66900.0, -131600.0, 64700.0},
                                      {1.0, -1.828, 0.8277}};
-  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(model_, setup_), setup_)), 1.0,
-              2e-3);
+  EXPECT_NEAR(SpectralRadius(ClosedLoopMatrix(Tick(bonder_), setup_)), 1.0, 2e-3);
 }
 
 TEST(ClosedLoop, OfTheMotionStageIsStable) {
-  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
-  const MechanicalModel model = Linearize(*LoadPlant(setup), setup);
-  EXPECT_LT(SpectralRadius(ClosedLoopMatrix(Tick(model, setup), setup)), 1.0);
+  const Machine stage(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps"));
+  EXPECT_LT(SpectralRadius(ClosedLoopMatrix(Tick(stage), stage.setup())), 1.0);
 }
 
 // The realisation answers an impulse as the difference equation does.

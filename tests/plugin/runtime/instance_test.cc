@@ -2,75 +2,54 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/plant/channels.h"
-#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
-
-// Counts every allocation of the thread while it is told to: Eigen calls malloc, the
-// standard library operator new, which calls malloc. Sanitizers replace malloc
-// themselves, so the count is left out there.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define MJDIAG_COUNTS_ALLOCATIONS 0
-#else
-#define MJDIAG_COUNTS_ALLOCATIONS 1
-namespace {
-thread_local bool counting = false;
-thread_local long allocations = 0;
-}  // namespace
-extern "C" void* __libc_malloc(std::size_t);
-extern "C" void* __libc_memalign(std::size_t, std::size_t);
-extern "C" void* malloc(std::size_t size) {
-  if (counting) ++allocations;
-  return __libc_malloc(size);
-}
-extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  if (counting) ++allocations;
-  return __libc_memalign(alignment, size);
-}
-#endif
+#include "support/bonder.h"
+#include "support/changes.h"
+#include "support/count_allocations.h"
 
 namespace mjdiag {
 namespace {
 
+/// The bonder, or what has become of it, at the start of its default motion.
 struct Bench {
-  explicit Bench(const RunOptions& options = {})
-      : setup(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383")),
-        model(LoadPlant(setup)),
-        data(MakeData(*model)),
-        instance(setup, *model,
-                 FollowTrajectory(setup,
-                                  setup.trajectories.Find(setup.trajectories.fallback)),
-                 options) {
-    const Eigen::VectorXd start = StartPosition(setup, *model, {});
-    std::copy(start.begin(), start.end(), data->qpos);
+  explicit Bench(const RunOptions& options = {}, const Changes& changes = {})
+      : machine(test::Bonder().With(changes)),
+        plant(StartPlant(machine, {})),
+        instance(machine, Motion(machine.setup()), options) {}
+
+  static Excitation Motion(const Setup& setup) {
+    return FollowTrajectory(setup,
+                            setup.trajectories.Find(setup.trajectories.fallback));
   }
-  mjdiag::Setup setup;
-  ModelPtr model;
-  DataPtr data;
+  void Step(int steps) {
+    for (int i = 0; i < steps; ++i) mj_step(plant.model.get(), plant.data.get());
+  }
+  void AttachInstance() { Attach(*plant.model, *plant.data, instance); }
+
+  Machine machine;
+  StartedPlant plant;
   Instance instance;
 };
 
 #if MJDIAG_COUNTS_ALLOCATIONS
 mjfGeneric counted_callback = nullptr;
+long allocations = 0;
 void CountingCallback(const mjModel* model, mjData* data) {
-  counting = true;
-  counted_callback(model, data);
-  counting = false;
+  allocations += test::CountAllocations([&] { counted_callback(model, data); });
 }
 
 /// Of a closed loop over 1000 ticks.
-long AllocationsInTheCallback(const RunOptions& options) {
-  Bench bench(options);
-  Attach(*bench.model, *bench.data, bench.instance);
+long AllocationsInTheCallback(const RunOptions& options, const Changes& changes = {}) {
+  Bench bench(options, changes);
+  bench.AttachInstance();
   counted_callback = mjcb_control;
   mjcb_control = CountingCallback;
   allocations = 0;
-  for (int i = 0; i < 4000; ++i) mj_step(bench.model.get(), bench.data.get());
+  bench.Step(4000);
   mjcb_control = counted_callback;
   EXPECT_EQ(bench.instance.loop().ticks_done(), 1000);
   return allocations;
@@ -80,25 +59,21 @@ TEST(ControlCallback, DoesNotAllocate) {
   RunOptions options;
   options.log_joints = true;
   options.disturbances["gamma"] = 0.01;
-  options.effects = {ParseEffect("force_offset@X:force=1")};
-  EXPECT_EQ(AllocationsInTheCallback(options), 0);
+  EXPECT_EQ(AllocationsInTheCallback(options, test::With({"force_offset@X:force=1"})),
+            0);
 
-  allocations = 0;
-  counting = true;
-  Eigen::VectorXd proof(100);
-  counting = false;
-  EXPECT_GT(allocations, 0) << "the counter does not count";
-  EXPECT_EQ(proof.size(), 100);
+  Eigen::VectorXd proof;
+  EXPECT_GT(test::CountAllocations([&] { proof.resize(100); }), 0)
+      << "the counter does not count";
 }
 
 TEST(ControlCallback, DoesNotAllocateWithADiagnosisInIt) {
   // With every row of the null space, a baseline and a recorder that is full before the
   // run ends.
-  const mjdiag::Setup setup =
-      ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
-                {"diagnosis.estimation.rows=0", "diagnosis.estimation.forgetting=0.1"});
+  const Machine machine = test::Bonder(
+      {"diagnosis.estimation.rows=0", "diagnosis.estimation.forgetting=0.1"});
   for (const bool at_rest : {true, false}) {
-    DiagnosisDesign design = DesignFilters(setup, *LoadPlant(setup));
+    DiagnosisDesign design = DesignFilters(machine);
     // Away from rest the filters settle on the first reading.
     if (!at_rest) design.offset.array() += 1e-3;
     design.limits.residual.limits = {-1.0, 1.0};
@@ -118,33 +93,33 @@ TEST(ControlCallback, DoesNotAllocateWithADiagnosisInIt) {
 
 TEST(ControlCallback, LeavesDataWithoutAnInstanceAlone) {
   Bench controlled;
-  Attach(*controlled.model, *controlled.data, controlled.instance);
-  const DataPtr other = MakeData(*controlled.model);
+  controlled.AttachInstance();
+  const DataPtr other = MakeData(*controlled.plant.model);
   other->ctrl[0] = 1.5;
-  mj_step(controlled.model.get(), other.get());
+  mj_step(controlled.plant.model.get(), other.get());
   EXPECT_EQ(other->ctrl[0], 1.5);
   EXPECT_EQ(controlled.instance.loop().ticks_done(), 0);
 }
 
 TEST(ControlCallback, StopsAfterResetAndAfterDetach) {
   Bench bench;
-  Attach(*bench.model, *bench.data, bench.instance);
-  mj_step(bench.model.get(), bench.data.get());
+  bench.AttachInstance();
+  bench.Step(1);
   EXPECT_EQ(bench.instance.loop().ticks_done(), 1);
-  mj_resetData(bench.model.get(), bench.data.get());
-  for (int i = 0; i < 8; ++i) mj_step(bench.model.get(), bench.data.get());
+  mj_resetData(bench.plant.model.get(), bench.plant.data.get());
+  bench.Step(8);
   EXPECT_EQ(bench.instance.loop().ticks_done(), 1);
-  Attach(*bench.model, *bench.data, bench.instance);
-  Detach(*bench.model, *bench.data);
-  for (int i = 0; i < 8; ++i) mj_step(bench.model.get(), bench.data.get());
+  bench.AttachInstance();
+  Detach(*bench.plant.model, *bench.plant.data);
+  bench.Step(8);
   EXPECT_EQ(bench.instance.loop().ticks_done(), 1);
 }
 
 TEST(ControlCallback, TicksOnceEverySubsteps) {
   Bench bench;
-  Attach(*bench.model, *bench.data, bench.instance);
-  for (int i = 0; i < 9; ++i) mj_step(bench.model.get(), bench.data.get());
-  EXPECT_EQ(bench.setup.rates.substeps, 4);
+  bench.AttachInstance();
+  bench.Step(9);
+  EXPECT_EQ(bench.machine.rates().substeps, 4);
   EXPECT_EQ(bench.instance.loop().ticks_done(), 3);
 }
 
@@ -157,14 +132,14 @@ TEST(ControlCallback, RefusesAModelWithoutRoomForItsMark) {
 }
 
 TEST(Instance, NamesAMissingSensorAndActuator) {
-  Bench bench;
-  mjdiag::Setup setup = bench.setup;
-  setup.channels.sensors[0].component = 7;
-  EXPECT_THROW(SensorAddresses(setup, *bench.model), InputError);
-  setup.channels.sensors[0].element = "ghost";
-  EXPECT_THROW(SensorAddresses(setup, *bench.model), InputError);
-  setup.channels.actuators[0].element = "ghost";
-  EXPECT_THROW(ActuatorAddresses(setup, *bench.model), InputError);
+  const Machine machine = test::Bonder();
+  Channels channels = machine.channels();
+  channels.sensors[0].component = 7;
+  EXPECT_THROW(SensorAddresses(channels, machine.plant()), InputError);
+  channels.sensors[0].element = "ghost";
+  EXPECT_THROW(SensorAddresses(channels, machine.plant()), InputError);
+  channels.actuators[0].element = "ghost";
+  EXPECT_THROW(ActuatorAddresses(channels, machine.plant()), InputError);
 }
 
 }  // namespace

@@ -3,19 +3,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <thread>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
+#include "support/bonder.h"
+#include "support/changes.h"
 
 namespace mjdiag {
 namespace {
 
 using ::testing::HasSubstr;
 
-mjdiag::Setup ReadPlantSetup(const std::string& plant,
-                             const std::vector<std::string>& overrides = {}) {
-  return ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" + plant, overrides);
+Machine Emps(const std::function<void(Setup&)>& change = {}) {
+  mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
+  if (change) change(setup);
+  return Machine(std::move(setup));
 }
 
 Excitation Motion(const Setup& setup, const std::string& name, double duration) {
@@ -39,12 +44,11 @@ bool SameBits(const Record& a, const Record& b) {
 
 class Ab383 : public ::testing::Test {
  protected:
-  Ab383() : setup_(ReadPlantSetup("ab383")), plant_(LoadPlant(setup_)) {}
   Record Run(const Excitation& motion, const RunOptions& options = {}) const {
-    return Simulate(setup_, *plant_, motion, options);
+    return Simulate(machine_, motion, options);
   }
-  mjdiag::Setup setup_;
-  ModelPtr plant_;
+  const Machine machine_ = test::Bonder();
+  const mjdiag::Setup& setup_ = machine_.setup();
 };
 
 // The figure of the issue: 4 mm in x within 10 um with both controllers, with static
@@ -72,14 +76,12 @@ TEST_F(Ab383, FeedbackAloneTracksWorseThanBothControllers) {
 }
 
 TEST_F(Ab383, LinearAndNonlinearPlantAgreeWithoutFriction) {
-  const mjdiag::Setup setup =
-      ReadPlantSetup("ab383", {"physics.static_friction=false"});
-  const ModelPtr plant = LoadPlant(setup);
-  const Excitation motion = Motion(setup, "x", 0.1);
+  const Machine machine = test::Bonder({"physics.static_friction=false"});
+  const Excitation motion = Motion(machine.setup(), "x", 0.1);
   RunOptions options;
   options.noise_scale = 0.0;
-  const Record nonlinear = Simulate(setup, *plant, motion, options);
-  const Record linear = SimulateLinear(setup, *plant, motion, options);
+  const Record nonlinear = Simulate(machine, motion, options);
+  const Record linear = SimulateLinear(machine, motion, options);
   const auto difference = [&](const char* channel) {
     return (nonlinear.At(channel).samples - linear.At(channel).samples)
         .lpNorm<Eigen::Infinity>();
@@ -94,16 +96,17 @@ TEST_F(Ab383, LinearAndNonlinearPlantAgreeWithoutFriction) {
 TEST_F(Ab383, ParallelInstancesGiveTheSerialBits) {
   const Excitation motion = Motion(setup_, "xyz", 0.1);
   std::vector<RunOptions> options(4);
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    options[i].seed = 10 + i;
-    options[i].faults = {{"zeta_x", 1.0 + 0.05 * static_cast<double>(i)}};
-  }
+  const auto run = [&](std::size_t i) {
+    const double zeta = 1.0 + 0.05 * static_cast<double>(i);
+    return Simulate(machine_.With({{{"zeta_x", zeta}}, {}}), motion, options[i]);
+  };
+  for (std::size_t i = 0; i < options.size(); ++i) options[i].seed = 10 + i;
   std::vector<Record> serial(options.size());
   std::vector<Record> parallel(options.size());
-  for (std::size_t i = 0; i < options.size(); ++i) serial[i] = Run(motion, options[i]);
+  for (std::size_t i = 0; i < options.size(); ++i) serial[i] = run(i);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < options.size(); ++i) {
-    threads.emplace_back([&, i] { parallel[i] = Run(motion, options[i]); });
+    threads.emplace_back([&, i] { parallel[i] = run(i); });
   }
   for (std::thread& thread : threads) thread.join();
   for (std::size_t i = 0; i < options.size(); ++i) {
@@ -113,24 +116,26 @@ TEST_F(Ab383, ParallelInstancesGiveTheSerialBits) {
 }
 
 TEST_F(Ab383, SceneryMakesNoDifferenceToTheMotion) {
-  const ModelPtr bare = CopyModel(*plant_);
+  const mjModel& plant = machine_.plant();
+  const ModelPtr bare = CopyModel(plant);
   DropScenery(*bare);
   EXPECT_EQ(bare->ngeom, 0);
-  const DataPtr with = MakeData(*plant_);
+  const DataPtr with = MakeData(plant);
   const DataPtr without = MakeData(*bare);
   for (int i = 0; i < 2000; ++i) {
     with->ctrl[0] = without->ctrl[0] = 100.0 * std::sin(0.01 * i);
-    mj_step(plant_.get(), with.get());
+    mj_step(&plant, with.get());
     mj_step(bare.get(), without.get());
   }
-  for (int i = 0; i < plant_->nq; ++i) EXPECT_EQ(with->qpos[i], without->qpos[i]);
+  for (int i = 0; i < plant.nq; ++i) EXPECT_EQ(with->qpos[i], without->qpos[i]);
 }
 
 TEST_F(Ab383, SceneryThatCanTouchStays) {
-  plant_->geom_contype[0] = 1;
-  const int geoms = plant_->ngeom;
-  DropScenery(*plant_);
-  EXPECT_EQ(plant_->ngeom, geoms);
+  const ModelPtr plant = CopyModel(machine_.plant());
+  plant->geom_contype[0] = 1;
+  const int geoms = plant->ngeom;
+  DropScenery(*plant);
+  EXPECT_EQ(plant->ngeom, geoms);
 }
 
 TEST_F(Ab383, ReplayOfItsOwnRecordWithoutNoiseIsTheSameRun) {
@@ -181,7 +186,7 @@ TEST_F(Ab383, DivergenceSaysWhenAndWhichJoint) {
   mjdiag::Setup setup = setup_;
   for (double& b : setup.control.axes[0].feedback->numerator) b = -b;
   try {
-    Simulate(setup, *plant_, Motion(setup, "x", 0.5), {});
+    Simulate(machine_.WithSetup(setup), Motion(setup, "x", 0.5), {});
     FAIL() << "did not diverge";
   } catch (const NumericalError& error) {
     EXPECT_THAT(error.what(), HasSubstr("diverged at 0."));
@@ -191,24 +196,21 @@ TEST_F(Ab383, DivergenceSaysWhenAndWhichJoint) {
 
 TEST_F(Ab383, RefusesAnUnknownFaultDisturbanceOrEffect) {
   const Excitation motion = Motion(setup_, "x", 0.01);
-  RunOptions fault;
-  fault.faults = {{"zeta_q", 1.2}};
-  EXPECT_THROW(Run(motion, fault), InputError);
+  EXPECT_THROW(machine_.With({{{"zeta_q", 1.2}}, {}}), InputError);
   RunOptions disturbance;
   disturbance.disturbances["delta"] = 1.0;
   EXPECT_THROW(Run(motion, disturbance), InputError);
-  RunOptions effect;
-  effect.effects = {ParseEffect("wind@X:force=1")};
-  EXPECT_THROW(Run(motion, effect), InputError);
+  const Changes wind = test::With({"wind@X:force=1"});
+  EXPECT_THROW(machine_.With(wind), InputError);
 }
 
 TEST(Replay, StartsWhereTheMeasurementStarts) {
-  const mjdiag::Setup setup = ReadPlantSetup("emps");
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine = Emps();
+  const mjdiag::Setup& setup = machine.setup();
   Record measured(setup.rates.tick());
   measured.Add({"q_ref", "m", Eigen::VectorXd::Constant(100, 0.101)});
   measured.Add({"q", "m", Eigen::VectorXd::Constant(100, 0.1)});
-  const Record simulated = Simulate(setup, *plant, Replay(setup, measured), {});
+  const Record simulated = Simulate(machine, Replay(setup, measured), {});
   EXPECT_NEAR(simulated.At("q").samples[0], 0.1, 1e-12);
   // kp kv (q_ref - q), and no kick from the velocity loop
   EXPECT_NEAR(simulated.At("u").samples[0], std::min(10.0, 160.18 * 243.45 * 0.001),
@@ -216,13 +218,12 @@ TEST(Replay, StartsWhereTheMeasurementStarts) {
 }
 
 TEST(Replay, DrivesTheActuatorsOfASetupWithoutControllers) {
-  mjdiag::Setup setup = ReadPlantSetup("emps");
-  setup.control.axes.clear();
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine = Emps([](mjdiag::Setup& file) { file.control.axes.clear(); });
+  const mjdiag::Setup& setup = machine.setup();
   Record measured(setup.rates.tick());
   measured.Add({"q", "m", Eigen::VectorXd::Zero(2001)});
   measured.Add({"u", "V", Eigen::VectorXd::Constant(2001, 1.0)});
-  const Record simulated = Simulate(setup, *plant, Replay(setup, measured), {});
+  const Record simulated = Simulate(machine, Replay(setup, measured), {});
   // M q'' + F q' = g u from rest, after t = 2 s; semi-implicit Euler at 0.1 ms is first
   // order, so relative 1e-4 is its error.
   const double f = 35.15;
@@ -232,7 +233,7 @@ TEST(Replay, DrivesTheActuatorsOfASetupWithoutControllers) {
 }
 
 TEST(Replay, NamesAMissingChannelAndAWrongSampleTime) {
-  const mjdiag::Setup setup = ReadPlantSetup("emps");
+  const mjdiag::Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps");
   Record without_reference(setup.rates.tick());
   without_reference.Add({"q", "m", Eigen::VectorXd::Zero(10)});
   try {

@@ -230,7 +230,7 @@ TEST_F(SetupFile, IsReadByItsOwnNameToo) {
 
 TEST_F(SetupFile, RunsItsFirstTrajectoryByDefault) {
   EXPECT_EQ(MessageWith("default_trajectory = \"slow\"", ""), "nothing thrown");
-  EXPECT_EQ(ReadSetup(folder_).default_trajectory, "fast");
+  EXPECT_EQ(ReadSetup(folder_).trajectories.fallback, "fast");
 }
 
 TEST_F(SetupFile, TakesOverrides) {
@@ -284,7 +284,7 @@ TEST_F(SetupFile, OfTheManualsExamplesReads) {
   ASSERT_EQ(examples.size(), 2u);
   Write(examples[0]);
   EXPECT_EQ(Message({}), "nothing thrown");
-  EXPECT_TRUE(ReadSetup(folder_).axes.empty());
+  EXPECT_TRUE(ReadSetup(folder_).control.axes.empty());
   Write(examples[1]);
   EXPECT_EQ(Message({}), "nothing thrown");
   const auto closed = ReadSetup(folder_);

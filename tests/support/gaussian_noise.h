@@ -1,5 +1,5 @@
 #pragma once
-// Noise for the tests of this folder.
+// Noise that is seeded.
 
 #include <Eigen/Core>
 #include <cmath>

@@ -8,6 +8,7 @@
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/error.h"
+#include "support/bonder.h"
 #include "support/message_of.h"
 
 namespace mjdiag {
@@ -18,27 +19,24 @@ using Eigen::VectorXd;
 class RobustDesign : public testing::Test {
  protected:
   RobustDesign()
-      : setup_(
-            ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
-                      {"diagnosis.robust.runs=3", "trajectories.multi.duration=0.25"})),
-        plant_(LoadPlant(setup_)),
+      : machine_(test::Bonder(
+            {"diagnosis.robust.runs=3", "trajectories.multi.duration=0.25"})),
         motion_(FollowTrajectory(setup_, setup_.trajectories.Find("multi"))) {}
 
   DiagnosisDesign Robust(const std::string& fault, bool baseline = false) const {
-    return DesignRobustFilters(setup_, *plant_, fault, motion_, baseline);
+    return DesignRobustFilters(machine_, fault, motion_, baseline);
   }
   /// Of a run of the nonlinear plant in noise that the design has not seen.
   VectorXd Residual(const DiagnosisDesign& design,
                     const std::vector<Fault>& faults = {}) const {
     RunOptions options;
-    options.faults = faults;
     options.seed = 7;
-    const Record record = Simulate(setup_, *plant_, motion_, options);
+    const Record record = Simulate(machine_.With({faults, {}}), motion_, options);
     return RecordDiagnosis(design, record).recorder.Log().residual;
   }
 
-  mjdiag::Setup setup_;
-  ModelPtr plant_;
+  Machine machine_;
+  const mjdiag::Setup& setup_ = machine_.setup();
   Excitation motion_;
 };
 
@@ -49,14 +47,14 @@ TEST_F(RobustDesign, SeesItsFaultBetterAboveWhatHealthyRunsLeave) {
     const VectorXd healthy = Residual(design);
     return (Residual(design, {worn}) - healthy).norm() / healthy.norm();
   };
-  const double common = contrast(DesignFilters(setup_, *plant_));
+  const double common = contrast(DesignFilters(machine_));
   const double robust = contrast(Robust(worn.name));
   EXPECT_GT(robust, 1.5 * common);
 }
 
 TEST_F(RobustDesign, IsExcitedLessByAHealthyMachineWithFriction) {
   // Both residuals have unit noise, so they compare as they are.
-  const double common = Residual(DesignFilters(setup_, *plant_)).norm();
+  const double common = Residual(DesignFilters(machine_)).norm();
   EXPECT_LT(Residual(Robust("zeta_x")).norm(), 0.5 * common);
 }
 
@@ -72,7 +70,7 @@ TEST_F(RobustDesign, HasOneResidualOfItsOwnDegreeAndPrefiltersForAllFaults) {
 TEST_F(RobustDesign, IsBlindToNominalMotionOfTheLinearPlant) {
   const DiagnosisDesign design = Robust("zeta_x");
   const Eigen::MatrixXd outputs =
-      FilterSignals(design.bank.filters, Signals(design, LinearRun(setup_, *plant_)));
+      FilterSignals(design.bank.filters, Signals(design, LinearRun(machine_)));
   EXPECT_LT(outputs.row(0).cwiseAbs().maxCoeff(), 0.3);
   EXPECT_GT(outputs.bottomRows(7).rowwise().norm().minCoeff(), 1.0);
 }

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 
-#include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
+#include "support/bonder.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -22,8 +21,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAreArray;
 
-mjdiag::Setup Bonder(const std::vector<std::string>& overrides = {}) {
-  return ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383", overrides);
+MechanicalModel Faulty(const Machine& machine, const std::vector<Fault>& faults) {
+  return machine.With({faults, {}}).linear();
 }
 
 Index Place(const std::vector<std::string>& names, const std::string& name) {
@@ -65,10 +64,9 @@ std::vector<std::string> Driven(const MechanicalModel& model,
   return entries;
 }
 
-TEST(LinearizeFaulty, ScalesTheEntriesOfTheKnobAndNothingElse) {
-  const mjdiag::Setup setup = Bonder();
-  const ModelPtr plant = LoadPlant(setup);
-  const MechanicalModel healthy = Linearize(*plant, setup);
+TEST(FaultyMachine, ScalesTheEntriesOfTheKnobAndNothingElse) {
+  const Machine machine = test::Bonder();
+  const MechanicalModel& healthy = machine.linear();
   const std::vector<std::pair<std::string, std::vector<std::string>>> expected = {
       {"zeta_x", {"D(X,X)"}},
       {"zeta_y", {"D(Y,Y)"}},
@@ -78,19 +76,18 @@ TEST(LinearizeFaulty, ScalesTheEntriesOfTheKnobAndNothingElse) {
       {"eta_y", Driven(healthy, "u_y")},
       {"eta_z", Driven(healthy, "u_z")}};
   for (const auto& [knob, entries] : expected) {
-    const MechanicalModel faulty = LinearizeFaulty(*plant, setup, {{knob, 0.97}});
+    const MechanicalModel faulty = Faulty(machine, {{knob, 0.97}});
     EXPECT_THAT(Changes(healthy, faulty), UnorderedElementsAreArray(entries)) << knob;
   }
-  EXPECT_THAT(Changes(healthy, LinearizeFaulty(*plant, setup, HealthyKnobs(*plant))),
+  EXPECT_THAT(Changes(healthy, Faulty(machine, HealthyKnobs(machine.plant()))),
               testing::IsEmpty());
 }
 
-TEST(LinearizeFaulty, ScalesByTheValueOfTheKnob) {
-  const mjdiag::Setup setup = Bonder();
-  const ModelPtr plant = LoadPlant(setup);
-  const MechanicalModel healthy = Linearize(*plant, setup);
-  const MechanicalModel faulty = LinearizeFaulty(
-      *plant, setup, {{"zeta_y", 1.25}, {"beta_x", 0.5}, {"eta_z", 0.75}});
+TEST(FaultyMachine, ScalesByTheValueOfTheKnob) {
+  const Machine machine = test::Bonder();
+  const MechanicalModel& healthy = machine.linear();
+  const MechanicalModel faulty =
+      Faulty(machine, {{"zeta_y", 1.25}, {"beta_x", 0.5}, {"eta_z", 0.75}});
   const Index y = Place(healthy.coordinates, "Y");
   const Index u3 = Place(healthy.coordinates, "u3");
   const Index u_z = Place(healthy.inputs, "u_z");
@@ -102,7 +99,7 @@ TEST(LinearizeFaulty, ScalesByTheValueOfTheKnob) {
 
 TEST(HealthyKnobs, AreTheKnobsOfThePlantAtOne) {
   std::vector<std::string> names;
-  for (const Fault& knob : HealthyKnobs(*LoadPlant(Bonder()))) {
+  for (const Fault& knob : HealthyKnobs(test::Bonder().plant())) {
     names.push_back(knob.name);
     EXPECT_EQ(knob.value, 1.0) << knob.name;
   }
@@ -111,23 +108,20 @@ TEST(HealthyKnobs, AreTheKnobsOfThePlantAtOne) {
 }
 
 TEST(Magnitudes, AreThoseOfTheSetupOrOneThousandth) {
-  const mjdiag::Setup setup =
-      Bonder({"diagnosis.estimation.magnitudes={ eta_y = 1e-5, beta_x = 0.02, "
-              "beta_y = 0.03 }"});
-  EXPECT_THAT(Magnitudes(*LoadPlant(setup), setup),
+  const Machine machine =
+      test::Bonder({"diagnosis.estimation.magnitudes={ eta_y = 1e-5, beta_x = 0.02, "
+                    "beta_y = 0.03 }"});
+  EXPECT_THAT(Magnitudes(machine),
               ElementsAre(1e-3, 1e-3, 0.02, 0.03, 1e-3, 1e-5, 1e-3));
 }
 
 TEST(Magnitudes, OfAnUnknownKnobListThoseThatThereAre) {
-  const mjdiag::Setup setup = Bonder({"diagnosis.estimation.magnitudes.zeta_q=0.01"});
-  const ModelPtr plant = LoadPlant(setup);
+  const Machine machine = test::Bonder({"diagnosis.estimation.magnitudes.zeta_q=0.01"});
   const auto expected =
       AllOf(HasSubstr("diagnosis.estimation.magnitudes"), HasSubstr("no knob 'zeta_q'"),
             HasSubstr("one of zeta_x, zeta_y, beta_x, beta_y, eta_x, eta_y, eta_z"));
-  EXPECT_THAT(test::MessageOf<InputError>([&] { Magnitudes(*plant, setup); }),
-              expected);
-  EXPECT_THAT(test::MessageOf<InputError>([&] { TurnModels(*plant, setup); }),
-              expected);
+  EXPECT_THAT(test::MessageOf<InputError>([&] { Magnitudes(machine); }), expected);
+  EXPECT_THAT(test::MessageOf<InputError>([&] { TurnModels(machine); }), expected);
 }
 
 void ExpectSameModel(const MechanicalModel& actual, const MechanicalModel& expected) {
@@ -138,21 +132,18 @@ void ExpectSameModel(const MechanicalModel& actual, const MechanicalModel& expec
 }
 
 TEST(TurnModels, TurnsOneKnobAtATimeBothWays) {
-  const mjdiag::Setup setup = Bonder({"diagnosis.estimation.magnitudes.beta_y=0.05"});
-  const ModelPtr plant = LoadPlant(setup);
-  const std::vector<TurnedModels> turned = TurnModels(*plant, setup);
-  const std::vector<Fault> knobs = HealthyKnobs(*plant);
-  const VectorXd magnitudes = Magnitudes(*plant, setup);
+  const Machine machine = test::Bonder({"diagnosis.estimation.magnitudes.beta_y=0.05"});
+  const std::vector<TurnedModels> turned = TurnModels(machine);
+  const std::vector<Fault> knobs = HealthyKnobs(machine.plant());
+  const VectorXd magnitudes = Magnitudes(machine);
   ASSERT_EQ(turned.size(), knobs.size());
   for (std::size_t i = 0; i < turned.size(); ++i) {
     SCOPED_TRACE(knobs[i].name);
     const double c = magnitudes[static_cast<Index>(i)];
     EXPECT_EQ(turned[i].name, knobs[i].name);
     EXPECT_EQ(turned[i].magnitude, c);
-    ExpectSameModel(turned[i].minus,
-                    LinearizeFaulty(*plant, setup, {{knobs[i].name, 1.0 - c}}));
-    ExpectSameModel(turned[i].plus,
-                    LinearizeFaulty(*plant, setup, {{knobs[i].name, 1.0 + c}}));
+    ExpectSameModel(turned[i].minus, Faulty(machine, {{knobs[i].name, 1.0 - c}}));
+    ExpectSameModel(turned[i].plus, Faulty(machine, {{knobs[i].name, 1.0 + c}}));
   }
 }
 
@@ -165,15 +156,13 @@ std::vector<Fault> At(const mjModel& plant, const VectorXd& values) {
 }
 
 TEST(FaultModels, AreThoseOfThePlantWithTheKnobsTurned) {
-  const mjdiag::Setup setup = Bonder();
-  const ModelPtr plant = LoadPlant(setup);
-  const ModelAt model_at = FaultModels(*plant, setup);
+  const Machine machine = test::Bonder();
+  const ModelAt model_at = FaultModels(machine);
   const VectorXd ones = VectorXd::Ones(7);
   VectorXd far(7);
   far << 1.7, 0.3, 0.5, 1.4, 0.9, 1.1, 0.2;
   for (const VectorXd& values : {ones, far}) {
-    ExpectSameModel(model_at(values),
-                    LinearizeFaulty(*plant, setup, At(*plant, values)));
+    ExpectSameModel(model_at(values), Faulty(machine, At(machine.plant(), values)));
   }
 }
 
@@ -196,22 +185,22 @@ rates = { control = 1000.0 }
 sensors.q = { element = "encoder", unit = "rad" }
 actuators.u = { element = "motor", unit = "N m" }
 )");
-    setup_ = ReadSetup(folder_.path(),
-                       {"diagnosis.cutoff=50", "diagnosis.disturbance.cutoff=300"});
-    plant_ = LoadPlant(setup_);
+  }
+  Machine Load() const {
+    return Machine(ReadSetup(
+        folder_.path(), {"diagnosis.cutoff=50", "diagnosis.disturbance.cutoff=300"}));
   }
   const test::TemporaryFolder folder_;
-  mjdiag::Setup setup_;
-  ModelPtr plant_;
 };
 
 TEST_F(Pendulum, HasModelsAboutTheEquilibriumThatTheKnobMovesItTo) {
-  const ModelAt model_at = FaultModels(*plant_, setup_);
-  const MechanicalModel healthy = Linearize(*plant_, setup_);
+  const Machine machine = Load();
+  const ModelAt model_at = FaultModels(machine);
+  const MechanicalModel& healthy = machine.linear();
   for (const double beta : {1.0, 0.8, 0.4}) {
     SCOPED_TRACE(beta);
     const MechanicalModel model = model_at(VectorXd::Constant(1, beta));
-    ExpectSameModel(model, LinearizeFaulty(*plant_, setup_, {{"beta", beta}}));
+    ExpectSameModel(model, Faulty(machine, {{"beta", beta}}));
     // K = beta k + m g l cos(angle): what gravity adds has grown as the arm came down.
     const double gravity = model.K(0, 0) - 30.0 * beta;
     const double before = healthy.K(0, 0) - 30.0;
@@ -220,8 +209,7 @@ TEST_F(Pendulum, HasModelsAboutTheEquilibriumThatTheKnobMovesItTo) {
 }
 
 TEST(Multisines, AreOnTheActuatorsInTheOrderOfTheSetup) {
-  const mjdiag::Setup setup = Bonder();
-  const std::vector<Multisine> sines = Multisines(setup);
+  const std::vector<Multisine> sines = Multisines(test::Bonder().setup());
   ASSERT_EQ(sines.size(), 1);
   EXPECT_EQ(sines[0].name, "gamma");
   EXPECT_THAT(sines[0].frequencies, ElementsAre(100.0, 300.0, 750.0));

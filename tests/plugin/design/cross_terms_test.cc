@@ -6,7 +6,8 @@
 
 #include <algorithm>
 
-#include "mjdiag/plugin/monitor_observer.h"
+#include "mjdiag/plugin/design/monitor_observer.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -14,15 +15,14 @@ namespace {
 class CrossTerms : public testing::Test {
  protected:
   CrossTerms()
-      : setup_(ReadSetup(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/ab383",
-                         {"diagnosis.thresholds.trajectories=[]",
-                          "trajectories.multi.duration=0.25"})),
-        plant_(LoadPlant(setup_)),
-        design_(DesignFilters(setup_, *plant_)),
-        motion_(FollowTrajectory(setup_, setup_.trajectories.Find("multi"))) {
+      : machine_(test::Bonder({"diagnosis.thresholds.trajectories=[]",
+                               "trajectories.multi.duration=0.25"})),
+        design_(DesignFilters(machine_)),
+        motion_(FollowTrajectory(machine_.setup(),
+                                 machine_.setup().trajectories.Find("multi"))) {
     runs_.linear = true;
     runs_.runs = 3;
-    design_.limits = CalibrateLimits(design_, setup_, *plant_, runs_);
+    design_.limits = CalibrateLimits(design_, machine_, runs_);
   }
 
   /// Of a run in noise that none of the healthy runs has.
@@ -30,15 +30,13 @@ class CrossTerms : public testing::Test {
     DiagnosisRecording recording(design_, motion_.samples());
     MonitorObserver observer(recording);
     RunOptions options;
-    options.faults = faults;
     options.seed = 7;
-    RunWith(setup_, *plant_, motion_, observer, options, true);
+    RunWith(machine_.With({faults, {}}), motion_, observer, options, true);
     return Conclude(recording);
   }
   DiagnosisResult WithoutCrossTerms(DiagnosisResult result) const {
     const Eigen::MatrixXd no_baseline;
-    RemoveCrossTerms(result, design_, setup_, *plant_,
-                     {motion_, no_baseline, 0, runs_});
+    RemoveCrossTerms(result, design_, machine_, {motion_, no_baseline, 0, runs_});
     return result;
   }
   static const FaultVerdict& Of(const DiagnosisResult& result,
@@ -53,8 +51,7 @@ class CrossTerms : public testing::Test {
     return names;
   }
 
-  mjdiag::Setup setup_;
-  ModelPtr plant_;
+  Machine machine_;
   DiagnosisDesign design_;
   Excitation motion_;
   NominalRuns runs_;

@@ -1,0 +1,148 @@
+#include "mjdiag/plugin/replay/tracking.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mjdiag/signals/error.h"
+#include "plugin/replay/replay.h"
+#include "support/message_of.h"
+#include "support/stage.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using testing::HasSubstr;
+
+const Changes& Worn() {
+  static const Changes changes =
+      test::With({"quadratic_drag@load:coefficient=50", "added_mass@load:mass=1"},
+                 {{"zeta", 1.1}});
+  return changes;
+}
+
+/// Two seconds of the stage without noise, with those changes in it.
+test::Replay Measured(const Changes& changes) {
+  const test::Stage stage;
+  Trajectory motion = stage.setup().trajectories.Find("default");
+  motion.duration = 2.0;
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  return {stage.machine, Simulate(stage.machine.With(changes),
+                                  FollowTrajectory(stage.setup(), motion), quiet)};
+}
+
+TEST(FollowRun, HasNoInnovationsBesideTheMachineThatWasMeasured) {
+  const test::Replay replay = Measured({});
+  EXPECT_LT(replay.Follow({}).innovations.cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(FollowRun, HasNoneBesideTheNominalMachineWithTheChangesThatWereInIt) {
+  const test::Replay replay = Measured(Worn());
+  EXPECT_LT(replay.Follow(Worn()).innovations.cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_GT(replay.Follow({}).innovations.cwiseAbs().maxCoeff(), 1e-7);
+}
+
+// The stage does not hold itself: left alone an error of its start stays.
+TEST(FollowRun, IsPulledFromAWrongStartTowardsTheRecord) {
+  constexpr double kWrong = 1e-5;
+  test::Replay replay = Measured({});
+  replay.run.start["q"] += kWrong;
+  const MatrixXd pulled = replay.Follow({}).innovations;
+  EXPECT_NEAR(pulled(0, 0), -kWrong, 1e-3 * kWrong);
+  EXPECT_LT(pulled.rightCols(100).cwiseAbs().maxCoeff(), 1e-3 * kWrong);
+  replay.observer.L.setZero();
+  const MatrixXd left = replay.Follow({}).innovations;
+  EXPECT_GT(left.rightCols(100).cwiseAbs().minCoeff(), 0.9 * kWrong);
+}
+
+TEST(FollowRun, KeepsTheStatesWhereTheyAreAskedFor) {
+  const test::Replay replay = Measured(Worn());
+  const Track without = replay.Follow(Worn());
+  EXPECT_EQ(without.position.size(), 0);
+  EXPECT_EQ(without.velocity.size(), 0);
+  const Track with = replay.Follow(Worn(), true);
+  EXPECT_EQ(with.innovations, without.innovations);
+  ASSERT_EQ(with.position.cols(), replay.run.samples());
+  // The encoder reads the one joint that there is.
+  EXPECT_LT((with.position - replay.run.outputs).cwiseAbs().maxCoeff(), 1e-14);
+  // The position at the end of a tick is that of its last velocity.
+  EXPECT_LT(std::abs(with.velocity.rowwise().sum()(0) * replay.run.sample_time -
+                     with.position(0, replay.run.samples() - 1)),
+            1e-3 * with.position.maxCoeff());
+}
+
+TEST(FollowRun, IsTheSameRunWithItsFirstOrderRecorded) {
+  const test::Replay replay = Measured(Worn());
+  ErrorDynamics dynamics(replay.observer, 10);
+  const Track track =
+      FollowRun(replay.machine, {}, replay.run, replay.observer, dynamics);
+  const Track plain = replay.Follow({}, true);
+  EXPECT_EQ(track.innovations, plain.innovations);
+  EXPECT_EQ(track.position, plain.position);
+  EXPECT_EQ(dynamics.blocks(), replay.run.samples() / 10);
+}
+
+TEST(FollowRun, SaysThatItDiverges) {
+  test::Replay replay = Measured({});
+  replay.run.inputs(0, 100) = 1e300;
+  EXPECT_THAT(test::MessageOf<NumericalError>([&] { replay.Follow({}); }),
+              HasSubstr("replay: diverged at 0.05"));
+}
+
+TEST(ObserveMotion, IsOffQpos0WithAccelerationsByDifferences) {
+  const test::Replay replay = Measured({});
+  const Track track = replay.Follow({}, true);
+  const ModelPtr moved = CopyModel(replay.machine.plant());
+  moved->qpos0[0] = 0.5;
+  const ObservedMotion motion =
+      ObserveMotion(Machine(replay.machine.setup(), *moved), replay.run, track);
+  EXPECT_EQ(motion.sample_time, replay.run.sample_time);
+  EXPECT_EQ(motion.position, (track.position.array() - 0.5).matrix());
+  EXPECT_EQ(motion.velocity, track.velocity);
+  EXPECT_EQ(motion.inputs, replay.run.inputs);
+  EXPECT_EQ(motion.outputs, replay.run.outputs);
+  const Index k = 700;
+  EXPECT_NEAR(motion.acceleration(0, k),
+              (track.velocity(0, k + 1) - track.velocity(0, k - 1)) /
+                  (2.0 * motion.sample_time),
+              1e-9);
+}
+
+/// A record of the stage with what is asked for.
+Record Sampled(const std::string& input_unit, double sample_time) {
+  Record record(sample_time);
+  record.Add({"u", input_unit, Eigen::VectorXd::LinSpaced(50, 0.0, 1.0)});
+  record.Add({"q", "m", Eigen::VectorXd::LinSpaced(50, 0.3, 0.4)});
+  record.Add({"q_ref", "m", Eigen::VectorXd::Zero(50)});
+  return record;
+}
+
+TEST(ToMeasuredRun, TakesChannelsByNameAndBeginsAtTheFirstReading) {
+  const test::Stage stage;
+  const double tick = stage.setup().rates.tick();
+  const MeasuredRun run = ToMeasuredRun(stage.setup(), Sampled("V", tick));
+  EXPECT_EQ(run.sample_time, tick);
+  EXPECT_EQ(run.samples(), 50);
+  EXPECT_EQ(run.inputs(0, 49), 1.0);
+  EXPECT_EQ(run.outputs(0, 49), 0.4);
+  EXPECT_EQ(run.start.at("q"), 0.3);
+}
+
+TEST(ToMeasuredRun, RefusesAnotherUnitRateOrChannel) {
+  const test::Stage stage;
+  const double tick = stage.setup().rates.tick();
+  const auto refusal = [&](const Record& record) {
+    return test::MessageOf<InputError>([&] { ToMeasuredRun(stage.setup(), record); });
+  };
+  EXPECT_THAT(refusal(Sampled("A", tick)), HasSubstr("channel 'u' is in 'A'"));
+  EXPECT_NE(refusal(Sampled("V", 2.0 * tick)), "no error of the expected kind");
+  Record without(tick);
+  without.Add({"q", "m", Eigen::VectorXd::Zero(50)});
+  without.Add({"q_ref", "m", Eigen::VectorXd::Zero(50)});
+  EXPECT_THAT(refusal(without), HasSubstr("u"));
+}
+
+}  // namespace
+}  // namespace mjdiag
