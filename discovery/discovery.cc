@@ -13,6 +13,7 @@
 #include "mjdiag/discovery/selection/coarse_problem.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"

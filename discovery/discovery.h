@@ -14,7 +14,7 @@
 
 #include "mjdiag/comparison/comparison.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
-#include "mjdiag/discovery/selection/verdict.h"
+#include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
 #include "mjdiag/plugin/machine/machine.h"

@@ -7,6 +7,7 @@
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"

@@ -9,18 +9,10 @@
 //   unexplained       else: below that share of the excess over noise causes are not an
 //                     explanation but the best of the wrong ones
 
-#include <string>
-
+#include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/selection/search.h"
 
 namespace mjdiag {
-
-enum class DiscoveryVerdict {
-  kNoDiscrepancy,    ///< noise explains the record
-  kExplained,        ///< causes were found, noise explains the rest
-  kPartlyExplained,  ///< causes were found, something is left
-  kUnexplained       ///< something is there, and no candidate is its cause
-};
 
 /// Mean square of the innovations over sensor noise from which something is left,
 /// whatever a screening says.
@@ -30,8 +22,5 @@ inline constexpr double kFarAboveNoise = 4.0;
 ///                 included
 /// @param nominal  m_0
 DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal);
-
-/// "no_discrepancy", "explained", "partly_explained", "unexplained".
-std::string VerdictName(DiscoveryVerdict verdict);
 
 }  // namespace mjdiag
