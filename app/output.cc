@@ -4,7 +4,7 @@
 
 #include "mjdiag/report/page_file.h"
 #include "mjdiag/report/plot_library.h"
-#include "mjdiag/report/run_folder.h"
+#include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 

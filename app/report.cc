@@ -1,11 +1,12 @@
 // mjdiag report: the HTML page of a run folder.
 
+#include "mjdiag/report/report.h"
+
 #include <filesystem>
 #include <memory>
 
 #include "app/command.h"
 #include "app/output.h"
-#include "mjdiag/report/run_folder.h"
 
 namespace mjdiag::app {
 namespace {

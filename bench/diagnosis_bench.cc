@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/diagnosis_recording.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/runtime/instance.h"

@@ -15,7 +15,7 @@
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/report/diagnosis_page.h"
 #include "mjdiag/report/page_file.h"
-#include "mjdiag/report/run_folder.h"
+#include "mjdiag/report/report.h"
 #include "support/bonder.h"
 #include "support/temporary_folder.h"
 

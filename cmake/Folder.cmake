@@ -24,15 +24,19 @@ if(MJDIAG_PRECOMPILE)
 endif()
 
 # mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>]
-#               [PRECOMPILE <headers...>])
+#               [HEADERS_OF <targets...>] [PART <part>] [PRECOMPILE <headers...>])
 #
 # Makes a library target from the .cc files directly in the folder <path>: for
 # plugin/plant mjdiag_plugin_plant (alias mjdiag::plugin_plant). Its headers are
 # reachable as "mjdiag/plugin/plant/..." only by targets that link it: each folder has
 # an include root of its own that holds nothing but links to its headers. A folder that
 # includes upwards in the table of the design therefore does not compile.
+#
+# HEADERS_OF: libraries of headers only, which a program that links the folder does not
+# need. PART: of the installed package (Parts.cmake), by default the first folder of the
+# path. Which headers are installed, docs/api.md says (InstallHeaders.cmake).
 function(mjdiag_folder path)
-  cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF;PRECOMPILE" ${ARGN})
   set(source ${PROJECT_SOURCE_DIR}/${path})
   file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cc)
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${source} ${source}/*.h)
@@ -52,10 +56,13 @@ function(mjdiag_folder path)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${root}>
                                               $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS}
-                                         $<BUILD_INTERFACE:mjdiag_warnings>)
+  target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
+  foreach(library IN LISTS arg_HEADERS_OF ITEMS mjdiag_warnings)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
+  endforeach()
   mjdiag_precompile(${target} ${arg_PRECOMPILE})
-  install(TARGETS ${target} EXPORT mjdiagTargets)
-  install(DIRECTORY ${source}/ DESTINATION include/mjdiag/${path}
-          FILES_MATCHING PATTERN "*.h")
+  if(NOT arg_PART)
+    string(REGEX MATCH "^[^/]+" arg_PART ${path})
+  endif()
+  install(TARGETS ${target} EXPORT mjdiag_${arg_PART})
 endfunction()

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/error_dynamics.h"
 
 namespace mjdiag {

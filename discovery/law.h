@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
 
 namespace mjdiag {

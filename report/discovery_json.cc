@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mjdiag/plugin/effects/effect.h"
+
 namespace mjdiag {
 namespace {
 

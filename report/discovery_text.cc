@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <set>
 
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -64,7 +65,8 @@ std::string Join(const std::vector<std::string>& items) {
 std::string WithValues(const FoundCause& found) {
   std::string values;
   for (const CauseParameter& parameter : found.parameters) {
-    if (found.cause.effect->IsFault()) return CauseName(found.cause) + " = " + ValueText(parameter);
+    if (found.cause.effect->IsFault())
+      return CauseName(found.cause) + " = " + ValueText(parameter);
     values +=
         (values.empty() ? "" : ", ") + parameter.name + " " + ValueText(parameter);
   }

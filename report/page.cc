@@ -1,5 +1,8 @@
 #include "mjdiag/report/page.h"
 
+#include "mjdiag/report/page_document.h"
+#include "mjdiag/report/plot_json.h"
+
 namespace mjdiag {
 namespace {
 
@@ -23,35 +26,48 @@ nlohmann::json Pairs(const std::vector<std::pair<std::string, std::string>>& pai
   return rows;
 }
 
+void AddBlock(PageDocument& page, nlohmann::json block) {
+  page.json["blocks"].push_back(std::move(block));
+}
+
+template <typename Plot>
+nlohmann::json PlotBlock(const Plot& plot) {
+  return {{"kind", "plot"}, {"caption", plot.caption}, {"plot", DescribePlot(plot)}};
+}
+
 }  // namespace
 
 Page::Page(std::string title)
-    : document_{{"schema", "mjdiag.page/1"},
-                {"title", std::move(title)},
-                {"verdict", nullptr},
-                {"command", ""},
-                {"versions", nlohmann::json::array()},
-                {"blocks", nlohmann::json::array()}} {}
+    : document_(std::make_unique<PageDocument>(
+          PageDocument{{{"schema", "mjdiag.page/1"},
+                        {"title", std::move(title)},
+                        {"verdict", nullptr},
+                        {"command", ""},
+                        {"versions", nlohmann::json::array()},
+                        {"blocks", nlohmann::json::array()}}})) {}
+Page::~Page() = default;
+Page::Page(Page&&) noexcept = default;
+Page& Page::operator=(Page&&) noexcept = default;
 
 void Page::SetVerdict(Tone tone, const std::string& text) {
-  document_["verdict"] = {{"tone", ToneName(tone)}, {"text", text}};
+  document_->json["verdict"] = {{"tone", ToneName(tone)}, {"text", text}};
 }
 
 void Page::SetRun(const RunDescription& run) {
-  document_["command"] = run.command;
-  document_["versions"] = Pairs(run.versions);
+  document_->json["command"] = run.command;
+  document_->json["versions"] = Pairs(run.versions);
 }
 
 void Page::AddHeading(const std::string& text) {
-  AddBlock({{"kind", "heading"}, {"text", text}});
+  AddBlock(*document_, {{"kind", "heading"}, {"text", text}});
 }
 
 void Page::AddParagraph(const std::string& text) {
-  AddBlock({{"kind", "paragraph"}, {"text", text}});
+  AddBlock(*document_, {{"kind", "paragraph"}, {"text", text}});
 }
 
 void Page::AddFacts(const std::vector<std::pair<std::string, std::string>>& facts) {
-  AddBlock({{"kind", "facts"}, {"rows", Pairs(facts)}});
+  AddBlock(*document_, {{"kind", "facts"}, {"rows", Pairs(facts)}});
 }
 
 void Page::AddTable(const Table& table) {
@@ -59,15 +75,17 @@ void Page::AddTable(const Table& table) {
   for (const Table::Column& column : table.columns) {
     columns.push_back({{"title", column.title}, {"number", column.number}});
   }
-  AddBlock({{"kind", "table"}, {"columns", columns}, {"rows", table.rows}});
+  AddBlock(*document_, {{"kind", "table"}, {"columns", columns}, {"rows", table.rows}});
 }
 
 void Page::AddCode(const std::string& text) {
-  AddBlock({{"kind", "code"}, {"text", text}});
+  AddBlock(*document_, {{"kind", "code"}, {"text", text}});
 }
 
-void Page::AddBlock(nlohmann::json block) {
-  document_["blocks"].push_back(std::move(block));
-}
+void Page::AddPlot(const TimePlot& plot) { AddBlock(*document_, PlotBlock(plot)); }
+void Page::AddPlot(const SpectrumPlot& plot) { AddBlock(*document_, PlotBlock(plot)); }
+void Page::AddPlot(const XyPlot& plot) { AddBlock(*document_, PlotBlock(plot)); }
+void Page::AddPlot(const HistogramPlot& plot) { AddBlock(*document_, PlotBlock(plot)); }
+void Page::AddPlot(const BodePlot& plot) { AddBlock(*document_, PlotBlock(plot)); }
 
 }  // namespace mjdiag

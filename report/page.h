@@ -1,11 +1,12 @@
 #pragma once
 // The page of a command: text, tables and plots in reading order, and how it was made.
-// It is a document (page_file.h) from which a report is made (report.h), so that a
-// report can be made anew, or of several commands, without running them again.
+// It is a document, which can be written to a file (page_file.h), from which a report is
+// made (report.h), so that a report can be made anew, or of several commands, without
+// running them again.
 //
 // All text that goes in is plain text.
 
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,8 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+struct PageDocument;
+
 /// Schema "mjdiag.page/1": title; verdict {tone: "bad", "neutral" or "good", text} or
 /// null; command; versions [[program, version]]; blocks in reading order, each with a
 /// kind:
@@ -35,11 +38,14 @@ struct Table {
 ///   heading, paragraph, code  text
 ///   facts                     rows [[name, value]]
 ///   table                     columns [{title, number}], rows [[text]]
-///   plot                      caption, plot (DescribePlot of plot.h)
+///   plot                      caption, plot (plot_json.h)
 class Page {
  public:
   /// @param title  of the page and its first heading
   explicit Page(std::string title);
+  ~Page();
+  Page(Page&& other) noexcept;
+  Page& operator=(Page&& other) noexcept;
 
   /// The answer in one sentence; a later one takes the place of an earlier one.
   void SetVerdict(Tone tone, const std::string& text);
@@ -54,18 +60,17 @@ class Page {
   /// A command line or other text to be copied as it is.
   void AddCode(const std::string& text);
   /// All time plots of a report zoom and show their cursor together.
-  template <typename Plot>
-  void AddPlot(const Plot& plot) {
-    AddBlock(
-        {{"kind", "plot"}, {"caption", plot.caption}, {"plot", DescribePlot(plot)}});
-  }
+  void AddPlot(const TimePlot& plot);
+  void AddPlot(const SpectrumPlot& plot);
+  void AddPlot(const XyPlot& plot);
+  void AddPlot(const HistogramPlot& plot);
+  void AddPlot(const BodePlot& plot);
 
-  const nlohmann::json& document() const { return document_; }
+  /// What is in it so far (page_document.h).
+  const PageDocument& document() const { return *document_; }
 
  private:
-  void AddBlock(nlohmann::json block);
-
-  nlohmann::json document_;
+  std::unique_ptr<PageDocument> document_;
 };
 
 }  // namespace mjdiag

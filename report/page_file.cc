@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "mjdiag/report/base64.h"
+#include "mjdiag/report/page_document.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -134,8 +135,9 @@ class Checker {
 
 void WritePage(const std::filesystem::path& folder, const std::string& name,
                const Page& page) {
-  WriteTextFile(folder / (name + kPageEnding),
-                page.document().dump(-1, ' ', false, json::error_handler_t::replace));
+  WriteTextFile(
+      folder / (name + kPageEnding),
+      page.document().json.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
 json ReadPageDocument(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 // A page in a file, "<name>.page.json".
 
 #include <filesystem>
+#include <string>
 
 #include "mjdiag/report/page.h"
 
@@ -14,10 +15,5 @@ inline constexpr const char* kPageEnding = ".page.json";
 /// written.
 void WritePage(const std::filesystem::path& folder, const std::string& name,
                const Page& page);
-
-/// A page as its file has it, ready for a report. InputError with the file and the
-/// place in it: not readable, not JSON (half-written), another schema, a missing or
-/// misshapen part.
-nlohmann::json ReadPageDocument(const std::filesystem::path& file);
 
 }  // namespace mjdiag

@@ -1,10 +1,9 @@
-#include "mjdiag/report/plot.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "mjdiag/report/base64.h"
+#include "mjdiag/report/plot_json.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 

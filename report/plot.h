@@ -3,7 +3,6 @@
 // that suits the data. Samples are embedded as 32-bit floats.
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -127,13 +126,5 @@ struct BodePlot {
   std::vector<Mark> marks;  ///< [Hz], for example cut-offs
   int height = 280;         ///< CSS pixels
 };
-
-/// The plot as a JSON object for the page's script. InputError if x and y, edges and
-/// counts, or frequencies and magnitudes do not go together.
-nlohmann::json DescribePlot(const TimePlot& plot);
-nlohmann::json DescribePlot(const SpectrumPlot& plot);
-nlohmann::json DescribePlot(const XyPlot& plot);
-nlohmann::json DescribePlot(const HistogramPlot& plot);
-nlohmann::json DescribePlot(const BodePlot& plot);
 
 }  // namespace mjdiag

@@ -6,7 +6,11 @@
 #include "mjdiag/report/base64.h"
 #include "mjdiag/report/html.h"
 #include "mjdiag/report/page_assets.h"
+#include "mjdiag/report/page_document.h"
 #include "mjdiag/report/plot_library.h"
+#include "mjdiag/report/report_document.h"
+#include "mjdiag/report/run_folder.h"
+#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag {
 namespace {
@@ -150,7 +154,14 @@ std::string ReportHtml(const Report& report) {
 }
 
 std::string ReportHtml(const Page& page) {
-  return ReportHtml(Report{"", {page.document()}, std::nullopt});
+  return ReportHtml(Report{"", {page.document().json}, std::nullopt});
+}
+
+std::filesystem::path WriteReport(const std::filesystem::path& folder) {
+  const std::string html = ReportHtml(ReadRunFolder(folder));
+  const std::filesystem::path file = folder / "report.html";
+  WriteTextFile(file, html);
+  return file;
 }
 
 }  // namespace mjdiag

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "mjdiag/report/page_document.h"
 #include "mjdiag/report/page_file.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag {
 namespace {
@@ -49,13 +49,6 @@ Report ReadRunFolder(const fs::path& folder) {
   PutWorstFirst(report.pages);
   report.clip = ReadClipOf(folder);
   return report;
-}
-
-fs::path WriteReport(const fs::path& folder) {
-  const std::string html = ReportHtml(ReadRunFolder(folder));
-  const fs::path file = folder / "report.html";
-  WriteTextFile(file, html);
-  return file;
 }
 
 }  // namespace mjdiag

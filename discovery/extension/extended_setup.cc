@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/extension/digits.h"
 #include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/discovery/extension/text_changes.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mjdiag/discovery/screening/screening.h"
+#include "mjdiag/plugin/effects/effect.h"
 
 namespace mjdiag {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/plugin/effects/role.h"
 #include "mjdiag/plugin/effects/site.h"
 #include "mjdiag/plugin/machine/machine.h"
 

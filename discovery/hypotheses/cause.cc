@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/fault_parameter.h"
 
 namespace mjdiag {

@@ -1,5 +1,7 @@
 #include "mjdiag/discovery/screening/trial.h"
 
+#include "mjdiag/plugin/effects/effect.h"
+
 namespace mjdiag {
 
 std::vector<Trial> MakeTrials(const Machine& machine, const Candidate& candidate,

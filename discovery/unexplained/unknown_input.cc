@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/riccati.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"

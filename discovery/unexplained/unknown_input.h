@@ -49,10 +49,10 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
-#include "mjdiag/plugin/replay/observer.h"
-
 namespace mjdiag {
+
+struct MechanicalModel;
+struct Observer;
 
 struct UnknownSignal {
   std::string site;       ///< joint or sensor

@@ -1,5 +1,6 @@
 #include "mjdiag/plugin/effects/active_effect.h"
 
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 
 namespace mjdiag {

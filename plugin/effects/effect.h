@@ -19,6 +19,7 @@
 
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/effects/draw.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/effects/role.h"
 #include "mjdiag/plugin/effects/site.h"
 #include "mjdiag/plugin/effects/trial.h"
@@ -66,26 +67,6 @@ struct EffectType {
   std::vector<EffectParameter> parameters;
   std::string meaning;
 };
-
-class Effect;
-/// Owns effects that are made from a plant; registered ones are there for good.
-using EffectPtr = std::shared_ptr<const Effect>;
-
-/// An effect at a site with values for its parameters.
-struct PlacedEffect {
-  EffectPtr effect;
-  std::string site;
-  Eigen::VectorXd values;
-
-  const std::string& name() const;
-  /// Of the parameter with that name, which the effect has.
-  double Value(std::string_view parameter) const;
-
-  bool operator==(const PlacedEffect& other) const;
-};
-
-/// True if both are the same effect at the same site.
-bool SameKind(const PlacedEffect& a, const PlacedEffect& b);
 
 class Effect {
  public:

@@ -7,14 +7,35 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "mjdiag/plugin/effects/effect.h"
-
 namespace mjdiag {
+
+struct EffectParameter;
+class Effect;
+/// Owns effects that are made from a plant; registered ones are there for good.
+using EffectPtr = std::shared_ptr<const Effect>;
+
+/// An effect at a site with values for its parameters.
+struct PlacedEffect {
+  EffectPtr effect;
+  std::string site;
+  Eigen::VectorXd values;
+
+  const std::string& name() const;
+  /// Of the parameter with that name, which the effect has.
+  double Value(std::string_view parameter) const;
+
+  bool operator==(const PlacedEffect& other) const;
+};
+
+/// True if both are the same effect at the same site.
+bool SameKind(const PlacedEffect& a, const PlacedEffect& b);
 
 /// A registered effect with values by name; parameters that are not given have their
 /// fallback. InputError on an unknown effect or parameter, one that is missing, or a

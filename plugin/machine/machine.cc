@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/plugin/plant/linearize.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"

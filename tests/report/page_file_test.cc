@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "mjdiag/report/page_document.h"
 #include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -48,7 +51,7 @@ class PageFile : public ::testing::Test {
 TEST_F(PageFile, GivesBackWhatWasWritten) {
   WritePage(folder_.path(), "slide", WholePage());
   EXPECT_EQ(ReadPageDocument(folder_.path() / "slide.page.json"),
-            WholePage().document());
+            WholePage().document().json);
 }
 
 TEST_F(PageFile, LeavesNothingBesideIt) {
@@ -59,7 +62,7 @@ TEST_F(PageFile, LeavesNothingBesideIt) {
 }
 
 TEST_F(PageFile, SaysThatAFileIsBrokenOff) {
-  const std::string whole = WholePage().document().dump();
+  const std::string whole = WholePage().document().json.dump();
   for (const std::size_t part : {1UL, whole.size() / 2, whole.size() - 1}) {
     EXPECT_THAT(Refused(whole.substr(0, part)),
                 AllOf(HasSubstr("x.page.json"), HasSubstr("broken off")));
@@ -69,7 +72,7 @@ TEST_F(PageFile, SaysThatAFileIsBrokenOff) {
 }
 
 TEST_F(PageFile, NamesThePartThatIsNotRight) {
-  const json whole = WholePage().document();
+  const json whole = WholePage().document().json;
   json other = whole;
   other["schema"] = "mjdiag.page/2";
   EXPECT_THAT(Refused(other), HasSubstr("'schema'"));
@@ -93,7 +96,7 @@ TEST_F(PageFile, NamesThePartThatIsNotRight) {
 }
 
 TEST_F(PageFile, NamesSamplesThatAPageCouldNotDraw) {
-  const json whole = WholePage().document();
+  const json whole = WholePage().document().json;
   const std::size_t last = whole["blocks"].size() - 1;
   for (const json& samples : {json("AAAA"), json("AAA"), json("<b>="), json(1.0)}) {
     json wrong = whole;

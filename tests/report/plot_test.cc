@@ -1,10 +1,9 @@
-#include "mjdiag/report/plot.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "mjdiag/report/plot_json.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 

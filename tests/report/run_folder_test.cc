@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/report/page_file.h"
+#include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 #include "support/message_of.h"

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/signals/error.h"
 #include "support/gaussian_noise.h"
 

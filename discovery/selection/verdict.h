@@ -1,0 +1,26 @@
+#pragma once
+// What the evidence of a search says of the whole record. With m the mean square of the
+// innovations of the fitted part over sensor noise, m_0 the same of the plant as it was
+// given:
+//
+//   no discrepancy    nothing was named, and nothing significant was found
+//   explained         causes are named, nothing significant is left, m <= 4
+//   partly explained  else, if they take away 1 - (m - 1) / (m_0 - 1) >= 0.9
+//   unexplained       else: below that share of the excess over noise causes are not an
+//                     explanation but the best of the wrong ones
+
+#include "mjdiag/discovery/selection/discovery_verdict.h"
+#include "mjdiag/discovery/selection/search.h"
+
+namespace mjdiag {
+
+/// Mean square of the innovations over sensor noise from which something is left,
+/// whatever a screening says.
+inline constexpr double kFarAboveNoise = 4.0;
+
+/// @param named    whether there are causes, sensors that are noisier than known
+///                 included
+/// @param nominal  m_0
+DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal);
+
+}  // namespace mjdiag
