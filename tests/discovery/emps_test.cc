@@ -13,6 +13,7 @@
 #include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/changes.h"
