@@ -11,7 +11,7 @@
 #include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/report/design_page.h"
@@ -46,7 +46,7 @@ std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
 DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
   DesignFacts facts;
   facts.healthy = machine.linear();
-  const SynthesisOptions options = SynthesisOf(machine.setup(), facts.healthy);
+  const SynthesisOptions options = SynthesisOf(machine);
   const StateSpace system = DeltaForm(facts.healthy, options.timing);
   facts.observability_ranks = ObservabilityRanks(system, options.residual.degree);
   facts.states = system.states();

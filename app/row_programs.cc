@@ -5,7 +5,7 @@
 
 #include "mjdiag/diagnosis/left_null_space.h"
 #include "mjdiag/diagnosis/linear_program_row.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
@@ -54,7 +54,7 @@ MatrixXd ForcesOf(const TurnedModels& knob, const MechanicalModel& healthy) {
 
 SignalEntry FaultEntry(const Machine& machine, const MechanicalModel& healthy,
                        const TickTiming& timing) {
-  const std::vector<TurnedModels> knobs = TurnModels(machine);
+  const std::vector<TurnedModels> knobs = MakeFaultFamily(machine).Turned();
   if (knobs.empty()) {
     throw InputError("--method lp", "the plant has no fault knobs",
                      "at least one, for the rows have to see a fault");
@@ -103,7 +103,7 @@ SignalEntry UnknownForces(const MechanicalModel& healthy,
 
 RowProgramFacts SolveRowPrograms(const Machine& machine,
                                  const MechanicalModel& healthy) {
-  const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
+  const SynthesisOptions options = SynthesisOf(machine);
   const StateSpace system = DeltaForm(healthy, options.timing);
   const SignalEntry unknown = UnknownForces(healthy, options);
   const SignalEntry faults = FaultEntry(machine, healthy, options.timing);

@@ -106,7 +106,7 @@ Subject LoadSubject(const MachineOptions& options) {
   const Machine nominal(std::move(setup));
   Subject subject{nominal, nominal, {}};
   for (const std::string& text : options.faults) AddFault(ParseFault(text), subject);
-  for (const EffectSpec& effect : nominal.effects()) {
+  for (const PlacedEffect& effect : nominal.effects()) {
     CheckEffect(nominal.plant(), effect);
   }
   for (const std::string& text : options.effects) {
@@ -166,8 +166,8 @@ std::string Describe(const Subject& subject) {
   for (const auto& [name, magnitude] : subject.options.disturbances) {
     append(name + " = " + Short(magnitude));
   }
-  for (const EffectSpec& effect : effects) {
-    append(effect.effect + " at " + effect.site);
+  for (const PlacedEffect& effect : effects) {
+    append(effect.name() + " at " + effect.site);
   }
   return text.empty() ? "healthy" : text;
 }
@@ -181,10 +181,10 @@ nlohmann::json ToJson(const Subject& subject) {
     faults.push_back({{"name", name}, {"value", magnitude}});
   }
   nlohmann::json effects = nlohmann::json::array();
-  for (const EffectSpec& effect : subject.machine.changes().effects) {
-    effects.push_back({{"effect", effect.effect},
+  for (const PlacedEffect& effect : subject.machine.changes().effects) {
+    effects.push_back({{"effect", effect.name()},
                        {"site", effect.site},
-                       {"parameters", effect.parameters}});
+                       {"parameters", NamedValues(effect)}});
   }
   return {{"faults", faults}, {"effects", effects}};
 }

@@ -14,6 +14,7 @@
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/telling_motion.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -44,12 +45,11 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
     const auto index = static_cast<Index>(i);
     const Interval& interval = intervals[static_cast<std::size_t>(first) + i];
     const double sd = std::sqrt(covariance(first + index, first + index));
-    const std::string& name = candidate.parameters[i].name;
-    const std::string unit =
-        candidate.cause.fault ? "1"
-                              : SiteUnit(machine_.plant(), candidate.cause.spec, name);
+    const EffectParameter& parameter = candidate.effect->parameters()[i];
     parameters.push_back(
-        {name, unit, fitted.value[index], sd, interval.min, interval.max});
+        {parameter.name,
+         SiteUnit(machine_.plant(), *candidate.effect, candidate.site, parameter),
+         fitted.value[index], sd, interval.min, interval.max});
   }
   return parameters;
 }
@@ -129,10 +129,11 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
   for (const RaisedNoise& raised : FindRaisedNoise(machine_.setup(), problem_.observer,
                                                    innovations, options_.train_share)) {
     FoundCause found;
-    found.cause.spec = {"encoder_noise", raised.element, {{"sd", raised.sd}}};
+    const Effect& noise = NoiseEffect();
+    found.cause = {Lasting(noise), raised.element, ValuesOf({raised.sd})};
     const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
-    found.parameters = {{"sd", raised.unit, raised.sd, raised.sd_error,
-                         raised.sd - half, raised.sd + half}};
+    found.parameters = {{noise.parameters().front().name, raised.unit, raised.sd,
+                         raised.sd_error, raised.sd - half, raised.sd + half}};
     found.probability = 1.0;
     discovery_.causes.push_back(std::move(found));
   }

@@ -149,7 +149,7 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, problem_.run.inputs.rows() - 1));
   const Cause& named = discovery_.causes[cause].cause;
-  const LawAxis axis = AxisOf(VariableOf(named), candidate, motion, hinge,
+  const LawAxis axis = AxisOf(named.effect->variable(), candidate, motion, hinge,
                               machine_.channels().actuators[channel].unit);
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;

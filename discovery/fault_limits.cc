@@ -43,13 +43,12 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
   const Index skipped = channels * (problem.skip / dynamics.block());
   std::map<std::string, double> limits;
   for (const Candidate& candidate : candidates) {
-    if (!candidate.cause.fault) continue;
-    for (const Trial& trial : MakeTrials(problem.machine.plant(),
-                                         problem.machine.linear(), candidate, motion)) {
+    if (!candidate.effect->IsFault()) continue;
+    for (const Trial& trial : MakeTrials(problem.machine, candidate, motion)) {
       const VectorXd phi =
           dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
       const Index used = phi.size() - skipped;
-      limits[candidate.cause.spec.effect] = Limit(phi.tail(used), residual.tail(used));
+      limits[candidate.effect->name()] = Limit(phi.tail(used), residual.tail(used));
     }
   }
   return limits;

@@ -6,16 +6,11 @@
 #include <string>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
 
 namespace mjdiag {
 
-/// What the force of a cause is drawn over.
-enum class LawVariable { kPosition, kVelocity, kAcceleration, kInput, kTime };
-
-LawVariable VariableOf(const Cause& cause);
-
-/// Series of that variable at the candidate's joint, its name and its SI unit.
+/// Series of what a law is drawn over at the candidate's joint, its name and its SI unit.
 struct LawAxis {
   Eigen::VectorXd x;
   std::string name;

@@ -32,9 +32,9 @@ json ParametersOf(const FoundCause& found) {
 json AlternativesOf(const FoundCause& found) {
   json alternatives = json::array();
   for (const Alternative& alternative : found.alternatives) {
-    alternatives.push_back({{"effect", alternative.cause.spec.effect},
-                            {"site", alternative.cause.spec.site},
-                            {"fault", alternative.cause.fault},
+    alternatives.push_back({{"effect", alternative.cause.name()},
+                            {"site", alternative.cause.site},
+                            {"fault", alternative.cause.effect->IsFault()},
                             {"probability", Finite(alternative.probability)},
                             {"indistinguishable", alternative.indistinguishable}});
   }
@@ -44,9 +44,9 @@ json AlternativesOf(const FoundCause& found) {
 json CausesOf(const Discovery& discovery) {
   json causes = json::array();
   for (const FoundCause& found : discovery.causes) {
-    causes.push_back({{"effect", found.cause.spec.effect},
-                      {"site", found.cause.spec.site},
-                      {"fault", found.cause.fault},
+    causes.push_back({{"effect", found.cause.name()},
+                      {"site", found.cause.site},
+                      {"fault", found.cause.effect->IsFault()},
                       {"parameters", ParametersOf(found)},
                       {"probability", Finite(found.probability)},
                       {"alternatives", AlternativesOf(found)}});

@@ -64,7 +64,7 @@ std::string Join(const std::vector<std::string>& items) {
 std::string WithValues(const FoundCause& found) {
   std::string values;
   for (const CauseParameter& parameter : found.parameters) {
-    if (found.cause.fault) return CauseName(found.cause) + " = " + ValueText(parameter);
+    if (found.cause.effect->IsFault()) return CauseName(found.cause) + " = " + ValueText(parameter);
     values +=
         (values.empty() ? "" : ", ") + parameter.name + " " + ValueText(parameter);
   }
@@ -157,7 +157,7 @@ std::string FactorText(const FaultLimit& limit) {
 }  // namespace
 
 std::string CauseName(const Cause& cause) {
-  return cause.fault ? cause.spec.effect : cause.spec.effect + " at " + cause.spec.site;
+  return cause.effect->IsFault() ? cause.name() : cause.name() + " at " + cause.site;
 }
 
 std::string GainText(double gain) {
@@ -224,8 +224,8 @@ Table CauseTable(const Discovery& discovery) {
     for (const CauseParameter& parameter : found.parameters) {
       std::vector<std::string> row(table.columns.size());
       if (first) {
-        row = {found.cause.spec.effect,
-               found.cause.spec.site,
+        row = {found.cause.name(),
+               found.cause.site,
                "",
                "",
                "",

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -25,14 +24,6 @@ MatrixXd Commands(const Setup& setup, const Record& record) {
   return commands;
 }
 
-std::vector<std::string> FaultNames(const Machine& machine) {
-  std::vector<std::string> names;
-  for (const Fault& knob : HealthyKnobs(machine.plant())) names.push_back(knob.name);
-  for (const MultisineSetup& source : machine.setup().disturbances)
-    names.push_back(source.name);
-  return names;
-}
-
 /// Standard deviations that the estimator claims for a healthy run.
 VectorXd EstimatorSd(const Machine& machine, const Record& record, int rows) {
   Setup setup = machine.setup();
@@ -46,15 +37,16 @@ VectorXd EstimatorSd(const Machine& machine, const Record& record, int rows) {
 }  // namespace
 
 InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
-  const MechanicalModel healthy = machine.linear();
-  const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
+  const MechanicalModel& healthy = machine.linear();
+  const FaultFamily family = MakeFaultFamily(machine);
+  const SynthesisOptions options = SynthesisOf(machine);
   RunOptions quiet;
   quiet.noise_scale = 0.0;
   const MatrixXd commands =
       Commands(machine.setup(), SimulateLinear(machine, motion, quiet));
   std::vector<MatrixXd> sensitivities =
-      OutputSensitivities(TurnModels(machine), options.timing, commands);
-  const std::vector<Multisine> sources = Multisines(machine.setup());
+      OutputSensitivities(family.Turned(), options.timing, commands);
+  const std::vector<Multisine>& sources = family.disturbances;
   MatrixXd waveforms(commands.rows(), static_cast<Index>(sources.size()));
   for (std::size_t i = 0; i < sources.size(); ++i) {
     MatrixXd waveform(commands.rows(), commands.cols());
@@ -68,7 +60,7 @@ InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
 }
 
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault) {
-  const std::vector<std::string> names = FaultNames(machine);
+  const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {
     std::string known;
@@ -94,7 +86,7 @@ std::vector<StudyTable> BoundStudy(const Machine& machine,
       {},
       {"Standard deviations of the knob's deviation from healthy; linear "
        "plant, known commands, sensor noise of the setup, start at rest."}};
-  const std::vector<std::string> names = FaultNames(machine);
+  const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);
     table.rows.push_back({names[i], bound.alone[at], bound.together[at], one[at],

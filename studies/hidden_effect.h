@@ -34,7 +34,7 @@ struct HiddenSize {
 HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
                     std::uint64_t seed);
 
-/// One effect of that type (a name of the catalogue, or "fault" for a knob) at a random
+/// One effect of that type (its name, or "fault" for a fault parameter) at a random
 /// site, with random shape and a size drawn from `size`. The same seed, the same
 /// effect.
 Cause DrawEffect(const Machine& machine, const std::string& type,

@@ -6,25 +6,35 @@
 #include <optional>
 
 #include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
 
-/// Amplitude >= 0, as a sine of a negative one is a sine of another phase.
-void Normalise(std::map<std::string, double>& values) {
-  const auto amplitude = values.find("amplitude");
-  if (amplitude == values.end() || amplitude->second >= 0.0) return;
-  amplitude->second = -amplitude->second;
-  values.at("phase") += std::numbers::pi;
+/// Whether a wave's amplitude is negative: a sine of a negative one is a sine of another
+/// phase.
+bool IsTurned(const Cause& cause) {
+  const auto phase = cause.effect->Find(Role::kPhase);
+  const auto amplitude = cause.effect->Find(Role::kAmplitude);
+  return phase && amplitude && cause.values[*amplitude] < 0.0;
+}
+
+/// Its values with an amplitude >= 0.
+Eigen::VectorXd Normalised(const Cause& cause) {
+  Eigen::VectorXd values = cause.values;
+  if (!IsTurned(cause)) return values;
+  values[cause.effect->Find(Role::kAmplitude).value()] *= -1.0;
+  values[cause.effect->Find(Role::kPhase).value()] += std::numbers::pi;
+  return values;
 }
 
 /// Whether a true value lies in the interval, an end of which may be missing; one
 /// without both says nothing and covers nothing. Phases up to whole turns.
-bool Covers(const CauseParameter& parameter, double truth, double shift) {
+bool Covers(const CauseParameter& parameter, Role role, double truth, double shift) {
   double off = truth - (parameter.value + shift);
-  if (parameter.name == "phase") off = std::remainder(off, 2.0 * std::numbers::pi);
+  if (role == Role::kPhase) off = std::remainder(off, 2.0 * std::numbers::pi);
   return (std::isfinite(parameter.low) || std::isfinite(parameter.high)) &&
          off >= parameter.low - parameter.value &&
          off <= parameter.high - parameter.value;
@@ -33,9 +43,9 @@ bool Covers(const CauseParameter& parameter, double truth, double shift) {
 /// The value of that kind which is the same change of the model; none if none is.
 std::optional<double> TwinValue(const mjModel& plant, Cause cause, double value,
                                 const Cause& kind) {
-  cause.spec.parameters.begin()->second = value;
+  cause.values[0] = value;
   for (const Cause& twin : Twins(plant, cause)) {
-    if (SameKind(twin, kind)) return twin.spec.parameters.begin()->second;
+    if (SameKind(twin, kind)) return twin.values[0];
   }
   return std::nullopt;
 }
@@ -43,34 +53,33 @@ std::optional<double> TwinValue(const mjModel& plant, Cause cause, double value,
 void CountParameters(const mjModel& plant, const FoundCause& found, const Cause& truth,
                      HiddenOutcome& outcome) {
   if (!SameKind(found.cause, truth)) {
-    // A knob for an effect or the other way round: the interval of the twin is that of
-    // the one found.
+    // A fault parameter for an effect or the other way round: the interval of the twin
+    // is that of the one found.
     const CauseParameter& parameter = found.parameters.front();
     const auto low = TwinValue(plant, found.cause, parameter.low, truth);
     const auto high = TwinValue(plant, found.cause, parameter.high, truth);
     if (!low || !high) return;
-    const double value = truth.spec.parameters.begin()->second;
+    const double value = truth.values[0];
     ++outcome.parameters;
     outcome.covered += std::min(*low, *high) <= value && value <= std::max(*low, *high);
     return;
   }
-  std::map<std::string, double> values = truth.spec.parameters;
-  std::map<std::string, double> fitted = found.cause.spec.parameters;
-  Normalise(values);
-  const double phase_before = fitted.contains("phase") ? fitted.at("phase") : 0.0;
-  const bool turned = fitted.contains("amplitude") && fitted.at("amplitude") < 0.0;
-  Normalise(fitted);
-  for (CauseParameter parameter : found.parameters) {
+  const Eigen::VectorXd values = Normalised(truth);
+  const bool turned = IsTurned(found.cause);
+  const Eigen::VectorXd shifts = Normalised(found.cause) - found.cause.values;
+  for (std::size_t i = 0; i < found.parameters.size(); ++i) {
+    CauseParameter parameter = found.parameters[i];
+    const auto place = static_cast<Eigen::Index>(i);
+    const Role role = found.cause.effect->parameters()[i].role;
     ++outcome.parameters;
-    double shift = 0.0;
-    if (turned && parameter.name == "phase") shift = fitted.at("phase") - phase_before;
-    if (turned && parameter.name == "amplitude") {
+    if (turned && role == Role::kAmplitude) {
       parameter.value = -parameter.value;
       std::swap(parameter.low, parameter.high);
       parameter.low = -parameter.low;
       parameter.high = -parameter.high;
     }
-    outcome.covered += Covers(parameter, values.at(parameter.name), shift);
+    const double shift = role == Role::kPhase ? shifts[place] : 0.0;
+    outcome.covered += Covers(parameter, role, values[place], shift);
   }
 }
 
@@ -99,30 +108,28 @@ double UnseenRatio(const Machine& machine, const HiddenCase& hidden,
 }  // namespace
 
 std::vector<std::string> TypesOfRun(int run, int causes) {
-  const auto& catalogue = EffectCatalogue();
-  const int size = static_cast<int>(catalogue.size());
+  const int size = static_cast<int>(Effects().size());
   std::vector<std::string> types;
   // A second effect is another type, and another pair every time round.
   for (int i = 0; i < causes; ++i) {
     const int number = (run + i * (7 + run / size)) % size;
-    types.push_back(catalogue[static_cast<std::size_t>(number)].name);
+    types.push_back(Effects()[static_cast<std::size_t>(number)]->name());
   }
   return types;
 }
 
-bool Names(const mjModel& plant, const FoundCause& found, const Cause& truth) {
-  return Indistinguishable(plant, found.cause, truth);
+bool Names(const FoundCause& found, const Cause& truth) {
+  return Indistinguishable(found.cause, truth);
 }
 
 namespace {
 
 /// Whether the answer says of a cause it names that the record does not tell it from
 /// this one.
-bool IsAlternative(const mjModel& plant, const FoundCause& found, const Cause& truth) {
+bool IsAlternative(const FoundCause& found, const Cause& truth) {
   constexpr double kCompetes = 0.05;
   return std::ranges::any_of(found.alternatives, [&](const Alternative& other) {
-    return other.probability >= kCompetes &&
-           Indistinguishable(plant, other.cause, truth);
+    return other.probability >= kCompetes && Indistinguishable(other.cause, truth);
   });
 }
 
@@ -139,12 +146,10 @@ HiddenOutcome RunHidden(const Machine& machine, const std::vector<std::string>& 
   for (const Cause& cause : truth) {
     outcome.considered +=
         std::ranges::any_of(outcome.answer.causes, [&](const FoundCause& f) {
-          return Names(machine.plant(), f, cause) ||
-                 IsAlternative(machine.plant(), f, cause);
+          return Names(f, cause) || IsAlternative(f, cause);
         });
     const auto found = std::ranges::find_if(
-        outcome.answer.causes,
-        [&](const FoundCause& f) { return Names(machine.plant(), f, cause); });
+        outcome.answer.causes, [&](const FoundCause& f) { return Names(f, cause); });
     if (found == outcome.answer.causes.end()) continue;
     ++outcome.named;
     CountParameters(machine.plant(), *found, cause, outcome);

@@ -39,10 +39,10 @@ struct HiddenOutcome {
 HiddenOutcome RunHidden(const Machine& machine, const std::vector<std::string>& types,
                         std::uint64_t seed);
 
-/// The types of run number `run`: one after the other of the catalogue.
+/// The types of run number `run`: one after the other of the registry.
 std::vector<std::string> TypesOfRun(int run, int causes);
 
 /// True if the answer names that cause, or one that no measurement tells from it.
-bool Names(const mjModel& plant, const FoundCause& found, const Cause& truth);
+bool Names(const FoundCause& found, const Cause& truth);
 
 }  // namespace mjdiag

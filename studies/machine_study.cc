@@ -40,10 +40,6 @@ double HealthyValue(const Setup& setup, const std::string& fault) {
   return IsDisturbance(setup, fault) ? 0.0 : 1.0;
 }
 
-Excitation DefaultMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
-}
-
 PreparedDiagnosis LinearDiagnosis(const Machine& machine) {
   DiagnosisSource source;
   source.nominal.linear = true;

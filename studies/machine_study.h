@@ -40,9 +40,6 @@ Record RunNonlinear(const Excitation& motion, const FaultyMachine& faulty);
 /// 0 for a disturbance of the setup, else 1.
 double HealthyValue(const Setup& setup, const std::string& fault);
 
-/// The default trajectory of a setup.
-Excitation DefaultMotion(const Setup& setup);
-
 /// The setup's filters with limits from nominal runs of the linear plant.
 PreparedDiagnosis LinearDiagnosis(const Machine& machine);
 

@@ -9,7 +9,6 @@
 #include "mjdiag/discovery/extension/digits.h"
 #include "mjdiag/discovery/extension/mjcf_files.h"
 #include "mjdiag/discovery/extension/xml_text.h"
-#include "mjdiag/plugin/effects/native_effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 
@@ -32,32 +31,22 @@ void AddIfChanged(Attributes& attributes, const char* name,
   attributes.emplace_back(name, AllDigits(after));
 }
 
-bool GoesIntoNumeric(const EffectSpec& effect) {
-  return !FindEffect(effect.effect).native && effect.effect != "encoder_noise";
-}
-
-/// The plant with everything in it that MJCF can say in attributes. Of Stribeck
-/// friction the model holds the constant part (native_effect.h); it leaves, for the
-/// whole of it comes back from the numeric.
+/// The plant with everything in it that MJCF can say in attributes. What the model
+/// holds of effects that it carries as numerics leaves, for the whole of them comes back
+/// from there.
 ModelPtr WithNativeChanges(const mjModel& plant, const std::vector<Fault>& faults,
-                           const std::vector<EffectSpec>& effects) {
+                           const std::vector<PlacedEffect>& effects) {
   ModelPtr extended = CopyModel(plant);
-  for (const EffectSpec& carried : EffectsOf(plant)) {
-    if (carried.effect != "stribeck_friction") continue;
-    const ModelPtr again = CopyModel(*extended);
-    ApplyNativeEffect(*again, carried);
-    for (int dof = 0; dof < plant.nv; ++dof) {
-      mjtNum& friction = extended->dof_frictionloss[dof];
-      const mjtNum added = again->dof_frictionloss[dof] - friction;
-      friction = std::max(0.0, friction - added);
-    }
+  for (const PlacedEffect& carried : EffectsOf(plant)) {
+    if (carried.effect->form() == Form::kAttributes) continue;
+    carried.effect->Retract(*extended, CheckEffect(*extended, carried), carried.values);
   }
   for (const Fault& fault : faults) ApplyFault(*extended, fault);
-  for (const EffectSpec& effect : effects) {
-    if (effect.effect == "stribeck_friction") {
-      CheckEffect(*extended, effect);
+  for (const PlacedEffect& placed : effects) {
+    if (placed.effect->form() == Form::kAttributes) {
+      ApplyEffect(*extended, placed);
     } else {
-      ApplyNativeEffect(*extended, effect);
+      CheckEffect(*extended, placed);
     }
   }
   return extended;
@@ -79,8 +68,8 @@ class MjcfEditor {
     for (int actuator = 0; actuator < before_.nu; ++actuator) EditActuator(actuator);
   }
 
-  void WriteNumerics(const std::vector<EffectSpec>& carried,
-                     const std::vector<EffectSpec>& added);
+  void WriteNumerics(const std::vector<PlacedEffect>& carried,
+                     const std::vector<PlacedEffect>& added);
 
   std::string Text() const { return xml_.Text(); }
 
@@ -221,27 +210,27 @@ void MjcfEditor::EditActuator(int actuator) {
   if (!changed.empty()) Set(FindOrFail("actuator", mjOBJ_ACTUATOR, actuator), changed);
 }
 
-void MjcfEditor::WriteNumerics(const std::vector<EffectSpec>& carried,
-                               const std::vector<EffectSpec>& added) {
+void MjcfEditor::WriteNumerics(const std::vector<PlacedEffect>& carried,
+                               const std::vector<PlacedEffect>& added) {
   std::map<std::string, std::string> data;  // of every numeric
   std::vector<std::string> names;           // of those that change, in order
-  const auto append = [&](const EffectSpec& effect) {
-    std::string name = "effect." + effect.effect + "." + effect.site;
-    for (const EffectParameter& parameter : FindEffect(effect.effect).parameters) {
+  const auto append = [&](const PlacedEffect& placed) {
+    std::string name = "effect." + placed.name() + "." + placed.site;
+    for (const double value : placed.values) {
       std::string& values = data[name];
-      values += (values.empty() ? "" : " ") + AllDigits(effect.Value(parameter.name));
+      values += (values.empty() ? "" : " ") + AllDigits(value);
     }
     return name;
   };
   int removed = -1;
-  for (const EffectSpec& effect : carried) {
+  for (const PlacedEffect& effect : carried) {
     const int element = Find("custom", append(effect), "numeric");
     // Native ones are in the attributes by now. A numeric may hold several effects.
-    if (!FindEffect(effect.effect).native || element == removed) continue;
+    if (effect.effect->form() != Form::kAttributes || element == removed) continue;
     xml_.Remove(removed = element);
   }
-  for (const EffectSpec& effect : added) {
-    if (!GoesIntoNumeric(effect)) continue;
+  for (const PlacedEffect& effect : added) {
+    if (effect.effect->form() != Form::kNumeric) continue;
     const std::string name = append(effect);
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       names.push_back(name);
@@ -274,7 +263,8 @@ void MjcfEditor::WriteNumerics(const std::vector<EffectSpec>& carried,
 
 std::string ExtendMjcf(const fs::path& mjcf, const mjModel& plant,
                        const std::vector<Fault>& faults,
-                       const std::vector<EffectSpec>& effects, const fs::path& folder) {
+                       const std::vector<PlacedEffect>& effects,
+                       const fs::path& folder) {
   std::error_code ignored;
   if (fs::equivalent(mjcf, folder / "plant.xml", ignored)) {
     throw InputError(folder.string(), "holds the nominal plant", "another folder");

@@ -3,18 +3,9 @@
 // in them. Both are edited, not generated: comments, order and layout stay, so that a
 // diff with the old files shows what was found and nothing else.
 //
-// What MuJoCo has itself becomes attributes of the named elements, with all digits:
-//
-// - coulomb_friction: frictionloss, solreffriction, solimpfriction (native_effect.h)
-// - viscous_friction: damping
-// - linear_stiffness: stiffness, springref
-// - structural_stiffness: stiffness
-// - added_mass: mass of <inertial> of a slide, armature of a hinge
-// - motor_constant: gear
-// - force_saturation: forcerange
-// - faults: damping, stiffness or gear of what the knob names
-//
-// encoder_noise becomes noise of the sensor in the setup; every other effect
+// What MuJoCo has itself, native effects and turned fault parameters, becomes attributes
+// of the named elements, with all digits; docs/effects.md says of every effect which.
+// White noise becomes noise of the sensor in the setup; every other effect
 // <custom><numeric name="effect.<name>.<site>" data="..."/>, which mjdiag turns into
 // forces and which stock MuJoCo ignores.
 
@@ -24,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/fault.h"
 #include "mjdiag/plugin/setup/setup.h"
 
@@ -40,7 +31,7 @@ namespace mjdiag {
 /// the text would replace the nominal plant.
 std::string ExtendMjcf(const std::filesystem::path& mjcf, const mjModel& plant,
                        const std::vector<Fault>& faults,
-                       const std::vector<EffectSpec>& effects,
+                       const std::vector<PlacedEffect>& effects,
                        const std::filesystem::path& folder);
 
 /// The setup file for that plant, with plant = "plant.xml" and " (extended)" behind the
@@ -49,7 +40,7 @@ std::string ExtendMjcf(const std::filesystem::path& mjcf, const mjModel& plant,
 /// @param setup  what ReadSetup makes of the file
 /// InputError if the text would replace the nominal setup.
 std::string ExtendSetup(const std::filesystem::path& setup_file, const Setup& setup,
-                        const std::vector<EffectSpec>& effects,
+                        const std::vector<PlacedEffect>& effects,
                         const std::filesystem::path& folder);
 
 }  // namespace mjdiag

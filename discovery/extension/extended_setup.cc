@@ -3,7 +3,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "mjdiag/discovery/extension/digits.h"
@@ -116,7 +115,7 @@ std::string WithSuffix(std::string quoted, const std::string& suffix) {
 }  // namespace
 
 std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
-                        const std::vector<EffectSpec>& effects,
+                        const std::vector<PlacedEffect>& effects,
                         const fs::path& folder) {
   const fs::path file =
       fs::is_directory(setup_file) ? setup_file / "setup.toml" : setup_file;
@@ -139,9 +138,9 @@ std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
   }
   for (const SensorSetup& sensor : setup.channels.sensors) {
     double sd = sensor.noise_sd;
-    for (const EffectSpec& effect : effects) {
-      if (effect.effect != "encoder_noise" || effect.site != sensor.element) continue;
-      sd = std::hypot(sd, effect.Value("sd"));
+    for (const PlacedEffect& placed : effects) {
+      if (placed.site != sensor.element) continue;
+      sd = placed.effect->NoiseSd(sd, placed.values);
     }
     if (sd != sensor.noise_sd) WriteNoise(text, setup, sensor, sd);
   }

@@ -19,13 +19,17 @@ using Eigen::VectorXd;
 
 /// What a parameter is compared with: steps of differences are small beside it.
 double ScaleOf(const FitParameter& parameter, double value, double duration) {
-  if (parameter.name == "phase") return 1.0;
-  if (parameter.name == "frequency") return std::min(value, 10.0 / duration);
-  // Around 1: what counts is how far it is from there.
-  if (parameter.name == "factor" || parameter.name == "value") {
-    return std::max(std::abs(value - 1.0), 1e-3);
+  switch (parameter.role) {
+    case Role::kPhase:
+      return 1.0;
+    case Role::kFrequency:
+      return std::min(value, 10.0 / duration);
+    case Role::kFactor:
+      // Around 1: what counts is how far it is from there.
+      return std::max(std::abs(value - 1.0), 1e-3);
+    default:
+      return std::max(std::abs(value), 1e-12);
   }
-  return std::max(std::abs(value), 1e-12);
 }
 
 /// The innovations as a function of theta, with the last run kept: Ceres asks for the

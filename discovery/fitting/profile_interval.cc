@@ -104,15 +104,9 @@ double Profile::End(double step, double bound) const {
   return Value() + next;
 }
 
-/// Whether parameters of a candidate say where or how its law bends, and not only how
-/// large its parts are: those enter the motion nearly linearly.
+/// Whether the law of a candidate has a shape, and not only sizes of its parts.
 bool HasShape(const Candidate& candidate) {
-  const std::string& effect = candidate.cause.spec.effect;
-  if (candidate.parameters.size() > 1) {
-    return effect != "asymmetric_viscous_friction" &&
-           effect != "position_dependent_motor_constant";
-  }
-  return effect == "force_saturation" || effect == "backlash";
+  return std::ranges::any_of(candidate.parameters, IsShape, &FitParameter::role);
 }
 
 /// For every parameter of the causes whether its profile has to be followed: of laws
@@ -126,7 +120,7 @@ std::vector<bool> NeedProfile(const std::vector<Candidate>& candidates,
     const Candidate& candidate = candidates[cause.candidate];
     for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
       const auto i = static_cast<Index>(needed.size());
-      const double size = candidate.parameters[k].name == "phase"
+      const double size = candidate.parameters[k].role == Role::kPhase
                               ? 1.0
                               : std::abs(cause.value[static_cast<Index>(k)]);
       const double sd = std::sqrt(covariance(i, i));

@@ -1,8 +1,6 @@
 #include "mjdiag/discovery/fitting/wave_period.h"
 
 #include <algorithm>
-#include <functional>
-#include <string>
 
 #include "mjdiag/discovery/screening/screening.h"
 
@@ -15,19 +13,10 @@ using Eigen::VectorXd;
 // Periods that are fitted.
 constexpr int kMostPeriods = 4;
 
-/// Place of the parameter with one of those names.
-Index PlaceOf(const Candidate& wave, const std::vector<std::string>& names) {
-  const auto found = std::ranges::find_first_of(wave.parameters, names,
-                                                std::equal_to<>(), &FitParameter::name);
-  return found - wave.parameters.begin();
-}
-
 }  // namespace
 
 bool HasPeriod(const Candidate& candidate) {
-  return std::ranges::any_of(candidate.parameters, [](const FitParameter& parameter) {
-    return parameter.name == "period" || parameter.name == "frequency";
-  });
+  return std::ranges::any_of(candidate.parameters, IsPeriod, &FitParameter::role);
 }
 
 std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
@@ -40,11 +29,11 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   std::vector<FittedCause> causes = fit.causes;
   const Candidate& wave = candidates[causes[i].candidate];
   const bool sharp =
-      PlaceOf(wave, {"phase"}) < static_cast<Index>(wave.parameters.size());
+      PlaceOf(wave, Role::kPhase) < static_cast<Index>(wave.parameters.size());
   if (!sharp && fit.train < kLeft) return {};
   const DiscoveryProblem seen = Beginning(problem, problem.train);
-  const double present = causes[i].value[PlaceOf(wave, {"period", "frequency"})];
-  causes[i].value[PlaceOf(wave, {"amplitude", "mass"})] *= 1.0 + kStep;
+  const double present = causes[i].value[PeriodPlace(wave)];
+  causes[i].value[PlaceOf(wave, Role::kAmplitude)] *= 1.0 + kStep;
   const VectorXd left = fit.residual.head(seen.run.outputs.size());
   const VectorXd moved = seen.Residual(ChangesOf(candidates, causes));
   const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, fit.causes));

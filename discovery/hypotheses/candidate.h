@@ -1,23 +1,17 @@
 #pragma once
-// Candidate causes of a machine: which fault knobs and effects, at which sites, could
-// be what a simulation lacks.
+// Candidate causes of a machine: which fault parameters and effects, at which sites,
+// could be what a simulation lacks.
 //
-// An effect of the catalogue is a candidate where it makes sense physically: friction,
-// ripple, offsets, stops and masses at the joints that an actuator moves, springs that
-// are wrong or loose at the joints that have one, vibration of the floor at the joints
-// that stand on it, drive effects at the actuators and encoder errors at the sensors of
-// the setup. Knobs come first; an effect that no measurement can tell from a knob
-// (Indistinguishable) is left to it. White encoder noise is not among the candidates:
-// it shows in the variance of the innovations, not in their course (sensor_noise.h).
-
-#include <mujoco/mujoco.h>
+// An effect is a candidate where it makes sense physically, which it says itself
+// (Effect::CandidateSites). Fault parameters come first; an effect that no measurement
+// can tell from one (Indistinguishable) is left to it.
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/plugin/effects/site.h"
 #include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
@@ -25,31 +19,33 @@ namespace mjdiag {
 /// A parameter that a fit may change.
 struct FitParameter {
   std::string name;
+  Role role = Role::kAmplitude;
   double lower = 0.0;
   double upper = 0.0;
 };
 
+/// An effect and where it acts, without values.
 struct Candidate {
-  Cause cause;  ///< without values
+  EffectPtr effect;
+  std::string site;
+  Eigen::Index joint = 0;     ///< see Site
+  Eigen::Index channel = -1;  ///< see Site
   std::vector<FitParameter> parameters;
-  /// Joint that the cause acts on most, for signatures and plots; of an encoder error
-  /// the joint that its sensor sees; nq index.
-  Eigen::Index joint = 0;
-  /// Its place among the setup's actuators or sensors, if it acts there; else -1.
-  Eigen::Index channel = -1;
 };
+
+/// Place of the first parameter with that role; the number of parameters if there is
+/// none.
+Eigen::Index PlaceOf(const Candidate& candidate, Role role);
+
+/// Place of its period or frequency, the same.
+Eigen::Index PeriodPlace(const Candidate& candidate);
 
 /// "coulomb_friction@X", "zeta_x".
 std::string Describe(const Candidate& candidate);
 
-/// The joint (nq index) that every actuator of the setup moves most, and the one that
-/// every sensor sees most.
-std::vector<Eigen::Index> DrivenJoints(const MechanicalModel& model);
-std::vector<Eigen::Index> SeenJoints(const MechanicalModel& model);
-
 std::vector<Candidate> ListCandidates(const Machine& machine);
 
-/// The same with those effects that a knob stands for.
+/// The same with those effects that a fault parameter stands for.
 std::vector<Candidate> AllSites(const Machine& machine);
 
 }  // namespace mjdiag

@@ -21,23 +21,28 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
 void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& motion) {
   const double duration = motion.sample_time * static_cast<double>(motion.samples());
   for (Candidate& candidate : candidates) {
-    if (candidate.cause.fault) continue;
     const VectorXd q = motion.position.row(candidate.joint);
     const double speed = motion.velocity.row(candidate.joint).cwiseAbs().maxCoeff();
     for (FitParameter& parameter : candidate.parameters) {
-      if (parameter.name == "velocity") Narrow(parameter, 1e-3 * speed, 2.0 * speed);
-      if (parameter.name == "length") {
-        Narrow(parameter, 1e-5 * Range(q), 10.0 * Range(q));
-      }
-      if (parameter.name == "position") {
-        Narrow(parameter, q.minCoeff(), q.maxCoeff());
-      }
-      if (parameter.name == "frequency") {
-        Narrow(parameter, 1.0 / duration, 0.5 / motion.sample_time);
-      }
-      if (parameter.name == "limit") {
-        Narrow(parameter, 0.0,
-               motion.inputs.row(candidate.channel).cwiseAbs().maxCoeff());
+      switch (parameter.role) {
+        case Role::kVelocity:
+          Narrow(parameter, 1e-3 * speed, 2.0 * speed);
+          break;
+        case Role::kLength:
+          Narrow(parameter, 1e-5 * Range(q), 10.0 * Range(q));
+          break;
+        case Role::kPosition:
+          Narrow(parameter, q.minCoeff(), q.maxCoeff());
+          break;
+        case Role::kFrequency:
+          Narrow(parameter, 1.0 / duration, 0.5 / motion.sample_time);
+          break;
+        case Role::kLimit:
+          Narrow(parameter, 0.0,
+                 motion.inputs.row(candidate.channel).cwiseAbs().maxCoeff());
+          break;
+        default:
+          break;
       }
     }
   }

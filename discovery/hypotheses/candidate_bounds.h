@@ -9,11 +9,12 @@
 
 namespace mjdiag {
 
-/// Narrows the bounds of shape parameters to what the motion reaches and resolves: the
-/// velocity of Stribeck friction to 0.001 to 2 times the top speed of its joint, the
-/// length of a hysteresis to 1e-5 to 10 times the stroke, the place of an end stop to
-/// the stroke, the limit of a drive to the largest command, frequencies to between one
-/// period a record and half of the control rate. Joints that stand still keep theirs.
+/// Narrows the bounds of shape parameters, by their role, to what the motion reaches
+/// and resolves: velocities (of Stribeck friction) to 0.001 to 2 times the top speed of
+/// the joint, lengths (of a hysteresis) to 1e-5 to 10 times the stroke, positions (of an
+/// end stop) to the stroke, limits (of a drive) to the largest command, frequencies to
+/// between one period a record and half of the control rate. Joints that stand still
+/// keep theirs.
 void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& motion);
 
 }  // namespace mjdiag

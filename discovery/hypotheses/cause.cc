@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/effects/fault_parameter.h"
 
 namespace mjdiag {
 namespace {
@@ -14,27 +14,8 @@ std::string Number(double value) {
   return digits.data();
 }
 
-/// The effect that does what a knob of one element does.
-std::string EffectOf(KnobKind kind) {
-  switch (kind) {
-    case KnobKind::kDamping:
-      return "viscous_friction";
-    case KnobKind::kStiffness:
-      return "structural_stiffness";
-    case KnobKind::kGear:
-      return "motor_constant";
-  }
-  return "";
-}
-
-bool IsTwin(const mjModel& model, const Cause& fault, const Cause& effect) {
-  for (const FaultKnob& knob : FaultKnobs(model)) {
-    if (knob.name == fault.spec.effect && knob.elements.size() == 1) {
-      return EffectOf(knob.kind) == effect.spec.effect &&
-             fault.spec.site == effect.spec.site;
-    }
-  }
-  return false;
+bool IsTwin(const Cause& a, const Cause& b) {
+  return a.effect->Twin() == b.effect.get() && a.site == b.site;
 }
 
 }  // namespace
@@ -42,72 +23,43 @@ bool IsTwin(const mjModel& model, const Cause& fault, const Cause& effect) {
 Changes ChangesOf(const std::vector<Cause>& causes) {
   Changes changes;
   for (const Cause& cause : causes) {
-    if (cause.fault) {
-      changes.faults.push_back({cause.spec.effect, cause.spec.parameters.at("value")});
+    if (cause.effect->IsFault()) {
+      changes.faults.push_back({cause.name(), cause.values[0]});
     } else {
-      changes.effects.push_back(cause.spec);
+      changes.effects.push_back(cause);
     }
   }
   return changes;
 }
 
-Cause KnobCause(const mjModel& model, const FaultKnob& knob) {
-  const mjtObj kind = knob.kind == KnobKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
-  std::string site;
-  for (const int element : knob.elements) {
-    site += (site.empty() ? "" : " ") + ElementName(model, kind, element);
-  }
-  return {{knob.name, site, {{"value", 1.0}}}, true};
-}
-
 std::string Describe(const Cause& cause) {
-  if (cause.fault) {
-    return cause.spec.effect + " = " + Number(cause.spec.parameters.at("value"));
-  }
-  std::string text = cause.spec.effect + "@" + cause.spec.site;
+  if (cause.effect->IsFault()) return cause.name() + " = " + Number(cause.values[0]);
+  std::string text = cause.name() + "@" + cause.site;
   const char* separator = ": ";
-  for (const EffectParameter& parameter : FindEffect(cause.spec.effect).parameters) {
-    text +=
-        separator + parameter.name + " = " + Number(cause.spec.Value(parameter.name));
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : cause.effect->parameters()) {
+    text += separator + parameter.name + " = " + Number(cause.values[i++]);
     separator = ", ";
   }
   return text;
 }
 
-bool SameKind(const Cause& a, const Cause& b) {
-  return a.fault == b.fault && a.spec.effect == b.spec.effect &&
-         a.spec.site == b.spec.site;
-}
-
-bool Indistinguishable(const mjModel& model, const Cause& a, const Cause& b) {
-  if (SameKind(a, b)) return true;
-  if (a.fault == b.fault) return false;
-  return a.fault ? IsTwin(model, a, b) : IsTwin(model, b, a);
+bool Indistinguishable(const Cause& a, const Cause& b) {
+  return SameKind(a, b) || IsTwin(a, b) || IsTwin(b, a);
 }
 
 std::vector<Cause> Twins(const mjModel& model, const Cause& cause) {
   std::vector<Cause> twins;
-  for (const FaultKnob& knob : FaultKnobs(model)) {
-    if (knob.elements.size() != 1) continue;
-    Cause fault = KnobCause(model, knob);
-    Cause effect;
-    effect.spec = {EffectOf(knob.kind), fault.spec.site, {}};
-    const int joint = knob.elements.front();
-    // Damping is added in N s/m, everything else scaled.
-    const double damping = knob.kind == KnobKind::kDamping
-                               ? model.dof_damping[model.jnt_dofadr[joint]]
-                               : 0.0;
-    const bool added = knob.kind == KnobKind::kDamping;
-    const char* parameter = added ? "coefficient" : "factor";
+  for (Cause& fault : FaultParameters(model)) {
+    const Effect* twin = fault.effect->Twin();
+    if (twin == nullptr) continue;
     if (SameKind(cause, fault)) {
-      const double value = cause.spec.parameters.at("value");
-      effect.spec.parameters[parameter] = added ? (value - 1.0) * damping : value;
-      twins.push_back(effect);
-    } else if (SameKind(cause, effect)) {
-      if (added && damping == 0.0) continue;
-      const double value = cause.spec.parameters.at(parameter);
-      fault.spec.parameters["value"] = added ? 1.0 + value / damping : value;
-      twins.push_back(fault);
+      twins.push_back(
+          {Lasting(*twin), fault.site, fault.effect->ToTwin(model, cause.values)});
+    } else if (cause.effect.get() == twin && cause.site == fault.site) {
+      if (auto value = fault.effect->FromTwin(model, cause.values)) {
+        twins.push_back({fault.effect, fault.site, *value});
+      }
     }
   }
   return twins;

@@ -41,12 +41,7 @@ std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
 
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted) {
   const Candidate& candidate = candidates[fitted.candidate];
-  Cause cause = candidate.cause;
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-    cause.spec.parameters[candidate.parameters[i].name] =
-        fitted.value[static_cast<Index>(i)];
-  }
-  return cause;
+  return {candidate.effect, candidate.site, fitted.value};
 }
 
 Changes ChangesOf(const std::vector<Candidate>& candidates,

@@ -88,10 +88,10 @@ std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& respo
   const Eigen::LDLT<MatrixXd> solver(G);
   if (solver.vectorD().minCoeff() < 1e-10) return std::nullopt;
   const VectorXd amplitude = solver.solve(b);
-  const Parameters values = trial.parameters(scale.asDiagonal() * amplitude);
+  const TrialValues values = trial.values(scale.asDiagonal() * amplitude);
   if (!values) return std::nullopt;
   Start start;
-  start.parameters = *values;
+  start.value = *values;
   start.gain = b.dot(amplitude);
   start.freedom = static_cast<int>(G.cols());
   return start;

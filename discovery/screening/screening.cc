@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "mjdiag/discovery/screening/screener.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -15,10 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::string SweptName(const Start& start) {
-  return start.parameters.contains("period") ? "period" : "frequency";
-}
 
 /// The largest first, `count` of them.
 void KeepBest(std::vector<Start>& starts, std::size_t count) {
@@ -35,7 +30,7 @@ FittedCause FittedFrom(const std::vector<Candidate>& candidates, const Start& st
   cause.value.resize(static_cast<Index>(candidate.parameters.size()));
   for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
     const FitParameter& parameter = candidate.parameters[i];
-    cause.value[static_cast<Index>(i)] = std::clamp(start.parameters.at(parameter.name),
+    cause.value[static_cast<Index>(i)] = std::clamp(start.value[static_cast<Index>(i)],
                                                     parameter.lower, parameter.upper);
   }
   return cause;
@@ -54,14 +49,12 @@ Screening Screen(const DiscoveryProblem& problem,
     const double duration =
         static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
     std::vector<Trial> trials;
-    if (const auto sweep =
-            MakeSweep(problem.machine.linear(), candidate, motion, duration)) {
+    if (const auto sweep = MakeSweep(problem.machine, candidate, motion, duration)) {
       tried[c] = static_cast<int>(sweep->values.size());
       trials =
           screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
     } else {
-      trials = MakeTrials(problem.machine.plant(), problem.machine.linear(), candidate,
-                          motion);
+      trials = MakeTrials(problem.machine, candidate, motion);
       tried[c] = static_cast<int>(trials.size());
     }
     for (auto& start : screener.Judge(trials, candidate)) {
@@ -99,7 +92,7 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
   const Screener screener(problem, dynamics, residual, sensitivities);
   double gain = 0.0;
   std::vector<Trial> trials;
-  if (const auto sweep = MakeSweep(problem.machine.linear(), wave, motion, duration)) {
+  if (const auto sweep = MakeSweep(problem.machine, wave, motion, duration)) {
     constexpr std::size_t kPeaks = 40;
     const auto now = screener.Judge({sweep->make(present)}, wave).front();
     gain = now ? now->gain : 0.0;
@@ -107,8 +100,7 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
       trials.push_back(sweep->make(screener.ValueAt(*sweep, place)));
     }
   } else {
-    trials =
-        MakeTrials(problem.machine.plant(), problem.machine.linear(), wave, motion);
+    trials = MakeTrials(problem.machine, wave, motion);
   }
   std::vector<Start> starts;
   for (auto& start : screener.Judge(trials, wave)) {
@@ -116,13 +108,12 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
   }
   KeepBest(starts, starts.size());
   // Neighbours climb the same peak.
-  const std::string name = starts.empty() ? "" : SweptName(starts.front());
+  const Index period = PeriodPlace(wave);
   std::vector<Start> distinct;
   for (Start& start : starts) {
     const bool known = std::ranges::any_of(distinct, [&](const Start& other) {
       constexpr double kSame = 0.01;
-      return std::abs(start.parameters.at(name) / other.parameters.at(name) - 1.0) <
-             kSame;
+      return std::abs(start.value[period] / other.value[period] - 1.0) < kSame;
     });
     if (!known) distinct.push_back(std::move(start));
     if (static_cast<int>(distinct.size()) == most) break;

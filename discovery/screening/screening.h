@@ -11,8 +11,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
@@ -26,9 +24,9 @@ namespace mjdiag {
 /// A candidate with values to start a fit from.
 struct Start {
   std::size_t candidate = 0;
-  std::map<std::string, double> parameters;
-  double gain = 0.0;  ///< of the squared scaled innovations
-  int freedom = 1;    ///< amplitudes
+  Eigen::VectorXd value;  ///< in the order of the candidate's parameters
+  double gain = 0.0;      ///< of the squared scaled innovations
+  int freedom = 1;        ///< amplitudes
 };
 
 /// The cause of a start, with its values.

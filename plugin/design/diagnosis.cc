@@ -5,7 +5,7 @@
 
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/plugin/design/cross_terms.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/design/robust_design.h"
 #include "mjdiag/signals/error.h"
@@ -130,8 +130,9 @@ DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepar
 
 RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
                              const Record& record, Index from) {
-  return RefineEstimate(design, SynthesisOf(machine.setup(), machine.linear()),
-                        FaultModels(machine), Magnitudes(machine), record, from);
+  const FaultFamily family = MakeFaultFamily(machine);
+  return RefineEstimate(design, SynthesisOf(machine), family.model_at,
+                        family.magnitudes, record, from);
 }
 
 }  // namespace mjdiag

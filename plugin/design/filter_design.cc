@@ -6,7 +6,7 @@
 
 #include "mjdiag/diagnosis/distributions.h"
 #include "mjdiag/diagnosis/row_choice.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -56,13 +56,9 @@ Excitation RandomInputs(const Setup& setup) {
   return excitation;
 }
 
+/// What excites every part of the machine.
 Excitation DefaultExcitation(const Setup& setup) {
-  if (setup.control.axes.empty()) return RandomInputs(setup);
-  if (setup.trajectories.fallback.empty()) {
-    throw InputError("setup '" + setup.name + "'", "has no trajectory",
-                     "one under [trajectories], for the design of the diagnosis");
-  }
-  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
+  return setup.control.axes.empty() ? RandomInputs(setup) : DefaultMotion(setup);
 }
 
 /// Energies of the rows under unit white noise on the commands, for plants without
@@ -96,16 +92,16 @@ VectorXd RowForTones(const FilterBank& rows, const VectorXd& sensor_noise,
   return MostSensitiveRow({CommandEnergy(rows, ny)});
 }
 
-DisturbanceFilter DesignDisturbanceFilter(const MechanicalModel& healthy,
+DisturbanceFilter DesignDisturbanceFilter(const Machine& machine,
                                           const std::vector<TurnedModels>& turned,
-                                          const Setup& setup) {
-  const DiagnosisOptions& wanted = setup.diagnosis;
-  SynthesisOptions options = SynthesisOf(setup, healthy);
+                                          const std::vector<Multisine>& disturbances) {
+  const DiagnosisOptions& wanted = machine.setup().diagnosis;
+  SynthesisOptions options = SynthesisOf(machine);
   options.residual.denominator = wanted.disturbance_denominator;
-  const ResidualSpace space = MakeResidualSpace(healthy, options);
+  const ResidualSpace space = MakeResidualSpace(machine.linear(), options);
   const FilterBank all =
       MakeFilterBank(space.rows, options.residual.denominator, options.timing.tick());
-  const VectorXd row = RowForTones(all, options.sensor_noise, Multisines(setup));
+  const VectorXd row = RowForTones(all, options.sensor_noise, disturbances);
   const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
   return {Outputs(bank.filters, 0, 1),
           Outputs(bank.filters, 1, static_cast<Index>(turned.size())),
@@ -230,7 +226,8 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
 
 }  // namespace
 
-SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy) {
+SynthesisOptions SynthesisOf(const Machine& machine) {
+  const Setup& setup = machine.setup();
   SynthesisOptions options;
   options.timing = {setup.rates.step(), setup.rates.substeps};
   options.residual = setup.diagnosis.residual;
@@ -238,7 +235,7 @@ SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy)
   for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
     options.sensor_noise[static_cast<Index>(i)] = setup.channels.sensors[i].noise_sd;
   }
-  options.unknown_inputs.forces = UnknownForces(setup, healthy);
+  options.unknown_inputs.forces = UnknownForces(setup, machine.linear());
   return options;
 }
 
@@ -264,8 +261,9 @@ Record LinearRun(const Machine& machine) {
 
 DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings) {
   const MechanicalModel& healthy = machine.linear();
-  const std::vector<TurnedModels> turned = TurnModels(machine);
-  SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
+  const FaultFamily family = MakeFaultFamily(machine);
+  const std::vector<TurnedModels> turned = family.Turned();
+  SynthesisOptions options = SynthesisOf(machine);
   options.residual = settings.residual;
   DiagnosisDesign design;
   design.setup = machine.setup().name;
@@ -277,8 +275,8 @@ DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& setting
   design.options.residual = settings.residual;
   design.options.estimation_rows = settings.rows;
   design.stride = Stride(machine.setup());
-  design.disturbances = Multisines(machine.setup());
-  design.disturbance = DesignDisturbanceFilter(healthy, turned, machine.setup());
+  design.disturbances = family.disturbances;
+  design.disturbance = DesignDisturbanceFilter(machine, turned, family.disturbances);
 
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const Index size = space.rows.front().rows();

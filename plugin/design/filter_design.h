@@ -16,7 +16,7 @@ namespace mjdiag {
 
 /// How residual rows of this plant are made: timing, degree, denominator, sensor noise
 /// and unknown forces of the setup. InputError names an unknown joint.
-SynthesisOptions SynthesisOf(const Setup& setup, const MechanicalModel& healthy);
+SynthesisOptions SynthesisOf(const Machine& machine);
 
 /// z = [y; u] of a record as deviations from rest, nz x samples.
 Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "mjdiag/diagnosis/row_choice.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"

@@ -1,8 +1,7 @@
 #pragma once
 // Effects that MuJoCo does not have, as they act while the machine runs: on the sensor
 // readings once a control tick, on the commands and as generalised forces in every
-// physics step. One small class an effect: friction_effects.cc, drive_effects.cc,
-// structure_effects.cc, encoder_effects.cc.
+// physics step. What an effect does is in its own file (effect.h).
 
 #include <mujoco/mujoco.h>
 
@@ -10,13 +9,14 @@
 #include <span>
 #include <vector>
 
-#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
 
+struct PlacedEffect;
+
 /// Nothing in it allocates, locks or throws. Effects with a memory begin at rest, at
-/// the state of their first step.
+/// the state of their first step; values are read when it is made.
 class ActiveEffect {
  public:
   virtual ~ActiveEffect() = default;
@@ -25,9 +25,11 @@ class ActiveEffect {
   virtual void Distort(std::span<double> /*readings*/, double /*time*/) noexcept {}
   /// Changes the command in data.ctrl, of this physics step.
   virtual void Drive(const mjModel&, mjData&) noexcept {}
-  /// Adds its force to data.qfrc_applied, or changes the bounds of dry friction, from
-  /// positions and velocities of this step.
+  /// Adds its force to data.qfrc_applied, from positions and velocities of this step.
   virtual void Push(const mjModel&, mjData&) noexcept {}
+  /// Changes the bounds of dry friction, when all commands and forces of this step
+  /// are known.
+  virtual void Bind(const mjModel&, mjData&) noexcept {}
 };
 
 /// All active effects of a run.
@@ -37,7 +39,7 @@ class ActiveEffects {
   /// @param effects  all that act, those that the MJCF carries among them
   /// InputError as CheckEffect.
   ActiveEffects(const Channels& channels, const mjModel& model,
-                const std::vector<EffectSpec>& effects);
+                const std::vector<PlacedEffect>& effects);
 
   /// The readings of a control tick, setup order.
   void Distort(std::span<double> readings, double time) noexcept;
@@ -53,7 +55,7 @@ class ActiveEffects {
   std::vector<int> dofs_;
 };
 
-/// The channels with encoder_noise of the effects in the noise of their sensors.
-Channels WithEncoderNoise(Channels channels, const std::vector<EffectSpec>& effects);
+/// The channels with what effects add to the noise of their sensors.
+Channels WithNoiseOf(Channels channels, const std::vector<PlacedEffect>& effects);
 
 }  // namespace mjdiag

@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/fault.h"
 
 namespace mjdiag {
 
 struct Changes {
   std::vector<Fault> faults;
-  std::vector<EffectSpec> effects;
+  std::vector<PlacedEffect> effects;
 
   bool operator==(const Changes&) const = default;
 };

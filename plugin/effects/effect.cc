@@ -1,10 +1,8 @@
 #include "mjdiag/plugin/effects/effect.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
@@ -12,181 +10,124 @@
 namespace mjdiag {
 namespace {
 
-constexpr std::string_view kPrefix = "effect.";
+using Eigen::Index;
 
-[[noreturn]] void FailToParse(std::string_view text, const std::string& what) {
-  throw InputError("effect '" + std::string(text) + "'", what,
-                   "<effect>@<site>:<name>=<value>,...");
-}
+constexpr double kAny = std::numeric_limits<double>::infinity();
+// Rounded up: 2 pi itself is within.
+constexpr double kFullTurn = 6.283185307179587;
 
-double ParseValue(std::string_view text, std::string_view value) {
-  double number = 0.0;
-  const auto [end, error] =
-      std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc() || end != value.data() + value.size()) {
-    FailToParse(text, "'" + std::string(value) + "' is not a number");
-  }
-  return number;
-}
-
-std::string Names(const std::vector<EffectParameter>& parameters) {
-  std::string names;
-  for (const EffectParameter& parameter : parameters) {
-    names += (names.empty() ? "" : ", ") + parameter.name;
-  }
-  return names;
-}
-
-const EffectParameter* FindParameter(const EffectType& type, std::string_view name) {
-  for (const EffectParameter& parameter : type.parameters) {
-    if (parameter.name == name) return &parameter;
-  }
-  return nullptr;
-}
-
-void CheckValue(const std::string& where, const EffectParameter& parameter,
-                double value) {
-  if (std::isfinite(value) && value >= parameter.minimum &&
-      value <= parameter.maximum) {
-    return;
-  }
-  // The smallest positive number stands for "> 0".
-  const bool open = parameter.minimum == std::numeric_limits<double>::min();
-  throw InputError(where, parameter.name + " = " + std::to_string(value),
-                   open ? "a value > 0 " + parameter.unit
-                        : "a value from " + std::to_string(parameter.minimum) + " to " +
-                              std::to_string(parameter.maximum) + " " + parameter.unit);
-}
-
-void CheckSite(const mjModel& model, const std::string& where, EffectSite site,
-               int id) {
-  if (site != EffectSite::kJoint && site != EffectSite::kHeldJoint) return;
-  const int type = model.jnt_type[id];
-  if (type != mjJNT_SLIDE && type != mjJNT_HINGE) {
-    throw InputError(where, "a joint of several degrees of freedom",
-                     "a slide or hinge");
-  }
-  if (site == EffectSite::kHeldJoint && model.jnt_stiffness[id] == 0.0) {
-    throw InputError(where, "the joint has no spring", "a joint with stiffness");
-  }
-}
-
-/// Of a hinge, for a unit of a slide.
-std::string HingeUnit(const std::string& unit) {
-  static const std::map<std::string, std::string> kUnits{
-      {"N", "N m"},           {"m", "rad"},
-      {"m/s", "rad/s"},       {"kg", "kg m^2"},
-      {"N/m", "N m/rad"},     {"N/m^3", "N m/rad^3"},
-      {"N s/m", "N m s/rad"}, {"N s^2/m^2", "N m s^2/rad^2"}};
-  const auto found = kUnits.find(unit);
-  return found == kUnits.end() ? unit : found->second;
+template <typename Matches>
+std::optional<Index> PlaceOf(const std::vector<EffectParameter>& parameters,
+                             const Matches& matches) {
+  const auto found = std::ranges::find_if(parameters, matches);
+  if (found == parameters.end()) return std::nullopt;
+  return found - parameters.begin();
 }
 
 }  // namespace
 
-double EffectSpec::Value(std::string_view parameter) const {
-  const auto given = parameters.find(std::string(parameter));
-  if (given != parameters.end()) return given->second;
-  return FindParameter(FindEffect(effect), parameter)->fallback.value();
+EffectParameter Effect::Free(std::string name, Role role, std::string unit) {
+  return {std::move(name), role, std::move(unit), -kAny, kAny};
 }
 
-std::string SiteUnit(const mjModel& model, const EffectSpec& effect,
-                     std::string_view parameter) {
-  const EffectType& type = FindEffect(effect.effect);
-  const std::string& unit = FindParameter(type, parameter)->unit;
-  const int id = FindElement(model, type.element(), effect.site);
-  const bool hinge = type.element() == mjOBJ_JOINT && model.jnt_type[id] == mjJNT_HINGE;
-  return hinge ? HingeUnit(unit) : unit;
+EffectParameter Effect::NotNegative(std::string name, Role role, std::string unit) {
+  return {std::move(name), role, std::move(unit), 0.0, kAny};
 }
 
-EffectSpec ParseEffect(std::string_view text) {
-  const std::size_t at = text.find('@');
-  if (at == std::string_view::npos) FailToParse(text, "no site");
-  const std::size_t colon = text.find(':', at);
-  EffectSpec spec;
-  spec.effect = text.substr(0, at);
-  spec.site = text.substr(at + 1, colon == text.npos ? text.npos : colon - at - 1);
-  std::string_view rest = colon == text.npos ? "" : text.substr(colon + 1);
-  while (!rest.empty()) {
-    const std::string_view item = rest.substr(0, rest.find(','));
-    const std::size_t equals = item.find('=');
-    if (equals == item.npos)
-      FailToParse(text, "'" + std::string(item) + "' has no value");
-    const std::string name(item.substr(0, equals));
-    if (!spec.parameters.emplace(name, ParseValue(text, item.substr(equals + 1)))
-             .second) {
-      FailToParse(text, "'" + name + "' is given twice");
-    }
-    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
-  }
-  return spec;
+EffectParameter Effect::Positive(std::string name, Role role, std::string unit) {
+  return {std::move(name), role, std::move(unit), std::numeric_limits<double>::min(),
+          kAny};
 }
 
-std::string FormatEffect(const EffectSpec& effect) {
-  std::string text = effect.effect + "@" + effect.site;
-  char separator = ':';
-  for (const EffectParameter& parameter : FindEffect(effect.effect).parameters) {
-    std::array<char, 32> digits{};
-    std::to_chars(digits.data(), digits.data() + digits.size(),
-                  effect.Value(parameter.name));
-    text += separator + parameter.name + "=" + digits.data();
-    separator = ',';
-  }
-  return text;
+EffectParameter Effect::Phase() {
+  return {"phase", Role::kPhase, "rad", -kFullTurn, kFullTurn, 0.0};
 }
 
-std::vector<EffectSpec> EffectsOf(const mjModel& model) {
-  std::vector<EffectSpec> effects;
-  for (int i = 0; i < model.nnumeric; ++i) {
-    const std::string_view name(model.names + model.name_numericadr[i]);
-    if (!name.starts_with(kPrefix)) continue;
-    const std::size_t dot = name.find('.', kPrefix.size());
-    if (dot == name.npos) {
-      throw InputError("custom numeric '" + std::string(name) + "'", "names no site",
-                       "effect.<name>.<site>");
-    }
-    const std::string effect(name.substr(kPrefix.size(), dot - kPrefix.size()));
-    const std::vector<EffectParameter>& parameters = FindEffect(effect).parameters;
-    const int count = static_cast<int>(parameters.size());
-    const int size = model.numeric_size[i];
-    if (size % count != 0) {
-      throw InputError(
-          "custom numeric '" + std::string(name) + "'",
-          std::to_string(size) + " values",
-          std::to_string(count) + " or several times that: " + Names(parameters));
-    }
-    const mjtNum* value = model.numeric_data + model.numeric_adr[i];
-    for (int first = 0; first < size; first += count) {
-      EffectSpec spec{effect, std::string(name.substr(dot + 1)), {}};
-      for (const EffectParameter& parameter : parameters) {
-        spec.parameters[parameter.name] = *value++;
-      }
-      effects.push_back(std::move(spec));
-    }
-  }
-  return effects;
+EffectValues ValuesOf(std::initializer_list<double> values) {
+  EffectValues list(static_cast<Index>(values.size()));
+  std::ranges::copy(values, list.begin());
+  return list;
 }
 
-int CheckEffect(const mjModel& model, const EffectSpec& effect) {
-  const EffectType& type = FindEffect(effect.effect);
-  const std::string where = "effect " + effect.effect + "@" + effect.site;
-  for (const auto& [name, value] : effect.parameters) {
-    const EffectParameter* parameter = FindParameter(type, name);
-    if (parameter == nullptr) {
-      throw InputError(where, "unknown parameter '" + name + "'",
-                       Names(type.parameters));
-    }
-    CheckValue(where, *parameter, value);
+const std::string& PlacedEffect::name() const { return effect->name(); }
+
+double PlacedEffect::Value(std::string_view parameter) const {
+  return values[effect->Find(parameter).value()];
+}
+
+bool PlacedEffect::operator==(const PlacedEffect& other) const {
+  return SameKind(*this, other) && values == other.values;
+}
+
+bool SameKind(const PlacedEffect& a, const PlacedEffect& b) {
+  return a.effect->IsFault() == b.effect->IsFault() && a.name() == b.name() &&
+         a.site == b.site;
+}
+
+mjtObj Effect::element() const {
+  switch (type_.site) {
+    case SiteKind::kActuator:
+      return mjOBJ_ACTUATOR;
+    case SiteKind::kSensor:
+      return mjOBJ_SENSOR;
+    default:
+      return mjOBJ_JOINT;
   }
-  for (const EffectParameter& parameter : type.parameters) {
-    if (!parameter.fallback && !effect.parameters.contains(parameter.name)) {
-      throw InputError(where, "'" + parameter.name + "' is missing",
-                       Names(type.parameters));
-    }
+}
+
+std::optional<Index> Effect::Find(std::string_view parameter) const {
+  return PlaceOf(parameters(),
+                 [&](const EffectParameter& p) { return p.name == parameter; });
+}
+
+std::optional<Index> Effect::Find(Role role) const {
+  return PlaceOf(parameters(),
+                 [&](const EffectParameter& p) { return p.role == role; });
+}
+
+std::unique_ptr<ActiveEffect> Effect::Activate(const mjModel&, const Channels&, int,
+                                               const EffectValues&) const {
+  return nullptr;
+}
+
+std::vector<Site> Effect::CandidateSites(const SiteMap& map) const {
+  switch (type_.site) {
+    case SiteKind::kActuator:
+      return map.Actuators();
+    case SiteKind::kSensor:
+      return map.Sensors();
+    case SiteKind::kHeldJoint:
+      return map.Joints(map.Held());
+    default:
+      return map.Joints(map.driven());
   }
-  const int site = FindElement(model, type.element(), effect.site);
-  CheckSite(model, where, type.site, site);
-  return site;
+}
+
+double Effect::Least(const mjModel&, Index, std::size_t parameter) const {
+  return parameters()[parameter].minimum;
+}
+
+std::optional<Sweep> Effect::MakeSweep(const SiteMotion&, double) const {
+  return std::nullopt;
+}
+
+std::optional<PlacedEffect> Effect::Simpler(const PlacedEffect&) const {
+  return std::nullopt;
+}
+
+std::optional<double> Effect::Law(double, const EffectValues&) const {
+  return std::nullopt;
+}
+
+std::string Where(const Effect& effect, const std::string& site) {
+  return "effect " + effect.name() + "@" + site;
+}
+
+void FailTooMuch(const Effect& effect, const mjModel& model, int element,
+                 const char* what) {
+  throw InputError(Where(effect, ElementName(model, effect.element(), element)),
+                   std::string("takes away more ") + what + " than there is",
+                   "a smaller value");
 }
 
 }  // namespace mjdiag

@@ -1,83 +1,186 @@
 #pragma once
-// Effects: physics that a plant lacks, put in at a site (a joint, actuator or sensor,
-// by its MJCF name). On the command line:   coulomb_friction@load:force=20.4 In an MJCF
-// file:  <custom><numeric name="effect.force_offset.load" data="3.2"/></custom> with
-// the parameters in the order of the catalogue, once for each such effect at the site.
+// An effect: physics that a plant lacks, put in at a site (a joint, actuator or sensor,
+// by its MJCF name). One class an effect, in a file of its own, knows everything about
+// it; the rest of the program knows only this base class and the list of all of them
+// (registry.h). Effects are stateless descriptions: the values of their parameters are
+// passed in, in the order in which `parameters` has them.
 //
-// What MuJoCo has natively is put into the mjModel (native_effect.h); the rest acts in
-// every physics step (active_effect.h).
+// The fault parameters that a plant declares are effects as well (fault_parameter.h).
 
 #include <mujoco/mujoco.h>
 
-#include <map>
+#include <Eigen/Core>
+#include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/effects/draw.h"
+#include "mjdiag/plugin/effects/role.h"
+#include "mjdiag/plugin/effects/site.h"
+#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/setup/setup.h"
+
 namespace mjdiag {
 
 struct EffectParameter {
   std::string name;
+  Role role;
   std::string unit;  ///< of a slide; see SiteUnit for a hinge
-  double minimum = 0.0;
-  double maximum = 0.0;
+  double minimum;
+  double maximum;
   std::optional<double> fallback{};  ///< the value if none is given; none: required
 };
 
 /// What an effect can act at.
-enum class EffectSite {
+enum class SiteKind {
   kJoint,      ///< any slide or hinge
   kHeldJoint,  ///< one with a spring
   kActuator,
   kSensor
 };
 
-/// One entry of the catalogue.
+/// How an extended plant carries an effect.
+enum class Form {
+  kAttributes,  ///< attributes of MJCF elements: a native effect
+  kNumeric,     ///< <custom><numeric>, which mjdiag turns into forces
+  kNoise        ///< noise of the sensor in the setup
+};
+
+/// What the force of an effect is drawn over, for people.
+enum class LawVariable { kPosition, kVelocity, kAcceleration, kInput, kTime };
+
+/// Values of an effect's parameters, in their order.
+using EffectValues = Eigen::VectorXd;
+EffectValues ValuesOf(std::initializer_list<double> values);
+
+/// What is said of every effect.
 struct EffectType {
   std::string name;
-  EffectSite site = EffectSite::kJoint;
-  bool native = false;  ///< realised by attributes of the mjModel
+  SiteKind site = SiteKind::kJoint;
+  Form form = Form::kNumeric;
+  LawVariable variable;
   std::vector<EffectParameter> parameters;
   std::string meaning;
-
-  /// What kind of element the site is.
-  mjtObj element() const;
 };
+
+class Effect;
+/// Owns effects that are made from a plant; registered ones are there for good.
+using EffectPtr = std::shared_ptr<const Effect>;
 
 /// An effect at a site with values for its parameters.
-struct EffectSpec {
-  std::string effect;
+struct PlacedEffect {
+  EffectPtr effect;
   std::string site;
-  std::map<std::string, double> parameters;
+  Eigen::VectorXd values;
 
-  /// A parameter that CheckEffect has passed, or its fallback.
+  const std::string& name() const;
+  /// Of the parameter with that name, which the effect has.
   double Value(std::string_view parameter) const;
 
-  bool operator==(const EffectSpec&) const = default;
+  bool operator==(const PlacedEffect& other) const;
 };
 
-/// All effects of design and documentation, in their order.
-const std::vector<EffectType>& EffectCatalogue();
-/// The entry of that name; InputError lists the known ones.
-const EffectType& FindEffect(std::string_view name);
+/// True if both are the same effect at the same site.
+bool SameKind(const PlacedEffect& a, const PlacedEffect& b);
 
-/// The unit of a parameter at a joint: as in the catalogue for a slide; for a hinge N
-/// becomes N m, m becomes rad and kg becomes kg m^2. Other sites: as in the catalogue.
-std::string SiteUnit(const mjModel& model, const EffectSpec& effect,
-                     std::string_view parameter);
+class Effect {
+ public:
+  explicit Effect(EffectType type) : type_(std::move(type)) {}
+  virtual ~Effect() = default;
+  Effect(const Effect&) = delete;
+  Effect& operator=(const Effect&) = delete;
 
-/// Parses "<effect>@<site>:<name>=<value>,..."; InputError says what is malformed.
-EffectSpec ParseEffect(std::string_view text);
-/// The same form again, with all digits.
-std::string FormatEffect(const EffectSpec& effect);
+  const std::string& name() const { return type_.name; }
+  const std::string& meaning() const { return type_.meaning; }
+  const std::vector<EffectParameter>& parameters() const { return type_.parameters; }
+  SiteKind site() const { return type_.site; }
+  Form form() const { return type_.form; }
+  LawVariable variable() const { return type_.variable; }
+  /// What kind of element the site is.
+  mjtObj element() const;
+  /// Place of the parameter with that name, or of the first with that role.
+  std::optional<Eigen::Index> Find(std::string_view parameter) const;
+  std::optional<Eigen::Index> Find(Role role) const;
+  /// Parameters of the plant itself, which it declares, are faults.
+  virtual bool IsFault() const { return false; }
 
-/// The effects that an MJCF file carries itself, under <custom>.
-std::vector<EffectSpec> EffectsOf(const mjModel& model);
+  // What it does to a machine.
 
-/// InputError on an unknown effect, site or parameter, a missing parameter, a value out
-/// of bounds, or a site at which the effect means nothing. @return the id of the
-/// site's element
-int CheckEffect(const mjModel& model, const EffectSpec& effect);
+  /// Puts into the model what MuJoCo has natively of it; `element` is the site's.
+  /// InputError if it takes away more mass or damping than there is.
+  virtual void Apply(mjModel&, int /*element*/, const EffectValues&) const {}
+  /// Takes out again what Apply has put in, of effects that a plant carries as
+  /// numerics.
+  virtual void Retract(mjModel&, int /*element*/, const EffectValues&) const {}
+  /// What it does in a step, a tick or a reading; null if nothing.
+  virtual std::unique_ptr<ActiveEffect> Activate(const mjModel&, const Channels&,
+                                                 int /*element*/,
+                                                 const EffectValues&) const;
+  /// The noise of a sensor at the site that has `sd` by itself.
+  virtual double NoiseSd(double sd, const EffectValues&) const { return sd; }
+
+  // How it is found.
+
+  /// The sites at which it may be what a simulation lacks: by default the joints that
+  /// an actuator moves, those that a spring holds, the actuators or the sensors.
+  virtual std::vector<Site> CandidateSites(const SiteMap& map) const;
+  /// What the plant has to be left with: the least value of a parameter that can be
+  /// put in at a joint (nq index).
+  virtual double Least(const mjModel& plant, Eigen::Index joint,
+                       std::size_t parameter) const;
+  /// Trials on a small grid along a motion; none of an effect with a sweep.
+  virtual std::vector<Trial> Trials(const SiteMotion&) const { return {}; }
+  /// @param duration  of what is fitted [s], for the resolution of frequencies
+  virtual std::optional<Sweep> MakeSweep(const SiteMotion&, double /*duration*/) const;
+
+  // How it compares with others.
+
+  /// The law that this one becomes at an end of its parameters, at the same site, with
+  /// values to start from.
+  virtual std::optional<PlacedEffect> Simpler(const PlacedEffect&) const;
+  /// The effect that changes the very same attribute of the model and nothing else, so
+  /// that no measurement tells them apart; null without one.
+  virtual const Effect* Twin() const { return nullptr; }
+  /// The values of the twin that are the same change of the plant, and back; none if
+  /// there are none.
+  virtual EffectValues ToTwin(const mjModel&, const EffectValues& values) const {
+    return values;
+  }
+  virtual std::optional<EffectValues> FromTwin(const mjModel&,
+                                               const EffectValues& twin) const {
+    return twin;
+  }
+
+  // How it is shown and drawn.
+
+  /// The force over its variable, if it is a function of that alone.
+  virtual std::optional<double> Law(double x, const EffectValues&) const;
+  /// Shape at random, in the units of what a machine has.
+  virtual Sized Draw(const Scales&, Random&) const = 0;
+
+ protected:
+  // Parameters without bounds, of at least 0 and above 0.
+  static EffectParameter Free(std::string name, Role role, std::string unit);
+  static EffectParameter NotNegative(std::string name, Role role, std::string unit);
+  static EffectParameter Positive(std::string name, Role role, std::string unit);
+  /// The phase of a wave, 0 unless it is given.
+  static EffectParameter Phase();
+
+ private:
+  EffectType type_;
+};
+
+/// A pointer to an effect that is there for good.
+inline EffectPtr Lasting(const Effect& effect) { return {EffectPtr(), &effect}; }
+
+/// "effect <name>@<site>", where messages begin.
+std::string Where(const Effect& effect, const std::string& site);
+/// InputError: takes away more `what` than there is.
+[[noreturn]] void FailTooMuch(const Effect& effect, const mjModel& model, int element,
+                              const char* what);
 
 }  // namespace mjdiag

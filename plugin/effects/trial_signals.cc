@@ -22,6 +22,8 @@ std::vector<double> LogGrid(double least, double most, int count) {
   return grid;
 }
 
+double Sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
 VectorXd Direction(const VectorXd& velocity) {
   const double slow = velocity.cwiseAbs().maxCoeff() / 200.0;
   if (slow == 0.0) return VectorXd::Zero(velocity.size());

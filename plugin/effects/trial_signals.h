@@ -14,6 +14,9 @@ double Range(const Eigen::VectorXd& x);
 /// `count` values from `least` to `most`, evenly spaced by ratio.
 std::vector<double> LogGrid(double least, double most, int count);
 
+/// -1, 0 or 1.
+double Sign(double x);
+
 /// tanh(v / v0) with v0 a two-hundredth of the largest speed: the sign of v where the
 /// joint moves, and nothing where it rests.
 Eigen::VectorXd Direction(const Eigen::VectorXd& velocity);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mjdiag/plugin/effects/active_effect.h"
-#include "mjdiag/plugin/effects/native_effect.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/plugin/plant/linearize.h"
@@ -33,8 +32,8 @@ ModelPtr LoadPlant(const Setup& setup) {
   return model;
 }
 
-Setup WithNoiseOf(Setup setup, const std::vector<EffectSpec>& effects) {
-  setup.channels = WithEncoderNoise(std::move(setup.channels), effects);
+Setup WithNoiseOf(Setup setup, const std::vector<PlacedEffect>& effects) {
+  setup.channels = WithNoiseOf(std::move(setup.channels), effects);
   return setup;
 }
 
@@ -60,8 +59,8 @@ void Machine::Adopt(std::shared_ptr<const mjModel> plant) {
   derived_ = std::make_shared<Derived>();
 }
 
-std::vector<EffectSpec> Machine::effects() const {
-  std::vector<EffectSpec> all = EffectsOf(*plant_);
+std::vector<PlacedEffect> Machine::effects() const {
+  std::vector<PlacedEffect> all = EffectsOf(*plant_);
   all.insert(all.end(), changes_.effects.begin(), changes_.effects.end());
   return all;
 }
@@ -83,7 +82,7 @@ Machine Machine::With(const Changes& changes) const {
   if (changes == Changes{}) return changed;
   ModelPtr model = CopyModel(*plant_);
   for (const Fault& fault : changes.faults) ApplyFault(*model, fault);
-  for (const EffectSpec& effect : changes.effects) ApplyNativeEffect(*model, effect);
+  for (const PlacedEffect& effect : changes.effects) ApplyEffect(*model, effect);
   changed.setup_ = std::make_shared<Setup>(WithNoiseOf(*setup_, changes.effects));
   changed.Adopt(std::move(model));
   auto& [faults, effects] = changed.changes_;
@@ -139,7 +138,7 @@ void PreparePlant(const Physics& physics, mjModel& model) {
     std::fill_n(model.dof_frictionloss, model.nv, 0.0);
     std::fill_n(model.tendon_frictionloss, model.ntendon, 0.0);
   }
-  for (const EffectSpec& effect : EffectsOf(model)) ApplyNativeEffect(model, effect);
+  for (const PlacedEffect& effect : EffectsOf(model)) ApplyEffect(model, effect);
   ReserveInstanceSlot(model);
 }
 

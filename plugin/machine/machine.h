@@ -43,7 +43,7 @@ class Machine {
   /// What With has put in so far.
   const Changes& changes() const { return changes_; }
   /// All that act: those that the MJCF carries, then those of the changes.
-  std::vector<EffectSpec> effects() const;
+  std::vector<PlacedEffect> effects() const;
 
   /// Joint positions at rest without input (StaticEquilibrium), found when first asked
   /// for. NumericalError as there.

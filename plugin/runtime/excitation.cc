@@ -60,6 +60,15 @@ Excitation FollowTrajectory(const Setup& setup, const Trajectory& trajectory) {
   return {SampleTrajectory(trajectory, AxisNames(setup), setup.rates.tick()), {}, {}};
 }
 
+Excitation DefaultMotion(const Setup& setup) {
+  const std::string& fallback = setup.trajectories.fallback;
+  if (fallback.empty()) {
+    throw InputError("setup '" + setup.name + "'", "has no trajectory",
+                     "one under [trajectories]");
+  }
+  return FollowTrajectory(setup, setup.trajectories.Find(fallback));
+}
+
 Excitation Replay(const Setup& setup, const Record& measured) {
   CheckSampleTime(setup, measured);
   Excitation excitation;

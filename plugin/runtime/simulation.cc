@@ -89,9 +89,9 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
     throw InputError("effect", "the linear plant has no effects",
                      "faults only, or the nonlinear plant");
   }
-  const std::vector<EffectSpec> carried = machine.effects();
-  if (std::any_of(carried.begin(), carried.end(), [](const EffectSpec& effect) {
-        return !FindEffect(effect.effect).native;
+  const std::vector<PlacedEffect> carried = machine.effects();
+  if (std::any_of(carried.begin(), carried.end(), [](const PlacedEffect& placed) {
+        return placed.effect->form() != Form::kAttributes;
       })) {
     throw InputError(machine.plant().names,
                      "the plant carries effects, which are not linear",

@@ -35,8 +35,10 @@ struct Excitation {
   }
 };
 
-/// The default or a named trajectory of the setup, as an excitation.
+/// A trajectory, as an excitation.
 Excitation FollowTrajectory(const Setup& setup, const Trajectory& trajectory);
+/// The default trajectory of the setup. InputError if it has none.
+Excitation DefaultMotion(const Setup& setup);
 /// The same motion or input as in a measured record: closed loop if the setup has
 /// controllers ("<axis>_ref" and known disturbances; logged derivatives are used if the
 /// record has them, else differences), open loop otherwise (actuator channels).

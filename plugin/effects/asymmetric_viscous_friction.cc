@@ -1,0 +1,49 @@
+// -positive v for v > 0, -negative v for v < 0
+
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+class AsymmetricViscousFrictionEffect final : public JointForceEffect {
+ public:
+  AsymmetricViscousFrictionEffect()
+      : JointForceEffect({.name = "asymmetric_viscous_friction",
+                          .variable = LawVariable::kVelocity,
+                          .parameters = {Free("positive", Role::kAmplitude, "N s/m"),
+                                         Free("negative", Role::kAmplitude, "N s/m")},
+                          .meaning = "-positive v for v > 0, -negative v for v < 0"}) {}
+
+  double Force(double, double v, double,
+               const EffectValues& values) const noexcept override {
+    return -(v > 0.0 ? values[0] : values[1]) * v;
+  }
+  double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
+    return -plant.dof_damping[joint];
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    const Eigen::VectorXd v = at.v();
+    Eigen::MatrixXd sides(v.size(), 2);
+    sides << -v.cwiseMax(0.0), -v.cwiseMin(0.0);
+    return {LinearTrial(sides, at.JointEntry(2))};
+  }
+  std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
+    return PlacedEffect{Lasting(ViscousFriction()), self.site,
+                        ValuesOf({(self.values[0] + self.values[1]) / 2.0})};
+  }
+  Sized Draw(const Scales& k, Random& r) const override {
+    const double up = r.Uniform(0.2, 1.0) * k.SmallForce() / k.speed;
+    const double down = up * r.Uniform(1.5, 4.0);
+    return [=](double s) { return ValuesOf({s * up, s * down}); };
+  }
+};
+
+}  // namespace
+
+const Effect& AsymmetricViscousFriction() {
+  static const AsymmetricViscousFrictionEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

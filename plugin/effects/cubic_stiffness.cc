@@ -1,0 +1,39 @@
+// -coefficient q^3
+
+#include <cmath>
+
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+class CubicStiffnessEffect final : public JointForceEffect {
+ public:
+  CubicStiffnessEffect()
+      : JointForceEffect(
+            {.name = "cubic_stiffness",
+             .variable = LawVariable::kPosition,
+             .parameters = {Free("coefficient", Role::kAmplitude, "N/m^3")},
+             .meaning = "-coefficient q^3"}) {}
+
+  double Force(double q, double, double,
+               const EffectValues& values) const noexcept override {
+    return -values[0] * q * q * q;
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    return {LinearTrial(-at.q().array().cube().matrix(), at.JointEntry())};
+  }
+  Sized Draw(const Scales& k, Random&) const override {
+    return Proportional(k.SmallForce() / std::pow(k.stroke, 3));
+  }
+};
+
+}  // namespace
+
+const Effect& CubicStiffness() {
+  static const CubicStiffnessEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

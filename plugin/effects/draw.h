@@ -1,0 +1,59 @@
+#pragma once
+// How a benchmark draws effects to hide: shapes at random, sizes in proportion to what
+// the machine has. Ranges are those of machines: dry friction of a few per cent of the
+// motor's force, and so on.
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+
+namespace mjdiag {
+
+/// What the sizes of effects are measured in: the nominal run at a site.
+struct Scales {
+  double stroke = 0.0;     ///< of the joint [m, rad]
+  double speed = 0.0;      ///< its largest
+  double force = 0.0;      ///< the largest command of the motor that moves it
+  double stiffness = 0.0;  ///< of the joint's spring
+  double strain = 0.0;     ///< largest, of that spring
+  double damping = 0.0;
+  double mass = 0.0;
+  double duration = 0.0;
+  double noise = 0.0;  ///< standard deviation, of a sensor
+
+  /// A twentieth of what the motor does: what friction takes of it.
+  double SmallForce() const { return 0.05 * force; }
+};
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : generator_(seed) {}
+  double Uniform(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(generator_);
+  }
+  double Log(double from, double to) {
+    return std::exp(Uniform(std::log(from), std::log(to)));
+  }
+  double Sign() { return Uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0; }
+  std::size_t Index(std::size_t count) {
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(generator_);
+  }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// Values of the parameters, in their order, at a size from 0 (nothing) to 1 (large).
+using Sized = std::function<Eigen::VectorXd(double size)>;
+
+/// Of effects with one parameter.
+inline Sized Proportional(double large) {
+  return [=](double s) { return Eigen::VectorXd::Constant(1, s * large); };
+}
+inline Sized AroundOne(double change) {
+  return [=](double s) { return Eigen::VectorXd::Constant(1, 1.0 + s * change); };
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,38 @@
+#pragma once
+// Dry friction by MuJoCo's own constraint: what sticks, sticks exactly, up to a bound.
+
+#include <mujoco/mujoco.h>
+
+#include "mjdiag/plugin/effects/effect.h"
+
+namespace mjdiag {
+
+/// Adds to the bound of a joint [N, N m], with solver parameters as stiff as the time
+/// step allows.
+void AddDryFriction(mjModel& model, int joint, double force);
+/// Takes such a bound off again; what was there before it stays.
+void TakeDryFriction(mjModel& model, int joint, double force);
+
+/// Solver parameters that make a friction constraint behave as exact dry friction. The
+/// default ones are far too soft for a precision stage: it creeps.
+void StiffenFriction(mjModel& model, int dof);
+
+/// A bound that changes from step to step. MuJoCo makes no constraint where the bound
+/// is zero, so the plant has to have one, however small: kLeastBound.
+class VaryingBound : public ActiveEffect {
+ public:
+  explicit VaryingBound(int dof) : dof_(dof) {}
+  void Bind(const mjModel& model, mjData& data) noexcept final;
+
+ protected:
+  int dof() const { return dof_; }
+
+ private:
+  /// What is added to the bound in this step [N, N m].
+  virtual double Added(const mjModel& model, mjData& data) noexcept = 0;
+
+  int dof_;
+};
+inline constexpr double kLeastBound = 1e-12;  // [N, N m]
+
+}  // namespace mjdiag

@@ -1,0 +1,137 @@
+#include "mjdiag/plugin/effects/fault_parameter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+
+// Where a fit ends: far beyond any machine.
+constexpr double kMost = 100.0;
+
+class FaultParameterEffect final : public Effect {
+ public:
+  explicit FaultParameterEffect(FaultKnob declared)
+      : Effect({.name = declared.name,
+                .site = declared.kind == KnobKind::kGear ? SiteKind::kActuator
+                                                         : SiteKind::kJoint,
+                .form = Form::kAttributes,
+                .variable = LawVariable::kVelocity,
+                .parameters = {{"value", Role::kFactor, "1", 0.0, kMost}},
+                .meaning = "scales a number of the plant"}),
+        declared_(std::move(declared)) {}
+
+  bool IsFault() const override { return true; }
+  std::vector<Site> CandidateSites(const SiteMap& map) const override;
+  std::vector<Trial> Trials(const SiteMotion& at) const override;
+  const Effect* Twin() const override;
+  EffectValues ToTwin(const mjModel& plant, const EffectValues& values) const override;
+  std::optional<EffectValues> FromTwin(const mjModel& plant,
+                                       const EffectValues& twin) const override;
+  Sized Draw(const Scales&, Random& r) const override {
+    return AroundOne(r.Sign() * 0.5);
+  }
+
+  std::string SiteName(const mjModel& plant) const {
+    std::string site;
+    for (const int id : declared_.elements) {
+      site += (site.empty() ? "" : " ") + ElementName(plant, element(), id);
+    }
+    return site;
+  }
+
+ private:
+  double Damping(const mjModel& plant) const {
+    return plant.dof_damping[plant.jnt_dofadr[declared_.elements.front()]];
+  }
+
+  FaultKnob declared_;
+};
+
+std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const {
+  const std::string name = SiteName(map.plant());
+  const int first = declared_.elements.front();
+  if (declared_.kind != KnobKind::kGear) {
+    return {{name, map.plant().jnt_dofadr[first], -1}};
+  }
+  const std::string motor = ElementName(map.plant(), mjOBJ_ACTUATOR, first);
+  for (const Site& site : map.Actuators()) {
+    if (site.name == motor) return {{name, site.joint, site.channel}};
+  }
+  return {};
+}
+
+std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
+  if (declared_.kind == KnobKind::kGear) {
+    return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
+  }
+  const auto joints = static_cast<Index>(declared_.elements.size());
+  Eigen::MatrixXd signals(at.motion.samples(), joints);
+  Eigen::MatrixXd entry = Eigen::MatrixXd::Zero(at.model.M.rows(), joints);
+  for (Index i = 0; i < joints; ++i) {
+    const int joint = declared_.elements[static_cast<std::size_t>(i)];
+    const int dof = at.plant.jnt_dofadr[joint];
+    const int address = at.plant.jnt_qposadr[joint];
+    entry(dof, i) = 1.0;
+    if (declared_.kind == KnobKind::kDamping) {
+      signals.col(i) = -at.plant.dof_damping[dof] * at.motion.velocity.row(dof);
+    } else {
+      const double rest = at.plant.qpos_spring[address] - at.plant.qpos0[address];
+      signals.col(i) = -at.plant.jnt_stiffness[joint] *
+                       (at.motion.position.row(dof).array() - rest).matrix();
+    }
+  }
+  // One amplitude, whatever the number of joints.
+  std::vector<Trial> trials = {LinearTrial(signals, entry, 1.0, true)};
+  trials.back().summed = true;
+  return trials;
+}
+
+const Effect* FaultParameterEffect::Twin() const {
+  if (declared_.elements.size() != 1) return nullptr;
+  switch (declared_.kind) {
+    case KnobKind::kDamping:
+      return &ViscousFriction();
+    case KnobKind::kStiffness:
+      return &StructuralStiffness();
+    case KnobKind::kGear:
+      return &MotorConstant();
+  }
+  return nullptr;
+}
+
+// Damping is added in N s/m, everything else scaled.
+EffectValues FaultParameterEffect::ToTwin(const mjModel& plant,
+                                          const EffectValues& values) const {
+  if (declared_.kind != KnobKind::kDamping) return values;
+  return ValuesOf({(values[0] - 1.0) * Damping(plant)});
+}
+
+std::optional<EffectValues> FaultParameterEffect::FromTwin(
+    const mjModel& plant, const EffectValues& twin) const {
+  if (declared_.kind != KnobKind::kDamping) return twin;
+  if (Damping(plant) == 0.0) return std::nullopt;
+  return ValuesOf({1.0 + twin[0] / Damping(plant)});
+}
+
+}  // namespace
+
+EffectPtr FaultParameter(FaultKnob declared) {
+  return std::make_shared<FaultParameterEffect>(std::move(declared));
+}
+
+std::vector<PlacedEffect> FaultParameters(const mjModel& plant) {
+  std::vector<PlacedEffect> placed;
+  for (FaultKnob& declared : FaultKnobs(plant)) {
+    const auto effect = std::make_shared<FaultParameterEffect>(std::move(declared));
+    placed.push_back({effect, effect->SiteName(plant), ValuesOf({1.0})});
+  }
+  return placed;
+}
+
+}  // namespace mjdiag

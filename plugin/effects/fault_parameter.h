@@ -1,0 +1,22 @@
+#pragma once
+// Fault parameters as effects: a plant declares them itself (fault.h), and what a
+// discovery asks of an effect it asks of them as well. Their one parameter is the
+// factor that they are turned to; 1: healthy.
+
+#include <mujoco/mujoco.h>
+
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/plant/fault.h"
+
+namespace mjdiag {
+
+EffectPtr FaultParameter(FaultKnob declared);
+
+/// All that the plant declares, in the order of the file, at their healthy value. The
+/// site of one with several elements is their names, apart by blanks.
+std::vector<PlacedEffect> FaultParameters(const mjModel& plant);
+
+}  // namespace mjdiag

@@ -1,0 +1,98 @@
+// A mass m on the joint by a spring and a damper, x its position:
+//   m x'' = -f,  f = m (omega^2 (x - q) + 2 zeta omega (x' - v)),  f on the joint
+// integrated as MuJoCo's Euler does (velocity first).
+
+#include <numbers>
+
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+class Appendage final : public ActiveEffect {
+ public:
+  Appendage(const JointOf& joint, const EffectValues& values)
+      : mass_(values[0]), joint_(joint) {
+    const double omega = kTurn * values[1];
+    stiffness_ = omega * omega;
+    damping_ = 2.0 * values[2] * omega;
+  }
+  void Push(const mjModel& model, mjData& data) noexcept override {
+    const double q = data.qpos[joint_.position];
+    const double v = data.qvel[joint_.dof];
+    if (!started_) {
+      x_ = q;
+      velocity_ = v;
+      started_ = true;
+    }
+    const double pull = stiffness_ * (x_ - q) + damping_ * (velocity_ - v);
+    data.qfrc_applied[joint_.dof] += mass_ * pull;
+    velocity_ -= model.opt.timestep * pull;
+    x_ += model.opt.timestep * velocity_;
+  }
+
+ private:
+  double mass_;
+  double stiffness_ = 0.0;
+  double damping_ = 0.0;
+  double x_ = 0.0;
+  double velocity_ = 0.0;
+  bool started_ = false;
+  JointOf joint_;
+};
+
+class FlexibleModeEffect final : public Effect {
+ public:
+  FlexibleModeEffect()
+      : Effect({.name = "flexible_mode",
+                .variable = LawVariable::kAcceleration,
+                .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
+                               Positive("frequency", Role::kFrequency, "Hz"),
+                               NotNegative("damping_ratio", Role::kRatio, "1")},
+                .meaning = "a mass on a spring and a damper on the joint"}) {}
+
+  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
+                                         int joint,
+                                         const EffectValues& values) const override {
+    return std::make_unique<Appendage>(JointOf(model, joint), values);
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    const double tick = at.motion.sample_time;
+    const double highest = 0.2 / tick;
+    std::vector<Trial> trials;
+    for (const double frequency : LogGrid(2e-3 * highest, highest, 40)) {
+      for (const double ratio : {0.01, 0.05, 0.2}) {
+        trials.push_back({AppendagePull(at.q(), frequency, ratio, tick),
+                          at.JointEntry(),
+                          [frequency, ratio](const Amplitudes& a) -> TrialValues {
+                            if (a[0] <= 0.0) return std::nullopt;
+                            return ValuesOf({a[0], frequency, ratio});
+                          }});
+      }
+    }
+    return trials;
+  }
+  std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
+    return PlacedEffect{Lasting(AddedMass()), self.site, self.values.head(1)};
+  }
+  Sized Draw(const Scales& k, Random& r) const override {
+    const double frequency = r.Log(40.0, 400.0);
+    const double ratio = r.Uniform(0.01, 0.1);
+    return [=, mass = k.mass](double s) {
+      return ValuesOf({s * 0.05 * mass, frequency, ratio});
+    };
+  }
+};
+
+}  // namespace
+
+const Effect& FlexibleMode() {
+  static const FlexibleModeEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,51 @@
+// amplitude sin(2 pi q / period + phase): cogging.
+
+#include <cmath>
+#include <numbers>
+
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/wave.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+class ForceRippleEffect final : public JointForceEffect {
+ public:
+  ForceRippleEffect()
+      : JointForceEffect(
+            {.name = "force_ripple",
+             .variable = LawVariable::kPosition,
+             .parameters = {Free("amplitude", Role::kAmplitude, "N"),
+                            Positive("period", Role::kPeriod, "m"), Phase()},
+             .meaning = "amplitude sin(2 pi q / period + phase): cogging"}) {}
+
+  double Force(double q, double, double,
+               const EffectValues& values) const noexcept override {
+    return values[0] * std::sin(kTurn / values[1] * q + values[2]);
+  }
+  std::optional<Sweep> MakeSweep(const SiteMotion& at, double) const override {
+    constexpr int kFinest = 240;  // more than a motor has poles
+    const Eigen::VectorXd q = at.q();
+    if (Range(q) == 0.0) return std::nullopt;
+    return PeriodSweep(at.JointEntry(), q, kFinest, 1, 0.0);
+  }
+  Sized Draw(const Scales& k, Random& r) const override {
+    const double period = k.stroke * r.Log(0.05, 1.0);
+    const double phase = r.Uniform(-std::numbers::pi, std::numbers::pi);
+    const double amplitude = 0.3 * k.SmallForce();
+    return [=](double s) { return ValuesOf({s * amplitude, period, phase}); };
+  }
+};
+
+}  // namespace
+
+const Effect& ForceRipple() {
+  static const ForceRippleEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

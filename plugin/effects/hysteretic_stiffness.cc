@@ -1,0 +1,76 @@
+// -stiffness (q + loss z), z follows q over `length`: a cable, a hose.
+
+#include "mjdiag/plugin/effects/follower.h"
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+
+namespace mjdiag {
+namespace {
+
+class SpringWithMemory final : public ActiveEffect {
+ public:
+  SpringWithMemory(const JointOf& joint, const EffectValues& values)
+      : stiffness_(values[0]), loss_(values[1]), follower_(values[2]), joint_(joint) {}
+  void Push(const mjModel& model, mjData& data) noexcept override {
+    const double z = follower_.Step(data.qvel[joint_.dof], model.opt.timestep);
+    const double q = data.qpos[joint_.position] - joint_.rest;
+    data.qfrc_applied[joint_.dof] -= stiffness_ * (q + loss_ * z);
+  }
+
+ private:
+  double stiffness_;
+  double loss_;
+  Follower follower_;
+  JointOf joint_;
+};
+
+class HystereticStiffnessEffect final : public Effect {
+ public:
+  HystereticStiffnessEffect()
+      : Effect({.name = "hysteretic_stiffness",
+                .variable = LawVariable::kPosition,
+                .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
+                               NotNegative("loss", Role::kRatio, "1"),
+                               Positive("length", Role::kLength, "m")},
+                .meaning = "-stiffness (q + loss z), z follows q over that length: a "
+                           "cable, a hose"}) {}
+
+  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
+                                         int joint,
+                                         const EffectValues& values) const override {
+    return std::make_unique<SpringWithMemory>(JointOf(model, joint), values);
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    const Eigen::VectorXd q = at.q();
+    std::vector<Trial> trials;
+    for (const double length : LogGrid(3e-3 * Range(q), 2.0 * Range(q), 8)) {
+      Eigen::MatrixXd parts(q.size(), 2);
+      parts << -q, -Follow(q, length);
+      trials.push_back(
+          {parts, at.JointEntry(2), [length](const Amplitudes& a) -> TrialValues {
+             if (a[0] <= 0.0 || a[1] <= 0.0) return std::nullopt;
+             return ValuesOf({a[0], a[1] / a[0], length});
+           }});
+    }
+    return trials;
+  }
+  std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
+    return PlacedEffect{Lasting(LinearStiffness()), self.site, self.values.head(1)};
+  }
+  Sized Draw(const Scales& k, Random& r) const override {
+    const double length = k.stroke * r.Log(0.02, 0.3);
+    const double loss = r.Uniform(0.3, 2.0);
+    const double stiffness = 0.3 * k.SmallForce() / k.stroke;
+    return [=](double s) { return ValuesOf({s * stiffness, loss, length}); };
+  }
+};
+
+}  // namespace
+
+const Effect& HystereticStiffness() {
+  static const HystereticStiffnessEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,39 @@
+// The force of the motor times factor.
+
+#include <algorithm>
+
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+class MotorConstantEffect final : public Effect {
+ public:
+  MotorConstantEffect()
+      : Effect({.name = "motor_constant",
+                .site = SiteKind::kActuator,
+                .form = Form::kAttributes,
+                .variable = LawVariable::kInput,
+                .parameters = {NotNegative("factor", Role::kFactor, "1")},
+                .meaning = "the force of the motor times factor"}) {}
+
+  void Apply(mjModel& model, int actuator, const EffectValues& values) const override {
+    mjtNum* gear = model.actuator_gear + 6 * actuator;
+    std::for_each(gear, gear + 6, [&](mjtNum& g) { g *= values[0]; });
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
+  }
+  Sized Draw(const Scales&, Random& r) const override {
+    return AroundOne(r.Sign() * 0.1);
+  }
+};
+
+}  // namespace
+
+const Effect& MotorConstant() {
+  static const MotorConstantEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,39 @@
+// -coefficient v |v|
+
+#include <cmath>
+
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+class QuadraticDragEffect final : public JointForceEffect {
+ public:
+  QuadraticDragEffect()
+      : JointForceEffect(
+            {.name = "quadratic_drag",
+             .variable = LawVariable::kVelocity,
+             .parameters = {Free("coefficient", Role::kAmplitude, "N s^2/m^2")},
+             .meaning = "-coefficient v |v|"}) {}
+
+  double Force(double, double v, double,
+               const EffectValues& values) const noexcept override {
+    return -values[0] * v * std::abs(v);
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    return {LinearTrial(-at.v().cwiseProduct(at.v().cwiseAbs()), at.JointEntry())};
+  }
+  Sized Draw(const Scales& k, Random&) const override {
+    return Proportional(k.SmallForce() / (k.speed * k.speed));
+  }
+};
+
+}  // namespace
+
+const Effect& QuadraticDrag() {
+  static const QuadraticDragEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

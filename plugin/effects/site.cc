@@ -1,0 +1,102 @@
+#include "mjdiag/plugin/effects/site.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+
+// A motor that pushes one stage from another strains stiff guides as well; the joint
+// that gives way is the one that it drives: the largest share of the work at a
+// frequency far below all guides, (K + w^2 M)^-1 d weighed with d, for every column d.
+std::vector<Index> MostMoved(const MechanicalModel& model,
+                             const Eigen::MatrixXd& directions) {
+  constexpr double kOmega = 2.0 * std::numbers::pi * 5.0;  // [rad/s]
+  const Eigen::MatrixXd work = (model.K + kOmega * kOmega * model.M)
+                                   .ldlt()
+                                   .solve(directions)
+                                   .cwiseProduct(directions)
+                                   .cwiseAbs();
+  std::vector<Index> joints(static_cast<std::size_t>(directions.cols()));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    work.col(static_cast<Index>(i)).maxCoeff(&joints[i]);
+  }
+  return joints;
+}
+
+std::vector<Index> Unique(const std::vector<Index>& joints) {
+  const std::set<Index> set(joints.begin(), joints.end());
+  return {set.begin(), set.end()};
+}
+
+}  // namespace
+
+std::vector<Index> DrivenJoints(const MechanicalModel& model) {
+  return MostMoved(model, model.Gamma);
+}
+
+std::vector<Index> SeenJoints(const MechanicalModel& model) {
+  return MostMoved(model, model.b);
+}
+
+SiteMap::SiteMap(const mjModel& plant, const MechanicalModel& model,
+                 const Channels& channels)
+    : plant_(plant),
+      model_(model),
+      channels_(channels),
+      driven_(Unique(DrivenJoints(model))) {}
+
+std::vector<Site> SiteMap::Actuators() const {
+  const std::vector<Index> driven = DrivenJoints(model_);
+  std::vector<Site> sites;
+  for (std::size_t u = 0; u < channels_.actuators.size(); ++u) {
+    sites.push_back({channels_.actuators[u].element, driven[u], static_cast<Index>(u)});
+  }
+  return sites;
+}
+
+std::vector<Site> SiteMap::Sensors() const {
+  const std::vector<Index> seen = SeenJoints(model_);
+  std::vector<Site> sites;
+  for (std::size_t y = 0; y < channels_.sensors.size(); ++y) {
+    sites.push_back({channels_.sensors[y].element, seen[y], static_cast<Index>(y)});
+  }
+  return sites;
+}
+
+std::vector<Site> SiteMap::Joints(const std::vector<Index>& joints) const {
+  std::vector<Site> sites;
+  for (const Index joint : joints) {
+    sites.push_back({model_.coordinates[static_cast<std::size_t>(joint)], joint, -1});
+  }
+  return sites;
+}
+
+std::vector<Index> SiteMap::Held() const {
+  std::vector<Index> joints;
+  for (int j = 0; j < plant_.nv; ++j) {
+    if (plant_.jnt_stiffness[plant_.dof_jntid[j]] > 0.0) joints.push_back(j);
+  }
+  return joints;
+}
+
+std::vector<Index> SiteMap::Ground() const {
+  std::vector<Index> joints;
+  for (Index j = 0; j < model_.M.rows(); ++j) {
+    const int body = plant_.jnt_bodyid[plant_.dof_jntid[j]];
+    if (plant_.body_parentid[body] == 0) joints.push_back(j);
+  }
+  return joints;
+}
+
+std::vector<Index> Without(std::vector<Index> joints,
+                           const std::vector<Index>& others) {
+  std::erase_if(joints, [&](Index j) { return std::ranges::count(others, j) > 0; });
+  return joints;
+}
+
+}  // namespace mjdiag

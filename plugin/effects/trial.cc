@@ -1,0 +1,28 @@
+#include "mjdiag/plugin/effects/trial.h"
+
+#include <utility>
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd SiteMotion::JointEntry(Index columns) const {
+  return VectorXd::Unit(model.M.rows(), site.joint).replicate(1, columns);
+}
+
+MatrixXd SiteMotion::MotorEntry(Index columns) const {
+  return model.Gamma.col(site.channel).replicate(1, columns);
+}
+
+Trial LinearTrial(MatrixXd signals, MatrixXd entry, double offset, bool not_negative) {
+  return {std::move(signals), std::move(entry),
+          [offset, not_negative](const Amplitudes& a) -> TrialValues {
+            VectorXd values = offset + a.array();
+            if (not_negative && values.minCoeff() < 0.0) return std::nullopt;
+            return values;
+          }};
+}
+
+}  // namespace mjdiag

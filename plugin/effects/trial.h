@@ -1,0 +1,68 @@
+#pragma once
+// How an effect would show, to first order: the force (or the error of a reading) that
+// it makes along the observed motion, with its shape parameters (a period, a frequency,
+// a length) on a grid and its amplitudes free. Every grid point is a trial, and linear
+// least squares on the innovations judges it.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/effects/site.h"
+
+namespace mjdiag {
+
+using Amplitudes = Eigen::VectorXd;
+/// Values of an effect's parameters, in their order, for amplitudes; none: not
+/// physical.
+using TrialValues = std::optional<Eigen::VectorXd>;
+
+struct Trial {
+  Eigen::MatrixXd signals;  ///< samples x amplitudes: force or error of the reading
+  Eigen::MatrixXd entry;    ///< nq x amplitudes, of forces; empty: errors of a reading
+  std::function<TrialValues(const Amplitudes&)> values;
+  /// An error of readings that is far too fast for the observer to follow: it shows in
+  /// the innovations as it is.
+  bool fast = false;
+  bool summed = false;  ///< all signals have one amplitude: one fault, several joints
+};
+
+/// Trials over one parameter that has to be met closely: a period or a frequency. Each
+/// is the sine and the cosine of an angle, which grows evenly from one to the next.
+struct Sweep {
+  std::vector<double> values;  ///< in order, close enough to miss no maximum
+  Eigen::VectorXd angle;       ///< of the first value, samples [rad]
+  Eigen::VectorXd increment;   ///< from one value to the next, samples [rad]
+  /// Errors of readings with a lower value (a period) are `fast`.
+  double fast_below = 0.0;
+  std::function<Trial(double)> make;
+};
+
+/// The observed motion at a site. Does not own what it refers to.
+struct SiteMotion {
+  const mjModel& plant;
+  const MechanicalModel& model;
+  const ObservedMotion& motion;
+  const Site& site;
+
+  Eigen::VectorXd q() const { return motion.position.row(site.joint); }
+  Eigen::VectorXd v() const { return motion.velocity.row(site.joint); }
+  Eigen::VectorXd a() const { return motion.acceleration.row(site.joint); }
+  Eigen::VectorXd u() const { return motion.inputs.row(site.channel); }
+  Eigen::VectorXd y() const { return motion.outputs.row(site.channel); }
+  /// Of `columns` forces on the joint, or commands of the actuator.
+  Eigen::MatrixXd JointEntry(Eigen::Index columns = 1) const;
+  Eigen::MatrixXd MotorEntry(Eigen::Index columns = 1) const;
+};
+
+/// One amplitude for each parameter, in their order, and no shape: value = offset +
+/// amplitude.
+Trial LinearTrial(Eigen::MatrixXd signals, Eigen::MatrixXd entry, double offset = 0.0,
+                  bool not_negative = false);
+
+}  // namespace mjdiag

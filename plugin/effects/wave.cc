@@ -1,0 +1,70 @@
+#include "mjdiag/plugin/effects/wave.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+}  // namespace
+
+Trial WaveTrial(const VectorXd& entry, const VectorXd& angle, double value) {
+  Trial trial;
+  trial.signals.resize(angle.size(), 2);
+  trial.signals << angle.array().sin(), angle.array().cos();
+  if (entry.size() > 0) trial.entry = entry.replicate(1, 2);
+  trial.values = [value](const Amplitudes& a) -> TrialValues {
+    const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
+    return ValuesOf({amplitude, value, phase});
+  };
+  return trial;
+}
+
+Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step,
+                  double fast_below) {
+  const double range = Range(x);
+  Sweep sweep;
+  for (int m = 2; m <= finest; m += step) sweep.values.push_back(4.0 * range / m);
+  sweep.angle = 2.0 * kTurn / (4.0 * range) * x;
+  sweep.increment = step * kTurn / (4.0 * range) * x;
+  sweep.fast_below = fast_below;
+  sweep.make = [entry, x, fast_below](double period) {
+    Trial trial = WaveTrial(entry, kTurn / period * x, period);
+    trial.fast = period < fast_below;
+    return trial;
+  };
+  return sweep;
+}
+
+Sweep FrequencySweep(const VectorXd& entry, const ObservedMotion& motion,
+                     double duration) {
+  const double highest = std::min(0.1 / motion.sample_time, 250.0);
+  const double spacing = 0.7 / duration;
+  Sweep sweep;
+  for (double f = 2.0 * spacing; f < highest; f += spacing) sweep.values.push_back(f);
+  const Index n = motion.samples();
+  const VectorXd time =
+      motion.sample_time * VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  sweep.angle = kTurn * 2.0 * spacing * time;
+  sweep.increment = kTurn * spacing * time;
+  sweep.make = [entry, time](double frequency) {
+    return WaveTrial(entry, kTurn * frequency * time, frequency);
+  };
+  return sweep;
+}
+
+std::pair<double, double> AmplitudeAndPhase(double a, double b) {
+  return {std::hypot(a, b), std::atan2(b, a)};
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,31 @@
+#pragma once
+// Effects that are a wave, amplitude sin(angle + phase), over a position or time: their
+// parameters are amplitude, period or frequency, and phase, in this order.
+
+#include <Eigen/Core>
+#include <utility>
+
+#include "mjdiag/plugin/effects/trial.h"
+
+namespace mjdiag {
+
+/// Sine and cosine of an angle, with `value` the period or frequency.
+/// @param entry  of the force, nq; empty: an error of a reading
+Trial WaveTrial(const Eigen::VectorXd& entry, const Eigen::VectorXd& angle,
+                double value);
+
+/// Periods of a wave over x, from half a period over the stroke on.
+/// @param finest      quarters of a period over the stroke, at most
+/// @param step        quarters from one to the next: 1 or 2 miss no maximum
+/// @param fast_below  see Sweep
+Sweep PeriodSweep(const Eigen::VectorXd& entry, const Eigen::VectorXd& x, int finest,
+                  int step, double fast_below);
+
+/// Frequencies of a wave over time, as close as a record of `duration` [s] tells apart.
+Sweep FrequencySweep(const Eigen::VectorXd& entry, const ObservedMotion& motion,
+                     double duration);
+
+/// Phase and amplitude >= 0 of a sin(x) + b cos(x).
+std::pair<double, double> AmplitudeAndPhase(double a, double b);
+
+}  // namespace mjdiag
