@@ -47,12 +47,12 @@ class Discoverer {
                                                  const Eigen::MatrixXd& covariance,
                                                  const std::vector<Interval>& intervals,
                                                  Eigen::Index first) const;
-  std::vector<Alternative> AlternativesOf(
-      const FittedCause& fitted, const std::vector<Contender>& contenders) const;
+  std::vector<Alternative> AlternativesOf(const FittedCause& fitted,
+                                          const std::vector<Hypothesis>& rivals) const;
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
   void NoteQuietAxes(const ObservedMotion& motion);
-  void NoteTwins(std::size_t cause, const std::vector<Contender>& contenders);
+  void NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals);
   std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
   void FindWhere(const Track& nominal, const Track& final);
   void SignRest(const ObservedMotion& motion);

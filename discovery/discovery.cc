@@ -11,8 +11,8 @@
 #include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
+#include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/discovery/selection/model_choice.h"
-#include "mjdiag/discovery/selection/telling_motion.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -24,11 +24,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Below this share of the excess over noise that causes take away they are not an
-// explanation but the best of the wrong ones.
-constexpr double kNamedShare = 0.9;
-// More than noise, times the noise power of the sensors.
-constexpr double kMuch = 4.0;
 // Bandwidth of the fast observer, of the control rate.
 constexpr double kFastShare = 0.02;
 constexpr int kFurtherCauses = 3;
@@ -55,9 +50,9 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
 }
 
 std::vector<Alternative> Discoverer::AlternativesOf(
-    const FittedCause& fitted, const std::vector<Contender>& contenders) const {
+    const FittedCause& fitted, const std::vector<Hypothesis>& rivals) const {
   std::vector<Alternative> alternatives;
-  for (const Contender& other : contenders) {
+  for (const Hypothesis& other : rivals) {
     if (other.cause.candidate == fitted.candidate) continue;
     if (other.probability < kLeastProbability) continue;
     alternatives.push_back(
@@ -70,16 +65,17 @@ std::vector<Alternative> Discoverer::AlternativesOf(
 // it piles up, and few of its values are independent of each other. A fast observer
 // takes it away as it comes, and smaller causes show.
 bool Discoverer::IsColoured(const CauseFit& fit) const {
-  return fit.train > kMuch && IndependentShare(problem_, fit.residual).minCoeff() < 0.5;
+  return fit.train > kFarAboveNoise &&
+         IndependentShare(problem_, fit.residual).minCoeff() < 0.5;
 }
 
 /// Goes on from the causes found so far, behind the present observer: in long steps
 /// where these are near enough, then in those of the setup. Down to the noise the long
 /// steps have to stay near; beside a rest that is far above it anyway they need not.
 void Discoverer::Search(SearchOptions options, bool down_to_noise) {
-  const auto before = static_cast<int>(search_.fit.causes.size());
+  const auto before = static_cast<int>(search_.fit().causes.size());
   if (const auto coarse =
-          Coarsen(problem_, ChangesOf(candidates_, search_.fit.causes))) {
+          Coarsen(problem_, ChangesOf(candidates_, search_.fit().causes))) {
     SearchOptions rough = options;
     rough.last_fit = false;
     rough.serves = [&](const CauseFit& fit) {
@@ -87,16 +83,16 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
              IsNear(*coarse, problem_, ChangesOf(candidates_, fit.causes));
     };
     search_ = SearchCauses(*coarse, candidates_, rough, &search_);
-    if (search_.served && options.preliminary && options.preliminary(search_.fit)) {
+    if (search_.served && options.preliminary && options.preliminary(search_.fit())) {
       return;
     }
-    options.most_causes -= static_cast<int>(search_.fit.causes.size()) - before;
+    options.most_causes -= static_cast<int>(search_.fit().causes.size()) - before;
   }
   search_ = SearchCauses(problem_, candidates_, options, &search_);
 }
 
 void Discoverer::NameCauses() {
-  const CauseFit& fit = search_.fit;
+  const CauseFit& fit = search_.fit();
   if (fit.causes.empty()) return;
   const MatrixXd covariance = ParameterCovariance(problem_, fit);
   Report("intervals", 0.7);
@@ -109,12 +105,12 @@ void Discoverer::NameCauses() {
     found.parameters = DescribeParameters(fit.causes[i], covariance, intervals, first);
     first += fit.causes[i].value.size();
     found.probability = 1.0;
-    for (const Contender& contender : search_.contenders[i]) {
-      if (contender.cause.candidate == fit.causes[i].candidate) {
-        found.probability = contender.probability;
+    for (const Hypothesis& rival : search_.rivals[i]) {
+      if (rival.cause.candidate == fit.causes[i].candidate) {
+        found.probability = rival.probability;
       }
     }
-    found.alternatives = AlternativesOf(fit.causes[i], search_.contenders[i]);
+    found.alternatives = AlternativesOf(fit.causes[i], search_.rivals[i]);
     for (const Cause& twin : Twins(machine_.plant(), found.cause)) {
       found.alternatives.insert(found.alternatives.begin(),
                                 {twin, found.probability, true});
@@ -140,26 +136,15 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
 }
 
 void Discoverer::Judge() {
-  const bool something = !search_.ladder.empty() || search_.significant_rest;
   for (const FittedCause& refuted : search_.refuted) {
     discovery_.notes.push_back("not named, for it spoils what the fit did not see: " +
                                Describe(CauseOf(candidates_, refuted)));
   }
-  const bool found = !discovery_.causes.empty();
-  const Index channels = problem_.run.outputs.rows();
-  const double nominal =
-      MeanSquare(problem_.Residual({}), channels, problem_.skip, problem_.train) - 1.0;
-  const double rest = std::max(search_.fit.train - 1.0, 0.0);
-  const double share = nominal > 0.0 ? 1.0 - rest / nominal : 0.0;
-  if (!found) {
-    discovery_.verdict =
-        something ? DiscoveryVerdict::kUnexplained : DiscoveryVerdict::kNoDiscrepancy;
-  } else if (!search_.significant_rest && search_.fit.train <= kMuch) {
-    discovery_.verdict = DiscoveryVerdict::kExplained;
-  } else if (share >= kNamedShare) {
-    discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
-  } else {
-    discovery_.verdict = DiscoveryVerdict::kUnexplained;
+  const bool named = !discovery_.causes.empty();
+  const double nominal = MeanSquare(problem_.Residual({}), problem_.run.outputs.rows(),
+                                    problem_.skip, problem_.train);
+  discovery_.verdict = VerdictOf(search_, named, nominal);
+  if (named && discovery_.verdict == DiscoveryVerdict::kUnexplained) {
     std::string tried;
     for (const FoundCause& cause : discovery_.causes) {
       tried += (tried.empty() ? "" : ", ") + Describe(cause.cause);
@@ -187,8 +172,7 @@ void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
   }
 }
 
-void Discoverer::NoteTwins(std::size_t cause,
-                           const std::vector<Contender>& contenders) {
+void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals) {
   const FoundCause& found = discovery_.causes[cause];
   for (const Alternative& other : found.alternatives) {
     if (other.indistinguishable) {
@@ -199,26 +183,26 @@ void Discoverer::NoteTwins(std::size_t cause,
     }
   }
   constexpr double kCompetes = 0.05;
-  const FittedCause& fitted = search_.fit.causes[cause];
-  for (const Contender& other : contenders) {
+  const FittedCause& fitted = search_.fit().causes[cause];
+  for (const Hypothesis& other : rivals) {
     if (other.cause.candidate == fitted.candidate || other.probability < kCompetes) {
       continue;
     }
     std::string note = "the record does not tell " + Describe(found.cause) + " from " +
                        Describe(CauseOf(candidates_, other.cause));
-    const auto motion = FindTellingMotion(
+    const auto experiment = FindDiscriminatingExperiment(
         machine_.WithSensorNoise(problem_.observer.noise_sd), ChangesOf({found.cause}),
         ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
-    if (!motion || motion->separation < kTells) {
+    if (!experiment || experiment->separation < kTells) {
       note += "; no trajectory of the setup would, a larger or faster motion may";
     } else {
-      note += "; trajectory '" + motion->trajectory + "'";
-      if (motion->slower > 1.0) {
-        note +=
-            ", " + std::to_string(static_cast<int>(motion->slower)) + " times slower,";
+      note += "; trajectory '" + experiment->trajectory + "'";
+      if (experiment->slower > 1.0) {
+        note += ", " + std::to_string(static_cast<int>(experiment->slower)) +
+                " times slower,";
       }
-      note += " would, by " + std::to_string(static_cast<int>(motion->separation)) +
+      note += " would, by " + std::to_string(static_cast<int>(experiment->separation)) +
               " standard deviations";
     }
     discovery_.notes.push_back(note);
@@ -242,7 +226,7 @@ Discovery Discoverer::Run() {
     return options_.bandwidth == 0.0 && IsColoured(fit);
   };
   Search(search, true);
-  if (search.preliminary(search_.fit)) {
+  if (search.preliminary(search_.fit())) {
     problem_ = PoseProblem(machine_, measured_, options_.train_share,
                            kFastShare * machine_.rates().control);
     // Every further one takes longer than all before it.
@@ -251,7 +235,7 @@ Discovery Discoverer::Run() {
     Search(search, false);
   }
   NameCauses();
-  const std::array plants{Changes{}, ChangesOf(candidates_, search_.fit.causes)};
+  const std::array plants{Changes{}, ChangesOf(candidates_, search_.fit().causes)};
   std::array<Track, 2> tracks;
   ParallelFor(2, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
@@ -266,9 +250,9 @@ Discovery Discoverer::Run() {
                                                 : FollowWith(changes_);
   const ObservedMotion motion = MotionOf(final);
   NoteQuietAxes(motion);
-  for (std::size_t i = 0; i < search_.contenders.size() && i < discovery_.causes.size();
+  for (std::size_t i = 0; i < search_.rivals.size() && i < discovery_.causes.size();
        ++i) {
-    NoteTwins(i, search_.contenders[i]);
+    NoteTwins(i, search_.rivals[i]);
   }
   if (options_.figures || discovery_.verdict == DiscoveryVerdict::kUnexplained) {
     Report("unexplained forces", 0.8);
@@ -300,20 +284,6 @@ Discovery Discover(const Machine& machine, const Record& measured,
   Discovery discovery = Discoverer(machine, measured, validation, options).Run();
   discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
   return discovery;
-}
-
-std::string VerdictName(DiscoveryVerdict verdict) {
-  switch (verdict) {
-    case DiscoveryVerdict::kNoDiscrepancy:
-      return "no_discrepancy";
-    case DiscoveryVerdict::kExplained:
-      return "explained";
-    case DiscoveryVerdict::kPartlyExplained:
-      return "partly_explained";
-    case DiscoveryVerdict::kUnexplained:
-      return "unexplained";
-  }
-  return "";
 }
 
 Changes ChangesOf(const Discovery& discovery) {

@@ -14,19 +14,13 @@
 
 #include "mjdiag/comparison/comparison.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
-
-enum class DiscoveryVerdict {
-  kNoDiscrepancy,    ///< noise explains the record
-  kExplained,        ///< causes were found, noise explains the rest
-  kPartlyExplained,  ///< causes were found, something is left
-  kUnexplained       ///< something is there, and no candidate is its cause
-};
 
 struct CauseParameter {
   std::string name;
@@ -87,7 +81,7 @@ struct Discovery {
   std::vector<FoundCause> causes;
   std::optional<Signature> unexplained;  ///< of what is left, if anything is
   std::string unexplained_site;
-  /// What cannot be judged, what cannot be told apart and which motion would tell,
+  /// What cannot be judged, what cannot be told apart and which experiment would,
   /// what looks odd in the record.
   std::vector<std::string> notes;
 
@@ -131,15 +125,11 @@ struct DiscoverOptions {
   std::function<void(const std::string& what, double fraction)> progress;
 };
 
-/// @param plant       as LoadPlant gives it
 /// @param validation  a record of another motion that nothing is fitted to, or null
 /// InputError if the record lacks what the replay needs or cannot be judged (see
 /// data_check.h).
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
-
-/// "no_discrepancy", "explained", "partly_explained", "unexplained".
-std::string VerdictName(DiscoveryVerdict verdict);
 
 /// The causes as changes to a plant, for Simulate and ExtendMjcf.
 Changes ChangesOf(const Discovery& discovery);

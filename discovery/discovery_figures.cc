@@ -127,7 +127,7 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
 /// Partial residuals: with several causes at a joint, the force that all of them
 /// explain lies on the law of none.
 LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) const {
-  const Candidate& candidate = candidates_[search_.fit.causes[cause].candidate];
+  const Candidate& candidate = candidates_[search_.fit().causes[cause].candidate];
   LawPlot plot;
   plot.cause = Describe(candidate);
   plot.site =
@@ -136,7 +136,7 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
     return std::ranges::find(forces, plot.site, &UnknownSignal::site);
   };
   if (at(discovery_.forces_before) == discovery_.forces_before.end()) return plot;
-  const std::vector<FittedCause> others = Without(search_.fit.causes, cause);
+  const std::vector<FittedCause> others = Without(search_.fit().causes, cause);
   const auto forces = others.empty()
                           ? discovery_.forces_before
                           : UnexplainedIn(FollowWith(ChangesOf(candidates_, others)));
@@ -165,7 +165,8 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
 }
 
 void Discoverer::AddLaws(const ObservedMotion& motion) {
-  discovery_.laws.resize(std::min(search_.fit.causes.size(), discovery_.causes.size()));
+  discovery_.laws.resize(
+      std::min(search_.fit().causes.size(), discovery_.causes.size()));
   ParallelFor(static_cast<int>(discovery_.laws.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     try {
@@ -177,13 +178,13 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
   std::erase_if(discovery_.laws, [](const LawPlot& law) { return law.x.size() == 0; });
 }
 
-/// Every rung behind the same observer, or they would not compare.
+/// Every step behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
   const Index channels = problem_.run.outputs.rows();
   std::vector<std::pair<std::string, Changes>> steps = {{"nothing", {}}};
-  for (const Rung& rung : search_.ladder) {
-    steps.emplace_back(Describe(candidates_[rung.fit.causes.back().candidate]),
-                       ChangesOf(candidates_, rung.fit.causes));
+  for (const std::vector<FittedCause>& causes : search_.ladder) {
+    steps.emplace_back(Describe(candidates_[causes.back().candidate]),
+                       ChangesOf(candidates_, causes));
   }
   if (!discovery_.causes.empty()) steps.emplace_back("all, fitted together", changes_);
   discovery_.ladder.resize(steps.size());
@@ -215,19 +216,19 @@ void Discoverer::AddComparisons() {
   options.seed = options_.seed;
   const Machine extended = machine_.With(changes_);
   struct Task {
-    const Record* measured;
     const Machine& machine;
+    const Record& measured;
     Comparison& result;
   };
-  std::vector<Task> tasks{{&measured_, machine_, discovery_.before},
-                          {&measured_, extended, discovery_.after}};
+  std::vector<Task> tasks{{machine_, measured_, discovery_.before},
+                          {extended, measured_, discovery_.after}};
   if (validation_ != nullptr) {
-    tasks.push_back({validation_, machine_, discovery_.validation_before.emplace()});
-    tasks.push_back({validation_, extended, discovery_.validation_after.emplace()});
+    tasks.push_back({machine_, *validation_, discovery_.validation_before.emplace()});
+    tasks.push_back({extended, *validation_, discovery_.validation_after.emplace()});
   }
   ParallelFor(static_cast<int>(tasks.size()), [&](int number) {
     const Task& task = tasks[static_cast<std::size_t>(number)];
-    task.result = Compare(task.machine, *task.measured, options);
+    task.result = Compare(task.machine, task.measured, options);
   });
   const Index skip = problem_.skip;
   discovery_.mismatch_before.train =

@@ -41,7 +41,7 @@ class Simulator {
       : problem_(problem),
         candidates_(candidates),
         causes_(causes),
-        known_(options.known),
+        known_jacobian_(options.known_jacobian),
         secant_(options.secant),
         parameters_(ParametersOf(candidates, causes)) {}
   const std::vector<FitParameter>& parameters() const { return parameters_; }
@@ -55,36 +55,36 @@ class Simulator {
   }
 
   /// J at theta for a step of the fit, all samples.
-  const MatrixXd& Slope(const VectorXd& theta) {
-    if (slope_.size() == 0) {
-      slope_ = Differences(theta, known_);
-      NoteSlope(theta, known_ == nullptr);
-    } else if (theta != slope_theta_ && secant_) {
+  const MatrixXd& StepJacobian(const VectorXd& theta) {
+    if (jacobian_.size() == 0) {
+      jacobian_ = Differences(theta, known_jacobian_);
+      NoteJacobian(theta, known_jacobian_ == nullptr);
+    } else if (theta != jacobian_theta_ && secant_) {
       Broyden(theta);
-      NoteSlope(theta, false);
-    } else if (theta != slope_theta_) {
-      return Sensitivities(theta);
+      NoteJacobian(theta, false);
+    } else if (theta != jacobian_theta_) {
+      return Jacobian(theta);
     }
-    return slope_;
+    return jacobian_;
   }
 
   /// J of the last step of the fit.
-  const MatrixXd& slope() const { return slope_; }
+  const MatrixXd& jacobian() const { return jacobian_; }
 
   /// J at theta by differences, all samples.
-  const MatrixXd& Sensitivities(const VectorXd& theta) {
-    if (!exact_ || theta != slope_theta_) {
-      slope_ = Differences(theta, nullptr);
-      NoteSlope(theta, true);
+  const MatrixXd& Jacobian(const VectorXd& theta) {
+    if (!exact_ || theta != jacobian_theta_) {
+      jacobian_ = Differences(theta, nullptr);
+      NoteJacobian(theta, true);
     }
-    return slope_;
+    return jacobian_;
   }
 
  private:
-  void NoteSlope(const VectorXd& theta, bool exact) {
+  void NoteJacobian(const VectorXd& theta, bool exact) {
     exact_ = exact;
-    slope_theta_ = theta;
-    slope_residual_ = Residual(theta);
+    jacobian_theta_ = theta;
+    jacobian_residual_ = Residual(theta);
   }
 
   /// J with its first columns from `known`, if any.
@@ -105,18 +105,18 @@ class Simulator {
   /// J += (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the
   /// squared norms of its columns: parameters of all units count alike.
   void Broyden(const VectorXd& theta) {
-    const VectorXd step = theta - slope_theta_;
+    const VectorXd step = theta - jacobian_theta_;
     const VectorXd metric =
-        slope_.colwise().squaredNorm().transpose().cwiseProduct(step);
+        jacobian_.colwise().squaredNorm().transpose().cwiseProduct(step);
     const double length = step.dot(metric);
     if (!(length > 0.0)) return;
-    const VectorXd missed = Residual(theta) - slope_residual_ - slope_ * step;
-    slope_ += missed * (metric / length).transpose();
+    const VectorXd missed = Residual(theta) - jacobian_residual_ - jacobian_ * step;
+    jacobian_ += missed * (metric / length).transpose();
   }
 
   /// Column i of J. A machine that sticks and slips may answer to any change, however
   /// small, with a course of its own: a difference that a step ten times as large does
-  /// not raise. Then only large steps show the slope.
+  /// not raise. Then only large steps show the derivative.
   VectorXd Difference(const VectorXd& theta, const VectorXd& base, Index i,
                       double duration) const {
     constexpr double kFirst = 1e-4;
@@ -125,17 +125,17 @@ class Simulator {
     constexpr double kGrows = 5.0;
     const FitParameter& parameter = parameters_[static_cast<std::size_t>(i)];
     const double scale = ScaleOf(parameter, theta[i], duration);
-    const auto slope = [&](double step) {
+    const auto quotient = [&](double step) {
       if (theta[i] + step > parameter.upper) step = -step;
       VectorXd moved = theta;
       moved[i] += step;
       return VectorXd((RunAt(moved) - base) / step);
     };
-    VectorXd found = slope(kFirst * scale);
+    VectorXd found = quotient(kFirst * scale);
     for (double part = kFirst; part < kLast; part *= 10.0) {
       if (found.norm() * part * scale < kNoticed) break;
       try {
-        VectorXd further = slope(10.0 * part * scale);
+        VectorXd further = quotient(10.0 * part * scale);
         if (10.0 * further.norm() > kGrows * found.norm()) break;
         found = std::move(further);
       } catch (const NumericalError&) {
@@ -153,15 +153,15 @@ class Simulator {
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const std::vector<FittedCause>& causes_;
-  const MatrixXd* known_;
+  const MatrixXd* known_jacobian_;
   bool secant_;
   std::vector<FitParameter> parameters_;
   VectorXd theta_;
   VectorXd residual_;
-  bool exact_ = false;  // slope_ is all of differences
-  MatrixXd slope_;      // of the last step of the fit, with where it was taken
-  VectorXd slope_theta_;
-  VectorXd slope_residual_;
+  bool exact_ = false;  // jacobian_ is all of differences
+  MatrixXd jacobian_;   // of the last step of the fit, with where it was taken
+  VectorXd jacobian_theta_;
+  VectorXd jacobian_residual_;
 };
 
 class InnovationCost final : public ceres::CostFunction {
@@ -181,7 +181,7 @@ class InnovationCost final : public ceres::CostFunction {
       if (jacobians == nullptr || jacobians[0] == nullptr) return true;
       using RowMajor =
           Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      MatrixXd J = simulator_.Slope(theta).middleRows(first_, count_);
+      MatrixXd J = simulator_.StepJacobian(theta).middleRows(first_, count_);
       if (!J.allFinite()) return false;
       if (size == 1) {
         Eigen::Map<VectorXd>(jacobians[0], count_) = J.col(0);
@@ -236,7 +236,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   VectorXd theta = Flatten(start);
   if (theta.size() > 0) {
     // Throws where the first values cannot be run; Ceres would write to stderr.
-    if (!simulator.Slope(theta).allFinite()) {
+    if (!simulator.StepJacobian(theta).allFinite()) {
       throw NumericalError("fit: the run with the first values diverges");
     }
     ceres::Problem::Options ownership;
@@ -269,9 +269,8 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.causes = WithValues(start, theta);
   }
   if (theta.size() > 0) {
-    fit.exact = options.sensitivities;
-    fit.sensitivities =
-        options.sensitivities ? simulator.Sensitivities(theta) : simulator.slope();
+    fit.exact = options.jacobian;
+    fit.jacobian = options.jacobian ? simulator.Jacobian(theta) : simulator.jacobian();
   }
   const Index samples = problem.run.samples();
   fit.residual = problem.train == samples
@@ -282,11 +281,12 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   return fit;
 }
 
-FitOptions CompareFrom(const MatrixXd* known, int iterations, double tolerance) {
+FitOptions CompareFrom(const MatrixXd* known_jacobian, int iterations,
+                       double tolerance) {
   return {.iterations = iterations,
           .tolerance = tolerance,
-          .sensitivities = false,
-          .known = known,
+          .jacobian = false,
+          .known_jacobian = known_jacobian,
           .secant = true};
 }
 
@@ -303,8 +303,8 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
   }
 }
 
-MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i) {
-  const MatrixXd& all = fit.sensitivities;
+MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i) {
+  const MatrixXd& all = fit.jacobian;
   Index first = 0;
   for (std::size_t k = 0; k < i; ++k) first += fit.causes[k].value.size();
   const Index count = fit.causes[i].value.size();
@@ -315,10 +315,9 @@ MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i) {
 
 MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
   const Index channels = problem.run.outputs.rows();
-  const Index parameters = fit.sensitivities.cols();
+  const Index parameters = fit.jacobian.cols();
   const Index n = problem.train - problem.skip;
-  const MatrixXd J =
-      fit.sensitivities.middleRows(channels * problem.skip, channels * n);
+  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip, channels * n);
   const VectorXd e = fit.residual.segment(channels * problem.skip, channels * n);
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();

@@ -24,11 +24,11 @@ namespace mjdiag {
 
 struct CauseFit {
   std::vector<FittedCause> causes;
-  Eigen::VectorXd residual;       ///< scaled innovations of all samples
-  Eigen::MatrixXd sensitivities;  ///< J = d residual / d theta of the train part
-  bool exact = false;             ///< J by differences at theta, not by secants
-  double train = 0.0;             ///< mean square of the train part
-  double held_out = 0.0;          ///< of the rest; 0 without
+  Eigen::VectorXd residual;  ///< scaled innovations of all samples
+  Eigen::MatrixXd jacobian;  ///< J = d residual / d theta of the train part
+  bool exact = false;        ///< J by differences at theta, not by secants
+  double train = 0.0;        ///< mean square of the train part
+  double held_out = 0.0;     ///< of the rest; 0 without
 };
 
 struct FitOptions {
@@ -36,10 +36,10 @@ struct FitOptions {
   /// Of the sum of squares, relative: when to stop.
   double tolerance = 1e-6;
   /// Compute J at the solution; else it is that of the last step.
-  bool sensitivities = true;
+  bool jacobian = true;
   /// J of the first parameters at the start, instead of differences: of causes that
   /// have been fitted before. Not owned.
-  const Eigen::MatrixXd* known = nullptr;
+  const Eigen::MatrixXd* known_jacobian = nullptr;
   /// J from differences at the start only, then by Broyden's updates: one run a step
   /// instead of one for every parameter. Near enough to compare causes.
   bool secant = false;
@@ -60,7 +60,8 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
 
 /// For fits that are compared: by secants, from what is known of J (or null), none
 /// computed at the end.
-FitOptions CompareFrom(const Eigen::MatrixXd* known, int iterations, double tolerance);
+FitOptions CompareFrom(const Eigen::MatrixXd* known_jacobian, int iterations,
+                       double tolerance);
 
 /// The same; none where the start diverges or takes away more than there is.
 std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
@@ -69,7 +70,7 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const FitOptions& options);
 
 /// J of a fit but for cause i.
-Eigen::MatrixXd SensitivitiesWithout(const CauseFit& fit, std::size_t i);
+Eigen::MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i);
 
 /// Covariance of all parameters of the fit, in order of the causes; infinite variance
 /// where the data say nothing.

@@ -62,7 +62,7 @@ double Profile::Lost(double step) const {
   }
   // To a tenth of what a crossing is.
   const double tolerance = 0.1 * crossing_ / (FittedValues(problem_) * fit_.train);
-  FitOptions options = CompareFrom(&fit_.sensitivities, 4, tolerance);
+  FitOptions options = CompareFrom(&fit_.jacobian, 4, tolerance);
   options.held = index_;
   const auto held =
       TryFit(problem_, candidates_, WithValues(fit_.causes, theta), options);
@@ -138,7 +138,7 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const MatrixXd& covariance) {
   const Index channels = problem.run.outputs.rows();
   const VectorXd theta = Flatten(fit.causes);
-  const MatrixXd J = fit.sensitivities.middleRows(
+  const MatrixXd J = fit.jacobian.middleRows(
       channels * problem.skip, channels * (problem.train - problem.skip));
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();

@@ -27,7 +27,7 @@ namespace mjdiag {
 /// likelihood is quadratic, for sizes of laws and where the standard deviation is small
 /// beside the value; else the profile is followed from there to where it crosses. An
 /// end beyond a parameter's bounds is the bound.
-/// @param fit         with sensitivities at its solution
+/// @param fit         with the Jacobian at its solution
 /// @param covariance  of its parameters
 std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const std::vector<Candidate>& candidates,

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 double Left(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
             const std::vector<FittedCause>& causes) {
   const auto fit =
-      TryFit(problem, candidates, causes, {.iterations = 0, .sensitivities = false});
+      TryFit(problem, candidates, causes, {.iterations = 0, .jacobian = false});
   return fit ? fit->train : std::numeric_limits<double>::infinity();
 }
 

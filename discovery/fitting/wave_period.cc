@@ -40,7 +40,7 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   std::vector<FittedCause> others;
   for (Start& start : BetterWaves(
            seen, wave, present, ObserveMotion(seen.machine, seen.run, track), dynamics,
-           left - (moved - left) / kStep, SensitivitiesWithout(fit, i), kMostPeriods)) {
+           left - (moved - left) / kStep, JacobianWithout(fit, i), kMostPeriods)) {
     start.candidate = causes[i].candidate;
     others.push_back(FittedFrom(candidates, start));
   }

@@ -54,11 +54,11 @@ int ParameterCount(const std::vector<FittedCause>& causes) {
   return count;
 }
 
-double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
-                 const VectorXd& independent) {
-  const double samples = static_cast<double>(problem.train - problem.skip);
+double Criterion(const CauseFit& fit, const VectorXd& independent, Index first,
+                 Index last) {
+  const double samples = static_cast<double>(last - first);
   const double n = std::max(2.0, samples * independent.sum());
-  return Deviance(fit.residual, independent, problem.skip, problem.train) +
+  return Deviance(fit.residual, independent, first, last) +
          ParameterCount(fit.causes) * std::log(n);
 }
 
@@ -72,7 +72,8 @@ std::vector<double> Criteria(const DiscoveryProblem& problem,
   if (best == nullptr) return criteria;
   const VectorXd independent = IndependentShare(problem, best->residual);
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (fits[i]) criteria[i] = Criterion(problem, *fits[i], independent);
+    if (!fits[i]) continue;
+    criteria[i] = Criterion(*fits[i], independent, problem.skip, problem.train);
   }
   return criteria;
 }

@@ -31,11 +31,12 @@ double GainByChance(double probability, int trials, int freedom);
 
 int ParameterCount(const std::vector<FittedCause>& causes);
 
-/// Bayesian information criterion of the train part, deviance + parameters log n.
-double Criterion(const DiscoveryProblem& problem, const CauseFit& fit,
-                 const Eigen::VectorXd& independent);
+/// Bayesian information criterion of samples first .. last - 1, deviance + parameters
+/// log n.
+double Criterion(const CauseFit& fit, const Eigen::VectorXd& independent,
+                 Eigen::Index first, Eigen::Index last);
 
-/// Criteria of competing fits. How many independent values they are judged by is what
+/// Criteria of competing fits on the train part. How many independent values they are judged by is what
 /// the best of them leaves: beside all models a real machine does what is no white
 /// noise, and a law with many parameters must not win by that. A fit that failed, and
 /// is none, has infinity.

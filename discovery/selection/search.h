@@ -1,28 +1,30 @@
 #pragma once
-// The search for causes: forwards, one cause at a time, then backwards.
+// The search for causes: a set of hypotheses grows by one at a time, and every other
+// move that the larger set suggests is tried before the next.
 //
-// A round screens all candidates on what is left (screening.h), fits the best of them
-// together with what has been found, first on the beginning of the record, then, those
-// that are still in the race, on all of the train part (cause_fit.h). They compete for
-// the place by the Bayesian information criterion, deviance + parameters log n
-// (model_choice.h), on the train part. The best is kept if it lowers that, and does not
-// raise the deviance on the part held out and on another record, if there is one; else
-// the next is asked.
+// A round
 //
-// Causes that a later one has made superfluous are dropped again, and exchanged where
-// with all others known another one is better (refinement.h).
+//   screens all candidates on what is left, and fits the best of them beside what has
+//   been found (addition.h); in the order of their criteria they are judged, and the
+//   first that is accepted is added;
+//   tries other periods for waves and drops what has become superfluous (moves.h);
+//   where the course of the machine depends on the last digit, looks for a better fit
+//   around the one that derivatives led to (unsteady_fit.h).
+//
+// When a round adds nothing each hypothesis is exchanged on trial (moves.h); if one is,
+// rounds go on, four times at most. In the end all values are fitted once more, as
+// closely as possible.
+//
+// One comparator judges all of these moves (comparator.h). A set that it turns down
+// leaves no trace but, if unseen data spoke against it, its name among the refuted.
 
-#include <Eigen/Core>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
-#include "mjdiag/discovery/screening/screening.h"
-#include "mjdiag/discovery/selection/contender.h"
-#include "mjdiag/discovery/selection/refinement.h"
+#include "mjdiag/discovery/selection/hypothesis.h"
 
 namespace mjdiag {
 
@@ -45,14 +47,9 @@ struct SearchOptions {
   std::function<void(const std::string& what, double fraction)> progress;
 };
 
-/// One round.
-struct Rung {
-  std::vector<Contender> contenders;  ///< best first
-  CauseFit fit;                       ///< with the one that was kept
-};
-
-struct SearchResult : CauseSet {
-  std::vector<Rung> ladder;
+struct SearchResult : HypothesisSet {
+  /// The causes after each that was added; it is their last.
+  std::vector<std::vector<FittedCause>> ladder;
   /// Those that explained the train part best but not what a fit did not see.
   std::vector<FittedCause> refuted;
   /// Whether the problem served to the end (SearchOptions::serves).

@@ -16,7 +16,7 @@ CauseFit FitAt(const DiscoveryProblem& problem,
   return FitCauses(
       problem, candidates,
       {{test::Place(candidates, site), Eigen::VectorXd::Constant(1, value)}},
-      {.iterations = 0, .sensitivities = false});
+      {.iterations = 0, .jacobian = false});
 }
 
 TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {

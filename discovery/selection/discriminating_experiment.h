@@ -1,7 +1,7 @@
 #pragma once
-// Which motion would tell two explanations apart? Both are run, without noise, along
-// the trajectories of the setup, as they are and slower, and the one is proposed in
-// which their readings differ most, in units of the sensor noise.
+// Which experiment would discriminate between two hypotheses? Both are run, without
+// noise, along the trajectories of the setup, as they are and slower, and the one is
+// proposed in which their readings differ most, in units of the sensor noise.
 
 #include <mujoco/mujoco.h>
 
@@ -13,7 +13,7 @@
 
 namespace mjdiag {
 
-struct TellingMotion {
+struct DiscriminatingExperiment {
   std::string trajectory;  ///< name in the setup
   double slower = 1.0;     ///< times its limits of velocity (and powers of it above)
   /// Root of the sum of squares of the readings' difference over the sensor noise.
@@ -21,9 +21,8 @@ struct TellingMotion {
 };
 
 /// None without controllers or trajectories in the setup, or if no run succeeds.
-/// @param setup  with the measured noise of its sensors
-std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
-                                               const Changes& one,
-                                               const Changes& other);
+/// @param machine  with the measured noise of its sensors
+std::optional<DiscriminatingExperiment> FindDiscriminatingExperiment(
+    const Machine& machine, const Changes& one, const Changes& other);
 
 }  // namespace mjdiag

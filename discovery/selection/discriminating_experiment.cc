@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/selection/telling_motion.h"
+#include "mjdiag/discovery/selection/discriminating_experiment.h"
 
 #include <algorithm>
 #include <array>
@@ -51,38 +51,38 @@ double Separation(const Setup& setup, const Record& a, const Record& b) {
 
 }  // namespace
 
-std::optional<TellingMotion> FindTellingMotion(const Machine& machine,
-                                               const Changes& one,
-                                               const Changes& other) {
+std::optional<DiscriminatingExperiment> FindDiscriminatingExperiment(
+    const Machine& machine, const Changes& one, const Changes& other) {
   if (machine.setup().control.axes.empty()) return std::nullopt;
   // The slowest, which take longest, first.
-  std::vector<TellingMotion> motions;
+  std::vector<DiscriminatingExperiment> experiments;
   for (const double slower : {5.0, 2.0, 1.0}) {
     for (const Trajectory& trajectory : machine.setup().trajectories.all) {
-      motions.push_back({trajectory.name, slower, 0.0});
+      experiments.push_back({trajectory.name, slower, 0.0});
     }
   }
-  std::vector<std::array<std::optional<Record>, 2>> runs(motions.size());
-  ParallelFor(2 * static_cast<int>(motions.size()), [&](int number) {
+  std::vector<std::array<std::optional<Record>, 2>> runs(experiments.size());
+  ParallelFor(2 * static_cast<int>(experiments.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / 2);
     const auto which = static_cast<std::size_t>(number % 2);
-    const TellingMotion& motion = motions[i];
+    const DiscriminatingExperiment& experiment = experiments[i];
     try {
       const Excitation excitation = FollowTrajectory(
           machine.setup(),
-          Slower(machine.setup().trajectories.Find(motion.trajectory), motion.slower));
+          Slower(machine.setup().trajectories.Find(experiment.trajectory),
+                 experiment.slower));
       runs[i][which] = RunOf(machine, excitation, which == 0 ? one : other);
     } catch (const std::exception&) {
-      // A motion that cannot be run is not proposed.
+      // An experiment that cannot be run is not proposed.
     }
   });
-  for (std::size_t i = 0; i < motions.size(); ++i) {
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
     const auto& [a, b] = runs[i];
-    if (a && b) motions[i].separation = Separation(machine.setup(), *a, *b);
+    if (a && b) experiments[i].separation = Separation(machine.setup(), *a, *b);
   }
-  const auto best =
-      std::ranges::max_element(motions, std::less<>(), &TellingMotion::separation);
-  if (best == motions.end() || best->separation <= 0.0) return std::nullopt;
+  const auto best = std::ranges::max_element(experiments, std::less<>(),
+                                             &DiscriminatingExperiment::separation);
+  if (best == experiments.end() || best->separation <= 0.0) return std::nullopt;
   return *best;
 }
 

@@ -1,0 +1,207 @@
+#include "mjdiag/discovery/selection/addition.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// Squared innovations that a start leaves to first order, not less than noise does.
+double RestOf(const Evidence& present, const Start& start) {
+  return std::max(present.Noise() * present.fit().train - start.gain, present.Noise());
+}
+
+/// The most that a start may leave to first order to be worth a fit. The first order is
+/// rough for large effects and for shapes that the grid of trials misses; what it is
+/// off by grows with what there is to explain and with what the best leaves of it.
+double MostRest(const Evidence& present, const Screening& screening) {
+  constexpr double kOfExcess = 0.1;
+  constexpr double kOfRest = 1.0;
+  constexpr double kChance = 200.0;
+  const double noise = present.Noise();
+  const double excess = noise * std::max(present.fit().train - 1.0, 0.0);
+  double least = noise + excess;
+  for (const Start& start : screening.starts) {
+    least = std::min(least, RestOf(present, start));
+  }
+  return least + kOfRest * (least - noise) + kOfExcess * excess + kChance;
+}
+
+/// The present causes and a new one, with how promising that is.
+struct Entry {
+  std::vector<FittedCause> causes;
+  double criterion = std::numeric_limits<double>::infinity();
+};
+
+/// Sets that compete for being the present one with one more hypothesis.
+class Contest {
+ public:
+  Contest(const SearchData& data, const Evidence& present)
+      : data_(data), present_(present) {}
+
+  std::vector<Entry> Preview(const std::vector<Start>& shortlist) const;
+  std::vector<std::optional<CauseFit>> Fit(const std::vector<Entry>& entries) const;
+
+ private:
+  void FitToBeginning(std::vector<Entry>& entries, std::size_t count,
+                      int iterations) const;
+  /// Jacobian of what has been found, if anything has.
+  const MatrixXd* Known() const {
+    const MatrixXd& J = present_.fit().jacobian;
+    return J.cols() > 0 ? &J : nullptr;
+  }
+
+  const SearchData& data_;
+  const Evidence& present_;
+};
+
+/// Fits the first `count` of the entries to the beginning of the record; those that
+/// diverge go, the rest is put in order, best first.
+void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
+                             int iterations) const {
+  if (entries.size() > count) entries.resize(count);
+  std::vector<std::optional<CauseFit>> fits(entries.size());
+  ParallelFor(static_cast<int>(entries.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    fits[i] = TryFit(data_.beginning, data_.candidates, entries[i].causes,
+                     CompareFrom(Known(), iterations, 1e-3));
+  });
+  // On more data a difference grows in proportion.
+  const double growth =
+      static_cast<double>(data_.problem.train - data_.problem.skip) /
+      static_cast<double>(data_.beginning.train - data_.beginning.skip);
+  const std::vector<double> criteria = Criteria(data_.beginning, fits);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    entries[i].criterion = growth * criteria[i];
+    if (fits[i]) entries[i].causes = fits[i]->causes;
+  }
+  std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
+  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
+}
+
+/// How promising every start of the shortlist is: small effects by their gain, which is
+/// exact enough for them and holds for the whole train part; large ones, for which the
+/// first order is not, by a fit on the beginning of the record.
+std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
+  constexpr double kSmall = 1.5;  // times the power of the noise
+  std::vector<Entry> entries;
+  for (const Start& start : shortlist) {
+    Entry entry{present_.fit().causes};
+    entry.causes.push_back(FittedFrom(data_.candidates, start));
+    const double n =
+        static_cast<double>(data_.problem.train) * present_.independent().sum();
+    entry.criterion = -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
+    entries.push_back(std::move(entry));
+  }
+  std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
+  if (present_.fit().train < kSmall) return entries;
+  // Those that a few steps show to be worse than most get no more of them.
+  constexpr std::size_t kBetter = 6;
+  FitToBeginning(entries, entries.size(), 2);
+  FitToBeginning(entries, kBetter, 4);
+  return entries;
+}
+
+/// On the whole train part.
+std::vector<std::optional<CauseFit>> Contest::Fit(
+    const std::vector<Entry>& entries) const {
+  std::vector<std::optional<CauseFit>> fits(entries.size());
+  ParallelFor(static_cast<int>(entries.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    fits[i] = TryFit(data_.problem, data_.candidates, entries[i].causes,
+                     CompareFrom(Known(), 8, 1e-4));
+  });
+  return fits;
+}
+
+std::string NamesOf(const std::vector<Candidate>& candidates,
+                    const std::vector<Entry>& entries) {
+  std::string names;
+  for (const Entry& entry : entries) {
+    names += (names.empty() ? "" : ", ") +
+             Describe(candidates[entry.causes.back().candidate]);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<Start> Shortlist(const Evidence& present, const Screening& screening,
+                             const Chance& chance, int most) {
+  const double most_rest = MostRest(present, screening);
+  std::vector<Start> list;
+  std::vector<Start> more;
+  for (const Start& start : screening.starts) {
+    const auto same = [&](const auto& other) {
+      return other.candidate == start.candidate;
+    };
+    if (std::ranges::any_of(present.fit().causes, same)) continue;
+    if (!present
+             .SignificanceOf(start.gain, start.freedom, chance, present.independent())
+             .IsMoreThanChance()) {
+      continue;
+    }
+    if (RestOf(present, start) > most_rest) continue;
+    const bool first = std::ranges::none_of(list, same);
+    if (first && static_cast<int>(list.size()) < most) {
+      list.push_back(start);
+    } else if (!first && static_cast<int>(more.size()) < most / 2) {
+      more.push_back(start);
+    }
+  }
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
+Additions ProposeAdditions(const SearchData& data, const Evidence& present,
+                           const std::vector<Start>& shortlist,
+                           const std::function<void(const std::string&)>& report) {
+  constexpr double kHopeless = 200.0;  // behind the best, in units of the criterion
+  constexpr std::size_t kFinalists = 6;
+  // Several starts of one candidate must not crowd out a simpler one.
+  constexpr int kStarts = 2;
+  const Contest contest(data, present);
+  std::vector<Entry> finalists;
+  std::vector<Entry> others;
+  std::map<std::size_t, int> starts;
+  for (Entry& entry : contest.Preview(shortlist)) {
+    const std::size_t candidate = entry.causes.back().candidate;
+    if (starts[candidate]++ >= kStarts) continue;
+    const bool hopeless =
+        !finalists.empty() && entry.criterion - finalists.front().criterion > kHopeless;
+    (finalists.size() < kFinalists && !hopeless ? finalists : others)
+        .push_back(std::move(entry));
+  }
+  if (!finalists.empty()) report("fit of " + NamesOf(data.candidates, finalists));
+  std::vector<std::optional<CauseFit>> fits = contest.Fit(finalists);
+  Additions additions;
+  const std::vector<double> criteria = Criteria(data.problem, fits);
+  std::vector<std::size_t> order(fits.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::less<>(),
+                           [&](std::size_t i) { return criteria[i]; });
+  for (const std::size_t i : order) {
+    if (!fits[i]) continue;
+    additions.hypotheses.push_back({fits[i]->causes.back(), criteria[i], 0.0});
+    additions.fits.push_back(std::move(*fits[i]));
+  }
+  if (additions.fits.empty()) return additions;
+  for (const Entry& entry : others) {
+    const double behind = entry.criterion - finalists.front().criterion;
+    additions.hypotheses.push_back(
+        {entry.causes.back(), additions.hypotheses.front().criterion + behind, 0.0});
+  }
+  return additions;
+}
+
+}  // namespace mjdiag

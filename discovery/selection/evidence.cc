@@ -1,0 +1,77 @@
+#include "mjdiag/discovery/selection/evidence.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+EvidenceData DataOf(const DiscoveryProblem& problem,
+                    const std::vector<Candidate>& candidates,
+                    const MeasuredRun* unseen) {
+  EvidenceData data;
+  data.skip = problem.skip;
+  data.train = problem.train;
+  data.samples = problem.run.samples();
+  if (unseen == nullptr) return data;
+  auto other = std::make_shared<DiscoveryProblem>(problem);
+  other->run = *unseen;
+  data.replay = [other, &candidates](const std::vector<FittedCause>& causes) {
+    try {
+      return other->Residual(ChangesOf(candidates, causes));
+    } catch (const NumericalError&) {
+      return VectorXd();
+    }
+  };
+  return data;
+}
+
+double Evidence::Criterion(const VectorXd& independent) const {
+  return mjdiag::Criterion(fit_, independent, data_.skip, data_.train);
+}
+
+double Evidence::Unseen(const VectorXd& independent) const {
+  const double held_out =
+      data_.train < data_.samples
+          ? Deviance(fit_.residual, independent, data_.train, data_.samples)
+          : 0.0;
+  if (!data_.replay) return held_out;
+  if (!replayed_) replayed_ = data_.replay(fit_.causes);
+  if (replayed_->size() == 0) return std::numeric_limits<double>::infinity();
+  return held_out + Deviance(*replayed_, independent, data_.skip,
+                             replayed_->size() / independent.size());
+}
+
+double Evidence::Inflation(const VectorXd& independent) const {
+  return std::max(1.0, fit_.train) / std::min(1.0, independent.minCoeff());
+}
+
+double Evidence::Noise() const {
+  return static_cast<double>(independent_.size() * (data_.train - data_.skip));
+}
+
+Significance Evidence::SignificanceOf(double gain, int freedom, const Chance& chance,
+                                      const VectorXd& independent) const {
+  return {(gain - chance.unsteadiness) / Inflation(independent),
+          GainByChance(chance.probability, chance.trials, freedom)};
+}
+
+Significance Evidence::SignificanceOf(const CauseFit& after, const Chance& chance,
+                                      const VectorXd& independent) const {
+  return SignificanceOf(Noise() * (fit_.train - after.train),
+                        ParameterCount({after.causes.back()}), chance, independent);
+}
+
+Evidence Evidence::Added(CauseFit fit, VectorXd independent,
+                         const Chance& chance) const {
+  const Significance addition = SignificanceOf(fit, chance, independent);
+  return {data_, std::move(fit), std::move(independent), addition};
+}
+
+}  // namespace mjdiag

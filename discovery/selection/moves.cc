@@ -1,0 +1,185 @@
+#include "mjdiag/discovery/selection/moves.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/discovery/fitting/nested_law.h"
+#include "mjdiag/discovery/fitting/wave_period.h"
+#include "mjdiag/discovery/screening/screening.h"
+#include "mjdiag/discovery/selection/comparator.h"
+#include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// Evidence of sets that a move proposes; none of those that are far worse.
+using Proposals = std::vector<std::optional<Evidence>>;
+
+// Hypotheses that are less probable beside all other causes are no alternatives.
+constexpr double kConsidered = 1e-3;
+
+void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
+  const auto place = rivals.begin() + static_cast<std::ptrdiff_t>(i);
+  std::rotate(place, place + 1, rivals.end());
+}
+
+/// The fit of other causes; none if the beginning of the record shows that they explain
+/// far less than the present ones.
+/// @param jacobian  of the first of the causes
+std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
+                                         const Evidence& present,
+                                         const std::vector<FittedCause>& causes,
+                                         const MatrixXd& jacobian) {
+  constexpr double kFar = 60.0;  // in units of the deviance
+  const MatrixXd* known = jacobian.cols() > 0 ? &jacobian : nullptr;
+  const auto early = [&](const CauseFit& fit) {
+    return Deviance(fit.residual, present.independent(), data.problem.skip,
+                    data.beginning.train);
+  };
+  const auto rough =
+      TryFit(data.beginning, data.candidates, causes, CompareFrom(known, 8, 1e-3));
+  if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
+  auto fit = TryFit(data.problem, data.candidates, causes, CompareFrom(known, 8, 1e-5));
+  if (!fit) return std::nullopt;
+  return present.Changed(std::move(*fit));
+}
+
+/// Sets with others in place i. The new one comes last, for the Jacobian of those
+/// before it is known.
+Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::size_t i,
+                         const std::vector<FittedCause>& others) {
+  const std::vector<FittedCause> rest = Without(present.fit().causes, i);
+  const MatrixXd jacobian = JacobianWithout(present.fit(), i);
+  Proposals proposals(others.size());
+  ParallelFor(static_cast<int>(others.size()), [&](int number) {
+    const auto k = static_cast<std::size_t>(number);
+    std::vector<FittedCause> causes = rest;
+    causes.push_back(others[k]);
+    proposals[k] = ProposeUnlessFar(data, present, causes, jacobian);
+  });
+  return proposals;
+}
+
+/// Sets without each of the hypotheses.
+Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
+  const CauseFit& fit = present.fit();
+  Proposals proposals(fit.causes.size());
+  ParallelFor(static_cast<int>(proposals.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    proposals[i] = ProposeUnlessFar(data, present, Without(fit.causes, i),
+                                    JacobianWithout(fit, i));
+  });
+  return proposals;
+}
+
+/// Hypotheses that are worth a fit in the place of cause i: a simpler law of the same
+/// kind, and what a screening without that cause finds to explain nearly as much.
+std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
+                                   std::size_t i) {
+  constexpr std::size_t kMost = 3;
+  // Of what the cause explains; the first order is rough for large effects.
+  constexpr double kNearly = 0.8;
+  constexpr double kChance = 50.0;
+  std::vector<FittedCause> others;
+  const auto consider = [&](const FittedCause& other) {
+    const auto same = [&](const FittedCause& c) {
+      return c.candidate == other.candidate;
+    };
+    if (std::ranges::any_of(fit.causes, same)) return;
+    if (std::ranges::any_of(others, same)) return;
+    if (others.size() < kMost) others.push_back(other);
+  };
+  const auto simpler =
+      SimplerLaw(data.problem.machine.plant(), data.candidates, fit.causes[i]);
+  if (simpler) consider(*simpler);
+  const Screening without =
+      ScreenBeside(data.problem, data.candidates, Without(fit.causes, i),
+                   JacobianWithout(fit, i), 1);
+  const double explained = without.rest - FittedValues(data.problem) * fit.train;
+  for (const Start& start : without.starts) {
+    if (start.gain < kNearly * explained - kChance) break;
+    consider(FittedFrom(data.candidates, start));
+  }
+  return others;
+}
+
+/// The rivals of cause i after others have been tried in its place. Those that were not
+/// tried stay as far behind the cause as they were; tried ones without a fit go.
+void RankRivals(HypothesisSet& set, std::size_t i,
+                const std::vector<FittedCause>& tried, const Proposals& proposals) {
+  std::vector<Hypothesis>& rivals = set.rivals[i];
+  const FittedCause& cause = set.fit().causes[i];
+  const auto of = [](std::size_t candidate) {
+    return [candidate](const Hypothesis& h) { return h.cause.candidate == candidate; };
+  };
+  const double present = set.evidence.Criterion();
+  const auto before = std::ranges::find_if(rivals, of(cause.candidate));
+  const double shift = before == rivals.end() ? 0.0 : present - before->criterion;
+  for (Hypothesis& rival : rivals) rival.criterion += shift;
+  std::erase_if(rivals, of(cause.candidate));
+  rivals.push_back({cause, present, 0.0});
+  for (std::size_t k = 0; k < tried.size(); ++k) {
+    std::erase_if(rivals, of(tried[k].candidate));
+    if (!proposals[k]) continue;
+    rivals.push_back(
+        {proposals[k]->fit().causes.back(), proposals[k]->Criterion(), 0.0});
+  }
+  Rank(rivals);
+  std::erase_if(rivals,
+                [](const Hypothesis& h) { return h.probability < kConsidered; });
+}
+
+/// Takes the best of the sets that have another cause in place i; it is their last.
+bool TakeInPlace(HypothesisSet& set, std::size_t i, Proposals proposals) {
+  const auto best = BestOf(set.evidence, proposals);
+  if (!best) return false;
+  set.evidence = std::move(*proposals[*best]);
+  MoveToEnd(set.rivals, i);
+  return true;
+}
+
+bool ChangePeriod(const SearchData& data, HypothesisSet& set, std::size_t i) {
+  const CauseFit& fit = set.fit();
+  if (!HasPeriod(data.candidates[fit.causes[i].candidate])) return false;
+  const auto others = OtherPeriods(data.problem, data.candidates, fit, i);
+  return TakeInPlace(set, i, ProposeInPlace(data, set.evidence, i, others));
+}
+
+bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i) {
+  const std::vector<FittedCause> others = OthersFor(data, set.fit(), i);
+  Proposals proposals = ProposeInPlace(data, set.evidence, i, others);
+  RankRivals(set, i, others, proposals);
+  return TakeInPlace(set, i, std::move(proposals));
+}
+
+}  // namespace
+
+void ChangePeriods(const SearchData& data, HypothesisSet& set) {
+  std::size_t i = 0;
+  while (i < set.fit().causes.size()) {
+    i = ChangePeriod(data, set, i) ? 0 : i + 1;
+  }
+}
+
+bool Drop(const SearchData& data, HypothesisSet& set) {
+  if (set.fit().causes.size() < 2) return false;
+  Proposals proposals = ProposeDrops(data, set.evidence);
+  const auto dropped = BestOf(set.evidence, proposals);
+  if (!dropped) return false;
+  set.evidence = std::move(*proposals[*dropped]);
+  set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(*dropped));
+  return true;
+}
+
+bool Exchange(const SearchData& data, HypothesisSet& set) {
+  for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
+    if (ExchangeAt(data, set, i)) return true;
+  }
+  return false;
+}
+
+}  // namespace mjdiag

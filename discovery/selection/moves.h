@@ -1,0 +1,29 @@
+#pragma once
+// Moves from a set of hypotheses to another that add none: what a new cause means for
+// those found before it. With it beside them
+//
+// - a wave or a resonance may have another period (wave_period.h);
+// - one may be superfluous;
+// - another hypothesis may be the better one in its place: the first cause of a search
+//   is what explains the most on its own, and a flexible mode that made up for two
+//   effects at once is a mere mass once the other one is known.
+//
+// Each move proposes fits, has them judged (comparator.h) and takes the best that is
+// accepted into the set.
+
+#include "mjdiag/discovery/selection/hypothesis.h"
+#include "mjdiag/discovery/selection/search_data.h"
+
+namespace mjdiag {
+
+/// Gives waves of the set other periods while one is accepted.
+void ChangePeriods(const SearchData& data, HypothesisSet& set);
+
+/// Drops one hypothesis; true if that was accepted of any.
+bool Drop(const SearchData& data, HypothesisSet& set);
+
+/// Puts another hypothesis in the place of one; true if that was accepted. How probable
+/// the rivals for a place are is judged anew in any case.
+bool Exchange(const SearchData& data, HypothesisSet& set);
+
+}  // namespace mjdiag

@@ -1,0 +1,19 @@
+#pragma once
+// What a search works on, and its moves (addition.h, moves.h).
+
+#include <vector>
+
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/discovery/selection/evidence.h"
+
+namespace mjdiag {
+
+struct SearchData {
+  const DiscoveryProblem& problem;
+  DiscoveryProblem beginning;  ///< of the problem, for what shows early
+  const std::vector<Candidate>& candidates;
+  EvidenceData evidence;
+};
+
+}  // namespace mjdiag

@@ -1,0 +1,47 @@
+#include "mjdiag/discovery/selection/search.h"
+
+#include <gtest/gtest.h>
+
+#include "discovery/candidate_place.h"
+#include "discovery/stage_under_test.h"
+#include "mjdiag/discovery/selection/model_choice.h"
+
+namespace mjdiag {
+namespace {
+
+const std::vector<std::string> kDrag = {"quadratic_drag@load:coefficient=20"};
+
+TEST(SearchCauses, AddsWhatExplainsTheRecordAndMeasuresItByWhatItLeaves) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = stage.Pose(stage.Measure(kDrag));
+  const auto candidates = ListCandidates(stage.machine);
+  const SearchResult found = SearchCauses(problem, candidates, {});
+  ASSERT_EQ(found.fit().causes.size(), 1u);
+  EXPECT_EQ(found.fit().causes[0].candidate,
+            test::Place(candidates, "quadratic_drag@load"));
+  EXPECT_FALSE(found.significant_rest);
+  EXPECT_EQ(found.ladder.size(), 1u);
+  ASSERT_EQ(found.rivals.size(), 1u);
+  EXPECT_EQ(found.rivals[0].front().cause.candidate, found.fit().causes[0].candidate);
+  EXPECT_NEAR(found.evidence.independent()[0],
+              IndependentShare(problem, found.fit().residual)[0], 1e-3);
+}
+
+// The other record has no drag: every hypothesis spoils it.
+TEST(SearchCauses, AreNotTouchedByHypothesesThatAnotherRecordSpeaksAgainst) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = stage.Pose(stage.Measure(kDrag));
+  const auto candidates = ListCandidates(stage.machine);
+  const MeasuredRun healthy = ToMeasuredRun(stage.setup(), stage.Measure({}));
+  SearchOptions options;
+  options.unseen = &healthy;
+  const SearchResult found = SearchCauses(problem, candidates, options);
+  EXPECT_TRUE(found.fit().causes.empty());
+  EXPECT_FALSE(found.refuted.empty());
+  EXPECT_TRUE(found.significant_rest);
+  EXPECT_TRUE(found.ladder.empty());
+  EXPECT_EQ(found.evidence.independent(), Eigen::VectorXd::Ones(1));
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,44 @@
+#include "mjdiag/discovery/selection/verdict.h"
+
+#include <gtest/gtest.h>
+
+namespace mjdiag {
+namespace {
+
+/// A search that left so much, times the power of sensor noise.
+SearchResult Left(double train, bool significant_rest) {
+  CauseFit fit;
+  fit.train = train;
+  SearchResult search;
+  search.evidence = {{}, fit, Eigen::VectorXd::Ones(1)};
+  search.significant_rest = significant_rest;
+  return search;
+}
+
+TEST(Verdict, IsNoDiscrepancyWhereNothingWasFound) {
+  EXPECT_EQ(VerdictOf(Left(1.0, false), false, 1.0), DiscoveryVerdict::kNoDiscrepancy);
+}
+
+TEST(Verdict, IsUnexplainedWhereSomethingIsThereAndNothingIsNamed) {
+  EXPECT_EQ(VerdictOf(Left(3.0, true), false, 3.0), DiscoveryVerdict::kUnexplained);
+  SearchResult dropped = Left(3.0, false);
+  dropped.ladder.emplace_back();
+  EXPECT_EQ(VerdictOf(dropped, false, 3.0), DiscoveryVerdict::kUnexplained);
+}
+
+TEST(Verdict, IsExplainedWhereCausesLeaveNoise) {
+  EXPECT_EQ(VerdictOf(Left(1.1, false), true, 50.0), DiscoveryVerdict::kExplained);
+}
+
+TEST(Verdict, IsPartlyExplainedWhereCausesTakeMostOfIt) {
+  EXPECT_EQ(VerdictOf(Left(1.1, true), true, 50.0), DiscoveryVerdict::kPartlyExplained);
+  EXPECT_EQ(VerdictOf(Left(4.1, false), true, 50.0),
+            DiscoveryVerdict::kPartlyExplained);
+}
+
+TEST(Verdict, IsUnexplainedWhereCausesLeaveMoreThanATenth) {
+  EXPECT_EQ(VerdictOf(Left(6.0, true), true, 50.0), DiscoveryVerdict::kUnexplained);
+}
+
+}  // namespace
+}  // namespace mjdiag
