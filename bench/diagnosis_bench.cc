@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/diagnosis_recording.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/runtime/instance.h"
@@ -40,10 +40,6 @@ double Median(std::vector<double> values) {
 Machine Bonder(bool static_friction) {
   return test::Bonder(
       {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
-}
-
-Excitation DefaultMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
 }
 
 /// A closed loop that stands at its first tick.
@@ -117,7 +113,7 @@ void Synthesis(benchmark::State& state) {
   std::vector<double> synthesise;
   std::vector<double> design;
   for (auto _ : state) {
-    linearise.push_back(Seconds([&] { turned = TurnModels(machine); }));
+    linearise.push_back(Seconds([&] { turned = MakeFaultFamily(machine).Turned(); }));
     synthesise.push_back(Seconds([&] {
       const ResidualSpace space = MakeResidualSpace(healthy, options);
       const Eigen::Index size = space.rows.front().rows();

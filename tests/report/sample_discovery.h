@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "mjdiag/discovery/discovery.h"
+#include "mjdiag/plugin/effects/fault_parameter.h"
+#include "mjdiag/plugin/effects/registry.h"
 
 namespace mjdiag {
 
@@ -35,22 +37,30 @@ inline Comparison SampleReplay(double mismatch) {
   return comparison;
 }
 
+/// A cause without values.
+inline Cause SampleOther(const std::string& effect, const std::string& site) {
+  return {Lasting(FindEffect(effect)), site, {}};
+}
+
 inline FoundCause SampleFriction() {
   FoundCause friction;
-  friction.cause = {{"coulomb_friction", "load", {{"force", 20.39}}}};
+  friction.cause = Place("coulomb_friction", "load", {{"force", 20.39}});
   friction.parameters = {{"force", "N", 20.39, 0.094, 20.206, 20.574}};
   friction.probability = 0.963;
-  friction.alternatives = {{{{"stribeck_friction", "load", {}}}, 0.031, false},
-                           {{{"presliding_hysteresis", "load", {}}}, 0.006, false}};
+  friction.alternatives = {
+      {SampleOther("stribeck_friction", "load"), 0.031, false},
+      {SampleOther("presliding_hysteresis", "load"), 0.006, false}};
   return friction;
 }
 
 inline FoundCause SampleKnob() {
   FoundCause knob;
-  knob.cause = {{"eta", "drive", {{"value", 1.0342}}}, true};
+  const FaultKnob declared{"eta", KnobKind::kGear, {0}};
+  knob.cause = {FaultParameter(declared), "drive",
+                Eigen::VectorXd::Constant(1, 1.0342)};
   knob.parameters = {{"value", "1", 1.0342, 2e-5, 1.03416, 1.03424}};
   knob.probability = 1.0;
-  knob.alternatives = {{{{"motor_constant", "drive", {}}}, 0.5, true}};
+  knob.alternatives = {{SampleOther("motor_constant", "drive"), 0.5, true}};
   return knob;
 }
 

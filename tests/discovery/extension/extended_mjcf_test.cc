@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/discovery/extension/extended_plant.h"
-#include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
@@ -24,13 +24,13 @@ class ExtendedMjcf : public ::testing::Test {
     const std::string file = nominal_.Write("stage.xml", mjcf);
     expected_ = LoadModel(file);
     const ModelPtr plant = LoadModel(file);
-    std::vector<EffectSpec> specs;
+    std::vector<PlacedEffect> placed;
     for (const Fault& fault : faults) ApplyFault(*expected_, fault);
     for (const std::string& effect : effects) {
-      specs.push_back(ParseEffect(effect));
-      ApplyNativeEffect(*expected_, specs.back());
+      placed.push_back(ParseEffect(effect));
+      ApplyEffect(*expected_, placed.back());
     }
-    const std::string text = ExtendMjcf(file, *plant, faults, specs, extended_.path());
+    const std::string text = ExtendMjcf(file, *plant, faults, placed, extended_.path());
     model_ = LoadModel(extended_.Write("plant.xml", text));
     return text;
   }

@@ -11,7 +11,7 @@
 #include <new>
 
 #include "effect_bench.h"
-#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -41,23 +41,23 @@ using ::testing::HasSubstr;
 
 /// The effect with a value inside the bounds for each parameter, all of them with many
 /// digits.
-EffectSpec Example(const EffectType& type, const std::string& site) {
-  EffectSpec spec{type.name, site, {}};
+PlacedEffect Example(const Effect& effect, const std::string& site) {
+  std::map<std::string, double> values;
   double value = 1.0 / 3.0;
-  for (const EffectParameter& parameter : type.parameters) {
+  for (const EffectParameter& parameter : effect.parameters()) {
     value *= 0.7;
-    spec.parameters[parameter.name] = std::min(value, 0.9 * parameter.maximum);
+    values[parameter.name] = std::min(value, 0.9 * parameter.maximum);
   }
-  return spec;
+  return Place(effect.name(), site, values);
 }
 
-std::string SiteOf(const EffectType& type, const char* joint) {
-  switch (type.site) {
-    case EffectSite::kActuator:
+std::string SiteOf(const Effect& effect, const char* joint) {
+  switch (effect.site()) {
+    case SiteKind::kActuator:
       return "y_motor";
-    case EffectSite::kSensor:
+    case SiteKind::kSensor:
       return "y_encoder";
-    case EffectSite::kHeldJoint:
+    case SiteKind::kHeldJoint:
       return "r2";
     default:
       return joint;
@@ -66,7 +66,7 @@ std::string SiteOf(const EffectType& type, const char* joint) {
 
 TEST(EffectCatalogue, HoldsExactlyTheTwentySixEffects) {
   std::vector<std::string> names;
-  for (const EffectType& type : EffectCatalogue()) names.push_back(type.name);
+  for (const Effect* effect : Effects()) names.push_back(effect->name());
   EXPECT_THAT(
       names,
       ::testing::UnorderedElementsAre(
@@ -81,22 +81,22 @@ TEST(EffectCatalogue, HoldsExactlyTheTwentySixEffects) {
 }
 
 TEST(EffectCatalogue, IsParsedAndFormattedWithoutLoss) {
-  for (const EffectType& type : EffectCatalogue()) {
-    const EffectSpec spec = Example(type, "some site");
-    const EffectSpec again = ParseEffect(FormatEffect(spec));
-    EXPECT_EQ(again.effect, spec.effect);
-    EXPECT_EQ(again.site, spec.site);
-    EXPECT_EQ(again.parameters, spec.parameters) << FormatEffect(spec);
+  for (const Effect* effect : Effects()) {
+    const PlacedEffect placed = Example(*effect, "some site");
+    const PlacedEffect again = ParseEffect(FormatEffect(placed));
+    EXPECT_EQ(again.effect, placed.effect);
+    EXPECT_EQ(again.site, placed.site);
+    EXPECT_EQ(again.values, placed.values) << FormatEffect(placed);
   }
 }
 
 TEST(EffectCatalogue, HasAUnitAndAMeaningForEverything) {
-  for (const EffectType& type : EffectCatalogue()) {
-    EXPECT_FALSE(type.meaning.empty()) << type.name;
-    EXPECT_FALSE(type.parameters.empty()) << type.name;
-    for (const EffectParameter& parameter : type.parameters) {
-      EXPECT_FALSE(parameter.unit.empty()) << type.name << " " << parameter.name;
-      EXPECT_LT(parameter.minimum, parameter.maximum) << type.name;
+  for (const Effect* effect : Effects()) {
+    EXPECT_FALSE(effect->meaning().empty()) << effect->name();
+    EXPECT_FALSE(effect->parameters().empty()) << effect->name();
+    for (const EffectParameter& parameter : effect->parameters()) {
+      EXPECT_FALSE(parameter.unit.empty()) << effect->name() << " " << parameter.name;
+      EXPECT_LT(parameter.minimum, parameter.maximum) << effect->name();
     }
   }
 }
@@ -110,9 +110,9 @@ std::string DocumentedRow(const std::string& effect) {
 }
 
 TEST(EffectCatalogue, IsDocumentedWithUnitsAndBounds) {
-  for (const EffectType& type : EffectCatalogue()) {
+  for (const Effect* effect : Effects()) {
     std::string parameters;
-    for (const EffectParameter& parameter : type.parameters) {
+    for (const EffectParameter& parameter : effect->parameters()) {
       parameters += (parameters.empty() ? "" : "; ") + ("`" + parameter.name + "` ");
       parameters += parameter.unit;
       if (parameter.minimum == std::numeric_limits<double>::min())
@@ -121,26 +121,29 @@ TEST(EffectCatalogue, IsDocumentedWithUnitsAndBounds) {
       if (parameter.minimum != 0.0) continue;
       parameters += std::isinf(parameter.maximum) ? ", >= 0" : ", 0 to 0.1";
     }
-    const std::string row = DocumentedRow(type.name);
-    EXPECT_THAT(row, HasSubstr("| " + parameters + " |")) << type.name;
-    EXPECT_EQ(row.find("| native") != std::string::npos, type.native) << type.name;
+    const std::string row = DocumentedRow(effect->name());
+    EXPECT_THAT(row, HasSubstr("| " + parameters + " |")) << effect->name();
+    EXPECT_EQ(row.find("| native") != std::string::npos,
+              effect->form() == Form::kAttributes)
+        << effect->name();
   }
 }
 
 class CheckedEffect : public ::testing::Test {
  protected:
-  std::string Refusal(const EffectSpec& spec) const {
-    return test::MessageOf<InputError>([&] { CheckEffect(*plant_, spec); });
+  std::string Refusal(const PlacedEffect& effect) const {
+    return test::MessageOf<InputError>([&] { CheckEffect(*plant_, effect); });
   }
   const Machine machine_ = test::Bonder();
   const ModelPtr plant_ = CopyModel(machine_.plant());
 };
 
 TEST_F(CheckedEffect, IsAcceptedAtASiteOfItsKindOnly) {
-  for (const EffectType& type : EffectCatalogue()) {
-    EXPECT_NO_THROW(CheckEffect(*plant_, Example(type, SiteOf(type, "X"))))
-        << type.name;
-    EXPECT_THAT(Refusal(Example(type, "chassis")), HasSubstr("chassis")) << type.name;
+  for (const Effect* effect : Effects()) {
+    EXPECT_NO_THROW(CheckEffect(*plant_, Example(*effect, SiteOf(*effect, "X"))))
+        << effect->name();
+    EXPECT_THAT(Refusal(Example(*effect, "chassis")), HasSubstr("chassis"))
+        << effect->name();
   }
 }
 
@@ -152,56 +155,63 @@ TEST_F(CheckedEffect, NeedsASpringWhereItActsOnOne) {
 }
 
 TEST_F(CheckedEffect, IsRefusedOutOfTheBoundsOfEachParameter) {
-  for (const EffectType& type : EffectCatalogue()) {
-    for (const EffectParameter& parameter : type.parameters) {
-      EffectSpec spec = Example(type, SiteOf(type, "X"));
+  for (const Effect* effect : Effects()) {
+    for (const EffectParameter& parameter : effect->parameters()) {
+      PlacedEffect placed = Example(*effect, SiteOf(*effect, "X"));
       const auto refuses = [&](double value) {
-        spec.parameters[parameter.name] = value;
-        return Refusal(spec).find(parameter.name + " = ") != std::string::npos;
+        placed.values[*effect->Find(parameter.name)] = value;
+        return Refusal(placed).find(parameter.name + " = ") != std::string::npos;
       };
-      EXPECT_TRUE(refuses(std::nan(""))) << type.name << " " << parameter.name;
-      EXPECT_TRUE(refuses(parameter.maximum * 1.01)) << type.name;
+      EXPECT_TRUE(refuses(std::nan(""))) << effect->name() << " " << parameter.name;
+      EXPECT_TRUE(refuses(parameter.maximum * 1.01)) << effect->name();
       if (parameter.minimum == std::numeric_limits<double>::min()) {
-        EXPECT_TRUE(refuses(0.0)) << type.name << " " << parameter.name;
+        EXPECT_TRUE(refuses(0.0)) << effect->name() << " " << parameter.name;
       } else if (parameter.minimum == 0.0) {
-        EXPECT_TRUE(refuses(-1e-9)) << type.name << " " << parameter.name;
+        EXPECT_TRUE(refuses(-1e-9)) << effect->name() << " " << parameter.name;
       }
     }
   }
 }
 
 TEST_F(CheckedEffect, NeedsEveryParameterWithoutAFallback) {
-  for (const EffectType& type : EffectCatalogue()) {
-    for (const EffectParameter& parameter : type.parameters) {
-      EffectSpec spec = Example(type, SiteOf(type, "X"));
-      spec.parameters.erase(parameter.name);
+  for (const Effect* effect : Effects()) {
+    for (const EffectParameter& parameter : effect->parameters()) {
+      const std::string site = SiteOf(*effect, "X");
+      std::map<std::string, double> values = NamedValues(Example(*effect, site));
+      values.erase(parameter.name);
       if (parameter.fallback) {
-        EXPECT_NO_THROW(CheckEffect(*plant_, spec));
-        EXPECT_EQ(spec.Value(parameter.name), *parameter.fallback);
+        EXPECT_EQ(Place(effect->name(), site, values).Value(parameter.name),
+                  *parameter.fallback);
       } else {
-        EXPECT_THAT(Refusal(spec), HasSubstr("'" + parameter.name + "' is missing"));
+        EXPECT_THAT(
+            test::MessageOf<InputError>([&] { Place(effect->name(), site, values); }),
+            HasSubstr("'" + parameter.name + "' is missing"));
       }
     }
   }
 }
 
 TEST_F(CheckedEffect, HasUnitsOfAMomentAtAHinge) {
-  const EffectSpec slide = ParseEffect("force_ripple@X:amplitude=1,period=1");
-  const EffectSpec hinge = ParseEffect("force_ripple@Z:amplitude=1,period=1");
-  EXPECT_EQ(SiteUnit(*plant_, slide, "amplitude"), "N");
-  EXPECT_EQ(SiteUnit(*plant_, hinge, "amplitude"), "N m");
-  EXPECT_EQ(SiteUnit(*plant_, hinge, "period"), "rad");
-  EXPECT_EQ(SiteUnit(*plant_, hinge, "phase"), "rad");
+  const Effect& ripple = FindEffect("force_ripple");
+  const auto unit = [&](const char* site, const char* parameter) {
+    const Eigen::Index place = *ripple.Find(parameter);
+    return SiteUnit(*plant_, ripple, site,
+                    ripple.parameters()[static_cast<std::size_t>(place)]);
+  };
+  EXPECT_EQ(unit("X", "amplitude"), "N");
+  EXPECT_EQ(unit("Z", "amplitude"), "N m");
+  EXPECT_EQ(unit("Z", "period"), "rad");
+  EXPECT_EQ(unit("Z", "phase"), "rad");
 }
 
 // The control callback may not allocate; all effects at once, a hundred physics steps.
 TEST_F(CheckedEffect, ActsWithoutAllocating) {
-  std::vector<EffectSpec> specs;
-  for (const EffectType& type : EffectCatalogue()) {
-    specs.push_back(Example(type, SiteOf(type, "X")));
-    ApplyNativeEffect(*plant_, specs.back());
+  std::vector<PlacedEffect> all;
+  for (const Effect* effect : Effects()) {
+    all.push_back(Example(*effect, SiteOf(*effect, "X")));
+    ApplyEffect(*plant_, all.back());
   }
-  ActiveEffects effects(machine_.channels(), *plant_, specs);
+  ActiveEffects effects(machine_.channels(), *plant_, all);
   const DataPtr data = MakeData(*plant_);
   std::array<double, 3> readings{};
   for (int step = 0; step < 100; ++step) {
@@ -222,7 +232,7 @@ TEST(CarriedEffect, MayBeThereSeveralTimesInOneNumeric) {
       <numeric name="effect.force_ripple.q" data="1 0.2 0.3 4 0.5 0.6"/></custom>
     <worldbody><body><joint name="q" type="slide"/><geom size="0.1"/></body></worldbody>
   </mujoco>)");
-  const std::vector<EffectSpec> effects = EffectsOf(*model);
+  const std::vector<PlacedEffect> effects = EffectsOf(*model);
   ASSERT_EQ(effects.size(), 2u);
   EXPECT_EQ(FormatEffect(effects[0]),
             "force_ripple@q:amplitude=1,period=0.2,phase=0.3");
