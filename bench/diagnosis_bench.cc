@@ -107,7 +107,7 @@ BENCHMARK_CAPTURE(MonitoredOverPlainLoop, without_friction, false)
 void Synthesis(benchmark::State& state) {
   const Machine machine = Bonder(true);
   const MechanicalModel& healthy = machine.linear();
-  const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
+  const SynthesisOptions options = SynthesisOf(machine);
   std::vector<TurnedModels> turned;
   std::vector<double> linearise;
   std::vector<double> synthesise;

@@ -56,7 +56,7 @@ class Emps : public ::testing::Test {
   static Machine WithAuthorsMassAndDamping() {
     const Machine given = Given();
     const ModelPtr plant = CopyModel(given.plant());
-    plant.body_mass[FindElement(plant, mjOBJ_BODY, "load")] = 95.1089;
+    plant->body_mass[FindElement(*plant, mjOBJ_BODY, "load")] = 95.1089;
     plant->dof_damping[0] = 203.5034;
     return Machine(given.setup(), *plant);
   }

@@ -126,7 +126,7 @@ struct WornGuide {
       : machine(test::Bonder({"trajectories.multi.duration=0.25",
                               "diagnosis.estimation.magnitudes.beta_x=1e-3",
                               "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
-        options(SynthesisOf(setup, machine.linear())),
+        options(SynthesisOf(machine)),
         space(MakeResidualSpace(machine.linear(), options)),
         design(DesignFilters(machine)) {
     const Record record =
