@@ -149,9 +149,9 @@ TEST(BetterWaves, FindThePeriodThatAWrongOneMisses) {
   const std::vector<Start> starts = better(0.015);
   ASSERT_FALSE(starts.empty());
   EXPECT_LE(starts.size(), 3u);
-  EXPECT_NEAR(starts[0].parameters.at("period"), 0.024, 0.024 * 2e-3);
+  EXPECT_NEAR(starts[0].value[PeriodPlace(ripple)], 0.024, 0.024 * 2e-3);
   for (const Start& start : better(0.024)) {
-    EXPECT_NEAR(start.parameters.at("period"), 0.024, 0.024 * 0.01);
+    EXPECT_NEAR(start.value[PeriodPlace(ripple)], 0.024, 0.024 * 0.01);
   }
 }
 
