@@ -8,7 +8,6 @@
 
 #include "discovery/stage_under_test.h"
 #include "mjdiag/plugin/runtime/simulation.h"
-#include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
 namespace {

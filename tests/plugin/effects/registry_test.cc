@@ -14,7 +14,7 @@
 #include <new>
 #include <regex>
 
-#include "effect_bench.h"
+#include "plugin/effects/effect_bench.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
