@@ -66,13 +66,13 @@ std::vector<PlacedEffect> Machine::effects() const {
   return all;
 }
 
-const Eigen::VectorXd& Machine::rest() const {
+const Eigen::VectorXd& Machine::rest() const& {
   std::call_once(derived_->rest_once,
                  [this] { derived_->rest = StaticEquilibrium(*plant_); });
   return derived_->rest;
 }
 
-const MechanicalModel& Machine::linear() const {
+const MechanicalModel& Machine::linear() const& {
   std::call_once(derived_->linear_once,
                  [this] { derived_->linear = Linearize(*plant_, channels(), rest()); });
   return derived_->linear;

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/diagnosis/mechanical_model.h"
@@ -47,9 +48,11 @@ class Machine {
 
   /// Joint positions at rest without input (StaticEquilibrium), found when first asked
   /// for. NumericalError as there.
-  const Eigen::VectorXd& rest() const;
+  const Eigen::VectorXd& rest() const&;
+  Eigen::VectorXd rest() const&& { return std::as_const(*this).rest(); }
   /// M, D, K, Gamma and b about the rest (Linearize), found when first asked for.
-  const MechanicalModel& linear() const;
+  const MechanicalModel& linear() const&;
+  MechanicalModel linear() const&& { return std::as_const(*this).linear(); }
 
   /// This machine with faults and effects besides those that it has. InputError names
   /// a fault parameter, effect, site or value that the plant does not allow.

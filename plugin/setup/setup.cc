@@ -10,7 +10,7 @@ namespace {
 
 /// The element whose `name` is `wanted`; InputError lists the others without it.
 template <typename Element>
-const Element& FindNamed(const std::vector<Element>& elements,
+const Element& FindNamed(const std::string& setup, const std::vector<Element>& elements,
                          std::string Element::*name, std::string_view wanted,
                          const std::string& kind) {
   std::string known;
@@ -18,18 +18,20 @@ const Element& FindNamed(const std::vector<Element>& elements,
     if (element.*name == wanted) return element;
     known += (known.empty() ? "" : ", ") + element.*name;
   }
-  throw InputError("setup", "there is no " + kind + " '" + std::string(wanted) + "'",
+  throw InputError("setup '" + setup + "'",
+                   "there is no " + kind + " '" + std::string(wanted) + "'",
                    known.empty() ? "a setup that declares one" : "one of " + known);
 }
 
 }  // namespace
 
 const SensorSetup& Channels::Sensor(std::string_view channel) const {
-  return FindNamed(sensors, &SensorSetup::channel, channel, "sensor channel");
+  return FindNamed(setup, sensors, &SensorSetup::channel, channel, "sensor channel");
 }
 
 const ActuatorSetup& Channels::Actuator(std::string_view channel) const {
-  return FindNamed(actuators, &ActuatorSetup::channel, channel, "actuator channel");
+  return FindNamed(setup, actuators, &ActuatorSetup::channel, channel,
+                   "actuator channel");
 }
 
 std::ptrdiff_t Channels::SensorIndex(std::string_view channel) const {
@@ -41,11 +43,11 @@ std::ptrdiff_t Channels::ActuatorIndex(std::string_view channel) const {
 }
 
 const Trajectory& Trajectories::Find(std::string_view name) const {
-  return FindNamed(all, &Trajectory::name, name, "trajectory");
+  return FindNamed(setup, all, &Trajectory::name, name, "trajectory");
 }
 
 const FaultSizes& Setup::Study(std::string_view study) const {
-  return FindNamed(studies, &FaultSizes::name, study, "[studies] table");
+  return FindNamed(name, studies, &FaultSizes::name, study, "[studies] table");
 }
 
 Setup ReadSetup(const std::filesystem::path& where,

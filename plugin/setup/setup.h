@@ -96,6 +96,7 @@ struct Physics {
 
 /// [sensors] and [actuators]: what is read and driven once a control tick.
 struct Channels {
+  std::string setup;  ///< whose they are, for messages
   std::vector<SensorSetup> sensors;
   std::vector<ActuatorSetup> actuators;
 
@@ -114,6 +115,7 @@ struct Control {
 
 /// [trajectories]
 struct Trajectories {
+  std::string setup;  ///< whose they are, for messages
   std::vector<Trajectory> all;
   std::string fallback;  ///< name of the one that is taken if none is named
 

@@ -105,6 +105,7 @@ void ReadHead(const TomlTable& root, Setup& setup) {
     root.Fail("schema", "is '" + schema + "'", "'" + std::string(kSchema) + "'");
   }
   setup.name = root.Text("name");
+  setup.channels.setup = setup.trajectories.setup = setup.name;
   setup.plant = ExistingFile(root, "plant", setup.folder);
   setup.analytic = OptionalFile(root, "analytic", setup.folder);
   setup.published = OptionalFile(root, "published", setup.folder);

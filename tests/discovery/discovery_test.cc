@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "discovery/stage_under_test.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
