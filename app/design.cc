@@ -95,7 +95,7 @@ std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
 
 /// The page of a design.
 NamedPage PageOfDesign(const Machine& machine, const DiagnosisDesign& design,
-                 DesignFacts facts) {
+                       DesignFacts facts) {
   facts.changed = WithoutStiffness(machine);
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
   return {"design", DesignPage(design, facts, run)};

@@ -165,7 +165,7 @@ DiagnosisOverlay OverlayOf(const PreparedDiagnosis& prepared, const Record& reco
 
 /// The diagnosis of the last run: the faulty one, or the record given last.
 DiagnosisOverlay DiagnosisOf(const RenderOptions& options, const Machine& machine,
-                          const std::vector<TitledRecord>& runs) {
+                             const std::vector<TitledRecord>& runs) {
   const Record& record = runs.back().record;
   DiagnosisSource source = options.source;
   source.nominal.linear = options.motion.linear;

@@ -42,7 +42,7 @@ std::map<std::string, double> LargestTrackingErrors(const Setup& setup,
 }
 
 std::string RunSummary(const Setup& setup, const Subject& subject, const Record& record,
-                    const nlohmann::json& document) {
+                       const nlohmann::json& document) {
   std::string text = setup.name + ", " + Describe(subject) + ": " +
                      std::to_string(record.samples()) + " samples, " +
                      Short(record.duration()) + " s, " +

@@ -91,7 +91,7 @@ std::string ToText(const StudyTable& table) {
 }
 
 NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
-                 const std::vector<StudyTable>& tables) {
+                      const std::vector<StudyTable>& tables) {
   const StudyFacts facts{setup, command.preset, command.runs, command.seed};
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
   return {"study", StudyPage(facts, tables, run)};

@@ -48,7 +48,8 @@ std::map<std::string, double> ReplayErrors(const Machine& machine,
     for (const ActuatorSetup& actuator : machine.channels().actuators)
       add(actuator.channel);
   }
-  const std::vector<std::string> positions = MeasuredPositions(machine.setup(), measured);
+  const std::vector<std::string> positions =
+      MeasuredPositions(machine.setup(), measured);
   const Record derived = DeriveChannels(measured, positions, machine.setup().compare);
   for (const DerivedMismatch& signal : MeasureDerived(
            derived, DeriveChannels(simulated, positions, machine.setup().compare),

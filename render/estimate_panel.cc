@@ -16,7 +16,7 @@ namespace mjdiag {
 namespace {
 
 constexpr double kMostNamesShare = 0.4;  // of the width of the panel
-constexpr double kValueHeadroom = 0.25;       // of the axis, beyond the largest deviation
+constexpr double kValueHeadroom = 0.25;  // of the axis, beyond the largest deviation
 constexpr double kRow = 1.25;            // least height of a row [em]
 constexpr double kLeastReach = 1e-3;     // of the axis, if nothing deviates
 

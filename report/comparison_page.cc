@@ -23,7 +23,8 @@ std::string Listed(const std::vector<std::string>& names) {
   return text;
 }
 
-void AddRecordFacts(Page& page, const Comparison& comparison, const RunDescription& run) {
+void AddRecordFacts(Page& page, const Comparison& comparison,
+                    const RunDescription& run) {
   const Record& record = comparison.measured;
   std::vector<std::pair<std::string, std::string>> facts = {
       {"Setup", comparison.setup},

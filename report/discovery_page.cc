@@ -25,7 +25,8 @@ Tone ToneOf(DiscoveryVerdict verdict) {
   return Tone::kNeutral;
 }
 
-void AddDiscoveryFacts(Page& page, const Discovery& discovery, const DiscoveryRun& run) {
+void AddDiscoveryFacts(Page& page, const Discovery& discovery,
+                       const DiscoveryRun& run) {
   const Record& record = discovery.before.measured;
   std::vector<std::pair<std::string, std::string>> facts = {{"Setup", discovery.setup},
                                                             {"Record", run.run.record}};
@@ -39,8 +40,8 @@ void AddDiscoveryFacts(Page& page, const Discovery& discovery, const DiscoveryRu
                                        : "measured input, in open loop");
   }
   if (discovery.train_share > 0.0) {
-    facts.emplace_back(
-        "Fitted to", "the first " + ShareText(discovery.train_share) + " of the record");
+    facts.emplace_back("Fitted to", "the first " + ShareText(discovery.train_share) +
+                                        " of the record");
   }
   if (!run.extended_plant.empty()) {
     facts.emplace_back("Extended plant", run.extended_plant);
@@ -168,8 +169,8 @@ void AddSignature(Page& page, const Discovery& discovery) {
       {"Shape", signature.shape},
       {"Explains", ShareText(signature.explained_share) + " of unseen parts"}};
   if (!signature.runner_up.empty()) {
-    facts.emplace_back("Next best",
-                       signature.runner_up + ", " + ShareText(signature.runner_up_share));
+    facts.emplace_back(
+        "Next best", signature.runner_up + ", " + ShareText(signature.runner_up_share));
   }
   page.AddFacts(facts);
   if (signature.x.size() > 1)

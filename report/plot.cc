@@ -108,9 +108,9 @@ constexpr std::size_t kPaletteSize = 6;
 }  // namespace
 
 nlohmann::json DescribePlot(const TimePlot& plot) {
-  const DisplayUnit unit = plot.scaled
-                               ? ChooseDisplayUnit(LargestMagnitude(plot.curves), plot.unit)
-                               : DisplayUnit{1.0, plot.unit};
+  const DisplayUnit unit =
+      plot.scaled ? ChooseDisplayUnit(LargestMagnitude(plot.curves), plot.unit)
+                  : DisplayUnit{1.0, plot.unit};
   nlohmann::json json = CurvesAndLevels(plot.curves, plot.levels, unit.factor);
   json["kind"] = "time";
   json["x_label"] = "time [s]";

@@ -169,7 +169,8 @@ class CsvSource : public RecordSource {
  private:
   void ReadHeader() {
     std::string_view line;
-    while (!body_.empty() && (TrimCell(line).empty() || TrimCell(line).starts_with('#'))) {
+    while (!body_.empty() &&
+           (TrimCell(line).empty() || TrimCell(line).starts_with('#'))) {
       line = TakeLine(body_, header_line_);
     }
     if (TrimCell(line).empty() || TrimCell(line).starts_with('#')) {

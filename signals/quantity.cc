@@ -16,13 +16,13 @@ struct DisplayPrefix {
 };
 
 constexpr std::array<DisplayPrefix, 8> kDisplayPrefixes = {{{"p", 1e12},
-                                              {"n", 1e9},
-                                              {"µ", 1e6},
-                                              {"m", 1e3},
-                                              {"", 1.0},
-                                              {"k", 1e-3},
-                                              {"M", 1e-6},
-                                              {"G", 1e-9}}};
+                                                            {"n", 1e9},
+                                                            {"µ", 1e6},
+                                                            {"m", 1e3},
+                                                            {"", 1.0},
+                                                            {"k", 1e-3},
+                                                            {"M", 1e-6},
+                                                            {"G", 1e-9}}};
 
 /// "m" of "m/s^2": what the prefix would stand before.
 std::string_view FirstSymbol(std::string_view unit) {

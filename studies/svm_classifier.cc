@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 using MatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kFeatureRounding = 1e-12;  // of a feature's size: less is constant
-constexpr double kFarAway = 1e6;     // standardised: keeps distances finite as floats
+constexpr double kFarAway = 1e6;  // standardised: keeps distances finite as floats
 constexpr int kMostIterations = 20000;  // per machine: bounds the time at a large C
 constexpr double kTolerance = 1e-3;     // on the optimality conditions, as in LIBSVM
 

@@ -138,8 +138,8 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const MatrixXd& covariance) {
   const Index channels = problem.run.outputs.rows();
   const VectorXd theta = Flatten(fit.causes);
-  const MatrixXd J = fit.jacobian.middleRows(
-      channels * problem.skip, channels * (problem.train - problem.skip));
+  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip,
+                                             channels * (problem.train - problem.skip));
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();
   const MatrixXd C =

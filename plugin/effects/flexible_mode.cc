@@ -2,7 +2,6 @@
 //   m x'' = -f,  f = m (omega^2 (x - q) + 2 zeta omega (x' - v)),  f on the joint
 // integrated as MuJoCo's Euler does (velocity first).
 
-
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"

@@ -11,8 +11,8 @@
 #include "mjdiag/render/clip_writer.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
-#include "support/message_of.h"
 #include "render/test_machine.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {

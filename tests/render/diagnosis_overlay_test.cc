@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/signals/error.h"
-#include "support/message_of.h"
 #include "render/test_machine.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {

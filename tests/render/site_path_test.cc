@@ -8,8 +8,8 @@
 #include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/render/scene_renderer.h"
 #include "mjdiag/signals/error.h"
-#include "support/message_of.h"
 #include "render/test_machine.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {

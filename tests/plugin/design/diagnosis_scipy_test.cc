@@ -186,8 +186,9 @@ class DiagnosisScipy : public testing::Test {
     ours_ = new WornGuide;
     const test::TemporaryFolder folder;
     const std::string given = folder.Write("given.txt", Text(ours_->ForPython()));
-    const Output output = RunCommand(python + " " + MJDIAG_SOURCE_DIR +
-                                     "/tests/plugin/design/diagnosis_reference.py " + given);
+    const Output output =
+        RunCommand(python + " " + MJDIAG_SOURCE_DIR +
+                   "/tests/plugin/design/diagnosis_reference.py " + given);
     ASSERT_EQ(output.status, 0);
     values_ = Parse(output.text);
   }

@@ -125,7 +125,8 @@ TEST(FaultFamily, HasTheMagnitudesOfTheSetupOrOneThousandth) {
 TEST(FaultFamily, ListsTheParametersThatThereAreIfAMagnitudeIsOfNone) {
   const Machine machine = test::Bonder({"diagnosis.estimation.magnitudes.zeta_q=0.01"});
   const auto expected =
-      AllOf(HasSubstr("diagnosis.estimation.magnitudes"), HasSubstr("no fault parameter 'zeta_q'"),
+      AllOf(HasSubstr("diagnosis.estimation.magnitudes"),
+            HasSubstr("no fault parameter 'zeta_q'"),
             HasSubstr("one of zeta_x, zeta_y, beta_x, beta_y, eta_x, eta_y, eta_z"));
   EXPECT_THAT(test::MessageOf<InputError>([&] { MakeFaultFamily(machine); }), expected);
 }

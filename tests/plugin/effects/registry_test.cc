@@ -14,11 +14,11 @@
 #include <new>
 #include <regex>
 
-#include "plugin/effects/effect_bench.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
+#include "plugin/effects/effect_bench.h"
 #include "support/bonder.h"
 #include "support/message_of.h"
 
