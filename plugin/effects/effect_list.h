@@ -31,3 +31,5 @@ MJDIAG_EFFECT(EncoderScale)
 MJDIAG_EFFECT(EncoderPeriodicError)
 MJDIAG_EFFECT(EncoderDrift)
 MJDIAG_EFFECT(EncoderNoise)
+// Added after those above, which a benchmark draws in this order
+MJDIAG_EFFECT(LoadFriction)
