@@ -142,7 +142,7 @@ struct Answer {
   bool good = true;
 };
 
-Answer Compare(const Machine& machine, nlohmann::json& document) {
+Answer CompareWithAnalytic(const Machine& machine, nlohmann::json& document) {
   const MechanicalModel& extracted = machine.linear();
   if (!machine.setup().analytic) {
     throw InputError("--compare", "the setup has no analytic model",
@@ -225,7 +225,7 @@ void Linearize(const LinearizeOptions& options) {
   }
   bool good = true;
   for (const auto& [wanted, compare] :
-       {std::pair{options.compare, &Compare},
+       {std::pair{options.compare, &CompareWithAnalytic},
         std::pair{options.published, &ComparePublished}}) {
     if (!wanted) continue;
     const Answer answer = compare(machine, document);

@@ -164,7 +164,7 @@ DiagnosisOverlay OverlayOf(const PreparedDiagnosis& prepared, const Record& reco
 }
 
 /// The diagnosis of the last run: the faulty one, or the record given last.
-DiagnosisOverlay Diagnose(const RenderOptions& options, const Machine& machine,
+DiagnosisOverlay DiagnosisOf(const RenderOptions& options, const Machine& machine,
                           const std::vector<TitledRecord>& runs) {
   const Record& record = runs.back().record;
   DiagnosisSource source = options.source;
@@ -193,7 +193,7 @@ void Render(RenderOptions options) {
   std::vector<ClipRun> runs;
   for (const TitledRecord& run : records) runs.push_back({run.title, &run.record});
   if (options.diagnose) {
-    options.clip.picture.diagnosis = Diagnose(options, machine, records);
+    options.clip.picture.diagnosis = DiagnosisOf(options, machine, records);
   }
 
   const std::filesystem::path folder = options.output.folder;

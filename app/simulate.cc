@@ -41,7 +41,7 @@ std::map<std::string, double> LargestTrackingErrors(const Setup& setup,
   return errors;
 }
 
-std::string Summary(const Setup& setup, const Subject& subject, const Record& record,
+std::string RunSummary(const Setup& setup, const Subject& subject, const Record& record,
                     const nlohmann::json& document) {
   std::string text = setup.name + ", " + Describe(subject) + ": " +
                      std::to_string(record.samples()) + " samples, " +
@@ -93,7 +93,7 @@ void Simulate(const SimulateOptions& options) {
   document["sample_time"] = record.sample_time();
   document["tracking_error_max"] = LargestTrackingErrors(subject.setup(), record);
   document["real_time_factor"] = record.duration() / elapsed.count();
-  std::string text = Summary(subject.setup(), subject, record, document);
+  std::string text = RunSummary(subject.setup(), subject, record, document);
   if (!options.output.folder.empty()) {
     const RecordFormat format = ParseRecordFormat(options.format);
     const auto file =

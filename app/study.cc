@@ -90,7 +90,7 @@ std::string ToText(const StudyTable& table) {
   return result + (table.notes.empty() ? "\n" : "\n\n");
 }
 
-NamedPage PageOf(const StudyCommand& command, const std::string& setup,
+NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
                  const std::vector<StudyTable>& tables) {
   const StudyFacts facts{setup, command.preset, command.runs, command.seed};
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
@@ -120,7 +120,7 @@ void RunStudy(const StudyCommand& command) {
     text += ToText(table);
   }
   Publish(command.output, "study", document, text,
-          [&] { return PageOf(command, machine.setup().name, tables); });
+          [&] { return StudyPageOf(command, machine.setup().name, tables); });
 }
 
 }  // namespace

@@ -1,30 +1,42 @@
 # What nearly every file includes, parsed once for all folders. The files still include what
 # they use; MJDIAG_PRECOMPILE=OFF shows whether they do.
 option(MJDIAG_PRECOMPILE "Precompile the common headers" ON)
-function(mjdiag_precompile target)
+# Several files are compiled as one, so that what they include and instantiate is
+# translated once: half of the time of a build. Names in their unnamed namespaces then have
+# to differ. OFF for tools that look at files one by one.
+option(MJDIAG_UNITY "Compile several files as one" ON)
+
+set(mjdiag_common_headers <Eigen/Core> <algorithm> <cmath> <filesystem> <functional> <map>
+    <memory> <optional> <span> <string> <vector>)
+
+# mjdiag_precompiled_set(<name> [LINKS <targets...>] HEADERS <headers...>) makes a set of
+# precompiled headers that targets with the same options share.
+function(mjdiag_precompiled_set name)
+  cmake_parse_arguments(arg "" "" "LINKS;HEADERS" ${ARGN})
   if(NOT MJDIAG_PRECOMPILE)
     return()
   endif()
-  if(ARGN OR NOT TARGET mjdiag_precompiled)
-    target_precompile_headers(${target} PRIVATE ${ARGN} <Eigen/Core> <algorithm> <cmath>
-                              <filesystem> <functional> <map> <string> <vector>)
-  else()
-    target_precompile_headers(${target} REUSE_FROM mjdiag_precompiled)
+  file(WRITE ${PROJECT_BINARY_DIR}/${name}.cc "")
+  add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cc)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_link_libraries(${name} PRIVATE ${arg_LINKS} mjdiag_warnings Eigen3::Eigen)
+  target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+endfunction()
+
+# mjdiag_precompile(<target> <set>)
+function(mjdiag_precompile target set)
+  if(MJDIAG_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM ${set})
   endif()
 endfunction()
 
-if(MJDIAG_PRECOMPILE)
-  file(WRITE ${PROJECT_BINARY_DIR}/precompiled.cc "")
-  add_library(mjdiag_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cc)
+mjdiag_precompiled_set(mjdiag_precompiled HEADERS ${mjdiag_common_headers})
+if(TARGET mjdiag_precompiled)
   set_target_properties(mjdiag_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_compile_features(mjdiag_precompiled PUBLIC cxx_std_20)
-  target_link_libraries(mjdiag_precompiled PRIVATE mjdiag_warnings Eigen3::Eigen)
-  target_precompile_headers(mjdiag_precompiled PRIVATE <Eigen/Core> <algorithm> <cmath>
-                            <filesystem> <functional> <map> <string> <vector>)
 endif()
 
 # mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>]
-#               [HEADERS_OF <targets...>] [PART <part>] [PRECOMPILE <headers...>])
+#               [HEADERS_OF <targets...>] [PART <part>])
 #
 # Makes a library target from the .cc files directly in the folder <path>: for
 # plugin/plant mjdiag_plugin_plant (alias mjdiag::plugin_plant). Its headers are
@@ -36,7 +48,7 @@ endif()
 # need. PART: of the installed package (Parts.cmake), by default the first folder of the
 # path. Which headers are installed, docs/api.md says (InstallHeaders.cmake).
 function(mjdiag_folder path)
-  cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF" ${ARGN})
   set(source ${PROJECT_SOURCE_DIR}/${path})
   file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cc)
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${source} ${source}/*.h)
@@ -52,7 +64,8 @@ function(mjdiag_folder path)
   add_library(${target} STATIC ${sources})
   add_library(mjdiag::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
-                                             POSITION_INDEPENDENT_CODE ON)
+                        POSITION_INDEPENDENT_CODE ON UNITY_BUILD ${MJDIAG_UNITY}
+                        UNITY_BUILD_BATCH_SIZE 6)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${root}>
                                               $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -60,7 +73,7 @@ function(mjdiag_folder path)
   foreach(library IN LISTS arg_HEADERS_OF ITEMS mjdiag_warnings)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
   endforeach()
-  mjdiag_precompile(${target} ${arg_PRECOMPILE})
+  mjdiag_precompile(${target} mjdiag_precompiled)
   if(NOT arg_PART)
     string(REGEX MATCH "^[^/]+" arg_PART ${path})
   endif()

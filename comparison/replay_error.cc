@@ -11,7 +11,7 @@
 namespace mjdiag {
 namespace {
 
-std::vector<std::string> Positions(const Setup& setup, const Record& measured) {
+std::vector<std::string> MeasuredPositions(const Setup& setup, const Record& measured) {
   std::vector<std::string> positions;
   for (const SensorSetup& sensor : setup.channels.sensors) {
     const bool position = sensor.unit == "m" || sensor.unit == "rad";
@@ -48,7 +48,7 @@ std::map<std::string, double> ReplayErrors(const Machine& machine,
     for (const ActuatorSetup& actuator : machine.channels().actuators)
       add(actuator.channel);
   }
-  const std::vector<std::string> positions = Positions(machine.setup(), measured);
+  const std::vector<std::string> positions = MeasuredPositions(machine.setup(), measured);
   const Record derived = DeriveChannels(measured, positions, machine.setup().compare);
   for (const DerivedMismatch& signal : MeasureDerived(
            derived, DeriveChannels(simulated, positions, machine.setup().compare),

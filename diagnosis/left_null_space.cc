@@ -15,11 +15,11 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 /// Singular values below this part of the largest, after equilibration, are zero.
-constexpr double kRankTolerance = 1e-11;
+constexpr double kNullTolerance = 1e-11;
 
 int RankOf(const VectorXd& singular_values) {
   return static_cast<int>(
-      (singular_values.array() > kRankTolerance * singular_values[0]).count());
+      (singular_values.array() > kNullTolerance * singular_values[0]).count());
 }
 
 int Rank(const MatrixXd& matrix) {
@@ -51,7 +51,7 @@ RowVectorXd SolveUnique(const MatrixXd& equations, const RowVectorXd& right_side
   const SingularValues svd = SingularValueDecomposition(scaled.matrix.transpose());
   const VectorXd& values = svd.values;
   if (equations.rows() > equations.cols() ||
-      values[values.size() - 1] <= kRankTolerance * values[0]) {
+      values[values.size() - 1] <= kNullTolerance * values[0]) {
     throw NumericalError("the pins leave more than one residual row");
   }
   const VectorXd target = scaled.columns.asDiagonal() * right_side.transpose();

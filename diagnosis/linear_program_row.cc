@@ -140,7 +140,7 @@ double Size(const VectorXd& row, RowNorm norm) {
   return norm == RowNorm::kOne ? row.lpNorm<1>() : row.lpNorm<Eigen::Infinity>();
 }
 
-PolynomialMatrix Polynomial(const VectorXd& row, int degree) {
+PolynomialMatrix RowPolynomial(const VectorXd& row, int degree) {
   const Index width = row.size() / (degree + 1);
   PolynomialMatrix result;
   for (int i = 0; i <= degree; ++i) {
@@ -149,7 +149,7 @@ PolynomialMatrix Polynomial(const VectorXd& row, int degree) {
   return result;
 }
 
-void Check(const DaeModel& dae, int degree) {
+void CheckDegree(const DaeModel& dae, int degree) {
   if (degree < 0) {
     throw InputError("residual row", "degree " + std::to_string(degree), "0 or more");
   }
@@ -169,7 +169,7 @@ void Check(const DaeModel& dae, int degree) {
 
 std::optional<LinearProgramRow> SolveRowPrograms(const DaeModel& dae, int degree,
                                                  const RowProgramOptions& options) {
-  Check(dae, degree);
+  CheckDegree(dae, degree);
   const MatrixXd hbar = BarMatrix(dae.H, degree);
   const MatrixXd fbar = BarMatrix(dae.F, degree);
   // Nbar = v^T diag(scaled.rows), and a condition of unit length keeps v of order one.
@@ -195,7 +195,7 @@ std::optional<LinearProgramRow> SolveRowPrograms(const DaeModel& dae, int degree
         scaled.rows.asDiagonal() * (exact / scaled_fbar.col(j).dot(exact));
     const double size = Size(row, options.norm);
     if (best.feasible > 1 && size >= (1.0 - kTie) * best.objective) continue;
-    best.N = Polynomial(row, degree);
+    best.N = RowPolynomial(row, degree);
     best.column = static_cast<int>(j);
     best.objective = size;
     best.defect = (row.transpose() * hbar).norm() / (row.norm() * hbar.norm());

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 
 /// Index of a channel, or -1.
-Index Find(const std::vector<std::string>& channels, const std::string& channel) {
+Index PlaceOf(const std::vector<std::string>& channels, const std::string& channel) {
   const auto found = std::find(channels.begin(), channels.end(), channel);
   return found == channels.end() ? -1 : std::distance(channels.begin(), found);
 }
@@ -21,7 +21,7 @@ std::vector<RowPin> PinsOf(const MechanicalModel& model,
                            const PublishedRow& published) {
   std::vector<RowPin> pins;
   for (const PrintedPin& pin : published.pins) {
-    const Index output = Find(model.outputs, pin.channel);
+    const Index output = PlaceOf(model.outputs, pin.channel);
     if (output < 0) {
       throw InputError("published row",
                        "pin on unknown channel \"" + pin.channel + "\"",
@@ -35,10 +35,10 @@ std::vector<RowPin> PinsOf(const MechanicalModel& model,
 /// The computed polynomial of a channel, ascending powers.
 Eigen::RowVectorXd PolynomialOf(const MechanicalModel& model, const ResidualRow& row,
                                 const std::string& channel) {
-  if (const Index output = Find(model.outputs, channel); output >= 0) {
+  if (const Index output = PlaceOf(model.outputs, channel); output >= 0) {
     return row.outputs.row(output);
   }
-  if (const Index input = Find(model.inputs, channel); input >= 0) {
+  if (const Index input = PlaceOf(model.inputs, channel); input >= 0) {
     return row.inputs.row(input);
   }
   throw InputError("published row", "unknown channel \"" + channel + "\"",

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Sensor noise as noise of z = [y; u]; the commands are known exactly.
-VectorXd SignalNoise(const SynthesisOptions& options, Index signals) {
+VectorXd NoiseOfSignals(const SynthesisOptions& options, Index signals) {
   const VectorXd& noise = options.sensor_noise;
   VectorXd all = VectorXd::Zero(signals);
   all.head(noise.size()) = noise.isZero(0.0) ? VectorXd::Ones(noise.size()) : noise;
@@ -67,7 +67,7 @@ Numerators Stack(const std::vector<Numerators>& parts) {
 MatrixXd Covariance(const Numerators& rows, const SynthesisOptions& options) {
   return OutputCovariance(
       MakeFilterBank(rows, options.residual.denominator, options.timing.tick()),
-      SignalNoise(options, rows.front().cols()));
+      NoiseOfSignals(options, rows.front().cols()));
 }
 
 /// Orthonormal in the metric of the output noise. The covariance squares the condition

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr Index kRows = 1024;  // of the regression held in memory at a time
 
 /// Tukey window, a tenth of the record tapered at each end.
@@ -32,8 +32,8 @@ MatrixXd Sines(const VectorXd& frequency, double sample_time, double start_time,
   MatrixXd sines(count, 2 * frequency.size());
   const double time = start_time + sample_time * static_cast<double>(first);
   for (Index j = 0; j < frequency.size(); ++j) {
-    const auto turn = std::polar(1.0, kTwoPi * frequency[j] * sample_time);
-    auto phasor = std::polar(1.0, kTwoPi * frequency[j] * time);
+    const auto turn = std::polar(1.0, kTurn * frequency[j] * sample_time);
+    auto phasor = std::polar(1.0, kTurn * frequency[j] * time);
     for (Index n = 0; n < count; ++n) {
       sines(n, 2 * j) = phasor.imag();
       sines(n, 2 * j + 1) = phasor.real();

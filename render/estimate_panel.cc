@@ -16,11 +16,11 @@ namespace mjdiag {
 namespace {
 
 constexpr double kMostNamesShare = 0.4;  // of the width of the panel
-constexpr double kHeadroom = 0.25;       // of the axis, beyond the largest deviation
+constexpr double kValueHeadroom = 0.25;       // of the axis, beyond the largest deviation
 constexpr double kRow = 1.25;            // least height of a row [em]
 constexpr double kLeastReach = 1e-3;     // of the axis, if nothing deviates
 
-int Round(double value) { return static_cast<int>(std::lround(value)); }
+int Nearest(double value) { return static_cast<int>(std::lround(value)); }
 
 // Whether the interval leaves healthy out.
 bool IsOff(const EstimateHistory& history, Eigen::Index at) {
@@ -70,7 +70,7 @@ ValueRange Axis(const DiagnosisOverlay& overlay) {
       axis.high = std::max(axis.high, deviation);
     }
   }
-  const double headroom = kHeadroom * std::max(axis.high - axis.low, kLeastReach);
+  const double headroom = kValueHeadroom * std::max(axis.high - axis.low, kLeastReach);
   return {axis.low - headroom, axis.high + headroom};
 }
 
@@ -94,14 +94,14 @@ EstimatePanel::EstimatePanel(const ClipLayout& layout, const DiagnosisOverlay& o
       overlay_(&overlay),
       axis_(Axis(overlay)) {
   const cv::Rect& rows = place_.rows;
-  const int most = std::max(1, Round(std::floor(rows.height / (kRow * body_.em))));
+  const int most = std::max(1, Nearest(std::floor(rows.height / (kRow * body_.em))));
   shown_ = Strongest(overlay.estimates, static_cast<std::size_t>(most));
   int names = 0;
   for (const std::size_t index : shown_) {
     names = std::max(names, type.Width(overlay.estimates[index].name, body_));
   }
-  const int gap = Round(0.5 * body_.em);
-  names = std::min(names, Round(kMostNamesShare * rows.width)) + gap;
+  const int gap = Nearest(0.5 * body_.em);
+  names = std::min(names, Nearest(kMostNamesShare * rows.width)) + gap;
   const int numbers = type.Width("\u22120.000", {body_.em, Weight::kBold}) + gap;
   plot_ = {rows.x + names, rows.y, rows.width - names - numbers, rows.height};
 }
@@ -126,7 +126,7 @@ void EstimatePanel::DrawBackground(Typesetter& type, cv::Mat& picture) const {
   type.Draw(type.Fit(heading, place_.heading.width, small_),
             BaselineIn(place_.heading, small_), small_, palette::kInk, picture);
 
-  const int most = std::clamp(Round(plot_.width / (3.6 * small_.em)), 2, 5);
+  const int most = std::clamp(Nearest(plot_.width / (3.6 * small_.em)), 2, 5);
   std::vector<double> ticks = RoundTicks(100.0 * axis_.low, 100.0 * axis_.high, most);
   // One number alone gives no scale.
   if (ticks.size() < 2) {
@@ -134,17 +134,17 @@ void EstimatePanel::DrawBackground(Typesetter& type, cv::Mat& picture) const {
   }
   const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
   const EngineeringFormat format{
-      "%", 1.0, std::max(0, Round(std::ceil(-std::log10(step) - 1e-6)))};
+      "%", 1.0, std::max(0, Nearest(std::ceil(-std::log10(step) - 1e-6)))};
   int free_from = place_.rows.x;  // numbers that would run into another are left out
   for (const double tick : ticks) {
-    const int x = Round(Place(tick / 100.0));
+    const int x = Nearest(Place(tick / 100.0));
     cv::line(picture, {x, plot_.y}, {x, plot_.br().y - 1}, palette::kGrid);
     const std::string text = format.Number(tick);
     const int width = type.Width(text, small_);
     cv::Point origin = BaselineIn(place_.axis_labels, small_);
     origin.x = std::clamp(x - width / 2, place_.rows.x, place_.rows.br().x - width);
     if (origin.x < free_from) continue;
-    free_from = origin.x + width + Round(0.5 * small_.em);
+    free_from = origin.x + width + Nearest(0.5 * small_.em);
     type.Draw(text, origin, small_, palette::kQuietInk, picture);
   }
   const std::string quantity =
@@ -154,13 +154,13 @@ void EstimatePanel::DrawBackground(Typesetter& type, cv::Mat& picture) const {
                         place_.axis_title.x, place_.axis_title.br().x);
   type.Draw(quantity, origin, small_, palette::kQuietInk, picture);
   cv::rectangle(picture, plot_, palette::kRule);
-  const int healthy = Round(Place(0.0));
+  const int healthy = Nearest(Place(0.0));
   DrawDashes({healthy, plot_.y + 1}, {healthy, plot_.br().y - 2}, palette::kInk, 1,
              picture);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     const cv::Rect row = Row(i);
     const std::string& name = overlay_->estimates[shown_[i]].name;
-    type.Draw(type.Fit(name, plot_.x - row.x - Round(0.5 * body_.em), body_),
+    type.Draw(type.Fit(name, plot_.x - row.x - Nearest(0.5 * body_.em), body_),
               BaselineIn(row, body_), body_, palette::kInk, picture);
   }
 }
@@ -181,9 +181,9 @@ void EstimatePanel::DrawBadge(double time, Typesetter& type, cv::Mat& picture) c
   const double radius = 0.24 * box.height;
   if (detected) {
     const std::vector<cv::Point> triangle{
-        {Round(middle.x), Round(middle.y - radius)},
-        {Round(middle.x + radius), Round(middle.y + 0.8 * radius)},
-        {Round(middle.x - radius), Round(middle.y + 0.8 * radius)}};
+        {Nearest(middle.x), Nearest(middle.y - radius)},
+        {Nearest(middle.x + radius), Nearest(middle.y + 0.8 * radius)},
+        {Nearest(middle.x - radius), Nearest(middle.y + 0.8 * radius)}};
     cv::fillConvexPoly(picture, triangle, palette::kWarning, cv::LINE_AA);
   } else {
     DrawDot(middle, radius, palette::kInk, picture);

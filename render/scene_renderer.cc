@@ -19,7 +19,7 @@ constexpr int kMinSide = 16;
 constexpr int kMaxSide = 4096;
 constexpr float kBackground = 1.0F;  // in the depth buffer
 
-void CheckSide(const char* name, int side) {
+void CheckPictureSide(const char* name, int side) {
   if (side < kMinSide || side > kMaxSide) {
     throw InputError(name, std::to_string(side) + " px",
                      std::to_string(kMinSide) + " to " + std::to_string(kMaxSide));
@@ -137,8 +137,8 @@ struct SceneRenderer::State {
 };
 
 SceneRenderer::SceneRenderer(const mjModel& model, const SceneOptions& options) {
-  CheckSide("width", options.width);
-  CheckSide("height", options.height);
+  CheckPictureSide("width", options.width);
+  CheckPictureSide("height", options.height);
   state_ = std::make_unique<State>(model, options);
 }
 

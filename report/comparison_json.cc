@@ -5,7 +5,7 @@
 namespace mjdiag {
 namespace {
 
-nlohmann::json Finite(double value) {
+nlohmann::json FiniteOrNull(double value) {
   if (!std::isfinite(value)) return nullptr;
   return value;
 }
@@ -13,7 +13,7 @@ nlohmann::json Finite(double value) {
 nlohmann::json ToJson(const ChannelMismatch& channel) {
   return {{"rms", channel.rms},
           {"unit", channel.unit},
-          {"relative_error_percent", Finite(channel.relative_error_percent)},
+          {"relative_error_percent", FiniteOrNull(channel.relative_error_percent)},
           {"noise_floor", channel.noise_floor.rms},
           {"exceeds_noise", channel.exceeds_noise},
           {"peak", channel.peak},
@@ -42,7 +42,7 @@ nlohmann::json ToJson(const Comparison& comparison) {
   }
   json["derived"] = nlohmann::json::object();
   for (const DerivedMismatch& derived : comparison.derived) {
-    json["derived"][derived.name] = Finite(derived.relative_error_percent);
+    json["derived"][derived.name] = FiniteOrNull(derived.relative_error_percent);
   }
   json["not_measured"] = comparison.not_measured;
   return json;

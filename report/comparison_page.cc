@@ -8,7 +8,7 @@
 namespace mjdiag {
 namespace {
 
-std::string Percent(double value) { return FormatNumber(value) + " %"; }
+std::string PercentText(double value) { return FormatNumber(value) + " %"; }
 
 std::string Seconds(double value) { return FormatNumber(value, 4); }
 
@@ -17,13 +17,13 @@ std::string Ratio(const ChannelMismatch& channel) {
   return FormatNumber(channel.rms / channel.noise_floor.rms);
 }
 
-std::string Join(const std::vector<std::string>& names) {
+std::string Listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
 
-void AddFacts(Page& page, const Comparison& comparison, const RunDescription& run) {
+void AddRecordFacts(Page& page, const Comparison& comparison, const RunDescription& run) {
   const Record& record = comparison.measured;
   std::vector<std::pair<std::string, std::string>> facts = {
       {"Setup", comparison.setup},
@@ -36,7 +36,7 @@ void AddFacts(Page& page, const Comparison& comparison, const RunDescription& ru
       {"Left out at the start",
        std::to_string(comparison.options.skip_samples) + " samples"}};
   if (!comparison.not_measured.empty()) {
-    facts.emplace_back("Not measured", Join(comparison.not_measured));
+    facts.emplace_back("Not measured", Listed(comparison.not_measured));
   }
   page.AddFacts(facts);
 }
@@ -62,7 +62,7 @@ void AddChannelTable(Page& page, const Comparison& comparison) {
     const std::string end = Seconds(worst.start + worst.duration) + " s";
     table.rows.push_back({channel.name, FormatQuantity(channel.rms, channel.unit),
                           FormatQuantity(channel.peak, channel.unit),
-                          Percent(channel.relative_error_percent),
+                          PercentText(channel.relative_error_percent),
                           FormatQuantity(channel.noise_floor.rms, channel.unit),
                           Ratio(channel), channel.exceeds_noise ? "yes" : "no",
                           Seconds(worst.start) + " to " + end,
@@ -80,7 +80,7 @@ void AddDerivedTable(Page& page, const Comparison& comparison) {
   table.columns = {{"Signal"}, {"Mismatch, rms", true}, {"Relative error", true}};
   for (const DerivedMismatch& derived : comparison.derived) {
     table.rows.push_back({derived.name, FormatQuantity(derived.rms, derived.unit),
-                          Percent(derived.relative_error_percent)});
+                          PercentText(derived.relative_error_percent)});
   }
   page.AddTable(table);
 }
@@ -153,11 +153,11 @@ std::string ComparisonVerdict(const Comparison& comparison) {
     for (const ChannelMismatch& channel : comparison.channels) {
       names.push_back(channel.name);
     }
-    return "No mismatch beyond the noise floor in " + Join(names) + ".";
+    return "No mismatch beyond the noise floor in " + Listed(names) + ".";
   }
   const ChannelMismatch* worst = comparison.Worst();
   const std::string size = FormatQuantity(worst->rms, worst->unit) + " rms, " +
-                           Percent(worst->relative_error_percent);
+                           PercentText(worst->relative_error_percent);
   if (worst->noise_floor.rms == 0.0) {
     return "The simulation misses " + worst->name + ", which is free of noise (" +
            size + ").";
@@ -170,7 +170,7 @@ Page ComparisonPage(const Comparison& comparison, const RunDescription& run) {
   Page page("Measured against simulated: " + comparison.setup);
   page.SetVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
                   ComparisonVerdict(comparison));
-  AddFacts(page, comparison, run);
+  AddRecordFacts(page, comparison, run);
   page.AddHeading("Channels");
   AddChannelTable(page, comparison);
   AddDerivedTable(page, comparison);

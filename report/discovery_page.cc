@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostChannels = 3;
 
-std::string Percent(double share) { return FormatNumber(100.0 * share) + " %"; }
+std::string ShareText(double share) { return FormatNumber(100.0 * share) + " %"; }
 
 Tone ToneOf(DiscoveryVerdict verdict) {
   switch (verdict) {
@@ -25,7 +25,7 @@ Tone ToneOf(DiscoveryVerdict verdict) {
   return Tone::kNeutral;
 }
 
-void AddFacts(Page& page, const Discovery& discovery, const DiscoveryRun& run) {
+void AddDiscoveryFacts(Page& page, const Discovery& discovery, const DiscoveryRun& run) {
   const Record& record = discovery.before.measured;
   std::vector<std::pair<std::string, std::string>> facts = {{"Setup", discovery.setup},
                                                             {"Record", run.run.record}};
@@ -40,7 +40,7 @@ void AddFacts(Page& page, const Discovery& discovery, const DiscoveryRun& run) {
   }
   if (discovery.train_share > 0.0) {
     facts.emplace_back(
-        "Fitted to", "the first " + Percent(discovery.train_share) + " of the record");
+        "Fitted to", "the first " + ShareText(discovery.train_share) + " of the record");
   }
   if (!run.extended_plant.empty()) {
     facts.emplace_back("Extended plant", run.extended_plant);
@@ -100,8 +100,8 @@ std::string GainParagraph(const Discovery& discovery) {
          " on what was fitted and " + Fell(discovery.gain_validation) +
          " on unseen data. Of the power that an observer beside the plant fails to "
          "predict, " +
-         Percent(1.0 - discovery.colour_before) + " was white noise before and " +
-         Percent(1.0 - discovery.colour_after) + " is now.";
+         ShareText(1.0 - discovery.colour_before) + " was white noise before and " +
+         ShareText(1.0 - discovery.colour_after) + " is now.";
 }
 
 template <typename Plot>
@@ -166,10 +166,10 @@ void AddSignature(Page& page, const Discovery& discovery) {
        signature.variable +
            (signature.factor.empty() ? "" : " times " + signature.factor)},
       {"Shape", signature.shape},
-      {"Explains", Percent(signature.explained_share) + " of unseen parts"}};
+      {"Explains", ShareText(signature.explained_share) + " of unseen parts"}};
   if (!signature.runner_up.empty()) {
     facts.emplace_back("Next best",
-                       signature.runner_up + ", " + Percent(signature.runner_up_share));
+                       signature.runner_up + ", " + ShareText(signature.runner_up_share));
   }
   page.AddFacts(facts);
   if (signature.x.size() > 1)
@@ -190,7 +190,7 @@ void AddFaultLimits(Page& page, const Discovery& discovery) {
 Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   Page page("What the simulation gets wrong: " + discovery.setup);
   page.SetVerdict(ToneOf(discovery.verdict), DiscoveryAnswer(discovery));
-  AddFacts(page, discovery, run);
+  AddDiscoveryFacts(page, discovery, run);
   AddCauses(page, discovery);
   AddNotes(page, discovery);
   AddLadder(page, discovery);

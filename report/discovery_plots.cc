@@ -67,7 +67,7 @@ TimePlot MismatchPlot(const Comparison& before, const Comparison* after,
 }
 
 /// Levels do not widen the axis; where all of the signal lies within, curves do.
-void AddLimits(TimePlot& plot, double limit, const std::string& name) {
+void AddLimitLevels(TimePlot& plot, double limit, const std::string& name) {
   const std::string label = name + FormatQuantity(limit, plot.unit);
   const VectorXd& value = plot.curves.front().values;
   const bool beyond = (value.array().abs() > limit).any();
@@ -95,7 +95,7 @@ TimePlot UnexplainedPlot(const UnknownSignal& signal, const std::string& plant,
     value.tail(signal.edge).setConstant(kNothing);
   }
   plot.curves = {{"unexplained", CurveRole::kMismatch, value}};
-  AddLimits(plot, 2.0 * signal.sd, "±2 sd of its error: ");
+  AddLimitLevels(plot, 2.0 * signal.sd, "±2 sd of its error: ");
   plot.height = 180;
   return plot;
 }

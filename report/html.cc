@@ -5,7 +5,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string_view TextOf(const json& object, const char* key) {
+std::string_view TextAt(const json& object, const char* key) {
   return object.at(key).get_ref<const std::string&>();
 }
 
@@ -41,7 +41,7 @@ std::string TableHtml(const json& block) {
     html += "</tr>\n";
   };
   html += "<div class=\"table\"><table>\n<thead>";
-  row("th", [&](std::size_t i) { return TextOf(columns[i], "title"); });
+  row("th", [&](std::size_t i) { return TextAt(columns[i], "title"); });
   html += "</thead>\n<tbody>\n";
   for (const json& cells : block.at("rows")) {
     row("td", [&](std::size_t i) -> std::string_view {
@@ -52,7 +52,7 @@ std::string TableHtml(const json& block) {
 }
 
 std::string PlotHtml(const json& block) {
-  const std::string label = EscapeHtml(TextOf(block, "caption"));
+  const std::string label = EscapeHtml(TextAt(block, "caption"));
   const json& plot = block.at("plot");
   return "<figure class=\"plot\"><figcaption>" + label +
          "</figcaption><div class=\"legend\"></div><div class=\"chart\" role=\"img\" "
@@ -98,8 +98,8 @@ std::string HtmlElement(std::string_view tag, std::string_view text) {
 
 std::string VerdictHtml(const json& verdict, std::string_view target) {
   if (verdict.is_null()) return "";
-  const std::string_view tone = TextOf(verdict, "tone");
-  const std::string text = EscapeHtml(TextOf(verdict, "text"));
+  const std::string_view tone = TextAt(verdict, "tone");
+  const std::string text = EscapeHtml(TextAt(verdict, "text"));
   return "<p class=\"verdict " + std::string(tone) +
          "\"><span class=\"mark\" aria-hidden=\"true\">" + std::string(MarkOf(tone)) +
          "</span><span>" +
@@ -119,13 +119,13 @@ std::string FactsHtml(const json& rows) {
 }
 
 std::string BlockHtml(const json& block, std::string_view heading) {
-  const std::string_view kind = TextOf(block, "kind");
-  if (kind == "heading") return HtmlElement(heading, TextOf(block, "text"));
-  if (kind == "paragraph") return HtmlElement("p", TextOf(block, "text"));
+  const std::string_view kind = TextAt(block, "kind");
+  if (kind == "heading") return HtmlElement(heading, TextAt(block, "text"));
+  if (kind == "paragraph") return HtmlElement("p", TextAt(block, "text"));
   if (kind == "facts") return FactsHtml(block.at("rows"));
   if (kind == "table") return TableHtml(block);
   if (kind == "plot") return PlotHtml(block);
-  return "<pre><code>" + EscapeHtml(TextOf(block, "text")) + "</code></pre>\n";
+  return "<pre><code>" + EscapeHtml(TextAt(block, "text")) + "</code></pre>\n";
 }
 
 }  // namespace mjdiag

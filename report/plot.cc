@@ -34,7 +34,7 @@ const char* RoleName(CurveRole role) {
 }
 
 /// The largest finite magnitude; 0 if there is none.
-double Magnitude(const Eigen::VectorXd& values) {
+double LargestMagnitude(const Eigen::VectorXd& values) {
   double largest = 0.0;
   for (const double value : values) {
     if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
@@ -42,10 +42,10 @@ double Magnitude(const Eigen::VectorXd& values) {
   return largest;
 }
 
-double Magnitude(const std::vector<Curve>& curves) {
+double LargestMagnitude(const std::vector<Curve>& curves) {
   double largest = 0.0;
   for (const Curve& curve : curves) {
-    largest = std::max(largest, Magnitude(curve.values));
+    largest = std::max(largest, LargestMagnitude(curve.values));
   }
   return largest;
 }
@@ -109,7 +109,7 @@ constexpr std::size_t kPaletteSize = 6;
 
 nlohmann::json DescribePlot(const TimePlot& plot) {
   const DisplayUnit unit = plot.scaled
-                               ? ChooseDisplayUnit(Magnitude(plot.curves), plot.unit)
+                               ? ChooseDisplayUnit(LargestMagnitude(plot.curves), plot.unit)
                                : DisplayUnit{1.0, plot.unit};
   nlohmann::json json = CurvesAndLevels(plot.curves, plot.levels, unit.factor);
   json["kind"] = "time";
@@ -129,7 +129,7 @@ nlohmann::json DescribePlot(const TimePlot& plot) {
 }
 
 nlohmann::json DescribePlot(const SpectrumPlot& plot) {
-  const DisplayUnit unit = ChooseDisplayUnit(Magnitude(plot.curves), plot.unit);
+  const DisplayUnit unit = ChooseDisplayUnit(LargestMagnitude(plot.curves), plot.unit);
   nlohmann::json json = CurvesAndLevels(plot.curves, plot.levels, unit.factor);
   json["kind"] = "spectrum";
   json["x_label"] = "frequency [Hz]";
@@ -148,8 +148,8 @@ nlohmann::json DescribePlot(const XyPlot& plot) {
   double y_magnitude = 0.0;
   const auto include = [&](const auto& all_series) {
     for (const auto& series : all_series) {
-      x_magnitude = std::max(x_magnitude, Magnitude(series.x));
-      y_magnitude = std::max(y_magnitude, Magnitude(series.y));
+      x_magnitude = std::max(x_magnitude, LargestMagnitude(series.x));
+      y_magnitude = std::max(y_magnitude, LargestMagnitude(series.y));
     }
   };
   include(plot.points);
@@ -167,7 +167,7 @@ nlohmann::json DescribePlot(const XyPlot& plot) {
 
 nlohmann::json DescribePlot(const HistogramPlot& plot) {
   RequireSize(plot.caption, "edges", plot.edges.size(), plot.counts.size() + 1);
-  const DisplayUnit unit = ChooseDisplayUnit(Magnitude(plot.edges), plot.unit);
+  const DisplayUnit unit = ChooseDisplayUnit(LargestMagnitude(plot.edges), plot.unit);
   return nlohmann::json{
       {"kind", "histogram"},
       {"x_label", AxisLabel(plot.quantity, unit.name)},

@@ -17,7 +17,7 @@ using Eigen::Index;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kNotChosen = std::numeric_limits<std::size_t>::max();
 
-std::string_view Trim(std::string_view text) {
+std::string_view TrimCell(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) {
     text.remove_prefix(1);
   }
@@ -60,7 +60,7 @@ std::string_view TakeCell(std::string_view& rest, char separator) {
 }
 
 std::string_view Unquote(std::string_view cell) {
-  cell = Trim(cell);
+  cell = TrimCell(cell);
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
     cell = cell.substr(1, cell.size() - 2);
   }
@@ -68,7 +68,7 @@ std::string_view Unquote(std::string_view cell) {
 }
 
 std::string UnquoteHeader(std::string_view cell) {
-  std::string header(Trim(Unquote(cell)));
+  std::string header(TrimCell(Unquote(cell)));
   for (std::size_t at = header.find("\"\""); at != std::string::npos;
        at = header.find("\"\"", at + 1)) {
     header.erase(at, 1);
@@ -104,8 +104,8 @@ SourceColumn ParseHeader(std::string_view cell) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
     const std::size_t at = header.rfind(open);
     if (!header.ends_with(close) || at == std::string_view::npos || at == 0) continue;
-    column.unit = Trim(header.substr(at + 1, header.size() - at - 2));
-    column.name = Trim(header.substr(0, at));
+    column.unit = TrimCell(header.substr(at + 1, header.size() - at - 2));
+    column.name = TrimCell(header.substr(0, at));
     return column;
   }
   column.name = column.header;
@@ -148,7 +148,7 @@ class CsvSource : public RecordSource {
     std::size_t line_number = header_line_;
     while (!rest.empty()) {
       const std::string_view line = TakeLine(rest, line_number);
-      if (Trim(line).empty()) continue;
+      if (TrimCell(line).empty()) continue;
       lines_.push_back(line_number);
       ReadRow(line, slots, values);
     }
@@ -169,10 +169,10 @@ class CsvSource : public RecordSource {
  private:
   void ReadHeader() {
     std::string_view line;
-    while (!body_.empty() && (Trim(line).empty() || Trim(line).starts_with('#'))) {
+    while (!body_.empty() && (TrimCell(line).empty() || TrimCell(line).starts_with('#'))) {
       line = TakeLine(body_, header_line_);
     }
-    if (Trim(line).empty() || Trim(line).starts_with('#')) {
+    if (TrimCell(line).empty() || TrimCell(line).starts_with('#')) {
       throw InputError(file_, "has comments only", "a header row and rows of numbers");
     }
     separator_ = FindSeparator(line);
@@ -195,7 +195,7 @@ class CsvSource : public RecordSource {
       const std::string_view cell = TakeCell(rest, separator_);
       if (slots[column] == kNotChosen) continue;
       if (!ParseNumber(cell, values[slots[column]][row])) {
-        throw InputError(Place(column, row), "\"" + std::string(Trim(cell)) + "\"",
+        throw InputError(Place(column, row), "\"" + std::string(TrimCell(cell)) + "\"",
                          "a finite number");
       }
     }

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::string_view kTime = "time";
+constexpr std::string_view kTimeVariable = "time";
 constexpr std::string_view kUnits = "units";
 constexpr std::string_view kNames = "names";
 /// MATLAB's namelengthmax.
@@ -255,7 +255,7 @@ std::string VariableName(const std::string& channel,
 /// Variable names: of the time, then of every channel.
 std::vector<std::string> VariableNames(const Record& record) {
   std::vector<std::string> taken{std::string(kUnits), std::string(kNames),
-                                 std::string(kTime)};
+                                 std::string(kTimeVariable)};
   for (const Channel& channel : record.channels()) {
     taken.push_back(VariableName(channel.name, taken));
   }
@@ -292,7 +292,7 @@ VariablePtr MakeVector(const std::string& name, Eigen::VectorXd values) {
 bool WriteVariables(mat_t* file, const Record& record) {
   const std::vector<std::string> variables = VariableNames(record);
   std::vector<std::string> units{"s"};
-  std::vector<std::string> names{std::string(kTime)};
+  std::vector<std::string> names{std::string(kTimeVariable)};
   for (const Channel& channel : record.channels()) {
     units.push_back(channel.unit);
     names.push_back(channel.name);

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 /// Median of |e| of a standard Gaussian e.
 constexpr double kGaussianMedian = 0.674489750196081743;
-constexpr int kMaxOrder = 12;
+constexpr int kMostDifferences = 12;
 
 /// binomial(2 m, m)
 double CentralBinomial(int m) {
@@ -26,9 +26,9 @@ double CentralBinomial(int m) {
 }  // namespace
 
 double NoiseLevel(const VectorXd& signal, int order) {
-  if (order < 1 || order > kMaxOrder) {
+  if (order < 1 || order > kMostDifferences) {
     throw InputError("noise level", "differences of order " + std::to_string(order),
-                     "1 to " + std::to_string(kMaxOrder));
+                     "1 to " + std::to_string(kMostDifferences));
   }
   if (signal.size() <= order + 2) {
     throw InputError("noise level",

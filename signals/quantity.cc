@@ -10,12 +10,12 @@
 namespace mjdiag {
 namespace {
 
-struct Prefix {
+struct DisplayPrefix {
   const char* symbol;
   double factor;
 };
 
-constexpr std::array<Prefix, 8> kPrefixes = {{{"p", 1e12},
+constexpr std::array<DisplayPrefix, 8> kDisplayPrefixes = {{{"p", 1e12},
                                               {"n", 1e9},
                                               {"µ", 1e6},
                                               {"m", 1e3},
@@ -58,8 +58,8 @@ DisplayUnit ChooseDisplayUnit(double magnitude, const std::string& si_unit) {
     return {1.0, name};
   }
   // The largest prefix that leaves at least 1, to the three digits that are shown.
-  const Prefix* best = &kPrefixes.front();
-  for (const Prefix& prefix : kPrefixes) {
+  const DisplayPrefix* best = &kDisplayPrefixes.front();
+  for (const DisplayPrefix& prefix : kDisplayPrefixes) {
     if (std::abs(magnitude) * prefix.factor >= 0.9995) best = &prefix;
   }
   return {best->factor, best->symbol + name};

@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using MatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kRounding = 1e-12;  // of a feature's size: less is constant
+constexpr double kFeatureRounding = 1e-12;  // of a feature's size: less is constant
 constexpr double kFarAway = 1e6;     // standardised: keeps distances finite as floats
 constexpr int kMostIterations = 20000;  // per machine: bounds the time at a large C
 constexpr double kTolerance = 1e-3;     // on the optimality conditions, as in LIBSVM
@@ -39,7 +39,7 @@ struct Standardizer {
             .transpose();
     for (Index j = 0; j < features.cols(); ++j) {
       const double size = features.col(j).cwiseAbs().maxCoeff();
-      if (all_sds[j] > kRounding * size) kept.push_back(j);
+      if (all_sds[j] > kFeatureRounding * size) kept.push_back(j);
     }
     mean = all_means(kept);
     sd = all_sds(kept);
@@ -203,7 +203,7 @@ void RequireGrid(const std::vector<double>& values, const std::string& name) {
   }
 }
 
-void RequireFinite(const MatrixXd& features) {
+void RequireFiniteFeatures(const MatrixXd& features) {
   for (Index i = 0; i < features.rows(); ++i) {
     for (Index j = 0; j < features.cols(); ++j) {
       if (std::isfinite(features(i, j))) continue;
@@ -238,7 +238,7 @@ void RequireTrainingSet(const MatrixXd& features, const std::vector<int>& labels
     throw InputError("SVM", "an empty training set", "some vectors with features");
   }
   RequireClasses(labels, classes);
-  RequireFinite(features);
+  RequireFiniteFeatures(features);
   RequireGrid(options.c, "C");
   RequireGrid(options.gamma, "gamma");
   if (options.folds < 2 || options.folds > features.rows()) {
@@ -283,7 +283,7 @@ struct SvmClassifier::Model {
                        "a vector of " + std::to_string(rows.cols()) + " features",
                        std::to_string(features) + " as in training");
     }
-    RequireFinite(rows);
+    RequireFiniteFeatures(rows);
     return standardizer.Apply(rows);
   }
 };

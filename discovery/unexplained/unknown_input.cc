@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kFewestSamples = 100;
+constexpr Index kFewestInnovations = 100;
 /// Standard deviation of the state at the first sample, in multiples of the noise.
 constexpr double kFree = 1e4;
 /// From the n-th doubling on, a sum over 2^n samples is one over any record.
@@ -272,12 +272,12 @@ VectorXd ForceUnits(const Scaled& scaled, const MatrixXd& B) {
 void RequireShapes(const MechanicalModel& model, const Observer& observer,
                    const MatrixXd& innovations, std::size_t sites, std::size_t units) {
   const Index ny = observer.noise_sd.size();
-  if (innovations.rows() != ny || innovations.cols() < kFewestSamples) {
+  if (innovations.rows() != ny || innovations.cols() < kFewestInnovations) {
     throw InputError("unknown inputs",
                      std::to_string(innovations.rows()) + " x " +
                          std::to_string(innovations.cols()) + " innovations",
                      std::to_string(ny) + " sensors and at least " +
-                         std::to_string(kFewestSamples) + " samples");
+                         std::to_string(kFewestInnovations) + " samples");
   }
   if (observer.tick.states() != 2 * model.M.rows() || model.b.cols() != ny) {
     throw InputError("unknown inputs", "an observer of another model",

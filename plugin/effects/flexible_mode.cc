@@ -2,16 +2,14 @@
 //   m x'' = -f,  f = m (omega^2 (x - q) + 2 zeta omega (x' - v)),  f on the joint
 // integrated as MuJoCo's Euler does (velocity first).
 
-#include <numbers>
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/wave.h"
 
 namespace mjdiag {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 class Appendage final : public ActiveEffect {
  public:

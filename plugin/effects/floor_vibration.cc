@@ -10,8 +10,6 @@
 namespace mjdiag {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
 class FloorVibrationEffect final : public JointForceEffect {
  public:
   FloorVibrationEffect()

@@ -11,8 +11,6 @@
 namespace mjdiag {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
 class ForceRippleEffect final : public JointForceEffect {
  public:
   ForceRippleEffect()

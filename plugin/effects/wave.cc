@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
@@ -11,12 +10,6 @@ namespace mjdiag {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
-}  // namespace
 
 Trial WaveTrial(const VectorXd& entry, const VectorXd& angle, double value) {
   Trial trial;

@@ -3,11 +3,14 @@
 // parameters are amplitude, period or frequency, and phase, in this order.
 
 #include <Eigen/Core>
+#include <numbers>
 #include <utility>
 
 #include "mjdiag/plugin/effects/trial.h"
 
 namespace mjdiag {
+
+inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< [rad]
 
 /// Sine and cosine of an angle, with `value` the period or frequency.
 /// @param entry  of the force, nq; empty: an error of a reading

@@ -11,7 +11,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-VectorXd JointStiffness(const mjModel& plant) {
+VectorXd StiffnessOf(const mjModel& plant) {
   VectorXd stiffness(plant.nv);
   for (Index j = 0; j < plant.nv; ++j) {
     stiffness[j] = plant.jnt_stiffness[plant.dof_jntid[j]];
@@ -19,7 +19,7 @@ VectorXd JointStiffness(const mjModel& plant) {
   return stiffness;
 }
 
-VectorXd JointDamping(const mjModel& plant) {
+VectorXd DampingOf(const mjModel& plant) {
   return Eigen::Map<const VectorXd>(plant.dof_damping, plant.nv);
 }
 
@@ -30,8 +30,8 @@ TickTangent NoTime(Index nv) {
 }  // namespace
 
 TangentRecorder::TangentRecorder(const mjModel& plant, const MechanicalModel& model)
-    : stiffness_(model.K - MatrixXd(JointStiffness(plant).asDiagonal())),
-      damping_(model.D - MatrixXd(JointDamping(plant).asDiagonal())),
+    : stiffness_(model.K - MatrixXd(StiffnessOf(plant).asDiagonal())),
+      damping_(model.D - MatrixXd(DampingOf(plant).asDiagonal())),
       mass_(plant.nv, plant.nv),
       tick_(NoTime(plant.nv)) {}
 
@@ -49,8 +49,8 @@ const TangentRecorder::Map& TangentRecorder::MapOf(const mjModel& plant,
   const auto [entry, is_new] = known_.try_emplace(held);
   if (!is_new) return entry->second;
   const double h = plant.opt.timestep;
-  const MatrixXd D = damping_ + MatrixXd(JointDamping(plant).asDiagonal());
-  const MatrixXd K = stiffness_ + MatrixXd(JointStiffness(plant).asDiagonal());
+  const MatrixXd D = damping_ + MatrixXd(DampingOf(plant).asDiagonal());
+  const MatrixXd K = stiffness_ + MatrixXd(StiffnessOf(plant).asDiagonal());
   MatrixXd inertia = mass_;
   MatrixXd against = D;
   for (const auto& [joint, friction] : held) {

@@ -8,7 +8,7 @@
 namespace mjdiag {
 namespace {
 
-constexpr const char* kSchema = "mjdiag.linear_chain/1";
+constexpr const char* kChainSchema = "mjdiag.linear_chain/1";
 
 /// True for `yes`, false for `no`.
 bool ReadType(const TomlTable& table, const std::string& yes, const std::string& no) {
@@ -29,7 +29,7 @@ Eigen::Vector3d ReadVector(const TomlTable& table, std::string_view key,
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Eigen::Vector3d ReadAxis(const TomlTable& table) {
+Eigen::Vector3d ReadDirection(const TomlTable& table) {
   const Eigen::Vector3d axis = ReadVector(table, "axis");
   if (std::abs(axis.norm() - 1.0) > 1e-12) {
     table.Fail("axis", "is not of unit length", "a unit vector");
@@ -55,7 +55,7 @@ ChainJoint ReadJoint(const TomlTable& table) {
   ChainJoint joint;
   joint.name = table.Text("name");
   joint.hinge = ReadType(table, "hinge", "slide");
-  joint.axis = ReadAxis(table);
+  joint.axis = ReadDirection(table);
   if (joint.hinge) joint.point = ReadVector(table, "point");
   joint.stiffness = table.Number("stiffness", kAnyNumber, 0.0);
   joint.damping = table.Number("damping", kNonNegative, 0.0);
@@ -81,7 +81,7 @@ ChainPort ReadPort(const TomlTable& table, const LinearChain& chain) {
   port.body = ReadBodyName(table, "body", chain);
   port.base = ReadBodyName(table, "base", chain);
   port.rotational = ReadType(table, "rotational", "linear");
-  port.axis = ReadAxis(table);
+  port.axis = ReadDirection(table);
   if (!port.rotational) port.point = ReadVector(table, "point");
   port.gain = table.Number("gain", kNonZero, 1.0);
   return port;
@@ -92,7 +92,7 @@ ChainPort ReadPort(const TomlTable& table, const LinearChain& chain) {
 LinearChain ReadLinearChain(const std::filesystem::path& file) {
   const TomlDocument document(file, {});
   const TomlTable root = document.Root();
-  root.RequireSchema(kSchema);
+  root.RequireSchema(kChainSchema);
   LinearChain chain;
   chain.gravity = root.Number("gravity", kAnyNumber, chain.gravity);
   for (const TomlTable& body : root.TableArray("bodies")) {

@@ -5,8 +5,8 @@
 namespace mjdiag {
 namespace {
 
-constexpr const char* kSchema = "mjdiag.published_row/1";
-constexpr int kHighestDegree = 100;
+constexpr const char* kRowSchema = "mjdiag.published_row/1";
+constexpr int kHighestPower = 100;
 constexpr int kMostDigits = 17;
 
 }  // namespace
@@ -14,9 +14,9 @@ constexpr int kMostDigits = 17;
 PublishedRow ReadPublishedRow(const std::filesystem::path& file) {
   const TomlDocument document(file, {});
   const TomlTable root = document.Root();
-  root.RequireSchema(kSchema);
+  root.RequireSchema(kRowSchema);
   PublishedRow row;
-  row.degree = root.Integer("degree", 1, kHighestDegree);
+  row.degree = root.Integer("degree", 1, kHighestPower);
   row.digits = root.Integer("digits", 1, kMostDigits);
   for (const TomlTable& pin : root.TableArray("pins")) {
     row.pins.push_back({pin.Text("channel"), pin.Integer("power", 0, row.degree),

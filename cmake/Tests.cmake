@@ -1,0 +1,38 @@
+# mjdiag_join_tests(<folder> <result> <sources...>): the sources to compile for these
+# tests, some of which hold several of them (Folder.cmake says why).
+function(mjdiag_join_tests folder result)
+  if(NOT MJDIAG_UNITY)
+    set(${result} ${ARGN} PARENT_SCOPE)
+    return()
+  endif()
+  set(size 5)
+  set(batch)
+  set(compiled)
+  set(count 0)
+  foreach(source IN LISTS ARGN ITEMS end)
+    set(joins FALSE)
+    if(NOT source STREQUAL end)
+      file(READ ${source} text)
+      string(REGEX MATCHALL "\n(namespace {|}  // namespace)\n" marks "${text}")
+      list(LENGTH marks found)
+      # Other shapes are compiled by themselves.
+      if(found EQUAL 2 AND text MATCHES "\n}  // namespace\n\n?}  // namespace mjdiag\n$")
+        list(APPEND batch ${source})
+      else()
+        list(APPEND compiled ${source})
+      endif()
+    endif()
+    list(LENGTH batch length)
+    if(length EQUAL size OR (source STREQUAL end AND length GREATER 0))
+      set(joined ${CMAKE_CURRENT_BINARY_DIR}/joined/${folder}_${count}.cc)
+      add_custom_command(OUTPUT ${joined}
+        COMMAND ${CMAKE_COMMAND} -P ${PROJECT_SOURCE_DIR}/cmake/JoinTests.cmake ${joined}
+                ${batch}
+        DEPENDS ${batch} ${PROJECT_SOURCE_DIR}/cmake/JoinTests.cmake VERBATIM)
+      list(APPEND compiled ${joined})
+      set(batch)
+      math(EXPR count "${count} + 1")
+    endif()
+  endforeach()
+  set(${result} ${compiled} PARENT_SCOPE)
+endfunction()
