@@ -94,7 +94,7 @@ std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
 }
 
 /// The page of a design.
-NamedPage PageOf(const Machine& machine, const DiagnosisDesign& design,
+NamedPage PageOfDesign(const Machine& machine, const DiagnosisDesign& design,
                  DesignFacts facts) {
   facts.changed = WithoutStiffness(machine);
   const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
@@ -120,7 +120,7 @@ void Design(const DesignOptions& options) {
             "\n";
   }
   Publish(options.output, "filters", document, text,
-          [&] { return PageOf(machine, prepared.design, facts); });
+          [&] { return PageOfDesign(machine, prepared.design, facts); });
 }
 
 }  // namespace

@@ -42,10 +42,6 @@ Machine Bonder(bool static_friction) {
       {std::string("physics.static_friction=") + (static_friction ? "true" : "false")});
 }
 
-Excitation DefaultMotion(const Setup& setup) {
-  return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
-}
-
 /// A closed loop that stands at its first tick.
 class Loop {
  public:
@@ -111,13 +107,13 @@ BENCHMARK_CAPTURE(MonitoredOverPlainLoop, without_friction, false)
 void Synthesis(benchmark::State& state) {
   const Machine machine = Bonder(true);
   const MechanicalModel& healthy = machine.linear();
-  const SynthesisOptions options = SynthesisOf(machine.setup(), healthy);
+  const SynthesisOptions options = SynthesisOf(machine);
   std::vector<TurnedModels> turned;
   std::vector<double> linearise;
   std::vector<double> synthesise;
   std::vector<double> design;
   for (auto _ : state) {
-    linearise.push_back(Seconds([&] { turned = TurnModels(machine); }));
+    linearise.push_back(Seconds([&] { turned = MakeFaultFamily(machine).Turned(); }));
     synthesise.push_back(Seconds([&] {
       const ResidualSpace space = MakeResidualSpace(healthy, options);
       const Eigen::Index size = space.rows.front().rows();

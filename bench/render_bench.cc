@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/render/drawn_joints.h"

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// How far a channel is above its floor; free of noise comes first.
-double TimesFloor(const ChannelMismatch& channel) {
+double OverFloor(const ChannelMismatch& channel) {
   if (channel.rms == 0.0) return 0.0;
   return channel.rms / channel.noise_floor.rms;
 }
@@ -28,7 +28,7 @@ std::vector<const ChannelMismatch*> WorstChannels(const Comparison& comparison,
   }
   std::stable_sort(channels.begin(), channels.end(),
                    [](const ChannelMismatch* a, const ChannelMismatch* b) {
-                     return TimesFloor(*a) > TimesFloor(*b);
+                     return OverFloor(*a) > OverFloor(*b);
                    });
   channels.resize(std::min(most, channels.size()));
   return channels;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mjdiag/plugin/plant/time_step.h"
 #include "mjdiag/plugin/runtime/instance.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"

@@ -1,7 +1,6 @@
 #include "mjdiag/plugin/machine/machine.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/time_step.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -115,21 +115,6 @@ Machine Machine::WithSensorNoise(const Eigen::VectorXd& sd) const {
     setup.channels.sensors[i].noise_sd = sd[static_cast<Eigen::Index>(i)];
   }
   return WithSetup(WithNoiseOf(std::move(setup), effects()));
-}
-
-void CheckTimeStep(const Setup& setup, const mjModel& model) {
-  if (model.opt.integrator != mjINT_EULER && model.opt.integrator != mjINT_IMPLICIT) {
-    throw InputError(setup.plant.string(),
-                     "an integrator that evaluates the controls several times a step",
-                     "integrator=\"Euler\" or \"implicit\"");
-  }
-  const double step = setup.rates.step();
-  if (std::abs(model.opt.timestep / step - 1.0) > 1e-9) {
-    throw InputError(setup.plant.string(),
-                     "time step " + std::to_string(model.opt.timestep * 1e6) + " us",
-                     std::to_string(step * 1e6) +
-                         " us, the control tick of the setup over its substeps");
-  }
 }
 
 void PreparePlant(const Physics& physics, mjModel& model) {

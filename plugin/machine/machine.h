@@ -75,10 +75,6 @@ class Machine {
   std::shared_ptr<Derived> derived_;
 };
 
-/// InputError if the model's time step is not control tick / substeps, or its
-/// integrator evaluates the controls several times a step.
-void CheckTimeStep(const Setup& setup, const mjModel& model);
-
 /// Makes a loaded model the plant of a setup: gravity, static friction, native effects
 /// that the MJCF carries, and the slot for the mark of an instance. Once a model.
 void PreparePlant(const Physics& physics, mjModel& model);

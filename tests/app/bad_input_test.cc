@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "command_line.h"
+#include "app/command_line.h"
 
 namespace mjdiag {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command_line.h"
+#include "app/command_line.h"
 
 namespace mjdiag {
 namespace {

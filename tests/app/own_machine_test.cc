@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "command_line.h"
+#include "app/command_line.h"
 
 namespace mjdiag {
 namespace {

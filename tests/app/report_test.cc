@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "command_line.h"
+#include "app/command_line.h"
 
 namespace mjdiag {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "discovery/stage_under_test.h"
 #include "mjdiag/plugin/runtime/simulation.h"
-#include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
 namespace {
@@ -22,8 +21,8 @@ DiscoverOptions CausesOnly() {
 std::string Named(const Discovery& discovery) {
   std::string names;
   for (const FoundCause& found : discovery.causes) {
-    names += (names.empty() ? "" : ", ") + found.cause.spec.effect + "@" +
-             found.cause.spec.site;
+    names += (names.empty() ? "" : ", ") + found.cause.name() + "@" +
+             found.cause.site;
   }
   return names;
 }
@@ -63,11 +62,11 @@ TEST(Discovery, NamesATurnedKnobAsTheFault) {
   const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),
                                     nullptr, CausesOnly());
   ASSERT_EQ(Named(answer), "zeta@load");
-  EXPECT_TRUE(answer.causes[0].cause.fault);
+  EXPECT_TRUE(answer.causes[0].cause.effect->IsFault());
   // The same change of the model by another name is said to be one.
   ASSERT_FALSE(answer.causes[0].alternatives.empty());
   EXPECT_TRUE(answer.causes[0].alternatives[0].indistinguishable);
-  EXPECT_EQ(answer.causes[0].alternatives[0].cause.spec.effect, "viscous_friction");
+  EXPECT_EQ(answer.causes[0].alternatives[0].cause.name(), "viscous_friction");
 }
 
 // A drive that was limited in one record and is not in the other: the machine has no

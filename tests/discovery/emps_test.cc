@@ -13,6 +13,7 @@
 #include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/changes.h"
@@ -55,7 +56,7 @@ class Emps : public ::testing::Test {
   static Machine WithAuthorsMassAndDamping() {
     const Machine given = Given();
     const ModelPtr plant = CopyModel(given.plant());
-    plant.body_mass[FindElement(plant, mjOBJ_BODY, "load")] = 95.1089;
+    plant->body_mass[FindElement(*plant, mjOBJ_BODY, "load")] = 95.1089;
     plant->dof_damping[0] = 203.5034;
     return Machine(given.setup(), *plant);
   }

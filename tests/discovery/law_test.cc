@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mjdiag/plugin/effects/fault_parameter.h"
 #include "plugin/effects/effect_bench.h"
 
 namespace mjdiag {
@@ -11,8 +12,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-Cause CauseOf(const std::string& effect) { return {ParseEffect(effect), false}; }
 
 /// Of -2 to 3, without anything explained.
 Eigen::MatrixX2d Curve(const Cause& cause) {
@@ -29,8 +28,8 @@ TEST(LawCurve, IsTheForceThatTheEffectMakesOnAJoint) {
         "end_stop@q:position=1.2,stiffness=50",
         "end_stop@q:position=-0.7,stiffness=50"}) {
     SCOPED_TRACE(effect);
-    const Cause cause = CauseOf(effect);
-    const bool of_velocity = VariableOf(cause) == LawVariable::kVelocity;
+    const Cause cause = ParseEffect(effect);
+    const bool of_velocity = cause.effect->variable() == LawVariable::kVelocity;
     test::EffectBench bench({effect});
     const Eigen::MatrixX2d curve = Curve(cause);
     EXPECT_EQ(curve(0, 0), -2.0);
@@ -46,9 +45,9 @@ TEST(LawCurve, IsTheForceThatTheEffectMakesOnAJoint) {
 
 // Dry friction is no function at rest: a constraint holds the joint.
 TEST(LawCurve, OfDryFrictionIsAgainstTheMotion) {
-  const Eigen::MatrixX2d coulomb = Curve(CauseOf("coulomb_friction@q:force=5"));
+  const Eigen::MatrixX2d coulomb = Curve(ParseEffect("coulomb_friction@q:force=5"));
   const Eigen::MatrixX2d stribeck =
-      Curve(CauseOf("stribeck_friction@q:coulomb=5,breakaway=2,velocity=0.5"));
+      Curve(ParseEffect("stribeck_friction@q:coulomb=5,breakaway=2,velocity=0.5"));
   for (Index i = 0; i < coulomb.rows(); ++i) {
     const double v = coulomb(i, 0);
     EXPECT_EQ(coulomb(i, 1), v > 0.0 ? -5.0 : 5.0) << v;
@@ -60,16 +59,17 @@ TEST(LawCurve, OfDryFrictionIsAgainstTheMotion) {
 
 // Its own inertia does not accelerate a mass; the plant's has to.
 TEST(LawCurve, OfAMassIsAgainstTheAcceleration) {
-  const Eigen::MatrixX2d curve = Curve(CauseOf("added_mass@q:mass=0.3"));
+  const Eigen::MatrixX2d curve = Curve(ParseEffect("added_mass@q:mass=0.3"));
   EXPECT_LT((curve.col(1) + 0.3 * curve.col(0)).norm(), 1e-12);
 }
 
 TEST(LawCurve, WithoutAClosedFormIsTheMeanOfWhatTheCauseExplains) {
-  const Cause knob{{"zeta", "q", {{"value", 1.2}}}, true};
+  const Cause fault{FaultParameter({"zeta", KnobKind::kDamping, {0}}), "q",
+                    Eigen::VectorXd::Constant(1, 1.2)};
   // Neither in order nor evenly spaced.
   const VectorXd x = VectorXd::LinSpaced(4000, 0.0, 40.0).array().sin();
   const VectorXd noise = VectorXd::LinSpaced(4000, 0.0, 1e4).array().cos();
-  const Eigen::MatrixX2d curve = LawCurve(knob, x, 2.0 * x + noise);
+  const Eigen::MatrixX2d curve = LawCurve(fault, x, 2.0 * x + noise);
   ASSERT_GT(curve.rows(), 10);
   for (Index i = 0; i < curve.rows(); ++i) {
     if (i > 0) {

@@ -12,7 +12,7 @@
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 #include "support/message_of.h"
-#include "test_machine.h"
+#include "render/test_machine.h"
 
 namespace mjdiag {
 namespace {

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "mjdiag/render/palette.h"
-#include "test_machine.h"
+#include "render/test_machine.h"
 
 namespace mjdiag {
 namespace {

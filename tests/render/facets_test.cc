@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "mjdiag/render/posed_scene.h"
-#include "test_machine.h"
+#include "render/test_machine.h"
 
 namespace mjdiag {
 namespace {

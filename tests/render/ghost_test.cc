@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/render/scene_renderer.h"
-#include "test_machine.h"
+#include "render/test_machine.h"
 
 namespace mjdiag {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "test_machine.h"
+#include "render/test_machine.h"
 
 namespace mjdiag {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/signals/error.h"
-#include "test_machine.h"
+#include "render/test_machine.h"
 
 namespace mjdiag {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "sample_comparison.h"
+#include "report/sample_comparison.h"
 
 namespace mjdiag {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/report/report.h"
-#include "sample_comparison.h"
+#include "report/sample_comparison.h"
 
 namespace mjdiag {
 namespace {

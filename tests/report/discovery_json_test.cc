@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "sample_discovery.h"
+#include "report/sample_discovery.h"
 
 namespace mjdiag {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/report.h"
-#include "sample_discovery.h"
+#include "report/sample_discovery.h"
 
 namespace mjdiag {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sample_discovery.h"
+#include "report/sample_discovery.h"
 
 namespace mjdiag {
 namespace {

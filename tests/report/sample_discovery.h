@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mjdiag/discovery/discovery.h"
+#include "mjdiag/plugin/effects/fault_parameter.h"
 
 namespace mjdiag {
 
@@ -37,20 +38,23 @@ inline Comparison SampleReplay(double mismatch) {
 
 inline FoundCause SampleFriction() {
   FoundCause friction;
-  friction.cause = {{"coulomb_friction", "load", {{"force", 20.39}}}};
+  friction.cause = ParseEffect("coulomb_friction@load:force=20.39");
   friction.parameters = {{"force", "N", 20.39, 0.094, 20.206, 20.574}};
   friction.probability = 0.963;
-  friction.alternatives = {{{{"stribeck_friction", "load", {}}}, 0.031, false},
-                           {{{"presliding_hysteresis", "load", {}}}, 0.006, false}};
+  friction.alternatives = {
+      {ParseEffect("stribeck_friction@load:coulomb=19,breakaway=2,velocity=0.01"),
+       0.031, false},
+      {ParseEffect("presliding_hysteresis@load:force=20,stiffness=1e6"), 0.006, false}};
   return friction;
 }
 
 inline FoundCause SampleKnob() {
   FoundCause knob;
-  knob.cause = {{"eta", "drive", {{"value", 1.0342}}}, true};
+  knob.cause = {FaultParameter({"eta", KnobKind::kGear, {0}}), "drive",
+                Eigen::VectorXd::Constant(1, 1.0342)};
   knob.parameters = {{"value", "1", 1.0342, 2e-5, 1.03416, 1.03424}};
   knob.probability = 1.0;
-  knob.alternatives = {{{{"motor_constant", "drive", {}}}, 0.5, true}};
+  knob.alternatives = {{ParseEffect("motor_constant@drive:factor=1.0342"), 0.5, true}};
   return knob;
 }
 

@@ -10,8 +10,8 @@ namespace {
 std::string Named(const Discovery& discovery) {
   std::string names;
   for (const FoundCause& found : discovery.causes) {
-    names += (names.empty() ? "" : ", ") + found.cause.spec.effect + "@" +
-             found.cause.spec.site;
+    names += (names.empty() ? "" : ", ") + found.cause.name() + "@" +
+             found.cause.site;
   }
   return names;
 }

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/discovery/extension/extended_plant.h"
-#include "mjdiag/plugin/effects/native_effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
@@ -24,11 +23,11 @@ class ExtendedMjcf : public ::testing::Test {
     const std::string file = nominal_.Write("stage.xml", mjcf);
     expected_ = LoadModel(file);
     const ModelPtr plant = LoadModel(file);
-    std::vector<EffectSpec> specs;
+    std::vector<PlacedEffect> specs;
     for (const Fault& fault : faults) ApplyFault(*expected_, fault);
     for (const std::string& effect : effects) {
       specs.push_back(ParseEffect(effect));
-      ApplyNativeEffect(*expected_, specs.back());
+      ApplyEffect(*expected_, specs.back());
     }
     const std::string text = ExtendMjcf(file, *plant, faults, specs, extended_.path());
     model_ = LoadModel(extended_.Write("plant.xml", text));

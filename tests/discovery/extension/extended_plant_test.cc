@@ -106,22 +106,6 @@ TEST(ExtendedPlant, MovesAsEmpsWithEveryEffectByItself) {
   }
 }
 
-TEST(ExtendedPlant, IsTestedWithTheWholeCatalogue) {
-  for (const EffectType& type : EffectCatalogue()) {
-    // Noise is in the setup, see below.
-    if (type.name == "encoder_noise") continue;
-    const auto is_tested = [&](const std::vector<std::string>& effects) {
-      return std::any_of(effects.begin(), effects.end(), [&](const std::string& text) {
-        return text.starts_with(type.name + "@");
-      });
-    };
-    EXPECT_TRUE(is_tested(test::EveryEffectOfAb383())) << type.name;
-    // Nothing in EMPS is held by a spring.
-    if (type.site == EffectSite::kHeldJoint) continue;
-    EXPECT_TRUE(is_tested(test::EveryEffectOfEmps())) << type.name;
-  }
-}
-
 TEST(ExtendedPlant, MovesAsTheMachineWithEveryFaultTurned) {
   const Changes ab383 = test::With(
       {}, {{"zeta_x", 1.37}, {"beta_y", 0.91}, {"eta_x", 0.93}, {"eta_z", 1.01}});

@@ -15,9 +15,9 @@ namespace {
 struct Fitted {
   DiscoveryProblem problem;
   std::vector<Candidate> candidates;
-  CauseFit fit;
-  Eigen::MatrixXd covariance;
-  std::vector<Interval> intervals;
+  CauseFit fit{};
+  Eigen::MatrixXd covariance{};
+  std::vector<Interval> intervals{};
 };
 
 /// Of one effect, from its true values.

@@ -70,9 +70,7 @@ TEST(Screening, PromisesOfASmallEffectWhatItTakesAwayOfTheSquaredInnovations) {
 TEST(Screening, StartsAFitNearTheTruth) {
   const Screened screened({"quadratic_drag@load:coefficient=20"});
   const Screening screening = screened.Beside();
-  EXPECT_NEAR(
-      screened.StartOf(screening, "quadratic_drag@load").parameters.at("coefficient"),
-      20.0, 0.5);
+  EXPECT_NEAR(screened.StartOf(screening, "quadratic_drag@load").value[0], 20.0, 0.5);
 }
 
 TEST(Screening, OfNoiseAloneFindsNothingSignificant) {
@@ -151,9 +149,9 @@ TEST(BetterWaves, FindThePeriodThatAWrongOneMisses) {
   const std::vector<Start> starts = better(0.015);
   ASSERT_FALSE(starts.empty());
   EXPECT_LE(starts.size(), 3u);
-  EXPECT_NEAR(starts[0].parameters.at("period"), 0.024, 0.024 * 2e-3);
+  EXPECT_NEAR(starts[0].value[PeriodPlace(ripple)], 0.024, 0.024 * 2e-3);
   for (const Start& start : better(0.024)) {
-    EXPECT_NEAR(start.parameters.at("period"), 0.024, 0.024 * 0.01);
+    EXPECT_NEAR(start.value[PeriodPlace(ripple)], 0.024, 0.024 * 0.01);
   }
 }
 

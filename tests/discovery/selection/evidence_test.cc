@@ -211,16 +211,16 @@ TEST(Comparator, CountsBothSetsByWhatTheLargerOneLeaves) {
   const Evidence present = Present({}, 1.0, 1.0);
   const CauseFit fit = FitOf({0}, Less(50.0, kFitted), 1.0);
   EXPECT_EQ(Judge(present, Adding(present, fit, 1.0)), Judgement::kAccepted);
-  // 20 are left, which is less than chance; then 5, less than the parameter costs.
+  // 20 are left, which is less than chance; then 2.5, less than the parameter costs.
   EXPECT_EQ(Judge(present, Adding(present, fit, 0.4)), Judgement::kChance);
-  EXPECT_EQ(Judge(present, Adding(present, fit, 0.1)), Judgement::kCriterion);
+  EXPECT_EQ(Judge(present, Adding(present, fit, 0.05)), Judgement::kCriterion);
 }
 
 TEST(Comparator, LeavesNoTraceOfASetThatItTurnsDown) {
   const Evidence present = Present({}, 1.0, 1.0);
   const double criterion = present.Criterion();
   const CauseFit fit = FitOf({0}, Less(50.0, kFitted), 1.0);
-  ASSERT_EQ(Judge(present, Adding(present, fit, 0.1)), Judgement::kCriterion);
+  ASSERT_EQ(Judge(present, Adding(present, fit, 0.05)), Judgement::kCriterion);
   EXPECT_EQ(present.independent()[0], 1.0);
   EXPECT_EQ(present.Criterion(), criterion);
   EXPECT_EQ(Judge(present, Adding(present, fit, 1.0)), Judgement::kAccepted);

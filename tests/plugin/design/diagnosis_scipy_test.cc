@@ -15,7 +15,7 @@
 #include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "support/bonder.h"
 #include "support/temporary_folder.h"
@@ -126,7 +126,7 @@ struct WornGuide {
       : machine(test::Bonder({"trajectories.multi.duration=0.25",
                               "diagnosis.estimation.magnitudes.beta_x=1e-3",
                               "diagnosis.estimation.magnitudes.beta_y=1e-3"})),
-        options(SynthesisOf(setup, machine.linear())),
+        options(SynthesisOf(machine)),
         space(MakeResidualSpace(machine.linear(), options)),
         design(DesignFilters(machine)) {
     const Record record =
@@ -139,7 +139,7 @@ struct WornGuide {
   Values ForPython() const {
     Values values;
     AddMachine(values, "", machine.linear());
-    const std::vector<TurnedModels> turned = TurnModels(machine);
+    const std::vector<TurnedModels> turned = MakeFaultFamily(machine).Turned();
     MatrixXd magnitudes(1, turned.size());
     for (std::size_t i = 0; i < turned.size(); ++i) {
       AddMachine(values, "minus" + std::to_string(i) + ".", turned[i].minus);

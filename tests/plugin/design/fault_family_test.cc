@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/design/fault_models.h"
+#include "mjdiag/plugin/design/fault_family.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,15 @@ MechanicalModel Faulty(const Machine& machine, const std::vector<Fault>& faults)
   return machine.With({faults, {}}).linear();
 }
 
-Index Place(const std::vector<std::string>& names, const std::string& name) {
+std::vector<Fault> At(const std::vector<std::string>& names, const VectorXd& values) {
+  std::vector<Fault> faults;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    faults.push_back({names[i], values[static_cast<Index>(i)]});
+  }
+  return faults;
+}
+
+Index PlaceOf(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
@@ -55,7 +63,7 @@ std::vector<std::string> Changes(const MechanicalModel& from,
 std::vector<std::string> Driven(const MechanicalModel& model,
                                 const std::string& input) {
   std::vector<std::string> entries;
-  const Index column = Place(model.inputs, input);
+  const Index column = PlaceOf(model.inputs, input);
   const double rounding = 1e-9 * model.Gamma.col(column).cwiseAbs().maxCoeff();
   for (Index i = 0; i < model.Gamma.rows(); ++i) {
     if (std::abs(model.Gamma(i, column)) <= rounding) continue;
@@ -79,7 +87,8 @@ TEST(FaultyMachine, ScalesTheEntriesOfTheKnobAndNothingElse) {
     const MechanicalModel faulty = Faulty(machine, {{knob, 0.97}});
     EXPECT_THAT(Changes(healthy, faulty), UnorderedElementsAreArray(entries)) << knob;
   }
-  EXPECT_THAT(Changes(healthy, Faulty(machine, HealthyKnobs(machine.plant()))),
+  const std::vector<std::string> names = MakeFaultFamily(machine).parameters;
+  EXPECT_THAT(Changes(healthy, Faulty(machine, At(names, VectorXd::Ones(7)))),
               testing::IsEmpty());
 }
 
@@ -88,40 +97,37 @@ TEST(FaultyMachine, ScalesByTheValueOfTheKnob) {
   const MechanicalModel& healthy = machine.linear();
   const MechanicalModel faulty =
       Faulty(machine, {{"zeta_y", 1.25}, {"beta_x", 0.5}, {"eta_z", 0.75}});
-  const Index y = Place(healthy.coordinates, "Y");
-  const Index u3 = Place(healthy.coordinates, "u3");
-  const Index u_z = Place(healthy.inputs, "u_z");
+  const Index y = PlaceOf(healthy.coordinates, "Y");
+  const Index u3 = PlaceOf(healthy.coordinates, "u3");
+  const Index u_z = PlaceOf(healthy.inputs, "u_z");
   EXPECT_DOUBLE_EQ(faulty.D(y, y), 1.25 * healthy.D(y, y));
   // Gravity adds to the springs what is far below their rounding here.
   EXPECT_NEAR(faulty.K(u3, u3), 0.5 * healthy.K(u3, u3), 1e-9 * healthy.K(u3, u3));
   EXPECT_TRUE(faulty.Gamma.col(u_z).isApprox(0.75 * healthy.Gamma.col(u_z), 1e-14));
 }
 
-TEST(HealthyKnobs, AreTheKnobsOfThePlantAtOne) {
-  std::vector<std::string> names;
-  for (const Fault& knob : HealthyKnobs(test::Bonder().plant())) {
-    names.push_back(knob.name);
-    EXPECT_EQ(knob.value, 1.0) << knob.name;
-  }
-  EXPECT_THAT(names, ElementsAre("zeta_x", "zeta_y", "beta_x", "beta_y", "eta_x",
-                                 "eta_y", "eta_z"));
+TEST(FaultFamily, HasTheFaultParametersOfThePlantAndThenTheDisturbances) {
+  const FaultFamily family = MakeFaultFamily(test::Bonder());
+  EXPECT_THAT(family.parameters, ElementsAre("zeta_x", "zeta_y", "beta_x", "beta_y",
+                                             "eta_x", "eta_y", "eta_z"));
+  EXPECT_THAT(family.Names(), ElementsAre("zeta_x", "zeta_y", "beta_x", "beta_y",
+                                          "eta_x", "eta_y", "eta_z", "gamma"));
 }
 
-TEST(Magnitudes, AreThoseOfTheSetupOrOneThousandth) {
+TEST(FaultFamily, HasTheMagnitudesOfTheSetupOrOneThousandth) {
   const Machine machine =
       test::Bonder({"diagnosis.estimation.magnitudes={ eta_y = 1e-5, beta_x = 0.02, "
                     "beta_y = 0.03 }"});
-  EXPECT_THAT(Magnitudes(machine),
+  EXPECT_THAT(MakeFaultFamily(machine).magnitudes,
               ElementsAre(1e-3, 1e-3, 0.02, 0.03, 1e-3, 1e-5, 1e-3));
 }
 
-TEST(Magnitudes, OfAnUnknownKnobListThoseThatThereAre) {
+TEST(FaultFamily, ListsTheParametersThatThereAreIfAMagnitudeIsOfNone) {
   const Machine machine = test::Bonder({"diagnosis.estimation.magnitudes.zeta_q=0.01"});
   const auto expected =
-      AllOf(HasSubstr("diagnosis.estimation.magnitudes"), HasSubstr("no knob 'zeta_q'"),
+      AllOf(HasSubstr("diagnosis.estimation.magnitudes"), HasSubstr("no fault parameter 'zeta_q'"),
             HasSubstr("one of zeta_x, zeta_y, beta_x, beta_y, eta_x, eta_y, eta_z"));
-  EXPECT_THAT(test::MessageOf<InputError>([&] { Magnitudes(machine); }), expected);
-  EXPECT_THAT(test::MessageOf<InputError>([&] { TurnModels(machine); }), expected);
+  EXPECT_THAT(test::MessageOf<InputError>([&] { MakeFaultFamily(machine); }), expected);
 }
 
 void ExpectSameModel(const MechanicalModel& actual, const MechanicalModel& expected) {
@@ -131,38 +137,31 @@ void ExpectSameModel(const MechanicalModel& actual, const MechanicalModel& expec
   EXPECT_EQ(actual.outputs, expected.outputs);
 }
 
-TEST(TurnModels, TurnsOneKnobAtATimeBothWays) {
+TEST(FaultFamily, TurnsOneParameterAtATimeBothWays) {
   const Machine machine = test::Bonder({"diagnosis.estimation.magnitudes.beta_y=0.05"});
-  const std::vector<TurnedModels> turned = TurnModels(machine);
-  const std::vector<Fault> knobs = HealthyKnobs(machine.plant());
-  const VectorXd magnitudes = Magnitudes(machine);
-  ASSERT_EQ(turned.size(), knobs.size());
+  const FaultFamily family = MakeFaultFamily(machine);
+  const std::vector<TurnedModels> turned = family.Turned();
+  const std::vector<std::string>& names = family.parameters;
+  ASSERT_EQ(turned.size(), names.size());
   for (std::size_t i = 0; i < turned.size(); ++i) {
-    SCOPED_TRACE(knobs[i].name);
-    const double c = magnitudes[static_cast<Index>(i)];
-    EXPECT_EQ(turned[i].name, knobs[i].name);
+    SCOPED_TRACE(names[i]);
+    const double c = family.magnitudes[static_cast<Index>(i)];
+    EXPECT_EQ(turned[i].name, names[i]);
     EXPECT_EQ(turned[i].magnitude, c);
-    ExpectSameModel(turned[i].minus, Faulty(machine, {{knobs[i].name, 1.0 - c}}));
-    ExpectSameModel(turned[i].plus, Faulty(machine, {{knobs[i].name, 1.0 + c}}));
+    ExpectSameModel(turned[i].minus, Faulty(machine, {{names[i], 1.0 - c}}));
+    ExpectSameModel(turned[i].plus, Faulty(machine, {{names[i], 1.0 + c}}));
   }
 }
 
-std::vector<Fault> At(const mjModel& plant, const VectorXd& values) {
-  std::vector<Fault> knobs = HealthyKnobs(plant);
-  for (std::size_t i = 0; i < knobs.size(); ++i) {
-    knobs[i].value = values[static_cast<Index>(i)];
-  }
-  return knobs;
-}
-
-TEST(FaultModels, AreThoseOfThePlantWithTheKnobsTurned) {
+TEST(FaultFamily, HasTheModelsOfThePlantWithTheParametersTurned) {
   const Machine machine = test::Bonder();
-  const ModelAt model_at = FaultModels(machine);
+  const FaultFamily family = MakeFaultFamily(machine);
   const VectorXd ones = VectorXd::Ones(7);
   VectorXd far(7);
   far << 1.7, 0.3, 0.5, 1.4, 0.9, 1.1, 0.2;
   for (const VectorXd& values : {ones, far}) {
-    ExpectSameModel(model_at(values), Faulty(machine, At(machine.plant(), values)));
+    ExpectSameModel(family.model_at(values),
+                    Faulty(machine, At(family.parameters, values)));
   }
 }
 
@@ -195,11 +194,11 @@ actuators.u = { element = "motor", unit = "N m" }
 
 TEST_F(Pendulum, HasModelsAboutTheEquilibriumThatTheKnobMovesItTo) {
   const Machine machine = Load();
-  const ModelAt model_at = FaultModels(machine);
+  const FaultFamily family = MakeFaultFamily(machine);
   const MechanicalModel& healthy = machine.linear();
   for (const double beta : {1.0, 0.8, 0.4}) {
     SCOPED_TRACE(beta);
-    const MechanicalModel model = model_at(VectorXd::Constant(1, beta));
+    const MechanicalModel model = family.model_at(VectorXd::Constant(1, beta));
     ExpectSameModel(model, Faulty(machine, {{"beta", beta}}));
     // K = beta k + m g l cos(angle): what gravity adds has grown as the arm came down.
     const double gravity = model.K(0, 0) - 30.0 * beta;
@@ -208,8 +207,8 @@ TEST_F(Pendulum, HasModelsAboutTheEquilibriumThatTheKnobMovesItTo) {
   }
 }
 
-TEST(Multisines, AreOnTheActuatorsInTheOrderOfTheSetup) {
-  const std::vector<Multisine> sines = Multisines(test::Bonder().setup());
+TEST(FaultFamily, HasTheDisturbancesOnTheActuatorsInTheOrderOfTheSetup) {
+  const std::vector<Multisine> sines = MakeFaultFamily(test::Bonder()).disturbances;
   ASSERT_EQ(sines.size(), 1);
   EXPECT_EQ(sines[0].name, "gamma");
   EXPECT_THAT(sines[0].frequencies, ElementsAre(100.0, 300.0, 750.0));

@@ -317,10 +317,11 @@ TEST(DesignFilters, NamesTheJointsIfAnUnknownForceActsOnNone) {
 }
 
 TEST(DesignFilters, NamesTheKnobsIfAMagnitudeIsOfNone) {
-  EXPECT_EQ(ErrorWith("diagnosis.estimation.magnitudes.zeta_q=0.01"),
-            "setup 'AB383 wire bonder': diagnosis.estimation.magnitudes: the plant has "
-            "no knob 'zeta_q'; expected one of zeta_x, zeta_y, beta_x, beta_y, eta_x, "
-            "eta_y, eta_z");
+  EXPECT_EQ(
+      ErrorWith("diagnosis.estimation.magnitudes.zeta_q=0.01"),
+      "setup 'AB383 wire bonder': diagnosis.estimation.magnitudes: the plant has "
+      "no fault parameter 'zeta_q'; expected one of zeta_x, zeta_y, beta_x, beta_y, "
+      "eta_x, eta_y, eta_z");
 }
 
 TEST(DesignFilters, SaysWhichDegreeThePlantNeeds) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "effect_bench.h"
+#include "plugin/effects/effect_bench.h"
 
 namespace mjdiag {
 namespace {

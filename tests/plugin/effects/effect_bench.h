@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/active_effect.h"
-#include "mjdiag/plugin/effects/native_effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag::test {
@@ -46,10 +46,10 @@ class EffectBench {
                     motor +
                     "/></actuator><sensor><jointpos name=\"encoder\" joint=\"q\"/>"
                     "</sensor></mujoco>")) {
-    std::vector<EffectSpec> specs;
+    std::vector<PlacedEffect> specs;
     for (const std::string& effect : effects) {
       specs.push_back(ParseEffect(effect));
-      ApplyNativeEffect(*model_, specs.back());
+      ApplyEffect(*model_, specs.back());
     }
     data_ = MakeData(*model_);
     effects_ = std::make_unique<ActiveEffects>(Channels{}, *model_, specs);

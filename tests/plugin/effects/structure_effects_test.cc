@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "effect_bench.h"
+#include "plugin/effects/effect_bench.h"
 
 namespace mjdiag {
 namespace {

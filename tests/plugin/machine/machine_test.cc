@@ -31,7 +31,7 @@ double DampingOf(const Machine& machine, const std::string& joint) {
 
 std::vector<std::string> EffectsIn(const Machine& machine) {
   std::vector<std::string> texts;
-  for (const EffectSpec& effect : machine.effects()) {
+  for (const PlacedEffect& effect : machine.effects()) {
     texts.push_back(FormatEffect(effect));
   }
   return texts;

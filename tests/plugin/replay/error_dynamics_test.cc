@@ -110,7 +110,8 @@ TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
     for (const char* name : {"X", "Y", "Z"}) {
       const int joint = mj_name2id(&plant, mjOBJ_JOINT, name);
       const double coefficient = 1e-5 * plant.dof_damping[joint];
-      const EffectSpec effect{"viscous_friction", name, {{"coefficient", coefficient}}};
+      const PlacedEffect effect =
+          Place("viscous_friction", name, {{"coefficient", coefficient}});
       const VectorXd response =
           replay.Scaled(replay.Follow({{}, {effect}})) - replay.Scaled(track);
       const VectorXd blocks = Averaged(response, 3, block);

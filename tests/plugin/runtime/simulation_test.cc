@@ -200,8 +200,7 @@ TEST_F(Ab383, RefusesAnUnknownFaultDisturbanceOrEffect) {
   RunOptions disturbance;
   disturbance.disturbances["delta"] = 1.0;
   EXPECT_THROW(Run(motion, disturbance), InputError);
-  const Changes wind = test::With({"wind@X:force=1"});
-  EXPECT_THROW(machine_.With(wind), InputError);
+  EXPECT_THROW(machine_.With(test::With({"wind@X:force=1"})), InputError);
 }
 
 TEST(Replay, StartsWhereTheMeasurementStarts) {

@@ -7,7 +7,7 @@
 
 #include "mjdiag/plugin/setup/setup.h"
 #include "mjdiag/signals/error.h"
-#include "setup_file.h"
+#include "plugin/setup/setup_file.h"
 
 namespace mjdiag {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "mjdiag/plugin/setup/setup_reader.h"
 #include "mjdiag/signals/error.h"
-#include "setup_file.h"
+#include "plugin/setup/setup_file.h"
 
 namespace mjdiag {
 namespace {

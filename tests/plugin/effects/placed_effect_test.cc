@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "mjdiag/plugin/effects/active_effect.h"
-#include "mjdiag/plugin/effects/native_effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
@@ -21,11 +20,12 @@ ModelPtr Emps() {
 }
 
 TEST(Effect, IsParsedFromTheCommandLineForm) {
-  const EffectSpec spec = ParseEffect("force_ripple@Y:amplitude=0.5,period=0.024");
-  EXPECT_EQ(spec.effect, "force_ripple");
-  EXPECT_EQ(spec.site, "Y");
-  EXPECT_EQ(spec.parameters,
-            (std::map<std::string, double>{{"amplitude", 0.5}, {"period", 0.024}}));
+  const PlacedEffect placed = ParseEffect("force_ripple@Y:period=0.024,amplitude=0.5");
+  EXPECT_EQ(placed.name(), "force_ripple");
+  EXPECT_EQ(placed.site, "Y");
+  // In their own order, the phase as its fallback has it.
+  EXPECT_EQ(placed.values, Eigen::Vector3d(0.5, 0.024, 0.0));
+  EXPECT_EQ(placed.Value("period"), 0.024);
 }
 
 TEST(Effect, SaysWhatIsMalformed) {
@@ -58,7 +58,7 @@ TEST(Effect, NamesTheKnownOnesWhenItIsNotOne) {
 TEST(Effect, CoulombFrictionStopsTheLoadAsTheoryHasIt) {
   const ModelPtr model = Emps();
   model->dof_damping[0] = 0.0;
-  ApplyNativeEffect(*model, ParseEffect("coulomb_friction@load:force=20"));
+  ApplyEffect(*model, ParseEffect("coulomb_friction@load:force=20"));
   const DataPtr data = MakeData(*model);
   const double speed = 0.05;
   const double deceleration = 20.0 / 95.1;
@@ -74,7 +74,7 @@ TEST(Effect, CoulombFrictionStopsTheLoadAsTheoryHasIt) {
 // would show here.
 TEST(Effect, CoulombFrictionHoldsAgainstASmallerForce) {
   const ModelPtr model = Emps();
-  ApplyNativeEffect(*model, ParseEffect("coulomb_friction@load:force=20"));
+  ApplyEffect(*model, ParseEffect("coulomb_friction@load:force=20"));
   const DataPtr data = MakeData(*model);
   data->qfrc_applied[0] = 19.0;
   while (data->time < 1.0) mj_step(model.get(), data.get());
@@ -105,10 +105,10 @@ TEST(Effect, IsReadFromThePlantItself) {
   const ModelPtr model(mj_loadXML("m.xml", &vfs, error, sizeof(error)));
   mj_deleteVFS(&vfs);
   ASSERT_NE(model, nullptr) << error;
-  const std::vector<EffectSpec> effects = EffectsOf(*model);
+  const std::vector<PlacedEffect> effects = EffectsOf(*model);
   ASSERT_EQ(effects.size(), 1u);
   EXPECT_EQ(effects[0].site, "slide");
-  EXPECT_DOUBLE_EQ(effects[0].parameters.at("force"), 3.5);
+  EXPECT_DOUBLE_EQ(effects[0].Value("force"), 3.5);
 }
 
 }  // namespace
