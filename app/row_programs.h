@@ -1,5 +1,5 @@
 #pragma once
-// The linear programs of Eq. 17 to 19 of the seed beside the bank of `mjdiag design`:
+// The linear programs of [AB383], Eq. 17 to 19 beside the bank of `mjdiag design`:
 // do they find a row where the singular value decomposition finds a null space, and is
 // it the same one?
 

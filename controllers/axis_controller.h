@@ -8,7 +8,7 @@
 
 namespace mjdiag {
 
-/// Which part of a feedforward and feedback controller acts (chapter 5.3 of the seed).
+/// Which part of a feedforward and feedback controller acts ([AB383], chapter 5.3).
 enum class ControlMode { kBoth, kFeedback, kFeedforward };
 
 /// One controller interface for every axis. Nothing in Update allocates, locks or
@@ -26,7 +26,7 @@ class AxisController {
                         double disturbance) noexcept = 0;
 };
 
-/// u = k_s snap + k_a acceleration + k_v velocity, Eq. 35 of the seed.
+/// u = k_s snap + k_a acceleration + k_v velocity, [AB383], Eq. 35.
 struct FeedforwardGains {
   double snap = 0.0;
   double acceleration = 0.0;
@@ -34,7 +34,7 @@ struct FeedforwardGains {
 };
 
 /// C(z) = (b0 z^m + b1 z^(m-1) + ... + bm) / (a0 z^n + ... + an) acting on reference -
-/// measured, Eq. 36 of the seed. Coefficients in descending powers of z, m <= n, a0 !=
+/// measured, [AB383], Eq. 36. Coefficients in descending powers of z, m <= n, a0 !=
 /// 0.
 struct DiscreteCompensator {
   std::vector<double> numerator;

@@ -1,7 +1,7 @@
 #pragma once
 // Linear differential-algebraic models, the form in which residuals are synthesised:
 //
-//   H(p) x + L(p) z + F(p) f = 0                               (Eq. 12 of the seed)
+//   H(p) x + L(p) z + F(p) f = 0                               ([AB383], Eq. 12)
 //
 // x: what is unknown (states and unknown inputs d), z = [y; u]: what is measured, f:
 // faults, p: the differential operator (or a shift). H, L and F are polynomial
@@ -16,7 +16,7 @@
 namespace mjdiag {
 
 /// P(p) = sum_i coefficients[i] p^i; all coefficients of one shape, at least one.
-/// Eq. 17 of the seed.
+/// [AB383], Eq. 17.
 struct PolynomialMatrix {
   std::vector<Eigen::MatrixXd> coefficients;
 
@@ -44,7 +44,7 @@ struct SignalEntry {
 /// No signal at all: no columns.
 SignalEntry NoSignal(const StateSpace& system);
 
-/// Eq. 13 of the seed:
+/// [AB383], Eq. 13:
 ///   H = [-p I + A, B_d; C, D_d],  L = [0, B_u; -I, D_u],  F = [B_f; D_f]
 DaeModel MakeDae(const StateSpace& system, const SignalEntry& unknown_inputs,
                  const SignalEntry& faults);

@@ -32,7 +32,7 @@ struct TickTiming {
 StateSpace DeltaForm(const MechanicalModel& model, const TickTiming& timing);
 
 /// Where generalised forces that are held over a tick enter the delta form: B_f of
-/// external faults and of parametric faults (Eq. 10 and 11 of the seed, there the unit
+/// external faults and of parametric faults ([AB383], Eq. 10 and 11, there the unit
 /// vector of the joint), B_d of unknown disturbances.
 /// @param forces  nq x n, generalised force per unit of each signal
 SignalEntry HeldForces(const MechanicalModel& model, const TickTiming& timing,

@@ -15,7 +15,7 @@
 
 namespace mjdiag {
 
-/// gamma * amplitude * sum_f sin(2 pi f t) on the commands, Eq. 7 of the seed.
+/// gamma * amplitude * sum_f sin(2 pi f t) on the commands, [AB383], Eq. 7.
 struct Multisine {
   std::string name;
   std::vector<double> frequencies;  ///< [Hz]

@@ -1,5 +1,5 @@
 #pragma once
-// What a setup says about its diagnosis: the settings of chapter 4 of the seed.
+// What a setup says about its diagnosis: the settings of [AB383], chapter 4.
 
 #include <map>
 #include <string>

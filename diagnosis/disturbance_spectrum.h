@@ -1,10 +1,10 @@
 #pragma once
 // Which tones are in the disturbance residual, how strong is the disturbance behind
-// them, and has the broadband noise risen (Eq. 27 to 30 of the seed)? The residual has
+// them, and has the broadband noise risen ([AB383], Eq. 27 to 30)? The residual has
 // passed R_dist and the high-pass filter (Eq. 33, 34); its power spectral density R(f)
 // (Eq. 28) is compared with those R_i(f) of N nominal runs, i = 1 .. N.
 //
-// Thresholds. The seed's margins are additive; ours are relative, beta = margin * max:
+// Thresholds. The margins of [AB383] are additive; ours are relative, beta = margin * max:
 //   peak  = (1 + peak_margin)  max_i max_f R_i(f)                  (Eq. 29)
 //   total = (1 + total_margin) max_i sum_f R_i(f) df               (Eq. 30)
 //

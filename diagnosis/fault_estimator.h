@@ -3,7 +3,7 @@
 //
 //   r_t = sum_i phi_i,t f_i + n_t,   f^ = (G^T G)^-1 G^T r
 //
-// (Eq. 25 and 26 of the seed) one sample at a time, with exponential forgetting if
+// ([AB383], Eq. 25 and 26) one sample at a time, with exponential forgetting if
 // wanted: G^T G and G^T r are summed, and solved on request. Without forgetting that is
 // the batch estimate.
 //

@@ -1,6 +1,6 @@
 #pragma once
 // Residual generators and prefilters at work: m filters over the same signals z = [y;
-// u] with one denominator, Eq. 15 of the seed,
+// u] with one denominator, [AB383], Eq. 15,
 //
 //   r_j = d(p)^-1 sum_k N_jk p^k z,   p = (z - 1) / kDeltaScale
 //
@@ -14,7 +14,7 @@
 
 namespace mjdiag {
 
-/// d(p): Butterworth low-pass (Eq. 31 and 33 of the seed), its poles moved to discrete
+/// d(p): Butterworth low-pass ([AB383], Eq. 31 and 33), its poles moved to discrete
 /// time by z = exp(s T).
 struct Denominator {
   int order = 7;

@@ -1,6 +1,6 @@
 #pragma once
 // Left null space of H(p): the rows of which residuals are made. With H of a state
-// space (Eq. 13 of the seed) a row N = [N_x, N_y] has N H = 0 exactly when
+// space ([AB383], Eq. 13) a row N = [N_x, N_y] has N H = 0 exactly when
 //
 //   sum_i N_y,i C A^i = 0   and   N_x,k = sum_{i>k} N_y,i C A^(i-k-1),
 //

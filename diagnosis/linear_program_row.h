@@ -1,5 +1,5 @@
 #pragma once
-// A residual row by linear programming, Eq. 17 to 19 of the seed. With the coefficients
+// A residual row by linear programming, [AB383], Eq. 17 to 19. With the coefficients
 // of a polynomial row N(p) of degree d_N side by side, Nbar = [N_0 .. N_dN], a row that
 // is blind to the unknowns x and sees a fault is
 //
@@ -43,7 +43,7 @@ struct LinearProgramRow {
 /// The smallest row of that degree, as far as the solver's tolerance tells; the first
 /// of equals. No value: no row of that degree that annihilates H sees any of the
 /// faults, either because the degree is too low or because [H F] has no higher rank
-/// than H (Remark 2 of the seed).
+/// than H ([AB383], Remark 2).
 ///
 /// InputError if the degree is negative, H is empty, H and F have not as many rows, or
 /// there are no fault inputs. NumericalError if the rank of Hbar is lost in rounding (a

@@ -2,7 +2,7 @@
 // The linear equations of motion of a machine, the value that every method of
 // diagnosis starts from:
 //
-//   M q'' + D q' + K q = Gamma u,    y = b^T q        (Eq. 2 and 3 of the seed)
+//   M q'' + D q' + K q = Gamma u,    y = b^T q        ([AB383], Eq. 2 and 3)
 //
 // q: deviation of the joint coordinates from the static equilibrium, K with the
 // gravity stiffness in it.
@@ -37,7 +37,7 @@ struct Mode {
 /// Modes in order of frequency; rigid-body poles at zero are left out.
 std::vector<Mode> Modes(const MechanicalModel& model);
 
-/// x = [q; q'], Eq. 9 of the seed. NumericalError if M is not positive definite.
+/// x = [q; q'], [AB383], Eq. 9. NumericalError if M is not positive definite.
 StateSpace ContinuousStateSpace(const MechanicalModel& model);
 
 /// The same system for numerical work: time in multiples of `time_unit` [s] and states

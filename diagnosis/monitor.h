@@ -19,7 +19,7 @@ namespace mjdiag {
 class DiagnosisMonitor {
  public:
   /// @param baseline  residuals of the same motion of the healthy machine, subtracted
-  ///                  sample by sample (section A.6 of the seed): n x N, or empty.
+  ///                  sample by sample ([AB383], section A.6): n x N, or empty.
   ///                  InputError if n is not the number of residuals
   explicit DiagnosisMonitor(const DiagnosisDesign& design,
                             Eigen::MatrixXd baseline = {});

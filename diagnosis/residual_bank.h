@@ -1,5 +1,5 @@
 #pragma once
-// The bank of a machine: residual generators R (Eq. 15 of the seed) and for each fault
+// The bank of a machine: residual generators R ([AB383], Eq. 15) and for each fault
 // the prefilters Phi (Eq. 24), all over one denominator.
 //
 // A machine whose faults have moved it to knobs f has other rows N(f) L(f) than the

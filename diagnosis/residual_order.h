@@ -9,7 +9,7 @@ namespace mjdiag {
 
 struct ResidualOrder {
   int degree = 7;           ///< d_N, no more than the order of the denominator
-  Denominator denominator;  ///< Eq. 31 of the seed
+  Denominator denominator;  ///< [AB383], Eq. 31
 };
 
 }  // namespace mjdiag

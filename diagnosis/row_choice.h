@@ -25,7 +25,7 @@ Eigen::VectorXd MostSensitiveRow(const std::vector<Eigen::MatrixXd>& energies);
 /// programme
 ///   minimise a^T Q a  subject to  g_j a >= 1
 /// for each column g_j of the fault's response, the best of which is taken (Eq. 18 with
-/// the objective of section 6 of the seed). Each has the solution Q^-1 g_j / g_j^T Q^-1
+/// the objective of [AB383], section 6). Each has the solution Q^-1 g_j / g_j^T Q^-1
 /// g_j. Returned with unit length.
 /// @param nuisance  Q, k x k: energy of the rows over nominal runs, with their noise;
 ///                  positive definite, else NumericalError

@@ -1,5 +1,5 @@
 #pragma once
-// Thresholds of a residual, Eq. 20 and 21 of the seed: healthy while
+// Thresholds of a residual, [AB383], Eq. 20 and 21: healthy while
 //   r_min < r(t) < r_max
 //   r_max = alpha max_i max_t r_i(t),  r_min = alpha min_i min_t r_i(t)
 // over nominal trajectories i. The margin alpha is given, or follows from a normal

@@ -1,7 +1,7 @@
 #pragma once
 // The page of `mjdiag design`: from which degree on the machine has residual rows, what
-// healthy runs leave in the residual and where its thresholds lie (Fig. 15 and 16 of
-// the seed), and what the filters let through (Fig. 28 to 30).
+// healthy runs leave in the residual and where its thresholds lie ([AB383],
+// Fig. 15 and 16), and what the filters let through (Fig. 28 to 30).
 
 #include <optional>
 #include <string>

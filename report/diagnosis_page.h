@@ -1,7 +1,7 @@
 #pragma once
 // The page of a diagnosis: the verdict, the residual between its thresholds, the mean
 // of its magnitude, the estimates over time, and the spectrum of the disturbance
-// residual over that of a healthy machine (Fig. 17 to 24 and 32 of the seed).
+// residual over that of a healthy machine ([AB383], Fig. 17 to 24 and 32).
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 // The plots of a diagnosis: the residual between its thresholds, over time and counted,
 // the mean of its magnitude, the spectrum of the disturbance residual with its tones,
-// and the estimates over time (Fig. 17 to 24 and 32 of the seed).
+// and the estimates over time ([AB383], Fig. 17 to 24 and 32).
 
 #include <vector>
 

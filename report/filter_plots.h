@@ -1,6 +1,6 @@
 #pragma once
 // Bode magnitudes of the filters of a diagnosis, from the coefficients that run: what
-// the denominators and the high-pass let through (Fig. 28 and 29 of the seed), what the
+// the denominators and the high-pass let through ([AB383], Fig. 28 and 29), what the
 // residuals make of readings and commands, and how a worn machine answers differently
 // (Fig. 30).
 

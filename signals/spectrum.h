@@ -1,5 +1,5 @@
 #pragma once
-// Power spectral densities of recorded signals (Eq. 28 of the seed), by Welch's method:
+// Power spectral densities of recorded signals ([AB383], Eq. 28), by Welch's method:
 // the mean of the periodograms of overlapping segments, each freed of its mean and
 // weighted by a Hann window. One-sided: the power of negative frequencies is added to
 // that of the positive ones, so that
@@ -38,7 +38,7 @@ Spectrum WelchDensity(const Eigen::VectorXd& signal, double sample_time,
                       Eigen::Index segment);
 
 /// The power between two frequencies, sum of S(f_k) df over low <= f_k <= high: the
-/// integral of Eq. 30 of the seed. [unit^2]
+/// integral of [AB383], Eq. 30. [unit^2]
 double BandPower(const Spectrum& spectrum, double low, double high);
 
 /// The power up to each frequency. [unit^2]
@@ -49,7 +49,7 @@ struct SpectralPeak {
   double density = 0.0;    ///< [unit^2/Hz]
 };
 
-/// Local maxima above the threshold (R(f) > R_peak, Eq. 29 of the seed), in order of
+/// Local maxima above the threshold (R(f) > R_peak, [AB383], Eq. 29), in order of
 /// frequency. A maximum that extends over equal neighbours counts once, at its start.
 std::vector<SpectralPeak> FindPeaks(const Spectrum& spectrum, double threshold);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Linear time-invariant systems as state space. Eq. 8 of the seed.
+// Linear time-invariant systems as state space. [AB383], Eq. 8.
 
 #include <Eigen/Core>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The residual-based diagnosis beside a data-driven one on the same runs: the seed's
+// The residual-based diagnosis beside a data-driven one on the same runs: [AB383],
 // Table 4.
 
 #include "mjdiag/studies/machine_study.h"

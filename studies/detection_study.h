@@ -1,5 +1,5 @@
 #pragma once
-// How small a fault is seen: the seed's Tables 2, 3 and 5.
+// How small a fault is seen: [AB383], Tables 2, 3 and 5.
 
 #include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/study_table.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Tones and noise in the disturbance residual: section 5.6 of the seed.
+// Tones and noise in the disturbance residual: [AB383], section 5.6.
 
 #include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/study_table.h"

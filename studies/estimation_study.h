@@ -1,6 +1,6 @@
 #pragma once
-// How well all faults are estimated when they are present at once: section 5.5 of the
-// seed, with intervals whose coverage is counted.
+// How well all faults are estimated when they are present at once: [AB383],
+// section 5.5, with intervals whose coverage is counted.
 
 #include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/study_table.h"

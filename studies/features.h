@@ -1,6 +1,6 @@
 #pragma once
 // Time and frequency features of a record's signals: what a data-driven method sees of
-// a run in place of its samples (the method that Table 4 of the seed compares with).
+// a run in place of its samples (the method that [AB383], Table 4 compares with).
 //
 // Of a signal x_k, k = 0 .. N-1, with mean m, standard deviation s (about m, over N),
 // r = rms x, p = max |x|, a = mean |x|:

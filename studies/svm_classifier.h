@@ -1,7 +1,7 @@
 #pragma once
 // A support vector machine that tells the classes of feature vectors apart: healthy
 // from faulty (detection) or fault from fault (isolation). It is the data-driven method
-// that Table 4 of the seed compares with.
+// that [AB383], Table 4 compares with.
 //
 // A feature is standardised by its mean and standard deviation over the training set;
 // one that is constant there is left out. For two classes y = +-1 a C-SVC with

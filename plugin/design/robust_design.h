@@ -1,7 +1,7 @@
 #pragma once
 // A residual for the nonlinear machine: among all rows of the null space, and longer
 // ones, that which recorded nominal runs of the nonlinear plant excite least while it
-// sees one fault (section 6 of the seed). The linear model does not know friction in
+// sees one fault ([AB383], section 6). The linear model does not know friction in
 // the guides; its residual is full of it.
 
 #include <mujoco/mujoco.h>

@@ -3,7 +3,7 @@
 //   <custom><text name="fault.zeta_x" data="damping X"/></custom>
 // and a fault is a knob turned: it scales dof_damping ("damping <joints>"),
 // jnt_stiffness ("stiffness <joints>") or actuator_gear ("gear <actuators>").
-// Eq. 4, 5 and 6 of the seed.
+// [AB383], Eq. 4, 5 and 6.
 
 #include <mujoco/mujoco.h>
 

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// Example 2 of the seed with k = c = m = 1.
+/// [AB383], Example 2 with k = c = m = 1.
 StateSpace MassSpringDamper() {
   StateSpace system;
   system.A = (Eigen::Matrix2d() << 0.0, 1.0, -1.0, -1.0).finished();

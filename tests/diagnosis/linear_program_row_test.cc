@@ -29,7 +29,7 @@ SignalEntry InStates(const StateSpace& system, const MatrixXd& columns) {
   return {columns, MatrixXd::Zero(system.outputs(), columns.cols())};
 }
 
-/// Example 4 of the seed with k = c = m = 1: a force fault on a mass on a spring.
+/// [AB383], Example 4 with k = c = m = 1: a force fault on a mass on a spring.
 DaeModel MassSpringDamper() {
   StateSpace system;
   system.A = (Eigen::Matrix2d() << 0.0, 1.0, -1.0, -1.0).finished();

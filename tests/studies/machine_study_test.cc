@@ -32,7 +32,7 @@ TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
   EXPECT_FALSE(Cell("-").is_number);
 }
 
-// Section 5.5 of the seed in small: 6 runs of each size.
+// [AB383], Section 5.5 in small: 6 runs of each size.
 TEST(EstimationStudy, FindsAllFaultsAtOnceWithinOnePerCent) {
   const Machine machine = test::Bonder();
   StudyOptions options;

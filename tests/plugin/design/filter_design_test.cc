@@ -202,7 +202,7 @@ TEST(CalibrateLimits, ReportsItsProgress) {
   EXPECT_LE(fractions.size(), 3);
 }
 
-// Table 2 of the seed: its smallest detectable faults on the linear plant.
+// [AB383], Table 2: its smallest detectable faults on the linear plant.
 TEST(Diagnosis, DetectsAndMeasuresTheFaultsOfTable2) {
   Bench bench;
   bench.Calibrate(true);

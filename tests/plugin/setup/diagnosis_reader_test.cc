@@ -121,7 +121,7 @@ TEST_F(DiagnosisReader, TakesTheFiltersOfTheSeedWithoutKeys) {
   for (const char* text : {"",
                            "[diagnosis]\nthresholds = {}\nestimation = {}\n"
                            "disturbance = { high_pass = {} }\nrobust = {}\n"}) {
-    // The disturbance filter of the seed does not fit under a control rate of 1 kHz.
+    // The disturbance filter of [AB383] does not fit under a control rate of 1 kHz.
     std::string machine = kMachine;
     machine.replace(machine.find("1000.0"), 6, "8000.0");
     folder_.Write("setup.toml", machine + text);

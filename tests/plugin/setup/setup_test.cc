@@ -190,7 +190,7 @@ TEST_F(SetupFile, FillsTheStudiesInTheOrderOfTheFile) {
   EXPECT_THROW(setup.Study("middle"), InputError);
 }
 
-/// The settings of the seed's chapter 4, as far as the manual gives them as defaults.
+/// The settings of [AB383], chapter 4, as far as the manual gives them as defaults.
 TEST_F(SetupFile, WithoutDiagnosisHasTheDefaultsOfTheManual) {
   const std::string text = kEveryKey;
   Write(text.substr(0, text.find("[diagnosis]")));
