@@ -6,7 +6,9 @@
 #include <optional>
 #include <string_view>
 
+#include "mjdiag/plugin/setup/declared_names.h"
 #include "mjdiag/plugin/setup/diagnosis_reader.h"
+#include "mjdiag/plugin/setup/record_map_reader.h"
 #include "mjdiag/plugin/setup/toml_table.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/unit.h"
@@ -21,68 +23,6 @@ constexpr double kHighestRate = 1e6;  // [Hz]
 constexpr double kMostSamples = 1e8;  // of a trajectory
 constexpr int kMostSubsteps = 1000;
 constexpr int kMostComponents = 16;  // of an MJCF sensor
-constexpr int kHighestFilterOrder = 12;
-
-/// Channels that a record of this machine can have, with their SI unit; no unit: any.
-using ChannelUnits = std::map<std::string, std::optional<std::string>>;
-
-template <typename Element>
-std::vector<std::string> NamesOf(const std::vector<Element>& elements,
-                                 std::string Element::*name) {
-  std::vector<std::string> names;
-  names.reserve(elements.size());
-  for (const Element& element : elements) names.push_back(element.*name);
-  return names;
-}
-
-std::string OneOf(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list.empty() ? "none, the setup declares none" : "one of " + list;
-}
-
-void RequireDeclared(const TomlTable& table, std::string_view key,
-                     const std::string& wanted, const std::string& kind,
-                     const std::vector<std::string>& declared) {
-  if (std::find(declared.begin(), declared.end(), wanted) != declared.end()) return;
-  table.Fail(key, "there is no " + kind + " '" + wanted + "'", OneOf(declared));
-}
-
-/// Text that must be one of the declared names.
-std::string DeclaredName(const TomlTable& table, std::string_view key,
-                         const std::string& kind,
-                         const std::vector<std::string>& declared) {
-  std::string wanted = table.Text(key);
-  RequireDeclared(table, key, wanted, kind, declared);
-  return wanted;
-}
-
-Unit KnownUnit(const TomlTable& table, std::string_view key, const std::string& text) {
-  try {
-    return ParseUnit(text);
-  } catch (const InputError&) {
-    table.Fail(key, "unknown unit '" + text + "'",
-               R"(a unit such as "m", "um", "rad", "N m", "V" or "m/s^2")");
-  }
-}
-
-/// A unit in which mjdiag computes.
-std::string SiUnit(const TomlTable& table, std::string_view key) {
-  const std::string text = table.Text(key);
-  const Unit unit = KnownUnit(table, key, text);
-  if (unit.factor != 1.0) {
-    table.Fail(key, "'" + text + "' is no SI unit", "'" + unit.si + "'");
-  }
-  return unit.si;
-}
-
-void DeclareChannel(const TomlTable& table, const std::string& channel,
-                    const std::optional<std::string>& unit, ChannelUnits& channels) {
-  if (!channels.emplace(channel, unit).second) {
-    table.Fail("the channel '" + channel + "' exists already",
-               "names that differ from each other");
-  }
-}
 
 fs::path ExistingFile(const TomlTable& root, std::string_view key,
                       const fs::path& folder) {
@@ -126,14 +66,6 @@ void ReadPhysics(const TomlTable& root, Setup& setup) {
   setup.physics.gravity = physics->Flag("gravity", setup.physics.gravity);
   setup.physics.static_friction =
       physics->Flag("static_friction", setup.physics.static_friction);
-}
-
-void RequireBelowNyquist(const TomlTable& table, std::string_view key, double frequency,
-                         const Setup& setup) {
-  if (frequency >= 0.5 * setup.rates.control) {
-    table.Fail(key, "a frequency is not below half the control rate",
-               "frequencies in Hz below rates.control / 2");
-  }
 }
 
 /// Standard deviation of a sample; of band-limited white noise of a given power it is
@@ -333,69 +265,6 @@ void ReadTrajectories(const TomlTable& root, Setup& setup) {
                      NamesOf(setup.trajectories.all, &Trajectory::name));
   } else if (!setup.trajectories.all.empty()) {
     setup.trajectories.fallback = setup.trajectories.all.front().name;
-  }
-}
-
-ColumnSpec ReadColumn(const TomlTable& table, const std::string& channel,
-                      const std::optional<std::string>& dimension) {
-  ColumnSpec spec{channel, table.Text("column", channel), table.Text("unit", ""),
-                  false};
-  if (spec.unit.empty() || !dimension) return spec;
-  const Unit unit = KnownUnit(table, "unit", spec.unit);
-  if (unit.si != *dimension) {
-    table.Fail("unit", "'" + spec.unit + "' does not convert to '" + *dimension + "'",
-               "a unit of '" + channel + "'");
-  }
-  return spec;
-}
-
-void ReadRecordMap(const TomlTable& root, Setup& setup, const ChannelUnits& channels) {
-  const std::optional<TomlTable> record = root.FindTable("record");
-  if (!record) return;
-  std::vector<std::string> known;
-  for (const auto& [channel, unit] : channels) known.push_back(channel);
-
-  ColumnMap map;
-  if (const auto time = record->FindTable("time")) {
-    map.time = ReadColumn(*time, "time", "s");
-  }
-  for (const TomlTable& table : record->NamedTables("channels", "<channel>")) {
-    const std::string channel = table.name();
-    RequireDeclared(record->Table("channels"), channel, channel, "channel", known);
-    ColumnSpec spec = ReadColumn(table, channel, channels.at(channel));
-    spec.optional = table.Flag("optional", false);
-    map.columns.push_back(spec);
-  }
-  if (map.columns.empty()) {
-    record->Fail("channels", "is empty", "the column of a channel at least");
-  }
-  setup.record = map;
-}
-
-CompareSetup::Derived ReadDerivedForce(const TomlTable& table, const Setup& setup) {
-  CompareSetup::Derived force;
-  force.name = table.name();
-  force.channel =
-      DeclaredName(table, "channel", "actuator channel",
-                   NamesOf(setup.channels.actuators, &ActuatorSetup::channel));
-  force.factor = table.Number("factor", kNonZero, 1.0);
-  force.unit = SiUnit(table, "unit");
-  return force;
-}
-
-void ReadCompare(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
-  const std::optional<TomlTable> table = root.FindTable("compare");
-  if (!table) return;
-  CompareSetup& compare = setup.compare;
-  compare.skip_samples = table->Integer("skip_samples", 0, 1'000'000'000, 0);
-  if (const auto low_pass = table->FindTable("low_pass")) {
-    compare.low_pass_order = low_pass->Integer("order", 1, kHighestFilterOrder);
-    compare.low_pass_cutoff = low_pass->Number("cutoff", kPositive);
-    RequireBelowNyquist(*low_pass, "cutoff", compare.low_pass_cutoff, setup);
-  }
-  for (const TomlTable& force : table->NamedTables("forces", "<name>")) {
-    compare.forces.push_back(ReadDerivedForce(force, setup));
-    DeclareChannel(force, force.name(), compare.forces.back().unit, channels);
   }
 }
 
