@@ -120,11 +120,12 @@ Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
 }
 
 DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
-                         const Excitation& motion, RunOptions options) {
+                         const Excitation& motion, const Changes& faults,
+                         RunOptions options) {
   DiagnosisRecording recording(prepared.design, motion.samples(), prepared.baseline);
   MonitorObserver observer(recording);
-  Record record =
-      RunWith(machine, motion, observer, std::move(options), prepared.nominal.linear);
+  Record record = RunWith(machine.With(faults), motion, observer, std::move(options),
+                          prepared.nominal.linear);
   return {std::move(record), Conclude(machine, prepared, recording)};
 }
 

@@ -96,9 +96,12 @@ struct DiagnosedRun {
 
 /// A run of the simulated machine with the diagnosis inside its control callback; on
 /// the linear plant where `prepared` has its healthy runs from there.
-/// @param options  the faults, noise and seed of the run; its observer is replaced
+/// @param machine  the healthy one, which `prepared` is made for
+/// @param faults   what is wrong with the one that runs
+/// @param options  disturbances, noise and seed of the run; its observer is replaced
 DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
-                         const Excitation& motion, RunOptions options = {});
+                         const Excitation& motion, const Changes& faults = {},
+                         RunOptions options = {});
 
 /// RefineEstimate with the models of this machine.
 /// @param from  first sample that is regressed

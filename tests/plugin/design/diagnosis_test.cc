@@ -66,8 +66,8 @@ TEST(Diagnose, FindsNothingInAHealthyRun) {
 TEST(DiagnoseRun, GivesInsideTheCallbackTheBitsOfTheRecord) {
   const Bench bonder;
   const PreparedDiagnosis prepared = bonder.Prepared();
-  const DiagnosedRun run = DiagnoseRun(bonder.machine.With({{{"eta_z", 0.999}}, {}}),
-                                       prepared, bonder.motion);
+  const DiagnosedRun run =
+      DiagnoseRun(bonder.machine, prepared, bonder.motion, {{{"eta_z", 0.999}}, {}});
   const Diagnosis offline = Diagnose(bonder.machine, prepared, run.record);
   EXPECT_EQ(run.diagnosis.log.residual, offline.log.residual);
   EXPECT_EQ(DiagnosisJson(run.diagnosis.result), DiagnosisJson(offline.result));
