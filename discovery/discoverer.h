@@ -34,12 +34,6 @@ class Discoverer {
   void Report(const std::string& what, double fraction) const {
     if (options_.progress) options_.progress(what, fraction);
   }
-  Track FollowWith(const Changes& changes) const {
-    return FollowRun(machine_, changes, problem_.run, problem_.observer, true);
-  }
-  ObservedMotion MotionOf(const Track& track) const {
-    return ObserveMotion(machine_, problem_.run, track);
-  }
   bool IsColoured(const CauseFit& fit) const;
   void Search(SearchOptions options, bool down_to_noise);
   void NameCauses();

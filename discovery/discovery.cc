@@ -123,8 +123,8 @@ void Discoverer::NameCauses() {
 // White noise beyond what the setup says of a sensor. Sensors of which it says nothing
 // cannot be judged.
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
-  for (const RaisedNoise& raised : FindRaisedNoise(machine_.setup(), problem_.observer,
-                                                   innovations, options_.train_share)) {
+  for (const RaisedNoise& raised : FindRaisedNoise(
+           machine_.setup(), problem_.observer(), innovations, options_.train_share)) {
     FoundCause found;
     const Effect& noise = NoiseEffect();
     found.cause = {Lasting(noise), raised.element, ValuesOf({raised.sd})};
@@ -142,8 +142,9 @@ void Discoverer::Judge() {
                                Describe(CauseOf(candidates_, refuted)));
   }
   const bool named = !discovery_.causes.empty();
-  const double nominal = MeanSquare(problem_.Residual({}), problem_.run.outputs.rows(),
-                                    problem_.skip, problem_.train);
+  const double nominal =
+      MeanSquare(problem_.Residual({}), problem_.run().outputs.rows(), problem_.skip(),
+                 problem_.train());
   discovery_.verdict = VerdictOf(search_, named, nominal);
   if (named && discovery_.verdict == DiscoveryVerdict::kUnexplained) {
     std::string tried;
@@ -157,14 +158,14 @@ void Discoverer::Judge() {
 }
 
 void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
-  const std::vector<Index> seen = SeenJoints(problem_.machine.linear());
+  const std::vector<Index> seen = SeenJoints(problem_.machine().linear());
   for (std::size_t y = 0; y < seen.size(); ++y) {
     constexpr double kMoves = 50.0;  // times the sensor noise
     const VectorXd q = motion.outputs.row(static_cast<Index>(y));
     const double range = q.maxCoeff() - q.minCoeff();
     const std::string& joint =
-        problem_.machine.linear().coordinates[static_cast<std::size_t>(seen[y])];
-    if (range < kMoves * problem_.observer.noise_sd[static_cast<Index>(y)]) {
+        problem_.machine().linear().coordinates[static_cast<std::size_t>(seen[y])];
+    if (range < kMoves * problem_.observer().noise_sd[static_cast<Index>(y)]) {
       discovery_.notes.push_back(
           "'" + machine_.channels().sensors[y].channel +
           "' does not move: friction, springs, ripple, mass and motor of joint '" +
@@ -192,8 +193,8 @@ void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& riv
     std::string note = "the record does not tell " + Describe(found.cause) + " from " +
                        Describe(CauseOf(candidates_, other.cause));
     const auto experiment = FindDiscriminatingExperiment(
-        machine_.WithSensorNoise(problem_.observer.noise_sd), ChangesOf({found.cause}),
-        ChangesOf({CauseOf(candidates_, other.cause)}));
+        machine_.WithSensorNoise(problem_.observer().noise_sd),
+        ChangesOf({found.cause}), ChangesOf({CauseOf(candidates_, other.cause)}));
     constexpr double kTells = 4.0;
     if (!experiment || experiment->separation < kTells) {
       note += "; no trajectory of the setup would, a larger or faster motion may";
@@ -214,7 +215,7 @@ Discovery Discoverer::Run() {
   discovery_.setup = machine_.setup().name;
   discovery_.train_share = options_.train_share;
   discovery_.sample_time = machine_.rates().tick();
-  BoundByRecord(candidates_, MotionOf(FollowWith({})));
+  BoundByRecord(candidates_, problem_.MotionOf(problem_.Nominal()));
   SearchOptions search;
   search.most_causes = options_.most_causes;
   search.progress = options_.progress;
@@ -240,7 +241,7 @@ Discovery Discoverer::Run() {
   std::array<Track, 2> tracks;
   ParallelFor(2, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    tracks[i] = FollowWith(plants[i]);
+    tracks[i] = problem_.Follow(plants[i]);
   });
   const auto& [nominal, found] = tracks;
   if (!search_.significant_rest) AddNoiseCauses(found.innovations);
@@ -248,8 +249,8 @@ Discovery Discoverer::Run() {
 
   const Track final = discovery_.causes.empty() ? nominal
                       : changes_ == plants[1]   ? found
-                                                : FollowWith(changes_);
-  const ObservedMotion motion = MotionOf(final);
+                                                : problem_.Follow(changes_);
+  const ObservedMotion motion = problem_.MotionOf(final);
   NoteQuietAxes(motion);
   for (std::size_t i = 0; i < search_.rivals.size() && i < discovery_.causes.size();
        ++i) {

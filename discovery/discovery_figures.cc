@@ -58,15 +58,15 @@ double Gain(const std::map<std::string, double>& before,
 }  // namespace
 
 std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
-  std::vector<std::string> joints = DrivenNames(problem_.machine.linear());
+  std::vector<std::string> joints = DrivenNames(problem_.machine().linear());
   joints.resize(std::min<std::size_t>(
-      joints.size(), static_cast<std::size_t>(problem_.run.outputs.rows())));
+      joints.size(), static_cast<std::size_t>(problem_.run().outputs.rows())));
   std::vector<std::string> units;
   for (const std::string& joint : joints) {
     const int id = FindElement(machine_.plant(), mjOBJ_JOINT, joint);
     units.push_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
   }
-  return UnexplainedForces(problem_.machine.linear(), problem_.observer,
+  return UnexplainedForces(problem_.machine().linear(), problem_.observer(),
                            problem_.step(), machine_.rates().substeps,
                            track.innovations, joints, units);
 }
@@ -89,13 +89,13 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
       std::ranges::max_element(discovery_.forces_after, std::less<>(),
                                [&](const UnknownSignal& s) { return strength(s); });
   const auto joint =
-      std::ranges::find(problem_.machine.linear().coordinates, worst->site) -
-      problem_.machine.linear().coordinates.begin();
+      std::ranges::find(problem_.machine().linear().coordinates, worst->site) -
+      problem_.machine().linear().coordinates.begin();
   std::vector<Variable> variables;
   const VectorXd own = motion.velocity.row(joint);
-  for (const std::string& name : DrivenNames(problem_.machine.linear())) {
-    const auto j = std::ranges::find(problem_.machine.linear().coordinates, name) -
-                   problem_.machine.linear().coordinates.begin();
+  for (const std::string& name : DrivenNames(problem_.machine().linear())) {
+    const auto j = std::ranges::find(problem_.machine().linear().coordinates, name) -
+                   problem_.machine().linear().coordinates.begin();
     const bool hinge =
         machine_.plant().jnt_type[machine_.plant().dof_jntid[j]] == mjJNT_HINGE;
     const std::string unit = hinge ? "rad" : "m";
@@ -131,16 +131,17 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   const Candidate& candidate = candidates_[search_.fit().causes[cause].candidate];
   LawPlot plot;
   plot.cause = Describe(candidate);
-  plot.site =
-      problem_.machine.linear().coordinates[static_cast<std::size_t>(candidate.joint)];
+  plot.site = problem_.machine()
+                  .linear()
+                  .coordinates[static_cast<std::size_t>(candidate.joint)];
   const auto at = [&](const std::vector<UnknownSignal>& forces) {
     return std::ranges::find(forces, plot.site, &UnknownSignal::site);
   };
   if (at(discovery_.forces_before) == discovery_.forces_before.end()) return plot;
   const std::vector<FittedCause> others = Without(search_.fit().causes, cause);
-  const auto forces = others.empty()
-                          ? discovery_.forces_before
-                          : UnexplainedIn(FollowWith(ChangesOf(candidates_, others)));
+  const auto forces =
+      others.empty() ? discovery_.forces_before
+                     : UnexplainedIn(problem_.Follow(ChangesOf(candidates_, others)));
   const UnknownSignal& without = *at(forces);
   const VectorXd explained = without.value - at(discovery_.forces_after)->value;
 
@@ -148,7 +149,7 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
       machine_.plant().jnt_type[machine_.plant().dof_jntid[candidate.joint]] ==
       mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
-      std::clamp<Index>(candidate.channel, 0, problem_.run.inputs.rows() - 1));
+      std::clamp<Index>(candidate.channel, 0, problem_.run().inputs.rows() - 1));
   const Cause& named = discovery_.causes[cause].cause;
   const LawAxis axis = AxisOf(named.effect->variable(), candidate, motion, hinge,
                               machine_.channels().actuators[channel].unit);
@@ -181,7 +182,7 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
 
 /// Every step behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
-  const Index channels = problem_.run.outputs.rows();
+  const Index channels = problem_.run().outputs.rows();
   std::vector<std::pair<std::string, Changes>> steps = {{"nothing", {}}};
   for (const std::vector<FittedCause>& causes : search_.ladder) {
     steps.emplace_back(Describe(candidates_[causes.back().candidate]),
@@ -201,9 +202,9 @@ void Discoverer::AddLadder() {
     if (number % replays == 0) {
       const VectorXd rest = problem_.Residual(changes);
       entry.train =
-          std::sqrt(MeanSquare(rest, channels, problem_.skip, problem_.train));
-      entry.held_out =
-          std::sqrt(MeanSquare(rest, channels, problem_.train, problem_.run.samples()));
+          std::sqrt(MeanSquare(rest, channels, problem_.skip(), problem_.train()));
+      entry.held_out = std::sqrt(
+          MeanSquare(rest, channels, problem_.train(), problem_.run().samples()));
     } else if (number % replays == 1) {
       entry.error_percent = ReplayErrors(machine_, changes, measured_);
     } else {
@@ -231,10 +232,11 @@ void Discoverer::AddComparisons() {
     const Task& task = tasks[static_cast<std::size_t>(number)];
     task.result = Compare(task.machine, task.measured, options);
   });
-  const Index skip = problem_.skip;
+  const Index skip = problem_.skip();
   discovery_.mismatch_before.train =
-      MismatchRms(discovery_.before, skip, problem_.train);
-  discovery_.mismatch_after.train = MismatchRms(discovery_.after, skip, problem_.train);
+      MismatchRms(discovery_.before, skip, problem_.train());
+  discovery_.mismatch_after.train =
+      MismatchRms(discovery_.after, skip, problem_.train());
   if (validation_ != nullptr) {
     const Index n = validation_->samples();
     discovery_.mismatch_before.validation =
@@ -244,9 +246,9 @@ void Discoverer::AddComparisons() {
   } else {
     const Index n = measured_.samples();
     discovery_.mismatch_before.validation =
-        MismatchRms(discovery_.before, problem_.train, n);
+        MismatchRms(discovery_.before, problem_.train(), n);
     discovery_.mismatch_after.validation =
-        MismatchRms(discovery_.after, problem_.train, n);
+        MismatchRms(discovery_.after, problem_.train(), n);
   }
   for (const ChannelMismatch& channel : discovery_.after.channels) {
     discovery_.noise_floor[channel.name] = channel.noise_floor.rms;

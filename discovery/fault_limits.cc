@@ -37,15 +37,16 @@ double Limit(const VectorXd& phi, const VectorXd& e) {
 std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,
                                           const Changes& changes) {
-  const auto [track, dynamics] = problem.Linearised(changes);
-  const ObservedMotion motion = ObserveMotion(problem.machine, problem.run, track);
-  const Index channels = problem.run.outputs.rows();
+  const auto run = problem.Linearised(changes);
+  const auto& [track, dynamics] = *run;
+  const ObservedMotion motion = problem.MotionOf(track);
+  const Index channels = problem.run().outputs.rows();
   const VectorXd residual = Averaged(problem.Scaled(track), channels, dynamics.block());
-  const Index skipped = channels * (problem.skip / dynamics.block());
+  const Index skipped = channels * (problem.skip() / dynamics.block());
   std::map<std::string, double> limits;
   for (const Candidate& candidate : candidates) {
     if (!candidate.effect->IsFault()) continue;
-    for (const Trial& trial : MakeTrials(problem.machine, candidate, motion)) {
+    for (const Trial& trial : MakeTrials(problem.machine(), candidate, motion)) {
       const VectorXd phi =
           dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
       const Index used = phi.size() - skipped;

@@ -59,11 +59,10 @@ DiscoveryProblem PoseNominal(const Machine& machine, std::uint64_t seed) {
 /// What a cause adds without noise: the scaled innovations of the nominal plant on a
 /// clean run.
 VectorXd CleanResidual(const DiscoveryProblem& problem, const Cause& cause) {
-  const Setup& setup = problem.machine.setup();
-  DiscoveryProblem clean = problem;
-  clean.run = ToMeasuredRun(
-      setup, RunWithCauses(problem.machine, {cause}, NominalMotion(setup), 1, 0.0));
-  return clean.Residual({});
+  const Setup& setup = problem.machine().setup();
+  const Record clean =
+      RunWithCauses(problem.machine(), {cause}, NominalMotion(setup), 1, 0.0);
+  return problem.WithRun(ToMeasuredRun(setup, clean)).Residual({});
 }
 
 /// The least squared innovations that any of the columns adds beside what the
@@ -82,30 +81,31 @@ double LeastOwnShare(const Eigen::MatrixXd& columns) {
 
 Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate,
                      const Record& nominal) {
-  const mjModel& plant = problem.machine.plant();
+  const mjModel& plant = problem.machine().plant();
   const auto joint = static_cast<int>(candidate.joint);
   const int id = plant.dof_jntid[joint];
   const std::string name =
-      "joint." + problem.machine.linear().coordinates[static_cast<std::size_t>(joint)];
+      "joint." +
+      problem.machine().linear().coordinates[static_cast<std::size_t>(joint)];
   const VectorXd& q = nominal.At(name).samples;
   const double tick = nominal.sample_time();
   Scales scales;
   scales.stroke = q.maxCoeff() - q.minCoeff();
   scales.speed =
       (q.tail(q.size() - 1) - q.head(q.size() - 1)).cwiseAbs().maxCoeff() / tick;
-  const std::vector<Index> driven = DrivenJoints(problem.machine.linear());
+  const std::vector<Index> driven = DrivenJoints(problem.machine().linear());
   std::size_t motor = 0;
   for (std::size_t u = 0; u < driven.size(); ++u) {
     if (driven[u] == candidate.joint) motor = u;
   }
-  scales.force = nominal.At(problem.machine.setup().channels.actuators[motor].channel)
+  scales.force = nominal.At(problem.machine().setup().channels.actuators[motor].channel)
                      .samples.cwiseAbs()
                      .maxCoeff();
   scales.stiffness = plant.jnt_stiffness[id];
   const int address = plant.jnt_qposadr[id];
   scales.strain = (q.array() - plant.qpos_spring[address]).abs().maxCoeff();
   scales.damping = plant.dof_damping[joint];
-  scales.mass = problem.machine.linear().M(joint, joint);
+  scales.mass = problem.machine().linear().M(joint, joint);
   scales.duration = nominal.duration();
   return scales;
 }
@@ -203,7 +203,7 @@ std::vector<Cause> DrawEffects(const Machine& machine,
     }
     if (causes.size() < 2) return causes;
     const DiscoveryProblem problem = PoseNominal(machine, seed);
-    Eigen::MatrixXd columns(problem.run.outputs.size(), 0);
+    Eigen::MatrixXd columns(problem.run().outputs.size(), 0);
     for (const Cause& cause : causes) {
       if (cause.effect->form() == Form::kNoise) continue;  // like nothing else
       columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);

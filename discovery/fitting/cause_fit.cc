@@ -91,7 +91,7 @@ class Simulator {
   MatrixXd Differences(const VectorXd& theta, const MatrixXd* known) {
     const VectorXd base = Residual(theta);
     const double duration =
-        static_cast<double>(problem_.run.samples()) * problem_.run.sample_time;
+        static_cast<double>(problem_.run().samples()) * problem_.run().sample_time;
     MatrixXd J(base.size(), theta.size());
     const Index kept = known != nullptr ? known->cols() : 0;
     if (kept > 0) J.leftCols(kept) = known->topRows(base.size());
@@ -218,20 +218,20 @@ void SetBounds(ceres::Problem& problem, double* theta,
 }  // namespace
 
 double FittedValues(const DiscoveryProblem& problem) {
-  return static_cast<double>(problem.run.outputs.rows() *
-                             (problem.train - problem.skip));
+  return static_cast<double>(problem.run().outputs.rows() *
+                             (problem.train() - problem.skip()));
 }
 
 CauseFit FitCauses(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates,
                    const std::vector<FittedCause>& start, const FitOptions& options) {
-  const Index channels = problem.run.outputs.rows();
-  const Index first = channels * problem.skip;
-  const Index count = channels * (problem.train - problem.skip);
+  const Index channels = problem.run().outputs.rows();
+  const Index first = channels * problem.skip();
+  const Index count = channels * (problem.train() - problem.skip());
   CauseFit fit;
   fit.causes = start;
   // What is held out need not be run while the fit goes on.
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const DiscoveryProblem seen = problem.TrainPart();
   Simulator simulator(seen, candidates, start, options);
   VectorXd theta = Flatten(start);
   if (theta.size() > 0) {
@@ -272,12 +272,12 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.exact = options.jacobian;
     fit.jacobian = options.jacobian ? simulator.Jacobian(theta) : simulator.jacobian();
   }
-  const Index samples = problem.run.samples();
-  fit.residual = problem.train == samples
+  const Index samples = problem.run().samples();
+  fit.residual = problem.train() == samples
                      ? simulator.Residual(theta)
                      : problem.Residual(ChangesOf(candidates, fit.causes));
-  fit.train = MeanSquare(fit.residual, channels, problem.skip, problem.train);
-  fit.held_out = MeanSquare(fit.residual, channels, problem.train, samples);
+  fit.train = MeanSquare(fit.residual, channels, problem.skip(), problem.train());
+  fit.held_out = MeanSquare(fit.residual, channels, problem.train(), samples);
   return fit;
 }
 
@@ -314,11 +314,11 @@ MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i) {
 }
 
 MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
-  const Index channels = problem.run.outputs.rows();
+  const Index channels = problem.run().outputs.rows();
   const Index parameters = fit.jacobian.cols();
-  const Index n = problem.train - problem.skip;
-  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip, channels * n);
-  const VectorXd e = fit.residual.segment(channels * problem.skip, channels * n);
+  const Index n = problem.train() - problem.skip();
+  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip(), channels * n);
+  const VectorXd e = fit.residual.segment(channels * problem.skip(), channels * n);
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();
   MatrixXd scores(n, parameters);

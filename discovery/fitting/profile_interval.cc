@@ -136,17 +136,17 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const std::vector<Candidate>& candidates,
                                          const CauseFit& fit,
                                          const MatrixXd& covariance) {
-  const Index channels = problem.run.outputs.rows();
+  const Index channels = problem.run().outputs.rows();
   const VectorXd theta = Flatten(fit.causes);
-  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip,
-                                             channels * (problem.train - problem.skip));
+  const MatrixXd J = fit.jacobian.middleRows(
+      channels * problem.skip(), channels * (problem.train() - problem.skip()));
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();
   const MatrixXd C =
       scale.asDiagonal() * Inverse(scaled.transpose() * scaled) * scale.asDiagonal();
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
   const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const DiscoveryProblem seen = problem.TrainPart();
   const double normal = TwoSidedNormalQuantile(kOutside);
   const double chi_squared = ChiSquaredQuantile(kOutside, 1.0);
   std::vector<Interval> intervals(parameters.size());

@@ -27,7 +27,7 @@ double Unsteadiness(const DiscoveryProblem& problem,
   if (fit.causes.empty()) return 0.0;
   constexpr double kSpreads = 3.0;
   constexpr std::array<double, 2> kChanges = {1.0 + 1e-7, 1.0 - 1e-7};
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const DiscoveryProblem seen = problem.TrainPart();
   std::array<double, 2> left{};
   ParallelFor(2, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
@@ -43,7 +43,7 @@ std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
                                    const CauseFit& fit, double least_gain) {
   constexpr std::array<double, 8> kSteps = {-0.1,  -0.03, -0.01, -0.003,
                                             0.003, 0.01,  0.03,  0.1};
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const DiscoveryProblem seen = problem.TrainPart();
   const VectorXd theta = Flatten(fit.causes);
   const auto parameters = ParametersOf(candidates, fit.causes);
   const std::size_t tries = parameters.size() * kSteps.size();

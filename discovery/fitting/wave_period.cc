@@ -31,16 +31,17 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   const bool sharp =
       PlaceOf(wave, Role::kPhase) < static_cast<Index>(wave.parameters.size());
   if (!sharp && fit.train < kLeft) return {};
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
+  const DiscoveryProblem seen = problem.TrainPart();
   const double present = causes[i].value[PeriodPlace(wave)];
   causes[i].value[PlaceOf(wave, Role::kAmplitude)] *= 1.0 + kStep;
-  const VectorXd left = fit.residual.head(seen.run.outputs.size());
+  const VectorXd left = fit.residual.head(seen.run().outputs.size());
   const VectorXd moved = seen.Residual(ChangesOf(candidates, causes));
-  const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, fit.causes));
+  const auto run = seen.Linearised(ChangesOf(candidates, fit.causes));
+  const auto& [track, dynamics] = *run;
   std::vector<FittedCause> others;
-  for (Start& start : BetterWaves(
-           seen, wave, present, ObserveMotion(seen.machine, seen.run, track), dynamics,
-           left - (moved - left) / kStep, JacobianWithout(fit, i), kMostPeriods)) {
+  for (Start& start : BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
+                                  left - (moved - left) / kStep,
+                                  JacobianWithout(fit, i), kMostPeriods)) {
     start.candidate = causes[i].candidate;
     others.push_back(FittedFrom(candidates, start));
   }

@@ -16,7 +16,7 @@ constexpr double kBandwidth = 0.02;
 Record WithObservedJoints(const Machine& machine, const Record& measured) {
   const DiscoveryProblem problem =
       PoseProblem(machine, measured, 1.0, kBandwidth * machine.rates().control);
-  const Track track = FollowRun(machine, {}, problem.run, problem.observer, true);
+  const Track& track = problem.Nominal();
   Record seen = measured;
   for (int joint = 0; joint < machine.plant().njnt; ++joint) {
     Channel channel = JointChannel(

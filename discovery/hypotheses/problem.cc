@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
 
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
@@ -23,28 +26,91 @@ double Floor(const SensorSetup& sensor, const Eigen::MatrixXd& outputs, Index ro
 
 }  // namespace
 
+/// Found when first asked for, by whichever copy of the problem is asked.
+struct DiscoveryProblem::Derived {
+  std::once_flag nominal_once;
+  std::once_flag linearised_once;
+  std::once_flag train_part_once;
+  Track nominal;
+  std::shared_ptr<const LinearisedRun> linearised;
+  std::optional<DiscoveryProblem> train_part;
+};
+
+DiscoveryProblem::DiscoveryProblem(Machine machine, Observer observer, MeasuredRun run,
+                                   Index skip, Index train)
+    : machine_(std::move(machine)),
+      observer_(std::move(observer)),
+      run_(std::make_shared<MeasuredRun>(std::move(run))),
+      skip_(skip),
+      train_(train),
+      derived_(std::make_shared<Derived>()) {}
+
+const Track& DiscoveryProblem::Nominal() const& {
+  std::call_once(derived_->nominal_once, [this] {
+    derived_->nominal = FollowRun(machine_, {}, *run_, observer_, true);
+  });
+  return derived_->nominal;
+}
+
+Track DiscoveryProblem::Nominal() const&& { return std::as_const(*this).Nominal(); }
+
+Track DiscoveryProblem::Follow(const Changes& changes) const {
+  if (changes == Changes{}) return Nominal();
+  return FollowRun(machine_, changes, *run_, observer_, true);
+}
+
+VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
+  if (changes == Changes{}) return Scaled(Nominal());
+  return Scaled(FollowRun(machine_, changes, *run_, observer_, false));
+}
+
 VectorXd DiscoveryProblem::Scaled(const Track& track) const {
   const Eigen::MatrixXd scaled =
-      observer.innovation_sd.cwiseInverse().asDiagonal() * track.innovations;
+      observer_.innovation_sd.cwiseInverse().asDiagonal() * track.innovations;
   return Eigen::Map<const VectorXd>(scaled.data(), scaled.size());
+}
+
+std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
+    const Changes& changes) const {
+  const auto linearise = [&] {
+    constexpr Index kBlocks = 5000;
+    ErrorDynamics dynamics(observer_, std::max<Index>(1, run_->samples() / kBlocks));
+    Track track = FollowRun(machine_, changes, *run_, observer_, dynamics);
+    return std::make_shared<const LinearisedRun>(
+        LinearisedRun{std::move(track), std::move(dynamics)});
+  };
+  if (changes != Changes{}) return linearise();
+  std::call_once(derived_->linearised_once,
+                 [&] { derived_->linearised = linearise(); });
+  return derived_->linearised;
+}
+
+ObservedMotion DiscoveryProblem::MotionOf(const Track& track) const {
+  return ObserveMotion(machine_, *run_, track);
 }
 
 VectorXd DiscoveryProblem::StillSpeed() const {
   constexpr double kShare = 0.02;
-  const double noise = observer.noise_sd.minCoeff();
-  return VectorXd::Constant(machine.plant().nv, kShare * noise / run.sample_time);
+  const double noise = observer_.noise_sd.minCoeff();
+  return VectorXd::Constant(machine_.plant().nv, kShare * noise / run_->sample_time);
 }
 
-VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
-  return Scaled(FollowRun(machine, changes, run, observer, false));
+DiscoveryProblem DiscoveryProblem::TrainPart() const {
+  if (train_ == run_->samples()) return *this;
+  std::call_once(derived_->train_part_once,
+                 [this] { derived_->train_part = Beginning(*this, train_); });
+  return *derived_->train_part;
 }
 
-std::pair<Track, ErrorDynamics> DiscoveryProblem::Linearised(
-    const Changes& changes) const {
-  constexpr Eigen::Index kBlocks = 5000;
-  ErrorDynamics dynamics(observer, std::max<Eigen::Index>(1, run.samples() / kBlocks));
-  Track track = FollowRun(machine, changes, run, observer, dynamics);
-  return {std::move(track), std::move(dynamics)};
+DiscoveryProblem DiscoveryProblem::WithSubsteps(int substeps) const {
+  DiscoveryProblem changed = *this;
+  changed.machine_ = machine_.WithSubsteps(substeps);
+  changed.derived_ = std::make_shared<Derived>();
+  return changed;
+}
+
+DiscoveryProblem DiscoveryProblem::WithRun(MeasuredRun run) const {
+  return {machine_, observer_, std::move(run), skip_, train_};
 }
 
 VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
@@ -63,34 +129,35 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
 
 DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
                              double train_share, double bandwidth) {
-  DiscoveryProblem problem{.machine = machine,
-                           .run = ToMeasuredRun(machine.setup(), measured)};
-  problem.skip = machine.setup().compare.skip_samples;
-  problem.train = static_cast<Index>(
-      std::lround(train_share * static_cast<double>(measured.samples())));
+  MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
   const double hertz = bandwidth > 0.0 ? bandwidth
                                        : std::min(kPeriods / measured.duration(),
                                                   0.1 * machine.rates().control);
+  const auto design = [&](const Eigen::MatrixXd& innovations) {
+    return DesignObserver(machine.linear(), machine.plant().opt.timestep,
+                          machine.rates().substeps,
+                          SensorNoise(machine.channels(), run, innovations), hertz);
+  };
   // Twice: the noise is known better once the motion is taken out.
-  Eigen::MatrixXd innovations;
-  for (int round = 0; round < 2; ++round) {
-    problem.observer = DesignObserver(
-        machine.linear(), problem.step(), machine.rates().substeps,
-        SensorNoise(machine.channels(), problem.run, innovations), hertz);
-    if (round == 0) {
-      innovations =
-          FollowRun(machine, {}, problem.run, problem.observer, false).innovations;
-    }
-  }
-  return problem;
+  const Observer first = design({});
+  const Observer observer =
+      design(FollowRun(machine, {}, run, first, false).innovations);
+  const auto train = static_cast<Index>(
+      std::lround(train_share * static_cast<double>(measured.samples())));
+  return {machine, observer, std::move(run), machine.setup().compare.skip_samples,
+          train};
 }
 
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
-  DiscoveryProblem cut = problem;
-  cut.run.outputs = problem.run.outputs.leftCols(samples);
-  cut.run.inputs = problem.run.inputs.leftCols(samples);
-  cut.train = samples;
-  return cut;
+  const MeasuredRun& all = problem.run();
+  return {problem.machine(),
+          problem.observer(),
+          {.sample_time = all.sample_time,
+           .outputs = all.outputs.leftCols(samples),
+           .inputs = all.inputs.leftCols(samples),
+           .start = all.start},
+          problem.skip(),
+          samples};
 }
 
 double MeanSquare(const VectorXd& residual, Index channels, Index first, Index last) {

@@ -1,11 +1,13 @@
 #pragma once
 // A discovery in hand: the nominal machine, the measured run and the observer that
-// compares them. What screening, fit and search share.
+// compares them. What screening, fit and search share. It is made once, does not
+// change, and is cheap to copy and to vary: copies share the run and what has been
+// found of the nominal machine along it.
 
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
-#include <utility>
+#include <memory>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/plugin/machine/machine.h"
@@ -14,24 +16,64 @@
 
 namespace mjdiag {
 
-struct DiscoveryProblem {
-  Machine machine;  ///< the nominal one
-  Observer observer{};
-  MeasuredRun run;
-  Eigen::Index skip = 0;   ///< samples at the start that count for nothing
-  Eigen::Index train = 0;  ///< samples that a fit sees; the rest is held out
+/// A run beside a machine and its first order, in blocks: some thousand of them hold
+/// what forces do to a machine with inertia.
+struct LinearisedRun {
+  Track track;
+  ErrorDynamics dynamics;
+};
 
-  double step() const { return machine.plant().opt.timestep; }  ///< of physics [s]
+class DiscoveryProblem {
+ public:
+  /// @param machine  the nominal one
+  /// @param skip     samples at the start that count for nothing
+  /// @param train    samples that a fit sees; the rest is held out
+  DiscoveryProblem(Machine machine, Observer observer, MeasuredRun run,
+                   Eigen::Index skip, Eigen::Index train);
+
+  const Machine& machine() const { return machine_; }
+  const Observer& observer() const { return observer_; }
+  const MeasuredRun& run() const { return *run_; }
+  Eigen::Index skip() const { return skip_; }
+  Eigen::Index train() const { return train_; }
+  double step() const { return machine_.plant().opt.timestep; }  ///< of physics [s]
+
+  /// The run beside the nominal machine, with the trajectory of the joints; found when
+  /// first asked for. This and what follows: NumericalError if a run diverges.
+  const Track& Nominal() const&;
+  Track Nominal() const&&;
+  /// The run with those changes, with the trajectory of the joints.
+  Track Follow(const Changes& changes) const;
   /// Innovations over their standard deviation with those changes, stacked sample by
   /// sample, (ny samples).
   Eigen::VectorXd Residual(const Changes& changes) const;
   Eigen::VectorXd Scaled(const Track& track) const;
-  /// The run with those changes and its first order, in blocks: some thousand of them
-  /// hold what forces do to a machine with inertia.
-  std::pair<Track, ErrorDynamics> Linearised(const Changes& changes) const;
+  /// The run with those changes and its first order; of the nominal machine found when
+  /// first asked for.
+  std::shared_ptr<const LinearisedRun> Linearised(const Changes& changes) const;
+  /// What the joints of a track did, with what was measured beside it.
+  ObservedMotion MotionOf(const Track& track) const;
   /// Speed of every joint below which dry friction holds it: a fiftieth of the sensor
   /// noise a tick, nv.
   Eigen::VectorXd StillSpeed() const;
+
+  /// The part that fits see, all of it for the fit; made when first asked for.
+  DiscoveryProblem TrainPart() const;
+  /// With the same physics in that many steps a control tick. The observer, which is
+  /// designed on whole ticks, stays.
+  DiscoveryProblem WithSubsteps(int substeps) const;
+  /// With another run of the machine behind the same observer.
+  DiscoveryProblem WithRun(MeasuredRun run) const;
+
+ private:
+  struct Derived;
+
+  Machine machine_;
+  Observer observer_;
+  std::shared_ptr<const MeasuredRun> run_;
+  Eigen::Index skip_;
+  Eigen::Index train_;
+  std::shared_ptr<Derived> derived_;
 };
 
 /// Noise of the sensors from the record and from the innovations of the nominal plant,

@@ -25,10 +25,10 @@ Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamic
                    const VectorXd& residual, const MatrixXd& sensitivities)
     : problem_(problem),
       dynamics_(dynamics),
-      channels_(problem.run.outputs.rows()),
+      channels_(problem.run().outputs.rows()),
       block_(dynamics.block()),
-      skip_((problem.skip + block_ - 1) / block_),
-      blocks_(problem.train / block_ - skip_),
+      skip_((problem.skip() + block_ - 1) / block_),
+      blocks_(problem.train() / block_ - skip_),
       full_(
           residual.segment(channels_ * block_ * skip_, channels_ * block_ * blocks_)) {
   if (sensitivities.cols() > 0) {
@@ -50,13 +50,13 @@ MatrixXd Screener::Responses(const std::vector<Trial>& trials, std::size_t first
                              std::size_t last, const Candidate& candidate) const {
   Index columns = 0;
   for (std::size_t t = first; t < last; ++t) columns += trials[t].signals.cols();
-  MatrixXd signals(problem_.train, columns);
-  MatrixXd entry(problem_.machine.linear().M.rows(), columns);
+  MatrixXd signals(problem_.train(), columns);
+  MatrixXd entry(problem_.machine().linear().M.rows(), columns);
   const bool forces = trials[first].entry.size() > 0;
   Index next = 0;
   for (std::size_t t = first; t < last; ++t) {
     const Index width = trials[t].signals.cols();
-    signals.middleCols(next, width) = trials[t].signals.topRows(problem_.train);
+    signals.middleCols(next, width) = trials[t].signals.topRows(problem_.train());
     if (forces) entry.middleCols(next, width) = trials[t].entry;
     next += width;
   }
@@ -140,7 +140,7 @@ std::vector<std::optional<Start>> Screener::Judge(const std::vector<Trial>& tria
 /// <e, r> = <signal, g> with g the adjoint, or r itself for what is fast.
 std::vector<double> Screener::Common(const Sweep& sweep,
                                      const Candidate& candidate) const {
-  VectorXd of_fast = VectorXd::Zero(problem_.train);
+  VectorXd of_fast = VectorXd::Zero(problem_.train());
   if (sweep.fast_below > 0.0) {  // a sensor; joints have no channel
     const Eigen::Map<const MatrixXd> channels(full_.data(), channels_,
                                               block_ * blocks_);
@@ -152,7 +152,7 @@ std::vector<double> Screener::Common(const Sweep& sweep,
   const VectorXd adjoint = first.entry.size() > 0
                                ? VectorXd(adjoint_.forces * first.entry.col(0))
                                : VectorXd(adjoint_.readings.col(candidate.channel));
-  VectorXd of_slow = VectorXd::Zero(problem_.train);
+  VectorXd of_slow = VectorXd::Zero(problem_.train());
   for (Index k = 0; k < block_ * (skip_ + blocks_); ++k) {
     of_slow[k] = adjoint[k / block_] / static_cast<double>(block_);
   }
@@ -162,8 +162,8 @@ std::vector<double> Screener::Common(const Sweep& sweep,
     wave.imag() = angle.array().sin();
     return wave;
   };
-  Eigen::ArrayXcd wave = waves(sweep.angle.head(problem_.train));
-  const Eigen::ArrayXcd turn = waves(sweep.increment.head(problem_.train));
+  Eigen::ArrayXcd wave = waves(sweep.angle.head(problem_.train()));
+  const Eigen::ArrayXcd turn = waves(sweep.increment.head(problem_.train()));
   std::vector<double> common;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
     const VectorXd& weight = sweep.values[i] < sweep.fast_below ? of_fast : of_slow;

@@ -46,15 +46,15 @@ Screening Screen(const DiscoveryProblem& problem,
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
     const auto c = static_cast<std::size_t>(number);
     const Candidate& candidate = candidates[c];
-    const double duration =
-        static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+    const double duration = static_cast<double>(problem.train() - problem.skip()) *
+                            problem.run().sample_time;
     std::vector<Trial> trials;
-    if (const auto sweep = MakeSweep(problem.machine, candidate, motion, duration)) {
+    if (const auto sweep = MakeSweep(problem.machine(), candidate, motion, duration)) {
       tried[c] = static_cast<int>(sweep->values.size());
       trials =
           screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
     } else {
-      trials = MakeTrials(problem.machine, candidate, motion);
+      trials = MakeTrials(problem.machine(), candidate, motion);
       tried[c] = static_cast<int>(trials.size());
     }
     for (auto& start : screener.Judge(trials, candidate)) {
@@ -77,10 +77,11 @@ Screening ScreenBeside(const DiscoveryProblem& problem,
                        const std::vector<Candidate>& candidates,
                        const std::vector<FittedCause>& causes,
                        const MatrixXd& sensitivities, int starts_each) {
-  const DiscoveryProblem seen = Beginning(problem, problem.train);
-  const auto [track, dynamics] = seen.Linearised(ChangesOf(candidates, causes));
-  return Screen(seen, candidates, ObserveMotion(seen.machine, seen.run, track),
-                dynamics, seen.Scaled(track), sensitivities, starts_each);
+  const DiscoveryProblem seen = problem.TrainPart();
+  const auto run = seen.Linearised(ChangesOf(candidates, causes));
+  const auto& [track, dynamics] = *run;
+  return Screen(seen, candidates, seen.MotionOf(track), dynamics, seen.Scaled(track),
+                sensitivities, starts_each);
 }
 
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
@@ -88,11 +89,11 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
                                const ErrorDynamics& dynamics, const VectorXd& residual,
                                const MatrixXd& sensitivities, int most) {
   const double duration =
-      static_cast<double>(problem.train - problem.skip) * problem.run.sample_time;
+      static_cast<double>(problem.train() - problem.skip()) * problem.run().sample_time;
   const Screener screener(problem, dynamics, residual, sensitivities);
   double gain = 0.0;
   std::vector<Trial> trials;
-  if (const auto sweep = MakeSweep(problem.machine, wave, motion, duration)) {
+  if (const auto sweep = MakeSweep(problem.machine(), wave, motion, duration)) {
     constexpr std::size_t kPeaks = 40;
     const auto now = screener.Judge({sweep->make(present)}, wave).front();
     gain = now ? now->gain : 0.0;
@@ -100,7 +101,7 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
       trials.push_back(sweep->make(screener.ValueAt(*sweep, place)));
     }
   } else {
-    trials = MakeTrials(problem.machine, wave, motion);
+    trials = MakeTrials(problem.machine(), wave, motion);
   }
   std::vector<Start> starts;
   for (auto& start : screener.Judge(trials, wave)) {

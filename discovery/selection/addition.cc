@@ -78,8 +78,8 @@ void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   });
   // On more data a difference grows in proportion.
   const double growth =
-      static_cast<double>(data_.problem.train - data_.problem.skip) /
-      static_cast<double>(data_.beginning.train - data_.beginning.skip);
+      static_cast<double>(data_.problem.train() - data_.problem.skip()) /
+      static_cast<double>(data_.beginning.train() - data_.beginning.skip());
   const std::vector<double> criteria = Criteria(data_.beginning, fits);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     entries[i].criterion = growth * criteria[i];
@@ -99,7 +99,7 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
     Entry entry{present_.fit().causes};
     entry.causes.push_back(FittedFrom(data_.candidates, start));
     const double n =
-        static_cast<double>(data_.problem.train) * present_.independent().sum();
+        static_cast<double>(data_.problem.train()) * present_.independent().sum();
     entry.criterion = -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
     entries.push_back(std::move(entry));
   }

@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 /// Squared innovations that chance may well explain beside what is left anyway.
 double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) {
   constexpr double kByChance = 20.0;  // of white noise
-  const double rest =
-      MeanSquare(residual, problem.run.outputs.rows(), problem.skip, problem.train);
+  const double rest = MeanSquare(residual, problem.run().outputs.rows(), problem.skip(),
+                                 problem.train());
   return kByChance * std::max(1.0, rest) /
          IndependentShare(problem, residual).minCoeff();
 }
@@ -39,12 +39,11 @@ bool IsNear(const DiscoveryProblem& coarse, const DiscoveryProblem& problem,
 
 std::optional<DiscoveryProblem> Coarsen(const DiscoveryProblem& problem,
                                         const Changes& changes) {
-  const int substeps = problem.machine.rates().substeps;
+  const int substeps = problem.machine().rates().substeps;
   if (substeps < 2) return std::nullopt;
   const VectorXd exact = problem.Residual(changes);
   for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
-    DiscoveryProblem coarse = problem;
-    coarse.machine = problem.machine.WithSubsteps(fewer);
+    DiscoveryProblem coarse = problem.WithSubsteps(fewer);
     if (IsNearTo(exact, coarse, problem, changes)) return coarse;
   }
   return std::nullopt;

@@ -16,8 +16,7 @@ bool IsNear(const DiscoveryProblem& coarse, const DiscoveryProblem& problem,
             const Changes& changes);
 
 /// The problem with one substep a tick, or two, if that is near beside those changes;
-/// none if it is not, or has no more. The observer, which is designed on whole ticks,
-/// stays.
+/// none if it is not, or has no more.
 std::optional<DiscoveryProblem> Coarsen(const DiscoveryProblem& problem,
                                         const Changes& changes);
 

@@ -16,12 +16,11 @@ EvidenceData DataOf(const DiscoveryProblem& problem,
                     const std::vector<Candidate>& candidates,
                     const MeasuredRun* unseen) {
   EvidenceData data;
-  data.skip = problem.skip;
-  data.train = problem.train;
-  data.samples = problem.run.samples();
+  data.skip = problem.skip();
+  data.train = problem.train();
+  data.samples = problem.run().samples();
   if (unseen == nullptr) return data;
-  auto other = std::make_shared<DiscoveryProblem>(problem);
-  other->run = *unseen;
+  const auto other = std::make_shared<const DiscoveryProblem>(problem.WithRun(*unseen));
   data.replay = [other, &candidates](const std::vector<FittedCause>& causes) {
     try {
       return other->Residual(ChangesOf(candidates, causes));

@@ -31,14 +31,14 @@ double Deviance(const VectorXd& residual, const VectorXd& independent, Index fir
 }
 
 VectorXd IndependentShare(const DiscoveryProblem& problem, const VectorXd& residual) {
-  const Index channels = problem.run.outputs.rows();
-  const Index n = problem.train - problem.skip;
+  const Index channels = problem.run().outputs.rows();
+  const Index n = problem.train() - problem.skip();
   const Eigen::Map<const MatrixXd> e(residual.data(), channels,
                                      residual.size() / channels);
   VectorXd share(channels);
   for (Index c = 0; c < channels; ++c) {
-    const VectorXd signal = e.row(c).segment(problem.skip, n);
-    const Spectrum spectrum = PowerSpectrum(signal, problem.run.sample_time);
+    const VectorXd signal = e.row(c).segment(problem.skip(), n);
+    const Spectrum spectrum = PowerSpectrum(signal, problem.run().sample_time);
     share[c] = std::min(1.0, IndependentSamples(spectrum, n) / static_cast<double>(n));
   }
   return share;
@@ -73,7 +73,7 @@ std::vector<double> Criteria(const DiscoveryProblem& problem,
   const VectorXd independent = IndependentShare(problem, best->residual);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     if (!fits[i]) continue;
-    criteria[i] = Criterion(*fits[i], independent, problem.skip, problem.train);
+    criteria[i] = Criterion(*fits[i], independent, problem.skip(), problem.train());
   }
   return criteria;
 }

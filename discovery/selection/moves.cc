@@ -37,8 +37,8 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
   constexpr double kFar = 60.0;  // in units of the deviance
   const MatrixXd* known = jacobian.cols() > 0 ? &jacobian : nullptr;
   const auto early = [&](const CauseFit& fit) {
-    return Deviance(fit.residual, present.independent(), data.problem.skip,
-                    data.beginning.train);
+    return Deviance(fit.residual, present.independent(), data.problem.skip(),
+                    data.beginning.train());
   };
   const auto rough =
       TryFit(data.beginning, data.candidates, causes, CompareFrom(known, 8, 1e-3));
@@ -94,7 +94,7 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
     if (others.size() < kMost) others.push_back(other);
   };
   const auto simpler =
-      SimplerLaw(data.problem.machine.plant(), data.candidates, fit.causes[i]);
+      SimplerLaw(data.problem.machine().plant(), data.candidates, fit.causes[i]);
   if (simpler) consider(*simpler);
   const Screening without =
       ScreenBeside(data.problem, data.candidates, Without(fit.causes, i),

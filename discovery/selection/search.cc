@@ -20,7 +20,8 @@ using Eigen::VectorXd;
 
 Index BeginningLength(const DiscoveryProblem& problem) {
   constexpr Index kShortest = 4000;
-  return std::min(problem.train, problem.skip + std::max(kShortest, problem.train / 4));
+  return std::min(problem.train(),
+                  problem.skip() + std::max(kShortest, problem.train() / 4));
 }
 
 /// A search under way.
@@ -72,7 +73,7 @@ void Search::FitWhatIsKnown() {
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
   VectorXd independent = fit.causes.empty()
-                             ? VectorXd::Ones(data_.problem.run.outputs.rows()).eval()
+                             ? VectorXd::Ones(data_.problem.run().outputs.rows()).eval()
                              : IndependentShare(data_.problem, fit.residual);
   result_.evidence = {data_.evidence, std::move(fit), std::move(independent)};
 }

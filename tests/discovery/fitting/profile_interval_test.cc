@@ -48,10 +48,11 @@ TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
   const Fitted f = FitOf(
       stage, "stribeck_friction@load:coulomb=0.0002,breakaway=0.0004,velocity=0.02",
       "stribeck_friction@load", Eigen::Vector3d(0.0002, 0.0004, 0.02));
-  const DiscoveryProblem seen = Beginning(f.problem, f.problem.train);
-  const Eigen::MatrixXd J = f.fit.jacobian.bottomRows(f.problem.train - f.problem.skip);
+  const DiscoveryProblem seen = f.problem.TrainPart();
+  const Eigen::MatrixXd J =
+      f.fit.jacobian.bottomRows(f.problem.train() - f.problem.skip());
   const Eigen::MatrixXd C = Inverse(J.transpose() * J);
-  const auto n = static_cast<double>(f.problem.train - f.problem.skip);
+  const auto n = static_cast<double>(f.problem.train() - f.problem.skip());
   for (const double end : {f.intervals[2].min, f.intervals[2].max}) {
     std::vector<FittedCause> causes = f.fit.causes;
     causes[0].value[2] = end;

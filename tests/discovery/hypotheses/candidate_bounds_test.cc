@@ -21,8 +21,7 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
   auto candidates = ListCandidates(stage.machine);
   const auto before = candidates;
-  const Track track = FollowRun(stage.machine, {}, problem.run, problem.observer, true);
-  const ObservedMotion motion = ObserveMotion(stage.machine, problem.run, track);
+  const ObservedMotion motion = problem.MotionOf(problem.Nominal());
   BoundByRecord(candidates, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();
   const FitParameter& velocity =

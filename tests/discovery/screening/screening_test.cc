@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
@@ -37,7 +38,8 @@ struct Screened {
   /// Squared innovations of the part that fits see, with those causes.
   double Left(const std::vector<FittedCause>& causes) const {
     const VectorXd residual = problem.Residual(ChangesOf(candidates, causes));
-    return residual.segment(problem.skip, problem.train - problem.skip).squaredNorm();
+    return residual.segment(problem.skip(), problem.train() - problem.skip())
+        .squaredNorm();
   }
 };
 
@@ -122,24 +124,24 @@ TEST(Screening, LooksPastWhatHasBeenFound) {
 /// The Screener of a problem that is all for the fit.
 struct Bench {
   DiscoveryProblem problem;
-  std::pair<Track, ErrorDynamics> run = problem.Linearised({});
-  VectorXd residual = problem.Scaled(run.first);
+  std::shared_ptr<const LinearisedRun> run = problem.Linearised({});
+  VectorXd residual = problem.Scaled(run->track);
 };
 
 TEST(Screener, HasARestThatIsOrthogonalToWhatHasBeenFound) {
   const Screened screened({"quadratic_drag@load:coefficient=20"});
-  const Bench bench{Beginning(screened.problem, screened.problem.train)};
-  const Screener all(bench.problem, bench.run.second, bench.residual, {});
+  const Bench bench{screened.problem.TrainPart()};
+  const Screener all(bench.problem, bench.run->dynamics, bench.residual, {});
   EXPECT_NEAR(all.Rest(), bench.residual.squaredNorm(),
               1e-9 * bench.residual.squaredNorm());
   // What has been found spans the residual itself: nothing is left. Half of it and
   // something else: what is orthogonal to both.
   MatrixXd found(bench.residual.size(), 1);
   found.col(0) = 3.0 * bench.residual;
-  const Screener none(bench.problem, bench.run.second, bench.residual, found);
+  const Screener none(bench.problem, bench.run->dynamics, bench.residual, found);
   EXPECT_LT(none.Rest(), 1e-9 * all.Rest());
   found.col(0) = VectorXd::Ones(found.rows());
-  const Screener mean(bench.problem, bench.run.second, bench.residual, found);
+  const Screener mean(bench.problem, bench.run->dynamics, bench.residual, found);
   const double sum = bench.residual.sum();
   EXPECT_NEAR(mean.Rest(), all.Rest() - sum * sum / static_cast<double>(found.rows()),
               1e-9 * all.Rest());
@@ -147,13 +149,12 @@ TEST(Screener, HasARestThatIsOrthogonalToWhatHasBeenFound) {
 
 TEST(BetterWaves, FindThePeriodThatAWrongOneMisses) {
   const Screened screened({"force_ripple@load:amplitude=0.05,period=0.024,phase=0.3"});
-  const Bench bench{Beginning(screened.problem, screened.problem.train)};
-  const ObservedMotion motion =
-      ObserveMotion(bench.problem.machine, bench.problem.run, bench.run.first);
+  const Bench bench{screened.problem.TrainPart()};
+  const ObservedMotion motion = bench.problem.MotionOf(bench.run->track);
   const Candidate& ripple =
       screened.candidates[test::Place(screened.candidates, "force_ripple@load")];
   const auto better = [&](double present) {
-    return BetterWaves(bench.problem, ripple, present, motion, bench.run.second,
+    return BetterWaves(bench.problem, ripple, present, motion, bench.run->dynamics,
                        bench.residual, {}, 3);
   };
   const std::vector<Start> starts = better(0.015);

@@ -15,7 +15,7 @@ TEST(CoarseProblem, IsNearUntilNoiseIsLeft) {
   const DiscoveryProblem problem = stage.Pose(stage.Measure({friction}));
   const auto coarse = Coarsen(problem, {});
   ASSERT_TRUE(coarse);
-  EXPECT_EQ(coarse->machine.rates().substeps, 1);
+  EXPECT_EQ(coarse->machine().rates().substeps, 1);
   EXPECT_DOUBLE_EQ(coarse->step(), stage.setup().rates.tick());
   const Changes truth = test::With({friction});
   EXPECT_FALSE(IsNear(*coarse, problem, truth));

@@ -49,7 +49,7 @@ TEST(GainByChance, IsTheQuantileOfChiSquared) {
 TEST(IndependentShare, IsOneOfWhiteNoiseAndSmallOfSlowNoise) {
   const test::StageUnderTest stage;
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
-  VectorXd e = White(problem.run.samples(), 1.0);
+  VectorXd e = White(problem.run().samples(), 1.0);
   EXPECT_GT(IndependentShare(problem, e)[0], 0.9);
   for (Index k = 1; k < e.size(); ++k) e[k] += 0.95 * e[k - 1];
   EXPECT_LT(IndependentShare(problem, e)[0], 0.1);

@@ -26,7 +26,7 @@ struct Found {
         const std::vector<std::pair<std::string, VectorXd>>& found)
       : problem(stage.Pose(stage.Measure(hidden))),
         candidates(ListCandidates(stage.machine)),
-        data{problem, Beginning(problem, problem.train / 4), candidates,
+        data{problem, Beginning(problem, problem.train() / 4), candidates,
              DataOf(problem, candidates, nullptr)} {
     std::vector<FittedCause> causes;
     for (const auto& [name, value] : found) {
