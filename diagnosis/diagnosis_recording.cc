@@ -1,9 +1,9 @@
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "mjdiag/signals/error.h"
 
@@ -12,18 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-std::vector<const Channel*> Find(const std::vector<std::string>& names,
-                                 const Record& record) {
-  std::vector<const Channel*> channels;
-  for (const std::string& name : names) channels.push_back(&record.At(name));
-  return channels;
-}
-
-void Read(const std::vector<const Channel*>& channels, Index sample,
-          std::vector<double>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = channels[i]->samples[sample];
-  }
+std::span<const double> Tick(const Eigen::MatrixXd& samples, Index k) {
+  return {samples.col(k).data(), static_cast<std::size_t>(samples.rows())};
 }
 
 /// @param watcher  a monitor of that design, alone or with its recorder
@@ -35,15 +25,9 @@ void Feed(Watcher& watcher, const DiagnosisDesign& design, const Record& record)
         "the sample time of the filters, " +
             std::to_string(design.sample_time() * 1e3) + " ms");
   }
-  const std::vector<const Channel*> outputs = Find(design.outputs, record);
-  const std::vector<const Channel*> inputs = Find(design.inputs, record);
-  std::vector<double> y(outputs.size());
-  std::vector<double> u(inputs.size());
-  for (Index k = 0; k < record.samples(); ++k) {
-    Read(outputs, k, y);
-    Read(inputs, k, u);
-    watcher.Add(y, u);
-  }
+  const Eigen::MatrixXd y = SamplesOf(record, design.outputs);
+  const Eigen::MatrixXd u = SamplesOf(record, design.inputs);
+  for (Index k = 0; k < record.samples(); ++k) watcher.Add(Tick(y, k), Tick(u, k));
 }
 
 }  // namespace

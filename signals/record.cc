@@ -82,4 +82,12 @@ Eigen::VectorXd Record::Time() const {
   });
 }
 
+Eigen::MatrixXd SamplesOf(const Record& record, const std::vector<std::string>& names) {
+  Eigen::MatrixXd samples(static_cast<Eigen::Index>(names.size()), record.samples());
+  for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+    samples.row(i) = record.At(names[static_cast<std::size_t>(i)]).samples;
+  }
+  return samples;
+}
+
 }  // namespace mjdiag

@@ -50,4 +50,7 @@ class Record {
   std::vector<Channel> channels_;
 };
 
+/// Samples of the channels of these names, names x samples. InputError as Record::At.
+Eigen::MatrixXd SamplesOf(const Record& record, const std::vector<std::string>& names);
+
 }  // namespace mjdiag

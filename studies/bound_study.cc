@@ -15,13 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 MatrixXd Commands(const Setup& setup, const Record& record) {
-  MatrixXd commands(static_cast<Index>(setup.channels.actuators.size()),
-                    record.samples());
-  for (std::size_t i = 0; i < setup.channels.actuators.size(); ++i) {
-    commands.row(static_cast<Index>(i)) =
-        record.At(setup.channels.actuators[i].channel).samples;
-  }
-  return commands;
+  return SamplesOf(record, ChannelsOf(setup.channels.actuators));
 }
 
 /// Standard deviations that the estimator claims for a healthy run.

@@ -1,7 +1,6 @@
 #include "mjdiag/plugin/design/diagnosis.h"
 
 #include <cmath>
-#include <vector>
 
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/plugin/design/cross_terms.h"
@@ -15,13 +14,6 @@ namespace mjdiag {
 namespace {
 
 using Eigen::Index;
-
-template <typename Element>
-std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
-  std::vector<std::string> channels;
-  for (const Element& element : elements) channels.push_back(element.channel);
-  return channels;
-}
 
 void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
                         const Setup& setup) {

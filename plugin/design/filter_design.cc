@@ -240,16 +240,10 @@ SynthesisOptions SynthesisOf(const Machine& machine) {
 }
 
 MatrixXd Signals(const DiagnosisDesign& design, const Record& record) {
-  const auto ny = static_cast<Index>(design.outputs.size());
-  MatrixXd signals(ny + static_cast<Index>(design.inputs.size()), record.samples());
-  for (Index i = 0; i < ny; ++i) {
-    signals.row(i) =
-        record.At(design.outputs[static_cast<std::size_t>(i)]).samples.array() -
-        design.offset[i];
-  }
-  for (std::size_t i = 0; i < design.inputs.size(); ++i) {
-    signals.row(ny + static_cast<Index>(i)) = record.At(design.inputs[i]).samples;
-  }
+  std::vector<std::string> names = design.outputs;
+  names.insert(names.end(), design.inputs.begin(), design.inputs.end());
+  MatrixXd signals = SamplesOf(record, names);
+  signals.topRows(design.offset.size()).colwise() -= design.offset;
   return signals;
 }
 

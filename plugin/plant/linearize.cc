@@ -239,12 +239,8 @@ MechanicalModel Linearize(const mjModel& model, const Channels& channels,
   for (int joint = 0; joint < model.njnt; ++joint) {
     result.coordinates.push_back(ElementName(model, mjOBJ_JOINT, joint));
   }
-  for (const ActuatorSetup& actuator : channels.actuators) {
-    result.inputs.push_back(actuator.channel);
-  }
-  for (const SensorSetup& sensor : channels.sensors) {
-    result.outputs.push_back(sensor.channel);
-  }
+  result.inputs = ChannelsOf(channels.actuators);
+  result.outputs = ChannelsOf(channels.sensors);
   result.M = SmoothDynamics(model, rest).Mass();
   result.D = JointDamping(model) + OtherDamping(model, rest);
   result.K = JointStiffness(model) + GeometricStiffness(model, rest);

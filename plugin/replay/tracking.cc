@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <vector>
 
 #include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/plugin/setup/measured_channel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -15,14 +17,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-Eigen::RowVectorXd Samples(const Record& measured, const std::string& name,
-                           const std::string& unit) {
-  const Channel& channel = measured.At(name);
-  if (channel.unit != unit) {
-    throw InputError("record", "channel '" + name + "' is in '" + channel.unit + "'",
-                     unit + "; a column under [record.channels] may give the unit");
+/// Samples of sensors or actuators, in the units that the setup gives them.
+template <typename Element>
+Eigen::MatrixXd MeasuredBy(const std::vector<Element>& elements,
+                           const Record& measured) {
+  for (const Element& element : elements) {
+    MeasuredChannel(measured, element.channel, element.unit);
   }
-  return channel.samples.transpose();
+  return SamplesOf(measured, ChannelsOf(elements));
 }
 
 /// Where dry friction in the joints is the only constraint there are as many unknown
@@ -114,19 +116,8 @@ MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   MeasuredRun run;
   run.sample_time = setup.rates.tick();
   run.start = Replay(setup, measured).start;
-  run.outputs.resize(static_cast<Index>(setup.channels.sensors.size()),
-                     measured.samples());
-  run.inputs.resize(static_cast<Index>(setup.channels.actuators.size()),
-                    measured.samples());
-  for (Index i = 0; i < run.outputs.rows(); ++i) {
-    const SensorSetup& sensor = setup.channels.sensors[static_cast<std::size_t>(i)];
-    run.outputs.row(i) = Samples(measured, sensor.channel, sensor.unit);
-  }
-  for (Index i = 0; i < run.inputs.rows(); ++i) {
-    const ActuatorSetup& actuator =
-        setup.channels.actuators[static_cast<std::size_t>(i)];
-    run.inputs.row(i) = Samples(measured, actuator.channel, actuator.unit);
-  }
+  run.outputs = MeasuredBy(setup.channels.sensors, measured);
+  run.inputs = MeasuredBy(setup.channels.actuators, measured);
   return run;
 }
 

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/plugin/setup/measured_channel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -13,21 +14,10 @@ std::vector<std::string> AxisNames(const Setup& setup) {
   return names;
 }
 
-/// The channel of a measured record, in the unit that the setup gives it.
-const Channel& Measured(const Record& measured, const std::string& name,
-                        const std::string& unit) {
-  const Channel& channel = measured.At(name);
-  if (channel.unit != unit) {
-    throw InputError("record", "channel '" + name + "' is in '" + channel.unit + "'",
-                     unit + "; a column under [record.channels] may give the unit");
-  }
-  return channel;
-}
-
 AxisReference MeasuredReference(const Record& measured, const std::string& axis,
                                 const std::string& unit) {
   const std::string channel = axis + "_ref";
-  const Eigen::VectorXd& position = Measured(measured, channel, unit).samples;
+  const Eigen::VectorXd& position = MeasuredChannel(measured, channel, unit).samples;
   const Channel* velocity = measured.Find(channel + "_velocity");
   const Channel* acceleration = measured.Find(channel + "_acceleration");
   const Channel* snap = measured.Find(channel + "_snap");
@@ -75,7 +65,7 @@ Excitation Replay(const Setup& setup, const Record& measured) {
   excitation.inputs = Record(setup.rates.tick(), measured.start_time());
   if (setup.control.axes.empty()) {
     for (const ActuatorSetup& actuator : setup.channels.actuators) {
-      excitation.inputs.Add(Measured(measured, actuator.channel, actuator.unit));
+      excitation.inputs.Add(MeasuredChannel(measured, actuator.channel, actuator.unit));
     }
     for (const SensorSetup& sensor : setup.channels.sensors) {
       const Channel* channel = measured.Find(sensor.channel);
@@ -90,7 +80,7 @@ Excitation Replay(const Setup& setup, const Record& measured) {
         measured, axis.name, setup.channels.Sensor(axis.sensor).unit));
     excitation.start[axis.sensor] = StartReading(
         setup.channels.Sensor(axis.sensor),
-        Measured(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit)
+        MeasuredChannel(measured, axis.sensor, setup.channels.Sensor(axis.sensor).unit)
             .samples[0],
         excitation.reference.axes.back().position[0]);
     if (const Channel* known = measured.Find(axis.known_disturbance)) {

@@ -108,6 +108,14 @@ struct Channels {
   std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
 };
 
+/// Names of the channels of sensors or actuators, in their order.
+template <typename Element>
+std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
+  std::vector<std::string> names;
+  for (const Element& element : elements) names.push_back(element.channel);
+  return names;
+}
+
 /// [axes]
 struct Control {
   std::vector<AxisSetup> axes;  ///< empty: open loop, records drive the actuators

@@ -45,6 +45,14 @@ TEST(Record, SaysWhichChannelsItHas) {
   EXPECT_EQ(TwoChannels().Find("y"), nullptr);
 }
 
+TEST(Record, GivesTheSamplesOfChannelsInTheOrderOfTheirNames) {
+  Eigen::Matrix<double, 2, 4> expected;
+  expected << 5.0, 6.0, 7.0, 8.0, 1.0, 2.0, 3.0, 4.0;
+  EXPECT_EQ(SamplesOf(TwoChannels(), {"u", "x"}), expected);
+  EXPECT_EQ(SamplesOf(TwoChannels(), {}).rows(), 0);
+  EXPECT_THROW(SamplesOf(TwoChannels(), {"u", "y"}), InputError);
+}
+
 TEST(Record, RefusesChannelsThatDoNotFit) {
   Record record = TwoChannels();
   EXPECT_THAT(
