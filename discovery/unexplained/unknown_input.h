@@ -13,32 +13,15 @@
 //   z[k+1] = exp(-1/N) z[k] + w[k],        w white of standard deviation s
 //
 // with z = f (UnexplainedForces) or z = d (UnexplainedReadings). Estimated is z given
-// all samples before and after, by a Kalman filter and the smoother of H. E. Rauch, F.
-// Tung and C. T. Striebel, "Maximum likelihood estimates of linear dynamic systems",
-// AIAA Journal 3 (1965), in the form of Bryson and Frazier, which needs no inverse of
-// the covariance. With the stationary P of the augmented (A, C) and F = A - K C,
+// all samples before and after, with the s of the largest likelihood (input_smoother.h).
+// It is found as a bandwidth b [rad a tick], which stands for s = z0 b^p, where z0 is
+// the force that moves a reading by its noise in a tick and p = 3, or the noise of the
+// sensor and p = 1: there a random walk through the inertia of an axis and the noise
+// balance. The slowest is three cycles over the record; it is what noise alone mostly
+// gives.
 //
-//   nu[k] = e[k] - C x[k],   x[k+1] = A x[k] - L e[k] + K nu[k],   S = C P C^T + R
-//   r[k-1] = C^T S^-1 nu[k] + F^T r[k],     estimate[k] = x[k] + P r[k-1]
-//   covariance  P - P W P,                  W = C^T S^-1 C + F^T W F
-//
-// How fast an input may change decides how much noise is left in its estimate and how
-// much of it is smoothed away. s follows the data: it is the s of the largest
-// likelihood of the innovations over a grid in bandwidth, all inputs alike first, then
-// one after the other, down to steps of a quarter octave. The bandwidth b [rad a tick]
-// stands for s = z0 b^p, where z0 is the force that moves a reading by its noise in a
-// tick and p = 3, or the noise of the sensor and p = 1: there a random walk through the
-// inertia of an axis and the noise balance. The slowest is three cycles over the
-// record; it is what noise alone mostly gives.
-//
-// So that motions which nothing holds have a stationary P, the actuators have a white
-// force noise of the slowest bandwidth (observer.h says what that is).
-//
-// Both ends: the state at the first sample is free (a prior 10^4 times the noise of the
-// sensors, taken out exactly by the method of P. de Jong, "The diffuse Kalman filter",
-// Annals of Statistics 19, 1991), so that a constant force is there from the first
-// sample on. At both ends there are samples on one side only: the error grows to that
-// of the filter, which `edge` samples away is no longer felt.
+// So that motions which nothing holds have a stationary covariance, the actuators
+// have a white force noise of the slowest bandwidth (observer.h says what that is).
 //
 // Limits: an error of a reading and a slow motion of an axis that nothing holds cannot
 // be told apart; sd then says so. A joint that was left out of the list has no force:
