@@ -43,5 +43,37 @@ TEST(SearchCauses, AreNotTouchedByHypothesesThatAnotherRecordSpeaksAgainst) {
   EXPECT_EQ(found.evidence.independent(), Eigen::VectorXd::Ones(1));
 }
 
+// May add nothing itself, so that all it has is what the search before it found.
+TEST(SearchCauses, GoOnFromWhatASearchBeforeThemFound) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = stage.Pose(stage.Measure(kDrag));
+  const auto candidates = ListCandidates(stage.machine);
+  const FittedCause drag{test::Place(candidates, "quadratic_drag@load"),
+                         Eigen::VectorXd::Constant(1, 15.0)};
+  const FittedCause refuted{test::Place(candidates, "force_offset@load"),
+                            Eigen::VectorXd::Constant(1, 0.1)};
+  CauseFit rough;
+  rough.causes = {drag};
+  SearchResult before;
+  before.evidence = {{}, rough, Eigen::VectorXd::Ones(1)};
+  before.rivals = {{{drag, 0.0, 1.0}}};
+  before.ladder = {{drag}};
+  before.refuted = {refuted};
+  before.exchanged = true;
+  SearchOptions options;
+  options.most_causes = 0;
+  options.last_fit = false;
+  const SearchResult found = SearchCauses(problem, candidates, options, &before);
+  ASSERT_EQ(found.fit().causes.size(), 1u);
+  EXPECT_EQ(found.fit().causes[0].candidate, drag.candidate);
+  EXPECT_NEAR(found.fit().causes[0].value[0], 20.0, 0.5);  // fitted anew
+  EXPECT_FALSE(found.significant_rest);
+  ASSERT_EQ(found.rivals.size(), 1u);
+  EXPECT_EQ(found.rivals[0].front().cause.candidate, drag.candidate);
+  EXPECT_EQ(found.ladder.size(), 1u);
+  ASSERT_EQ(found.refuted.size(), 1u);
+  EXPECT_EQ(found.refuted[0].candidate, refuted.candidate);
+}
+
 }  // namespace
 }  // namespace mjdiag
