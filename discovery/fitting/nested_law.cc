@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/plugin/effects/effect.h"
 
 namespace mjdiag {
@@ -17,10 +16,8 @@ std::optional<FittedCause> AsCandidate(const std::vector<Candidate>& candidates,
           return SameKind({candidate.effect, candidate.site, {}}, cause);
         });
     if (found == candidates.end()) continue;
-    Start start;
-    start.candidate = static_cast<std::size_t>(found - candidates.begin());
-    start.value = cause.values;
-    return FittedFrom(candidates, start);
+    return Bounded(candidates, {static_cast<std::size_t>(found - candidates.begin()),
+                                cause.values});
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/fitting/wave_period.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "mjdiag/discovery/screening/screening.h"
 
@@ -42,8 +43,8 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   for (Start& start : BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
                                   left - (moved - left) / kStep,
                                   JacobianWithout(fit, i), kMostPeriods)) {
-    start.candidate = causes[i].candidate;
-    others.push_back(FittedFrom(candidates, start));
+    start.cause.candidate = causes[i].candidate;
+    others.push_back(Bounded(candidates, std::move(start.cause)));
   }
   return others;
 }

@@ -1,11 +1,21 @@
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace mjdiag {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+
+FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause) {
+  Index i = 0;
+  for (const FitParameter& parameter : candidates[cause.candidate].parameters) {
+    double& value = cause.value[i++];
+    value = std::clamp(value, parameter.lower, parameter.upper);
+  }
+  return cause;
+}
 
 VectorXd Flatten(const std::vector<FittedCause>& causes) {
   Index size = 0;

@@ -14,6 +14,9 @@ struct FittedCause {
   Eigen::VectorXd value;      ///< in the order of candidate.parameters
 };
 
+/// With values within the bounds of its parameters.
+FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause);
+
 /// All parameters in one vector, in order of the causes, and back.
 Eigen::VectorXd Flatten(const std::vector<FittedCause>& causes);
 std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,

@@ -91,7 +91,7 @@ std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& respo
   const TrialValues values = trial.values(scale.asDiagonal() * amplitude);
   if (!values) return std::nullopt;
   Start start;
-  start.value = *values;
+  start.cause.value = *values;
   start.gain = b.dot(amplitude);
   start.freedom = static_cast<int>(G.cols());
   return start;

@@ -23,19 +23,6 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 
 }  // namespace
 
-FittedCause FittedFrom(const std::vector<Candidate>& candidates, const Start& start) {
-  const Candidate& candidate = candidates[start.candidate];
-  FittedCause cause;
-  cause.candidate = start.candidate;
-  cause.value.resize(static_cast<Index>(candidate.parameters.size()));
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-    const FitParameter& parameter = candidate.parameters[i];
-    cause.value[static_cast<Index>(i)] = std::clamp(start.value[static_cast<Index>(i)],
-                                                    parameter.lower, parameter.upper);
-  }
-  return cause;
-}
-
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const VectorXd& residual,
@@ -60,7 +47,7 @@ Screening Screen(const DiscoveryProblem& problem,
     for (auto& start : screener.Judge(trials, candidate)) {
       if (start) found[c].push_back(std::move(*start));
     }
-    for (Start& start : found[c]) start.candidate = c;
+    for (Start& start : found[c]) start.cause.candidate = c;
     KeepBest(found[c], static_cast<std::size_t>(starts_each));
   });
   Screening screening;
@@ -114,7 +101,8 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
   for (Start& start : starts) {
     const bool known = std::ranges::any_of(distinct, [&](const Start& other) {
       constexpr double kSame = 0.01;
-      return std::abs(start.value[period] / other.value[period] - 1.0) < kSame;
+      return std::abs(start.cause.value[period] / other.cause.value[period] - 1.0) <
+             kSame;
     });
     if (!known) distinct.push_back(std::move(start));
     if (static_cast<int>(distinct.size()) == most) break;

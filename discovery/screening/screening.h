@@ -21,16 +21,12 @@
 
 namespace mjdiag {
 
-/// A candidate with values to start a fit from.
+/// Values to start a fit from, which may lie beyond their bounds (Bounded).
 struct Start {
-  std::size_t candidate = 0;
-  Eigen::VectorXd value;  ///< in the order of the candidate's parameters
-  double gain = 0.0;      ///< of the squared scaled innovations
-  int freedom = 1;        ///< amplitudes
+  FittedCause cause;
+  double gain = 0.0;  ///< of the squared scaled innovations
+  int freedom = 1;    ///< amplitudes
 };
-
-/// The cause of a start, with its values.
-FittedCause FittedFrom(const std::vector<Candidate>& candidates, const Start& start);
 
 struct Screening {
   /// The best starts of every candidate that is excited, best first.
@@ -60,8 +56,8 @@ Screening ScreenBeside(const DiscoveryProblem& problem,
 /// Starts of one wave (a candidate with a sweep) that promise more than its present
 /// period or frequency, best first. Every value of the sweep is judged exactly: Screen,
 /// which has many candidates to look at, only estimates the size of most of them. Of a
-/// candidate with a frequency but no sweep the best starts. `candidate` of the starts
-/// is not set.
+/// candidate with a frequency but no sweep the best starts. `cause.candidate` of the
+/// starts is not set.
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
                                double present, const ObservedMotion& motion,
                                const ErrorDynamics& dynamics,

@@ -97,7 +97,7 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   std::vector<Entry> entries;
   for (const Start& start : shortlist) {
     Entry entry{present_.fit().causes};
-    entry.causes.push_back(FittedFrom(data_.candidates, start));
+    entry.causes.push_back(Bounded(data_.candidates, start.cause));
     const double n =
         static_cast<double>(data_.problem.train()) * present_.independent().sum();
     entry.criterion = -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
@@ -142,8 +142,8 @@ std::vector<Start> Shortlist(const Evidence& present, const Screening& screening
   std::vector<Start> list;
   std::vector<Start> more;
   for (const Start& start : screening.starts) {
-    const auto same = [&](const auto& other) {
-      return other.candidate == start.candidate;
+    const auto same = [&](const FittedCause& other) {
+      return other.candidate == start.cause.candidate;
     };
     if (std::ranges::any_of(present.fit().causes, same)) continue;
     if (!present
@@ -152,7 +152,7 @@ std::vector<Start> Shortlist(const Evidence& present, const Screening& screening
       continue;
     }
     if (RestOf(present, start) > most_rest) continue;
-    const bool first = std::ranges::none_of(list, same);
+    const bool first = std::ranges::none_of(list, same, &Start::cause);
     if (first && static_cast<int>(list.size()) < most) {
       list.push_back(start);
     } else if (!first && static_cast<int>(more.size()) < most / 2) {

@@ -102,7 +102,7 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   const double explained = without.rest - FittedValues(data.problem) * fit.train;
   for (const Start& start : without.starts) {
     if (start.gain < kNearly * explained - kChance) break;
-    consider(FittedFrom(data.candidates, start));
+    consider(Bounded(data.candidates, start.cause));
   }
   return others;
 }

@@ -33,7 +33,8 @@ struct Screened {
   }
   const Start& StartOf(const Screening& screening, const std::string& name) const {
     const std::size_t place = test::Place(candidates, name);
-    return *std::ranges::find(screening.starts, place, &Start::candidate);
+    return *std::ranges::find(screening.starts, place,
+                              [](const Start& start) { return start.cause.candidate; });
   }
   /// Squared innovations of the part that fits see, with those causes.
   double Left(const std::vector<FittedCause>& causes) const {
@@ -70,7 +71,7 @@ TEST(Screening, PromisesOfASmallEffectWhatItTakesAwayOfTheSquaredInnovations) {
     const Screening screening = screened.Beside();
     const Start& start = screened.StartOf(screening, name);
     const double drop =
-        screened.Left({}) - screened.Left({FittedFrom(screened.candidates, start)});
+        screened.Left({}) - screened.Left({Bounded(screened.candidates, start.cause)});
     EXPECT_GT(drop, 500.0) << "hardly shows";
     EXPECT_NEAR(start.gain, drop, first_order * drop);
     // Nothing else explains it better by more than noise makes of it.
@@ -81,7 +82,8 @@ TEST(Screening, PromisesOfASmallEffectWhatItTakesAwayOfTheSquaredInnovations) {
 TEST(Screening, StartsAFitNearTheTruth) {
   const Screened screened({"quadratic_drag@load:coefficient=20"});
   const Screening screening = screened.Beside();
-  EXPECT_NEAR(screened.StartOf(screening, "quadratic_drag@load").value[0], 20.0, 0.5);
+  EXPECT_NEAR(screened.StartOf(screening, "quadratic_drag@load").cause.value[0], 20.0,
+              0.5);
 }
 
 TEST(Screening, OfNoiseAloneFindsNothingSignificant) {
@@ -91,7 +93,7 @@ TEST(Screening, OfNoiseAloneFindsNothingSignificant) {
     EXPECT_GT(screening.trials, 100);
     for (const Start& start : screening.starts) {
       EXPECT_LT(start.gain, GainByChance(1e-3, screening.trials, start.freedom))
-          << Describe(screened.candidates[start.candidate]);
+          << Describe(screened.candidates[start.cause.candidate]);
     }
   }
 }
@@ -113,7 +115,7 @@ TEST(Screening, LooksPastWhatHasBeenFound) {
   const Screening past = screened.Beside(with(20.0), slope);
   const double gain = screened.StartOf(blind, "quadratic_drag@load").gain;
   for (const Start& start : past.starts) {
-    if (start.candidate != drag) continue;
+    if (start.cause.candidate != drag) continue;
     // What is left of its direction can take something of the other one.
     EXPECT_LT(start.gain, 1e-2 * gain);
   }
@@ -160,9 +162,9 @@ TEST(BetterWaves, FindThePeriodThatAWrongOneMisses) {
   const std::vector<Start> starts = better(0.015);
   ASSERT_FALSE(starts.empty());
   EXPECT_LE(starts.size(), 3u);
-  EXPECT_NEAR(starts[0].value[PeriodPlace(ripple)], 0.024, 0.024 * 2e-3);
+  EXPECT_NEAR(starts[0].cause.value[PeriodPlace(ripple)], 0.024, 0.024 * 2e-3);
   for (const Start& start : better(0.024)) {
-    EXPECT_NEAR(start.value[PeriodPlace(ripple)], 0.024, 0.024 * 0.01);
+    EXPECT_NEAR(start.cause.value[PeriodPlace(ripple)], 0.024, 0.024 * 0.01);
   }
 }
 
