@@ -33,7 +33,6 @@
 
 namespace mjdiag {
 
-/// @param plant  as LoadPlant gives it
 /// @return what one should know and can live with, sentences for people
 /// InputError names the channel and what is wrong with it; also if the record lacks
 /// what the replay needs (see ToMeasuredRun).

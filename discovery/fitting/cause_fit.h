@@ -52,7 +52,6 @@ struct FitOptions {
 double FittedValues(const DiscoveryProblem& problem);
 
 /// @param start  causes with values to start from, within their bounds
-/// @param run    of the problem, or the beginning of it: `problem.run` is what counts
 /// NumericalError if the run with the start diverges.
 CauseFit FitCauses(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates,
