@@ -29,16 +29,17 @@ struct DesignOptions {
 // Beyond it a plant without rows is one without redundancy.
 constexpr int kHighestDegree = 40;
 
-// What is left of a spring in the plot of what lost stiffness changes (Fig. 30 of the
-// seed).
+// What is left of a spring in the plot of what lost stiffness changes ([AB383],
+// Fig. 30).
 constexpr double kLostStiffness = 0.01;
 
 std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
   std::vector<ChangedMachine> changed;
-  for (const FaultKnob& knob : FaultKnobs(machine.plant())) {
-    if (knob.kind != KnobKind::kStiffness) continue;
-    changed.push_back({knob.name + " = " + Short(kLostStiffness),
-                       machine.With({{{knob.name, kLostStiffness}}, {}}).linear()});
+  for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
+    if (parameter.kind != FaultParameterKind::kStiffness) continue;
+    changed.push_back(
+        {parameter.name + " = " + Short(kLostStiffness),
+         machine.With({{{parameter.name, kLostStiffness}}, {}}).linear()});
   }
   return changed;
 }

@@ -205,7 +205,7 @@ void Linearize(const LinearizeOptions& options) {
   const Machine& machine = subject.machine;
   if (!machine.changes().effects.empty() || !subject.options.disturbances.empty()) {
     throw InputError("linearize", "effects and disturbances are not linear",
-                     "fault knobs of the plant only");
+                     "fault parameters of the plant only");
   }
   const MechanicalModel& extracted = machine.linear();
 

@@ -27,11 +27,11 @@ MatrixXd ColumnSpace(const MatrixXd& matrix) {
   return svd.U.leftCols(values[0] > 0.0 ? rank : 0);
 }
 
-/// Generalised forces that a turned knob makes, whatever the motion: damping, stiffness
-/// and motor forces change by dD q', dK q and dGamma u. Each change is taken relative
-/// to its matrix and in coordinates of unit mass, so that a change of one matrix is not
-/// confused with the rounding of another.
-MatrixXd ForcesOf(const TurnedModels& knob, const MechanicalModel& healthy) {
+/// Generalised forces that a changed fault parameter makes, whatever the motion:
+/// damping, stiffness and motor forces change by dD q', dK q and dGamma u. Each change
+/// is taken relative to its matrix and in coordinates of unit mass, so that a change of
+/// one matrix is not confused with the rounding of another.
+MatrixXd ForcesOf(const PerturbedModels& fault, const MechanicalModel& healthy) {
   const Eigen::LLT<MatrixXd> mass(healthy.M);
   const Index n = healthy.M.rows();
   const auto relative = [&](const MatrixXd& change, const MatrixXd& whole) {
@@ -46,22 +46,22 @@ MatrixXd ForcesOf(const TurnedModels& knob, const MechanicalModel& healthy) {
     return relative(columns(change), columns(whole));
   };
   MatrixXd changes(n, 2 * n + healthy.Gamma.cols());
-  changes << square(knob.plus.D - knob.minus.D, healthy.D),
-      square(knob.plus.K - knob.minus.K, healthy.K),
-      relative(knob.plus.Gamma - knob.minus.Gamma, healthy.Gamma);
+  changes << square(fault.plus.D - fault.minus.D, healthy.D),
+      square(fault.plus.K - fault.minus.K, healthy.K),
+      relative(fault.plus.Gamma - fault.minus.Gamma, healthy.Gamma);
   return mass.matrixL() * ColumnSpace(changes);
 }
 
 SignalEntry FaultEntry(const Machine& machine, const MechanicalModel& healthy,
                        const TickTiming& timing) {
-  const std::vector<TurnedModels> knobs = MakeFaultFamily(machine).Turned();
-  if (knobs.empty()) {
-    throw InputError("--method lp", "the plant has no fault knobs",
+  const std::vector<PerturbedModels> faults = MakeFaultFamily(machine).Perturbed();
+  if (faults.empty()) {
+    throw InputError("--method lp", "the plant has no fault parameters",
                      "at least one, for the rows have to see a fault");
   }
   MatrixXd forces(healthy.M.rows(), 0);
-  for (const TurnedModels& knob : knobs) {
-    const MatrixXd more = ForcesOf(knob, healthy);
+  for (const PerturbedModels& fault : faults) {
+    const MatrixXd more = ForcesOf(fault, healthy);
     MatrixXd all(forces.rows(), forces.cols() + more.cols());
     all << forces, more;
     forces = all;

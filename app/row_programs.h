@@ -15,11 +15,11 @@ SignalEntry UnknownForces(const MechanicalModel& healthy,
 
 /// Poses the programs on the delta form of the control tick in coordinates of unit
 /// mass, with the unknown forces of the setup as unknown inputs and the forces that the
-/// knobs of the plant turn as faults, at the degree of the setup.
+/// fault parameters of the plant change as faults, at the degree of the setup.
 ///
 /// Fault inputs are directions of generalised force, each of unit length in the
 /// coordinates of the delta form, so that the size of the row does not depend on their
-/// units. InputError if the plant has no knobs.
+/// units. InputError if the plant has no fault parameters.
 RowProgramFacts SolveRowPrograms(const Machine& machine,
                                  const MechanicalModel& healthy);
 

@@ -20,7 +20,7 @@ struct DiagnosisOptions {
   ResidualOrder residual;
   /// Rows that the estimator uses; 0: the whole null space. The detector has one.
   int estimation_rows = 1;
-  /// Knob -> c of Eq. 22; knobs that are left out: 1e-3.
+  /// Fault parameter -> c of Eq. 22; those that are left out: 1e-3.
   std::map<std::string, double> magnitudes;
   /// Joints with an unknown force to which the residuals have to be blind (B_d).
   std::vector<std::string> unknown_forces;

@@ -110,10 +110,10 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
 
   const VectorXd& filtered = filters_.Step(z_);
   const Index n = design_.bank.residuals;
-  const auto knobs = static_cast<Index>(design_.bank.faults.size());
+  const auto parameters = static_cast<Index>(design_.bank.faults.size());
   residuals_ = filtered.head(n);
   if (samples_ < baseline_.cols()) residuals_ -= baseline_.col(samples_);
-  for (Index i = 0; i < knobs; ++i) {
+  for (Index i = 0; i < parameters; ++i) {
     regressors_.row(i) = filtered.segment((i + 1) * n, n).transpose();
   }
   if (waveforms_.cols() > 0) {
@@ -122,7 +122,7 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
     drive_ = waveforms_.reshaped();
     const VectorXd& response = waveform_filter_.Step(drive_);
     for (Index i = 0; i < waveforms_.cols(); ++i) {
-      regressors_.row(knobs + i) = response.segment(i * n, n).transpose();
+      regressors_.row(parameters + i) = response.segment(i * n, n).transpose();
     }
   }
   disturbance_ = high_pass_.Update(disturbance_filter_.Step(z_)[0]);

@@ -18,21 +18,23 @@
 
 namespace mjdiag {
 
-/// The linear model of the machine with its knobs at these values (1: healthy).
-using ModelAt = std::function<MechanicalModel(const Eigen::VectorXd& knobs)>;
+/// The linear model of the machine with its fault parameters at these values (1:
+/// healthy).
+using ModelAt = std::function<MechanicalModel(const Eigen::VectorXd& parameters)>;
 
 struct RefinedEstimate {
-  FaultEstimate estimate;  ///< deviations from healthy: knobs, then disturbances
+  FaultEstimate
+      estimate;  ///< deviations from healthy: fault parameters, then disturbances
   int steps = 0;
 };
 
-/// The knobs turned about a point by the given magnitudes, each model from `model_at`.
-std::vector<TurnedModels> TurnAbout(const std::vector<std::string>& names,
-                                    const Eigen::VectorXd& knobs,
-                                    const Eigen::VectorXd& magnitudes,
-                                    const ModelAt& model_at);
+/// Each fault parameter changed by -c and +c about a point, its model from `model_at`.
+std::vector<PerturbedModels> PerturbAbout(const std::vector<std::string>& names,
+                                          const Eigen::VectorXd& parameters,
+                                          const Eigen::VectorXd& magnitudes,
+                                          const ModelAt& model_at);
 
-/// @param magnitudes  c of every knob
+/// @param magnitudes  c of every fault parameter
 /// @param from        first sample that is regressed
 /// NumericalError if the regression is rank deficient or the steps do not converge.
 RefinedEstimate RefineEstimate(const DiagnosisDesign& design,

@@ -103,19 +103,20 @@ Numerators Nearest(const Numerators& rows, const Numerators& space,
 }
 
 /// Residuals with the prefilters of the faults about the machine they are blind to.
-ResidualBank BankOf(const Numerators& residual, const std::vector<TurnedModels>& faults,
+ResidualBank BankOf(const Numerators& residual,
+                    const std::vector<PerturbedModels>& faults,
                     const SynthesisOptions& options) {
-  const auto turned = [&](const MechanicalModel& model) {
+  const auto perturbed = [&](const MechanicalModel& model) {
     return Nearest(residual, MakeResidualSpace(model, options).rows, options);
   };
   ResidualBank bank;
   bank.residuals = residual.front().rows();
   bank.rows = residual;
   std::vector<Numerators> outputs{residual};
-  for (const TurnedModels& fault : faults) {
+  for (const PerturbedModels& fault : faults) {
     bank.faults.push_back(fault.name);
-    const Numerators minus = turned(fault.minus);
-    const Numerators plus = turned(fault.plus);
+    const Numerators minus = perturbed(fault.minus);
+    const Numerators plus = perturbed(fault.plus);
     Numerators slope;
     for (std::size_t k = 0; k < plus.size(); ++k) {
       slope.push_back((minus[k] - plus[k]) / (2.0 * fault.magnitude));
@@ -171,13 +172,13 @@ ResidualSpace MakeResidualSpace(const MechanicalModel& model,
 }
 
 ResidualBank SynthesiseBank(const ResidualSpace& space, const MatrixXd& rows,
-                            const std::vector<TurnedModels>& faults,
+                            const std::vector<PerturbedModels>& faults,
                             const SynthesisOptions& options) {
   return BankOf(Combine(rows, space.rows), faults, options);
 }
 
 ResidualBank MoveBank(const Numerators& reference, const ResidualSpace& moved,
-                      const std::vector<TurnedModels>& faults,
+                      const std::vector<PerturbedModels>& faults,
                       const SynthesisOptions& options) {
   return BankOf(Nearest(reference, moved.rows, options), faults, options);
 }

@@ -2,16 +2,16 @@
 // The bank of a machine: residual generators R ([AB383], Eq. 15) and for each fault
 // the prefilters Phi (Eq. 24), all over one denominator.
 //
-// A machine whose faults have moved it to knobs f has other rows N(f) L(f) than the
-// healthy one. With R(f) z = 0 for the machine that has these faults, the residual of
-// the healthy design is r = R(0) z = -(dR/df) f z + O(f^2), so
+// A machine whose faults have moved its parameters to f has other rows N(f) L(f) than
+// the healthy one. With R(f) z = 0 for the machine that has these faults, the residual
+// of the healthy design is r = R(0) z = -(dR/df) f z + O(f^2), so
 //
 //   Phi_i = -dR/df_i,    r = sum_i Phi_i z f_i .
 //
 // Differentiating N H = 0 gives dN = -N dH H^+, hence Phi_i = N (dL_i - dH_i H^+ L) up
 // to the sign of f: Eq. 24, with the delta matrices of Eq. 23 as dH, dL. It is computed
-// here from the null spaces of machines with the fault turned by +c and -c, which stays
-// accurate where the bar matrices of Eq. 24 are singular to working precision.
+// here from the null spaces of machines with the fault changed by +c and -c, which
+// stays accurate where the bar matrices of Eq. 24 are singular to working precision.
 //
 // Of the many rows that R(f) may move to, the one nearest to R in the metric of the
 // output noise is taken. The noise of phi is then uncorrelated with that of every
@@ -41,9 +41,9 @@ struct SynthesisOptions {
   UnknownInputs unknown_inputs;
 };
 
-/// A fault knob that the bank estimates: machines with the knob turned by -c and +c
+/// A fault parameter that the bank estimates: machines with it changed by -c and +c
 /// (c of Eq. 22) about the point of design.
-struct TurnedModels {
+struct PerturbedModels {
   std::string name;
   double magnitude = 0.0;  ///< c
   MechanicalModel minus;
@@ -74,13 +74,13 @@ struct ResidualBank {
 /// @param space  of the machine at the point of design, k rows
 /// @param rows   n x k, combinations of them, each of unit length
 ResidualBank SynthesiseBank(const ResidualSpace& space, const Eigen::MatrixXd& rows,
-                            const std::vector<TurnedModels>& faults,
+                            const std::vector<PerturbedModels>& faults,
                             const SynthesisOptions& options);
 
 /// The bank of a machine whose faults have moved it away from the point of design: its
 /// residuals are the rows of `moved` nearest to `reference`.
 ResidualBank MoveBank(const Numerators& reference, const ResidualSpace& moved,
-                      const std::vector<TurnedModels>& faults,
+                      const std::vector<PerturbedModels>& faults,
                       const SynthesisOptions& options);
 
 /// The bank of rows * (the residuals of `bank`): prefilters are linear in the rows.

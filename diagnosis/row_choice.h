@@ -17,7 +17,7 @@ std::vector<Eigen::MatrixXd> FaultEnergies(const ResidualBank& bank,
                                            const Eigen::MatrixXd& signals);
 
 /// The unit vector with the largest product of a^T G_i a: no fault is given up for the
-/// sake of another, and the scale of a fault's knob does not matter.
+/// sake of another, and the scale of a fault parameter does not matter.
 Eigen::VectorXd MostSensitiveRow(const std::vector<Eigen::MatrixXd>& energies);
 
 /// The combination a of least energy under nominal runs that are not nominal for the

@@ -182,8 +182,8 @@ void AddFaultLimits(Page& page, const Discovery& discovery) {
   page.AddHeading("What it is for: how small a fault is seen");
   page.AddTable(FaultLimitTable(discovery));
   page.AddParagraph(
-      "The smallest change of a fault knob that the mismatch of this machine does not "
-      "hide.");
+      "The smallest change of a fault parameter that the mismatch of this machine does "
+      "not hide.");
 }
 
 }  // namespace

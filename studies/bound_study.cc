@@ -45,7 +45,7 @@ InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
   const MatrixXd commands =
       Commands(machine.setup(), SimulateLinear(machine, motion, quiet));
   std::vector<MatrixXd> sensitivities =
-      OutputSensitivities(family.Turned(), options.timing, commands);
+      OutputSensitivities(family.Perturbed(), options.timing, commands);
   const std::vector<Multisine>& sources = family.disturbances;
   MatrixXd waveforms(commands.rows(), static_cast<Index>(sources.size()));
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -84,8 +84,8 @@ std::vector<StudyTable> BoundStudy(const Machine& machine,
       {"fault", "bound alone", "bound together", "sd, one row", "times bound",
        "sd, all rows", "times bound"},
       {},
-      {"Standard deviations of the knob's deviation from healthy; linear "
-       "plant, known commands, sensor noise of the setup, start at rest."}};
+      {"Standard deviations of the deviation from healthy; linear plant, "
+       " known commands, sensor noise of the setup, start at rest."}};
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);

@@ -7,8 +7,9 @@
 
 namespace mjdiag {
 
-/// Cramer-Rao bound of all knobs and disturbances for a motion of the healthy linear
-/// plant: knobs in the order of the plant, then the setup's disturbances.
+/// Cramer-Rao bound of all fault parameters and disturbances for a motion of the
+/// healthy linear plant: fault parameters in the order of the plant, then the setup's
+/// disturbances.
 InformationBound FaultBound(const Machine& machine, const Excitation& motion);
 
 /// Place of a fault in that order; InputError on an unknown one.

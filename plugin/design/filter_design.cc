@@ -62,7 +62,7 @@ Excitation DefaultExcitation(const Setup& setup) {
 }
 
 /// Energies of the rows under unit white noise on the commands, for plants without
-/// knobs or disturbances.
+/// fault parameters or disturbances.
 MatrixXd CommandEnergy(const FilterBank& rows, Index outputs) {
   VectorXd noise = VectorXd::Ones(rows.inputs());
   noise.head(outputs).setZero();
@@ -93,7 +93,7 @@ VectorXd RowForTones(const FilterBank& rows, const VectorXd& sensor_noise,
 }
 
 DisturbanceFilter DesignDisturbanceFilter(const Machine& machine,
-                                          const std::vector<TurnedModels>& turned,
+                                          const std::vector<PerturbedModels>& perturbed,
                                           const std::vector<Multisine>& disturbances) {
   const DiagnosisOptions& wanted = machine.setup().diagnosis;
   SynthesisOptions options = SynthesisOf(machine);
@@ -102,9 +102,9 @@ DisturbanceFilter DesignDisturbanceFilter(const Machine& machine,
   const FilterBank all =
       MakeFilterBank(space.rows, options.residual.denominator, options.timing.tick());
   const VectorXd row = RowForTones(all, options.sensor_noise, disturbances);
-  const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
+  const ResidualBank bank = SynthesiseBank(space, row.transpose(), perturbed, options);
   return {Outputs(bank.filters, 0, 1),
-          Outputs(bank.filters, 1, static_cast<Index>(turned.size())),
+          Outputs(bank.filters, 1, static_cast<Index>(perturbed.size())),
           DigitalButterworth(FilterKind::kHighPass, wanted.high_pass_order,
                              wanted.high_pass_cutoff, options.timing.tick())};
 }
@@ -262,7 +262,7 @@ Record LinearRun(const Machine& machine) {
 DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings) {
   const MechanicalModel& healthy = machine.linear();
   const FaultFamily family = MakeFaultFamily(machine);
-  const std::vector<TurnedModels> turned = family.Turned();
+  const std::vector<PerturbedModels> perturbed = family.Perturbed();
   SynthesisOptions options = SynthesisOf(machine);
   options.residual = settings.residual;
   DiagnosisDesign design;
@@ -276,11 +276,12 @@ DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& setting
   design.options.estimation_rows = settings.rows;
   design.stride = Stride(machine.setup());
   design.disturbances = family.disturbances;
-  design.disturbance = DesignDisturbanceFilter(machine, turned, family.disturbances);
+  design.disturbance = DesignDisturbanceFilter(machine, perturbed, family.disturbances);
 
   const ResidualSpace space = MakeResidualSpace(healthy, options);
   const Index size = space.rows.front().rows();
-  design.bank = SynthesiseBank(space, MatrixXd::Identity(size, size), turned, options);
+  design.bank =
+      SynthesiseBank(space, MatrixXd::Identity(size, size), perturbed, options);
   const MatrixXd signals = Signals(design, LinearRun(machine));
   RequireBlindness(design, signals);
   std::vector<MatrixXd> energies = FaultEnergies(design.bank, signals);

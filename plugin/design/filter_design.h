@@ -50,8 +50,8 @@ struct NominalRuns {
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
                                 const NominalRuns& options);
 
-/// Limits for one motion, with its baseline subtracted in every run (section A.6 of the
-/// seed); the runs do not share seeds with those of the baseline.
+/// Limits for one motion, with its baseline subtracted in every run ([AB383],
+/// section A.6); the runs do not share seeds with those of the baseline.
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
                                 const Excitation& excitation,
                                 const Eigen::MatrixXd& baseline,

@@ -78,10 +78,10 @@ MatrixXd Response(const DiagnosisDesign& design, const Machine& machine,
                      "one of " + known);
   }
   const Index index = found - names.begin();
-  const auto knobs = static_cast<Index>(design.bank.faults.size());
+  const auto parameters = static_cast<Index>(design.bank.faults.size());
   const MatrixXd signals = Signals(design, LinearRun(machine));
-  if (index >= knobs) {
-    return DisturbanceResponse(design, index - knobs, signals.cols());
+  if (index >= parameters) {
+    return DisturbanceResponse(design, index - parameters, signals.cols());
   }
   const Index n = design.bank.residuals;
   return FilterSignals(design.bank.filters, signals).middleRows((index + 1) * n, n);

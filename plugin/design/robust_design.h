@@ -16,7 +16,8 @@ namespace mjdiag {
 
 /// Filters like those of DesignFilters, but with the degree and denominator of the
 /// setup's [diagnosis.robust] and the one row that LeastExcitedRow finds for the fault
-/// (a knob of the plant or a disturbance of the setup, InputError on another).
+/// (a fault parameter of the plant or a disturbance of the setup, InputError on
+/// another).
 /// @param excitation  motion of the nominal runs
 /// @param baseline    judge the rows by what differs between runs, for a diagnosis that
 ///                    subtracts a baseline

@@ -163,7 +163,7 @@ TEST_F(Diagnosis, NamesALargeFaultWithoutWhatLeaksIntoTheOthers) {
 }
 
 // On the nonlinear plant the linear estimate of eta_y alone would be off by more than
-// the deviation, and four other knobs would be named.
+// the deviation, and four other faults would be named.
 TEST_F(Diagnosis, AgainstABaselineLargeFaultsAreNamedAloneAndAtTheirValues) {
   const std::string out = Path("run");
   const json document = JsonOf(
@@ -312,7 +312,7 @@ TEST(Study, WritesAPageWithItsTables) {
   EXPECT_THAT(result.out, HasSubstr("report.html"));
   EXPECT_THAT(ReadAll(out + "/report.html"),
               AllOf(HasSubstr("Study bound of AB383"), HasSubstr("<td>zeta_x</td>"),
-                    HasSubstr("Standard deviations of the knob")));
+                    HasSubstr("Standard deviations of the deviation")));
 }
 
 TEST(Study, ListsThePresetsWhenOneIsUnknown) {

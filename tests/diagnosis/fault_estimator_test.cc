@@ -179,7 +179,7 @@ TEST(FaultEstimator, IntervalsCoverTheFaultsOfAMachine) {
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
   const Index n = test::kRows;
   const ResidualBank bank =
-      SynthesiseBank(space, MatrixXd::Identity(n, n), test::TurnedStages(), options);
+      SynthesiseBank(space, MatrixXd::Identity(n, n), test::PerturbedStages(), options);
   const VectorXd noise =
       (VectorXd(4) << test::kNoise, test::kNoise, 0.0, 0.0).finished();
   const ResidualNoise residual_noise =

@@ -256,7 +256,7 @@ TEST(DiagnosisMonitor, RegressesFromTheSampleThatItIsTold) {
   EXPECT_EQ(recording.recorder.Log().residual.size(), 1000);
 }
 
-TEST(DiagnosisMonitor, NamesKnobsAndDisturbances) {
+TEST(DiagnosisMonitor, NamesFaultParametersAndDisturbances) {
   const std::vector<std::string> expected{"damping", "stiffness", "gain", "gamma"};
   EXPECT_EQ(Design().FaultNames(), expected);
   EXPECT_EQ(Design().faults(), 4);

@@ -34,7 +34,7 @@ ResidualBank WholeBank(double magnitude, const SynthesisOptions& options) {
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
   const Index size = space.rows.front().rows();
   return SynthesiseBank(space, MatrixXd::Identity(size, size),
-                        test::TurnedStages(magnitude), options);
+                        test::PerturbedStages(magnitude), options);
 }
 
 /// z with a force on one coordinate that is none of the commands.
@@ -207,13 +207,13 @@ TEST(ResidualBank, PhiIsEquation24UpToRowsThatAreBlind) {
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
   const Index n = space.rows.front().rows();
   const ResidualBank bank = SynthesiseBank(space, MatrixXd::Identity(n, n),
-                                           test::TurnedStages(kStep), options);
+                                           test::PerturbedStages(kStep), options);
   const MatrixXd all = Coefficients(bank.filters);
   const MatrixXd mixing = all.topRows(n) * PseudoInverse(blind);
   ASSERT_LT((mixing * blind - all.topRows(n)).norm(), 1e-9 * all.topRows(n).norm());
 
   Index row = n;
-  for (const TurnedModels& fault : test::TurnedStages(kStep)) {
+  for (const PerturbedModels& fault : test::PerturbedStages(kStep)) {
     const MatrixXd dH = (bar_H(fault.plus) - bar_H(fault.minus)) / (2.0 * kStep);
     const MatrixXd dL = (bar_L(fault.plus) - bar_L(fault.minus)) / (2.0 * kStep);
     const MatrixXd equation_24 =
@@ -245,7 +245,7 @@ TEST(ResidualBank, OfOneRowIsTheMixOfAll) {
   const MatrixXd rows = (MatrixXd(1, 4) << 0.6, 0.0, -0.8, 0.0).finished();
   const ResidualBank mixed = Mix(whole, rows);
   const ResidualBank direct =
-      SynthesiseBank(space, rows, test::TurnedStages(1e-3), options);
+      SynthesiseBank(space, rows, test::PerturbedStages(1e-3), options);
   EXPECT_EQ(mixed.residuals, 1);
   EXPECT_EQ(mixed.faults, test::kFaults);
   const MatrixXd expected = Coefficients(direct.filters);

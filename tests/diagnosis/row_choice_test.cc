@@ -129,7 +129,7 @@ TEST(FaultEnergies, AreThoseOfThePrefilteredSignals) {
   const SynthesisOptions options = test::StageOptions();
   const ResidualBank bank =
       SynthesiseBank(MakeResidualSpace(test::Stage(), options),
-                     MatrixXd::Identity(4, 4), test::TurnedStages(), options);
+                     MatrixXd::Identity(4, 4), test::PerturbedStages(), options);
   const MatrixXd signals = test::Motion(test::Stage(), test::Drive(500));
   const std::vector<MatrixXd> energies = FaultEnergies(bank, signals);
   ASSERT_EQ(energies.size(), 3U);

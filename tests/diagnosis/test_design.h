@@ -18,7 +18,7 @@ inline DiagnosisDesign StageDesign() {
   design.offset = Eigen::Vector2d(0.25, -0.125);
   design.sensor_noise = options.sensor_noise;
   design.bank = SynthesiseBank(space, Eigen::MatrixXd::Identity(kRows, kRows),
-                               TurnedStages(), options);
+                               PerturbedStages(), options);
   design.disturbances = {{"gamma", {60.0, 145.0}, Eigen::Vector2d(0.5, 0.2)}};
   design.disturbance.filter =
       MakeFilterBank(Combine(Eigen::MatrixXd::Identity(1, kRows), space.rows),

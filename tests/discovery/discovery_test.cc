@@ -57,7 +57,7 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
   EXPECT_EQ(force.unit, "N");
 }
 
-TEST(Discovery, NamesATurnedKnobAsTheFault) {
+TEST(Discovery, NamesAChangedFaultParameterAsTheFault) {
   const test::StageUnderTest stage;
   const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),
                                     nullptr, CausesOnly());

@@ -139,12 +139,12 @@ struct WornGuide {
   Values ForPython() const {
     Values values;
     AddMachine(values, "", machine.linear());
-    const std::vector<TurnedModels> turned = MakeFaultFamily(machine).Turned();
-    MatrixXd magnitudes(1, turned.size());
-    for (std::size_t i = 0; i < turned.size(); ++i) {
-      AddMachine(values, "minus" + std::to_string(i) + ".", turned[i].minus);
-      AddMachine(values, "plus" + std::to_string(i) + ".", turned[i].plus);
-      magnitudes(0, static_cast<Index>(i)) = turned[i].magnitude;
+    const std::vector<PerturbedModels> perturbed = MakeFaultFamily(machine).Perturbed();
+    MatrixXd magnitudes(1, perturbed.size());
+    for (std::size_t i = 0; i < perturbed.size(); ++i) {
+      AddMachine(values, "minus" + std::to_string(i) + ".", perturbed[i].minus);
+      AddMachine(values, "plus" + std::to_string(i) + ".", perturbed[i].plus);
+      magnitudes(0, static_cast<Index>(i)) = perturbed[i].magnitude;
     }
     values["magnitudes"] = magnitudes;
     values["step"] = Scalar(options.timing.step);
@@ -248,9 +248,10 @@ TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
 }
 
 TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheSlopesOfTheResidual) {
-  // Both sides are central differences over a turn of c = 1e-3 of a knob, but of
-  // different things: they agree up to their terms of c^2, times how strongly the row
-  // bends, which is some tens for the guide dampers. A wrong slope is off by one.
+  // Both sides are central differences over a change of c = 1e-3 of a fault
+  // parameter, but of different things: they agree up to their terms of c^2,
+  // times how strongly the row bends, which is some tens for the guide dampers. A wrong
+  // slope is off by one.
   EXPECT_THAT(Value("slopes").reshaped(), Each(Lt(1e-3)));
 }
 

@@ -316,7 +316,7 @@ TEST(DesignFilters, NamesTheJointsIfAnUnknownForceActsOnNone) {
                 joints);
 }
 
-TEST(DesignFilters, NamesTheKnobsIfAMagnitudeIsOfNone) {
+TEST(DesignFilters, NamesTheParametersIfAMagnitudeIsOfNone) {
   EXPECT_EQ(
       ErrorWith("diagnosis.estimation.magnitudes.zeta_q=0.01"),
       "setup 'AB383 wire bonder': diagnosis.estimation.magnitudes: the plant has "
