@@ -38,7 +38,7 @@ void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source) {
       "--baseline", source.baseline,
       "Subtract the residual that the healthy plant leaves on this motion");
   command.add_option("--robust", source.robust,
-                     "Fault to be seen by the residual row that nominal runs of the "
+                     "Fault to be seen by the residual that nominal runs of the "
                      "nonlinear plant excite least");
   command
       .add_option("--nominal-runs", source.nominal.runs,

@@ -117,7 +117,7 @@ void Synthesis(benchmark::State& state) {
         Seconds([&] { perturbed = MakeFaultFamily(machine).Perturbed(); }));
     synthesise.push_back(Seconds([&] {
       const ResidualSpace space = MakeResidualSpace(healthy, options);
-      const Eigen::Index size = space.rows.front().rows();
+      const Eigen::Index size = space.relations.front().rows();
       benchmark::DoNotOptimize(SynthesiseBank(
           space, Eigen::MatrixXd::Identity(size, size), perturbed, options));
     }));

@@ -22,8 +22,8 @@ struct Multisine {
   Eigen::VectorXd amplitude;        ///< nu, of each command
 };
 
-/// R_dist with its high-pass filter (Eq. 33 and 34), one row, and its prefilters, with
-/// which the part that is due to known faults is taken out.
+/// R_dist with its high-pass filter (Eq. 33 and 34), one residual, and its prefilters,
+/// with which the part that is due to known faults is taken out.
 struct DisturbanceFilter {
   FilterBank filter;      ///< one output
   FilterBank prefilters;  ///< one output a fault parameter

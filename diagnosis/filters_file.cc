@@ -181,7 +181,8 @@ DiagnosisDesign Parse(const json& object) {
   design.bank.residuals = object.at("residuals");
   design.bank.faults = object.at("faults").get<std::vector<std::string>>();
   design.bank.filters = Bank(object.at("filters"), sample_time);
-  for (const json& rows : object.at("rows")) design.bank.rows.push_back(Matrix(rows));
+  for (const json& rows : object.at("rows"))
+    design.bank.relations.push_back(Matrix(rows));
   for (const json& source : object.at("disturbances")) {
     design.disturbances.push_back({source.at("name"),
                                    source.at("frequencies").get<std::vector<double>>(),
@@ -225,7 +226,7 @@ json Json(const DiagnosisDesign& design) {
   for (const Multisine& source : design.disturbances)
     disturbances.push_back(Json(source));
   json rows = json::array();
-  for (const MatrixXd& coefficient : design.bank.rows)
+  for (const MatrixXd& coefficient : design.bank.relations)
     rows.push_back(Json(coefficient));
   return {{"schema", kSchema},
           {"setup", design.setup},

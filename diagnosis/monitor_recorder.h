@@ -33,7 +33,7 @@ class MonitorRecorder {
   Eigen::Index samples() const { return samples_; }
   MonitorLog Log() const;
   /// Every residual of the run, n x samples: what becomes a baseline.
-  Eigen::MatrixXd ResidualRows() const { return residuals_.leftCols(samples_); }
+  Eigen::MatrixXd Residuals() const { return residuals_.leftCols(samples_); }
 
  private:
   double sample_time_;

@@ -29,7 +29,7 @@ RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
                                const VectorXd& magnitudes, const Record& record,
                                Index from) {
   constexpr int kSteps = 12;
-  // Of the standard deviation: what rounding in the rows leaves of a step.
+  // Of the standard deviation: what rounding in the relations leaves of a step.
   constexpr double kConverged = 0.25;
   const auto count = static_cast<Index>(design.bank.faults.size());
   VectorXd parameters = VectorXd::Ones(count);
@@ -38,7 +38,7 @@ RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
   for (int step = 1; step <= kSteps; ++step) {
     if (step > 1) {
       moved.bank = MoveBank(
-          design.bank.rows, MakeResidualSpace(model_at(parameters), options),
+          design.bank.relations, MakeResidualSpace(model_at(parameters), options),
           PerturbAbout(design.bank.faults, parameters, magnitudes, model_at), options);
     }
     DiagnosisMonitor monitor(moved);

@@ -1,7 +1,8 @@
 #pragma once
 // Faults of any size from a record: Gauss-Newton on the residuals. Prefilters that are
-// made about the healthy machine are exact for small faults only; here rows, prefilters
-// and noise are made anew about the estimate until it moves no more,
+// made about the healthy machine are exact for small faults only; here
+// relations, prefilters and noise are made anew about the estimate until it moves no
+// more,
 //
 //   f <- f + (G(f)^T G(f))^-1 G(f)^T r(f),
 //
@@ -18,8 +19,7 @@
 
 namespace mjdiag {
 
-/// The linear model of the machine with its fault parameters at these values (1:
-/// healthy).
+/// The linear model of the machine at these fault parameters (1: healthy).
 using ModelAt = std::function<MechanicalModel(const Eigen::VectorXd& parameters)>;
 
 struct RefinedEstimate {

@@ -25,9 +25,9 @@ MatrixXd Commands(const Setup& setup, const Record& record) {
 }
 
 /// Standard deviations that the estimator claims for a healthy run.
-VectorXd EstimatorSd(const Machine& machine, const Record& record, int rows) {
+VectorXd EstimatorSd(const Machine& machine, const Record& record, int residuals) {
   Setup setup = machine.setup();
-  setup.diagnosis.estimation_rows = rows;
+  setup.diagnosis.estimation_residuals = residuals;
   const DiagnosisDesign design = DesignFilters(machine.WithSetup(setup));
   DiagnosisMonitor monitor(design);
   Run(monitor, record);
@@ -81,8 +81,8 @@ std::vector<StudyTable> BoundStudy(const Machine& machine,
   const VectorXd all = EstimatorSd(machine, record, 0);
   StudyTable table{
       "Information bound of trajectory " + machine.setup().trajectories.fallback,
-      {"fault", "bound alone", "bound together", "sd, one row", "times bound",
-       "sd, all rows", "times bound"},
+      {"fault", "bound alone", "bound together", "sd, one residual", "times bound",
+       "sd, all residuals", "times bound"},
       {},
       {"Standard deviations of the deviation from healthy; linear plant, "
        " known commands, sensor noise of the setup, start at rest."}};

@@ -15,8 +15,8 @@ InformationBound FaultBound(const Machine& machine, const Excitation& motion);
 /// Place of a fault in that order; InputError on an unknown one.
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault);
 
-/// Bound alone and together, the standard deviation of the estimators with one row and
-/// with all rows, and their multiples of the bound; of the default trajectory.
+/// Bound alone and together, the standard deviation of the estimators with one residual
+/// and with all of them, and their multiples of the bound; of the default trajectory.
 std::vector<StudyTable> BoundStudy(const Machine& machine, const StudyOptions& options);
 
 }  // namespace mjdiag

@@ -86,8 +86,7 @@ class CrossTerms {
   }
 
   /// Of what cross terms do not explain, the strongest that a plant can have is named;
-  /// false if there is none. Disturbances, which come after the parameters, are left as
-  /// they are.
+  /// false if there is none. Disturbances come after the parameters and are not named.
   bool NameNext() {
     std::optional<Named> next;
     double most = 0.0;

@@ -67,7 +67,7 @@ TEST_F(DiagnosisAllocation, DoesNotHappenInADiagnosisAndItsRecorder) {
       test::Measured(test::Motion(test::Stage(), test::Drive(1000)), 1);
   // Both starts, and ticks beyond the room of the recorder.
   for (const double start : {0.0, 5e-3}) {
-    DiagnosisRecording recording(design, 900, MatrixXd::Zero(test::kRows, 500));
+    DiagnosisRecording recording(design, 900, MatrixXd::Zero(test::kRelations, 500));
     std::vector<double> y(2);
     std::vector<double> u(2);
     EXPECT_EQ(CountAllocations([&] {

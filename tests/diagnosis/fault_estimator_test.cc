@@ -177,7 +177,7 @@ TEST(FaultEstimator, IntervalsCoverTheFaultsOfAMachine) {
   const Vector3d fault(2e-3, -1e-2, 1e-3);
   const SynthesisOptions options = test::StageOptions();
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
-  const Index n = test::kRows;
+  const Index n = test::kRelations;
   const ResidualBank bank =
       SynthesiseBank(space, MatrixXd::Identity(n, n), test::PerturbedStages(), options);
   const VectorXd noise =

@@ -20,10 +20,10 @@ namespace mjdiag::test {
 
 inline constexpr TickTiming kTiming{1.0 / 32000.0, 4};
 inline constexpr double kNoise = 20e-9;  ///< of each encoder, a sample [m]
-/// Residuals begin at degree 3, with two rows; the four of degree 4 tell the faults
-/// apart a hundred times better.
+/// Residuals begin at degree 3, with two relations; the four of degree 4 tell the
+/// faults apart a hundred times better.
 inline constexpr int kDegree = 4;
-inline constexpr Eigen::Index kRows = 4;
+inline constexpr Eigen::Index kRelations = 4;
 
 /// Fault parameters; 1 is healthy.
 struct StageParameters {

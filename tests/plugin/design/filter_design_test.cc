@@ -325,8 +325,9 @@ TEST(DesignFilters, NamesTheParametersIfAMagnitudeIsOfNone) {
 }
 
 TEST(DesignFilters, SaysWhichDegreeThePlantNeeds) {
-  EXPECT_EQ(ErrorWith("diagnosis.degree=5"),
-            "residual: no row of degree 5; expected a degree of at least 6");
+  EXPECT_EQ(
+      ErrorWith("diagnosis.degree=5"),
+      "residual: no parity relation of degree 5; expected a degree of at least 6");
 }
 
 TEST(DesignFilters, RefusesADenominatorBelowTheDegree) {

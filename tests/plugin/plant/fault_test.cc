@@ -48,8 +48,7 @@ TEST(FaultParameters, OfTheBonderAreTheOnesItDeclares) {
                                  "eta_y", "eta_z"));
 }
 
-/// Ratio of every number that a fault parameter may scale, faulty to healthy, where it
-/// is not 1.
+/// Names of all that a fault parameter may scale and that differs.
 std::vector<std::string> Changes(const mjModel& healthy, const mjModel& faulty) {
   std::vector<std::string> changes;
   for (int j = 0; j < healthy.njnt; ++j) {
