@@ -176,7 +176,7 @@ Answer CompareWithAnalytic(const Machine& machine, nlohmann::json& document) {
 
 Answer ComparePublished(const Machine& machine, nlohmann::json& document) {
   if (!machine.setup().published) {
-    throw InputError("--published", "the setup has no published residual row",
+    throw InputError("--published", "the setup has no published parity relation",
                      "a key 'published' in setup.toml");
   }
   const PublishedRelationComparison comparison = ComparePublishedRelation(

@@ -54,7 +54,7 @@ struct DiagnosisDesign {
   ResidualBank bank;
   std::vector<Multisine> disturbances;
   DisturbanceFilter disturbance;
-  int stride = 1;  ///< samples between regressed ones
+  int decimation = 1;  ///< samples between regressed ones
   DiagnosisOptions options;
   DiagnosisLimits limits;
 

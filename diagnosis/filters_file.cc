@@ -189,7 +189,7 @@ DiagnosisDesign Parse(const json& object) {
                                    Vector(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
-  design.stride = object.at("stride");
+  design.decimation = object.at("stride");
   const json& options = object.at("options");
   design.options.integral_window = options.at("integral_window");
   design.options.forgetting = options.at("forgetting");
@@ -214,7 +214,7 @@ void RequireShapes(const std::string& file, const DiagnosisDesign& design) {
                     other.D.rows() == 1 &&
                     design.disturbance.prefilters.D.rows() ==
                         static_cast<Index>(design.bank.faults.size()) &&
-                    design.stride > 0 && bank.sample_time > 0.0;
+                    design.decimation > 0 && bank.sample_time > 0.0;
   if (!fits) {
     throw InputError(file, "shapes of filters, channels and faults do not fit",
                      "a file that `mjdiag design` wrote");
@@ -241,7 +241,7 @@ json Json(const DiagnosisDesign& design) {
           {"rows", rows},
           {"disturbances", disturbances},
           {"disturbance", Json(design.disturbance)},
-          {"stride", design.stride},
+          {"stride", design.decimation},
           {"options",
            {{"integral_window", design.options.integral_window},
             {"forgetting", design.options.forgetting},

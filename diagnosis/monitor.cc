@@ -47,7 +47,7 @@ FilterBank WaveformBank(const DiagnosisDesign& design) {
 
 double ForgettingFactor(const DiagnosisDesign& design) {
   const double time = design.options.forgetting;
-  return time > 0.0 ? std::exp(-design.stride * design.sample_time() / time) : 1.0;
+  return time > 0.0 ? std::exp(-design.decimation * design.sample_time() / time) : 1.0;
 }
 
 Index WindowSamples(const DiagnosisDesign& design) {
@@ -66,7 +66,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, MatrixXd basel
       high_pass_(design.disturbance.high_pass),
       estimator_(design.faults(),
                  MakeResidualNoise(design.bank.filters, design.bank.residuals,
-                                   SignalNoise(design), design.stride),
+                                   SignalNoise(design), design.decimation),
                  ForgettingFactor(design), true),
       settling_away_(SettlingSamples(design.bank.filters, kSettled)),
       z_(VectorXd::Zero(design.bank.filters.inputs())),
@@ -129,7 +129,7 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
 
   Detect();
   regressed_ = samples_ >= std::max(settling_, first_regressed_) &&
-               samples_ % design_.stride == 0;
+               samples_ % design_.decimation == 0;
   if (regressed_) Regress();
   ++samples_;
 }

@@ -17,8 +17,8 @@
 // the largest coefficient; the 1-norm favours relations with few of them.
 //
 // Hbar is equilibrated before Clp sees it, and every solution is projected onto the
-// left null space of Hbar from its singular value decomposition, so that N
-// annihilates H to rounding and not to the tolerance of a solver.
+// left null space of Hbar from its singular value decomposition, so that N annihilates
+// H to rounding and not to the tolerance of a solver.
 
 #include <optional>
 

@@ -117,11 +117,11 @@ ResidualBank BankOf(const Numerators& residual,
     bank.faults.push_back(fault.name);
     const Numerators minus = perturbed(fault.minus);
     const Numerators plus = perturbed(fault.plus);
-    Numerators slope;
+    Numerators derivative;
     for (std::size_t k = 0; k < plus.size(); ++k) {
-      slope.push_back((minus[k] - plus[k]) / (2.0 * fault.magnitude));
+      derivative.push_back((minus[k] - plus[k]) / (2.0 * fault.magnitude));
     }
-    outputs.push_back(std::move(slope));
+    outputs.push_back(std::move(derivative));
   }
   bank.filters = MakeFilterBank(Stack(outputs), options.residual.denominator,
                                 options.timing.tick());

@@ -143,8 +143,7 @@ void AddLaws(Page& page, const Discovery& discovery) {
   page.AddHeading("Why: the laws that were found");
   page.AddParagraph(
       "Dots: the force that the plant with all other causes does not explain, over "
-      "what "
-      "the cause depends on. Line: the law with the fitted parameters.");
+      "what the cause depends on. Line: the law with the fitted parameters.");
   for (const LawPlot& law : discovery.laws) page.AddPlot(PlotOf(law));
 }
 

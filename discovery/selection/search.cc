@@ -176,7 +176,7 @@ void Search::FitClosely() {
       FitCauses(data_.problem, data_.candidates, fit.causes,
                 {.iterations = 8,
                  .tolerance = 1e-8,
-                 .known_jacobian = fit.exact ? &fit.jacobian : nullptr}));
+                 .initial_jacobian = fit.exact ? &fit.jacobian : nullptr}));
 }
 
 SearchResult Search::Run() {

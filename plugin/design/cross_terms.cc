@@ -118,15 +118,15 @@ class CrossTerms {
       missed[k] = (Leak(fault.parameter) - seen.deviation) / seen.sd;
     }
     if (place_.size() != count) {
-      slope_ = MatrixXd::Identity(count, count);
+      jacobian_ = MatrixXd::Identity(count, count);
     } else if (place != place_) {  // a parameter at its least may not have moved
       const VectorXd step = place - place_;
-      slope_ +=
-          (missed - missed_ - slope_ * step) * step.transpose() / step.squaredNorm();
+      jacobian_ +=
+          (missed - missed_ - jacobian_ * step) * step.transpose() / step.squaredNorm();
     }
     place_ = place;
     missed_ = missed;
-    const VectorXd change = -Solve(slope_, missed);
+    const VectorXd change = -Solve(jacobian_, missed);
     bool settled = true;
     for (Index k = 0; k < count; ++k) {
       Named& fault = named_[static_cast<std::size_t>(k)];
@@ -152,10 +152,10 @@ class CrossTerms {
   std::vector<Named> named_;
   VectorXd leaks_;
   // Of the last step: where it began, in standard deviations, what was missed there,
-  // and the derivative of what is missed as it has been learned.
+  // and the Jacobian of what is missed as it has been learned.
   VectorXd place_;
   VectorXd missed_;
-  MatrixXd slope_;
+  MatrixXd jacobian_;
 };
 
 }  // namespace

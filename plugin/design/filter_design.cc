@@ -110,15 +110,15 @@ DisturbanceFilter DesignDisturbanceFilter(const Machine& machine,
                              wanted.high_pass_cutoff, options.timing.tick())};
 }
 
-int Stride(const Setup& setup) {
+int Decimation(const Setup& setup) {
   const double ticks = setup.diagnosis.sampling * setup.rates.control;
-  const auto stride = static_cast<int>(std::lround(ticks));
-  if (stride < 1 || std::abs(ticks - stride) > 1e-6 * ticks) {
+  const auto decimation = static_cast<int>(std::lround(ticks));
+  if (decimation < 1 || std::abs(ticks - decimation) > 1e-6 * ticks) {
     throw InputError("setup '" + setup.name + "': diagnosis.estimation.sampling",
                      std::to_string(setup.diagnosis.sampling) + " s",
                      "a multiple of the control tick");
   }
-  return stride;
+  return decimation;
 }
 
 /// Parity relations of too high a degree under too low a cut-off lose their digits:
@@ -276,7 +276,7 @@ DiagnosisDesign DesignFilters(const Machine& machine,
   design.options = machine.setup().diagnosis;
   design.options.residual = settings.residual;
   design.options.estimation_residuals = settings.count;
-  design.stride = Stride(machine.setup());
+  design.decimation = Decimation(machine.setup());
   design.disturbances = family.disturbances;
   design.disturbance = DesignDisturbanceFilter(machine, perturbed, family.disturbances);
 

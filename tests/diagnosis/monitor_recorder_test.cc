@@ -56,7 +56,7 @@ TEST(MonitorRecorder, KeepsEveryEstimateWithItsTime) {
   DiagnosisRecording recording(Design(), 4000);
   Feed(recording, Signals(4000), 0, 4000);
   const MonitorLog log = recording.recorder.Log();
-  ASSERT_EQ(log.estimates.cols(), 4000 / Design().stride);
+  ASSERT_EQ(log.estimates.cols(), 4000 / Design().decimation);
   EXPECT_EQ(log.estimates.rightCols(1), recording.monitor.estimate());
   EXPECT_DOUBLE_EQ(log.estimate_time[0], 0.0);
   EXPECT_NEAR(log.estimate_time[999], 999 * 4 / 8000.0, 1e-12);

@@ -121,7 +121,7 @@ TEST(DiagnosisMonitor, SaysBetweenTicksWhatItKnows) {
     ASSERT_LT((monitor.residuals() - expected.col(k)).cwiseAbs().maxCoeff(), 1e-6);
     ASSERT_EQ(monitor.residual_alarm(), std::abs(monitor.residuals()[0]) >= 6.0);
     ASSERT_EQ(monitor.lasting_alarm(), monitor.integral() > 2.0);
-    ASSERT_EQ(monitor.regressed(), k % Design().stride == 0);
+    ASSERT_EQ(monitor.regressed(), k % Design().decimation == 0);
     if (monitor.residual_alarm() && alarms++ == 0) {
       EXPECT_EQ(monitor.first_detection(), k);
     }

@@ -25,7 +25,7 @@ inline DiagnosisDesign StageDesign() {
                      {5, 750.0}, options.timing.tick());
   design.disturbance.high_pass =
       DigitalButterworth(FilterKind::kHighPass, 3, 100.0, options.timing.tick());
-  design.stride = 4;
+  design.decimation = 4;
   design.options.integral_window = 0.1;
   design.limits.residual.limits = {-6.0, 6.0};
   // The mean of |r| is 0.8 standard deviations.

@@ -157,7 +157,7 @@ def covariance(system, noise):
     return C @ states @ C.T + D @ D.T
 
 
-def slopes(given, machine, numerators, scale, zs):
+def derivatives(given, machine, numerators, scale, zs):
     """-dR/df of every fault by its effect on the healthy parity relation, and as the filters say."""
     errors = []
     for i, magnitude in enumerate(given["magnitudes"][0]):
@@ -193,7 +193,7 @@ def main():
     for name in ("space", "disturbance"):
         show(f"{name}.misfit", misfit(machine, given[name], scale, zs))
     show("bank.misfit", misfit(machine, given["bank"][:1], scale, zs))
-    show("slopes", slopes(given, machine, given["bank"], scale, zs))
+    show("derivatives", derivatives(given, machine, given["bank"], scale, zs))
 
     for name in ("space", "bank", "disturbance"):
         order, cutoff = given[f"{name}.denominator"][0]

@@ -248,12 +248,12 @@ TEST_F(DiagnosisScipy, ConfirmsThatRelationsAreBlindToNominalMotion) {
   EXPECT_LT(Number("disturbance.misfit"), 1e-9);
 }
 
-TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheSlopesOfTheResidual) {
+TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheDerivativesOfTheResidual) {
   // Both sides are central differences over a change of c = 1e-3 of a fault
   // parameter, but of different things: they agree up to their terms of c^2,
   // times how strongly the relation bends, which is some tens for the guide dampers. A
-  // wrong slope is off by one.
-  EXPECT_THAT(Value("slopes").reshaped(), Each(Lt(1e-3)));
+  // wrong derivative is off by one.
+  EXPECT_THAT(Value("derivatives").reshaped(), Each(Lt(1e-3)));
 }
 
 TEST_F(DiagnosisScipy, HasTheSameDenominators) {

@@ -342,7 +342,7 @@ TEST(DesignFilters, RefusesASamplingThatIsNoMultipleOfTheTick) {
   };
   EXPECT_EQ(ErrorWith("diagnosis.estimation.sampling=0.0003"), message("0.000300"));
   EXPECT_EQ(ErrorWith("diagnosis.estimation.sampling=1e-5"), message("0.000010"));
-  EXPECT_EQ(Bench({"diagnosis.estimation.sampling=0.002"}).design.stride, 16);
+  EXPECT_EQ(Bench({"diagnosis.estimation.sampling=0.002"}).design.decimation, 16);
 }
 
 TEST(Run, RefusesARecordAtAnotherRate) {
