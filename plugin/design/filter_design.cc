@@ -41,7 +41,7 @@ MatrixXd UnknownForces(const Setup& setup, const MechanicalModel& model) {
 }
 
 /// White noise of a unit on every actuator: any input that excites all modes serves to
-/// compare rows, and its size does not matter on the linear plant.
+/// compare parity relations, and its size does not matter on the linear plant.
 Excitation RandomInputs(const Setup& setup) {
   Excitation excitation;
   excitation.inputs = Record(setup.rates.tick());

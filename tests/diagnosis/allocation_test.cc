@@ -41,7 +41,8 @@ TEST_F(DiagnosisAllocation, DoesNotHappenInRunningBank) {
 }
 
 TEST_F(DiagnosisAllocation, DoesNotHappenInAnEstimatorOfManyRows) {
-  // 28 rows over order 15: whole products would outgrow what Eigen keeps on the stack.
+  // 28 outputs over order 15: whole products would outgrow what Eigen keeps on the
+  // stack.
   constexpr Index kResiduals = 28;
   constexpr Index kFaults = 8;
   const FilterBank filters =

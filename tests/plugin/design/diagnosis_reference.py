@@ -158,7 +158,7 @@ def covariance(system, noise):
 
 
 def derivatives(given, machine, numerators, scale, zs):
-    """-dR/df of every fault by its effect on the healthy parity relation, and as the filters say."""
+    """-dR/df of every fault by its effect on the healthy relation, and as the filters say."""
     errors = []
     for i, magnitude in enumerate(given["magnitudes"][0]):
         minus = Machine(given, f"minus{i}.")
