@@ -39,18 +39,18 @@ void Compare(const VectorXd& best, const Check& check) {
 TEST(LeastExcitedRelation, HasTheLeastEnergyOfAllThatSeeTheFault) {
   const MatrixXd nuisance = Energy(1);
   const MatrixXd response = test::WhiteNoise(kSize, 7, 1.0, 2);
-  const VectorXd a = LeastExcitedRelation(nuisance, response);
+  const VectorXd chosen = LeastExcitedRelation(nuisance, response);
   // Scaled so that the best instant has g a = 1, its energy is the programme's value.
   Index best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (Index j = 0; j < response.cols(); ++j) {
-    const double seen = response.col(j).dot(a);
-    const double value = Power(a, nuisance) / (seen * seen);
+    const double seen = response.col(j).dot(chosen);
+    const double value = Power(chosen, nuisance) / (seen * seen);
     if (value < least) best = j;
     least = std::min(least, value);
   }
-  EXPECT_GT(response.col(best).dot(a), 0.0);
-  Compare(a, [&](const VectorXd& other) {
+  EXPECT_GT(response.col(best).dot(chosen), 0.0);
+  Compare(chosen, [&](const VectorXd& other) {
     for (Index j = 0; j < response.cols(); ++j) {
       const double seen = response.col(j).dot(other);
       EXPECT_GE(Power(other, nuisance) / (seen * seen), least * (1.0 - 1e-9));
@@ -68,38 +68,38 @@ TEST(LeastExcitedRelation, RefusesANuisanceThatIsNotPositiveDefinite) {
 TEST(BestRatioRelation, HasTheLargestRatio) {
   const MatrixXd energy = Energy(3);
   const MatrixXd nuisance = Energy(4);
-  const VectorXd a = BestRatioRelation(energy, nuisance);
-  const double best = Power(a, energy) / Power(a, nuisance);
-  Compare(a, [&](const VectorXd& other) {
+  const VectorXd chosen = BestRatioRelation(energy, nuisance);
+  const double best = Power(chosen, energy) / Power(chosen, nuisance);
+  Compare(chosen, [&](const VectorXd& other) {
     EXPECT_LE(Power(other, energy) / Power(other, nuisance), best * (1.0 + 1e-9));
   });
 }
 
 TEST(MostSensitiveRelation, HasTheLargestProductAtEveryScaleOfAFault) {
   std::vector<MatrixXd> energies{Energy(5), 1e6 * Energy(6), Energy(7)};
-  const VectorXd a = MostSensitiveRelation(energies);
+  const VectorXd chosen = MostSensitiveRelation(energies);
   const auto product = [&](const VectorXd& a) {
     return Power(a, energies[0]) * Power(a, energies[1]) * Power(a, energies[2]);
   };
-  const double best = product(a);
-  Compare(a, [&](const VectorXd& other) {
+  const double best = product(chosen);
+  Compare(chosen, [&](const VectorXd& other) {
     EXPECT_LE(product(other), best * (1.0 + 1e-6));
   });
   energies[1] *= 1e-9;
   const VectorXd rescaled = MostSensitiveRelation(energies);
-  EXPECT_NEAR(std::abs(rescaled.dot(a)), 1.0, 1e-9);
+  EXPECT_NEAR(std::abs(rescaled.dot(chosen)), 1.0, 1e-9);
 }
 
 TEST(BestRatioRelation, OfSeveralHasTheLargestProductOfRatios) {
   const std::vector<MatrixXd> energies{Energy(5), 1e6 * Energy(6)};
   const std::vector<MatrixXd> nuisances{Energy(9), 1e-3 * Energy(10)};
-  const VectorXd a = BestRatioRelation(energies, nuisances);
+  const VectorXd chosen = BestRatioRelation(energies, nuisances);
   const auto product = [&](const VectorXd& a) {
     return Power(a, energies[0]) * Power(a, energies[1]) / Power(a, nuisances[0]) /
            Power(a, nuisances[1]);
   };
-  const double best = product(a);
-  Compare(a, [&](const VectorXd& other) {
+  const double best = product(chosen);
+  Compare(chosen, [&](const VectorXd& other) {
     EXPECT_LE(product(other), best * (1.0 + 1e-6));
   });
 }
@@ -109,9 +109,9 @@ TEST(MostSensitiveRelation, GivesUpNoneOfTwoFaultsThatPullApart) {
       VectorXd::Unit(kSize, 0) * VectorXd::Unit(kSize, 0).transpose();
   const MatrixXd second =
       VectorXd::Unit(kSize, 1) * VectorXd::Unit(kSize, 1).transpose();
-  const VectorXd a = MostSensitiveRelation({first, second});
-  EXPECT_NEAR(a[0] * a[0], 0.5, 1e-6);
-  EXPECT_NEAR(a[1] * a[1], 0.5, 1e-6);
+  const VectorXd chosen = MostSensitiveRelation({first, second});
+  EXPECT_NEAR(chosen[0] * chosen[0], 0.5, 1e-6);
+  EXPECT_NEAR(chosen[1] * chosen[1], 0.5, 1e-6);
 }
 
 TEST(CompleteBasis, IsOrthonormalAndBeginsWithTheVector) {
