@@ -5,7 +5,7 @@
 namespace mjdiag {
 namespace {
 
-constexpr const char* kSchema = "mjdiag.published_row/1";
+constexpr const char* kRelationSchema = "mjdiag.published_row/1";
 constexpr int kHighestPower = 100;
 constexpr int kMostDigits = 17;
 
@@ -14,7 +14,7 @@ constexpr int kMostDigits = 17;
 PublishedRelation ReadPublishedRelation(const std::filesystem::path& file) {
   const TomlDocument document(file, {});
   const TomlTable root = document.Root();
-  root.RequireSchema(kSchema);
+  root.RequireSchema(kRelationSchema);
   PublishedRelation relation;
   relation.degree = root.Integer("degree", 1, kHighestPower);
   relation.digits = root.Integer("digits", 1, kMostDigits);

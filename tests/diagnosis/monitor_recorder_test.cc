@@ -43,7 +43,7 @@ TEST(MonitorRecorder, KeepsTheResidualsOfTheFilters) {
   // The offset was added and taken off again: a rounding of 1e-17 m under 20 nm.
   EXPECT_LT((residuals - expected).cwiseAbs().maxCoeff(), 1e-6);
   const MonitorLog log = recording.recorder.Log();
-  EXPECT_EQ(log.residual, rows.row(0).transpose());
+  EXPECT_EQ(log.residual, residuals.row(0).transpose());
   EXPECT_TRUE(log.signals.isApprox(signals, 1e-12));
   const Index window = 800;
   EXPECT_NEAR(log.integral[kSamples - 1],

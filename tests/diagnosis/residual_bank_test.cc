@@ -259,7 +259,7 @@ TEST(ResidualBank, OfOneResidualIsTheMixOfAll) {
   const MatrixXd after = FilterSignals(mixed.filters, signals);
   for (Index group = 0; group < 4; ++group) {
     EXPECT_TRUE(
-        after.row(group).isApprox(rows * before.middleRows(4 * group, 4), 1e-9));
+        after.row(group).isApprox(combination * before.middleRows(4 * group, 4), 1e-9));
   }
 }
 
