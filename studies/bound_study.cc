@@ -85,7 +85,7 @@ std::vector<StudyTable> BoundStudy(const Machine& machine,
        "sd, all residuals", "times bound"},
       {},
       {"Standard deviations of the deviation from healthy; linear plant, "
-       " known commands, sensor noise of the setup, start at rest."}};
+       "known commands, sensor noise of the setup, start at rest."}};
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);
