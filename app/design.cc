@@ -7,7 +7,7 @@
 #include "app/diagnosis_output.h"
 #include "app/format.h"
 #include "app/output.h"
-#include "app/row_programs.h"
+#include "app/parity_programs.h"
 #include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/diagnosis/left_null_space.h"
@@ -26,19 +26,20 @@ struct DesignOptions {
   std::string method = "svd";
 };
 
-// Beyond it a plant without rows is one without redundancy.
+// Beyond it a plant without parity relations is one without redundancy.
 constexpr int kHighestDegree = 40;
 
-// What is left of a spring in the plot of what lost stiffness changes (Fig. 30 of the
-// seed).
+// What is left of a spring in the plot of what lost stiffness changes ([AB383],
+// Fig. 30).
 constexpr double kLostStiffness = 0.01;
 
 std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
   std::vector<ChangedMachine> changed;
-  for (const FaultKnob& knob : FaultKnobs(machine.plant())) {
-    if (knob.kind != KnobKind::kStiffness) continue;
-    changed.push_back({knob.name + " = " + Short(kLostStiffness),
-                       machine.With({{{knob.name, kLostStiffness}}, {}}).linear()});
+  for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
+    if (parameter.kind != FaultParameterKind::kStiffness) continue;
+    changed.push_back(
+        {parameter.name + " = " + Short(kLostStiffness),
+         machine.With({{{parameter.name, kLostStiffness}}, {}}).linear()});
   }
   return changed;
 }
@@ -52,11 +53,12 @@ DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
   facts.states = system.states();
   facts.minimal_degree =
       MinimalDegree(system, UnknownForces(facts.healthy, options), kHighestDegree);
-  if (linear_programs) facts.linear_program = SolveRowPrograms(machine, facts.healthy);
+  if (linear_programs)
+    facts.linear_program = SolveParityPrograms(machine, facts.healthy);
   return facts;
 }
 
-nlohmann::json ToJson(const RowProgramFacts& facts) {
+nlohmann::json ToJson(const ParityProgramFacts& facts) {
   const bool found = facts.feasible > 0;
   return {{"degree", facts.degree},
           {"norm", facts.norm},
@@ -70,7 +72,7 @@ nlohmann::json ToJson(const RowProgramFacts& facts) {
 
 std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
   const ThresholdDesign& residual = design.limits.residual;
-  std::string text = design.setup + ": residual rows exist from degree " +
+  std::string text = design.setup + ": parity relations exist from degree " +
                      std::to_string(facts.minimal_degree) + " on; " +
                      std::to_string(design.bank.residuals) + " of degree " +
                      std::to_string(design.options.residual.degree) +
@@ -89,7 +91,8 @@ std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
           Short(residual.fit.sd) + ". Faults estimated:";
   for (const std::string& name : design.FaultNames()) text += " " + name;
   text += "\n";
-  if (facts.linear_program) text += DescribeRowPrograms(*facts.linear_program) + "\n";
+  if (facts.linear_program)
+    text += DescribeParityPrograms(*facts.linear_program) + "\n";
   return text;
 }
 
@@ -136,10 +139,11 @@ void AddDesign(CLI::App& app) {
   command->add_flag("--linear", options->source.nominal.linear,
                     "Thresholds from runs of the linearised plant");
   command
-      ->add_option("--method", options->method,
-                   "lp: also solve the linear programs for a residual row and report "
-                   "them; the filters come from the singular value decomposition in "
-                   "both cases")
+      ->add_option(
+          "--method", options->method,
+          "lp: also solve the linear programs for a parity relation and "
+          "report them; the filters come from the singular value decomposition in "
+          "both cases")
       ->check(CLI::IsMember({"svd", "lp"}));
   command->callback([options] { Design(*options); });
 }

@@ -38,7 +38,7 @@ void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source) {
       "--baseline", source.baseline,
       "Subtract the residual that the healthy plant leaves on this motion");
   command.add_option("--robust", source.robust,
-                     "Fault to be seen by the residual row that nominal runs of the "
+                     "Fault to be seen by the residual that nominal runs of the "
                      "nonlinear plant excite least");
   command
       .add_option("--nominal-runs", source.nominal.runs,
@@ -66,7 +66,7 @@ std::string Describe(const DiagnosisResult& result) {
           Short(result.limits.max) + "; left them " + TimeText(result.first_detection) +
           ", lasting " + TimeText(result.lasting) + "\n";
   text += SpectrumText(result.disturbance) + "\n";
-  // A knob of 0.999998 reads as 1: what counts is how far it is from healthy.
+  // A value of 0.999998 reads as 1: what counts is how far it is from healthy.
   Table table({"fault", "value", "from healthy", "sd", "detected"});
   for (const FaultVerdict& fault : RankedFaults(result)) {
     table.Add({fault.name, Short(fault.value), Short(fault.deviation), Short(fault.sd),

@@ -1,6 +1,6 @@
 #pragma once
-// How `discover` shows its answer: the tables for people and the files of
-// the extended plant.
+// How `discover` shows its answer: the tables for people and the files of the
+// extended plant.
 
 #include <string>
 

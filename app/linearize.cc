@@ -13,7 +13,7 @@
 #include "mjdiag/plugin/plant/transition.h"
 #include "mjdiag/plugin/runtime/closed_loop.h"
 #include "mjdiag/plugin/setup/chain_file.h"
-#include "mjdiag/plugin/setup/published_row_file.h"
+#include "mjdiag/plugin/setup/published_relation_file.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
@@ -176,11 +176,11 @@ Answer CompareWithAnalytic(const Machine& machine, nlohmann::json& document) {
 
 Answer ComparePublished(const Machine& machine, nlohmann::json& document) {
   if (!machine.setup().published) {
-    throw InputError("--published", "the setup has no published residual row",
+    throw InputError("--published", "the setup has no published parity relation",
                      "a key 'published' in setup.toml");
   }
-  const PublishedRowComparison comparison = ComparePublishedRow(
-      machine.linear(), ReadPublishedRow(*machine.setup().published));
+  const PublishedRelationComparison comparison = ComparePublishedRelation(
+      machine.linear(), ReadPublishedRelation(*machine.setup().published));
   nlohmann::json coefficients = nlohmann::json::array();
   Table table({"coefficient", "printed", "computed", "half units of the last digit"});
   for (const CoefficientComparison& c : comparison.coefficients) {
@@ -205,7 +205,7 @@ void Linearize(const LinearizeOptions& options) {
   const Machine& machine = subject.machine;
   if (!machine.changes().effects.empty() || !subject.options.disturbances.empty()) {
     throw InputError("linearize", "effects and disturbances are not linear",
-                     "fault knobs of the plant only");
+                     "fault parameters of the plant only");
   }
   const MechanicalModel& extracted = machine.linear();
 
@@ -250,7 +250,7 @@ void AddLinearize(CLI::App& app) {
       "Against the setup's analytic model and MuJoCo's finite differences; "
       "exit status 1 if they differ by more than 1e-9, 1e-8");
   command->add_flag("--published", options->published,
-                    "Against the setup's published residual row; exit status 1 if a "
+                    "Against the setup's published parity relation; exit status 1 if a "
                     "coefficient differs by more than a unit of its last digit");
   command->callback([options] { Linearize(*options); });
 }

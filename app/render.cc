@@ -130,8 +130,9 @@ DiagnosisOverlay OverlayOf(const PreparedDiagnosis& prepared, const Record& reco
   // A clip shows some hundred moments.
   constexpr Eigen::Index kMostEstimates = 2000;
   const Eigen::Index every =
-      design.stride *
-      std::max<Eigen::Index>(1, record.samples() / (design.stride * kMostEstimates));
+      design.decimation *
+      std::max<Eigen::Index>(1,
+                             record.samples() / (design.decimation * kMostEstimates));
   const Eigen::Index count = (record.samples() + every - 1) / every;
   DiagnosisOverlay overlay;
   overlay.run = run;

@@ -72,7 +72,7 @@ void AddMachineOptions(CLI::App& command, MachineOptions& options) {
                      "Override a key of the setup, for example physics.gravity=false");
   command.add_option(
       "--fault", options.faults,
-      "Turn a fault knob of the plant or a disturbance of the setup, for "
+      "Set a fault parameter of the plant or a disturbance of the setup, for "
       "example zeta_x=1.05");
   command.add_option("--effect", options.effects,
                      "Add physics that the plant lacks, for example "

@@ -108,17 +108,18 @@ void Synthesis(benchmark::State& state) {
   const Machine machine = Bonder(true);
   const MechanicalModel& healthy = machine.linear();
   const SynthesisOptions options = SynthesisOf(machine);
-  std::vector<TurnedModels> turned;
+  std::vector<PerturbedModels> perturbed;
   std::vector<double> linearise;
   std::vector<double> synthesise;
   std::vector<double> design;
   for (auto _ : state) {
-    linearise.push_back(Seconds([&] { turned = MakeFaultFamily(machine).Turned(); }));
+    linearise.push_back(
+        Seconds([&] { perturbed = MakeFaultFamily(machine).Perturbed(); }));
     synthesise.push_back(Seconds([&] {
       const ResidualSpace space = MakeResidualSpace(healthy, options);
-      const Eigen::Index size = space.rows.front().rows();
+      const Eigen::Index size = space.relations.front().rows();
       benchmark::DoNotOptimize(SynthesiseBank(
-          space, Eigen::MatrixXd::Identity(size, size), turned, options));
+          space, Eigen::MatrixXd::Identity(size, size), perturbed, options));
     }));
     design.push_back(
         Seconds([&] { benchmark::DoNotOptimize(DesignFilters(machine)); }));

@@ -19,11 +19,11 @@ MatrixXd Readings(const MechanicalModel& model, const TickTiming& timing,
 
 }  // namespace
 
-std::vector<MatrixXd> OutputSensitivities(const std::vector<TurnedModels>& faults,
+std::vector<MatrixXd> OutputSensitivities(const std::vector<PerturbedModels>& faults,
                                           const TickTiming& timing,
                                           const MatrixXd& commands) {
   std::vector<MatrixXd> sensitivities;
-  for (const TurnedModels& fault : faults) {
+  for (const PerturbedModels& fault : faults) {
     sensitivities.emplace_back((Readings(fault.plus, timing, commands) -
                                 Readings(fault.minus, timing, commands)) /
                                (2.0 * fault.magnitude));

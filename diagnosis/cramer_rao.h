@@ -20,11 +20,11 @@ struct InformationBound {
   Eigen::VectorXd together;  ///< sd of each if all are unknown, nf
 };
 
-/// Sensitivities d y / d f by central differences over the turned models.
+/// Sensitivities d y / d f by central differences over the perturbed models.
 /// @param commands  nu x N
 /// @return for each fault ny x N
 std::vector<Eigen::MatrixXd> OutputSensitivities(
-    const std::vector<TurnedModels>& faults, const TickTiming& timing,
+    const std::vector<PerturbedModels>& faults, const TickTiming& timing,
     const Eigen::MatrixXd& commands);
 
 /// Readings of the healthy machine for an unknown input to the commands: the

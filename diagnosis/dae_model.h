@@ -5,7 +5,7 @@
 //
 // x: what is unknown (states and unknown inputs d), z = [y; u]: what is measured, f:
 // faults, p: the differential operator (or a shift). H, L and F are polynomial
-// matrices. A residual is N(p) L(p) z for a polynomial row N with N H = 0.
+// matrices. A residual is N(p) L(p) z for a parity relation N, N H = 0.
 
 #include <Eigen/Core>
 #include <complex>
@@ -53,7 +53,7 @@ DaeModel MakeDae(const StateSpace& system, const SignalEntry& unknown_inputs,
 DaeModel MakeDae(const StateSpace& system);
 
 /// The bar matrix of Eq. 19: (degree + 1) block rows, each with the coefficients of P
-/// shifted by one block further, so that a row N of that degree has
+/// shifted by one block further, so that a row vector N of that degree has
 /// coefficients(N P) = [N_0 .. N_degree] * bar(P).
 Eigen::MatrixXd BarMatrix(const PolynomialMatrix& polynomial, int degree);
 

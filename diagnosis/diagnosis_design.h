@@ -22,11 +22,11 @@ struct Multisine {
   Eigen::VectorXd amplitude;        ///< nu, of each command
 };
 
-/// R_dist with its high-pass filter (Eq. 33 and 34), one row, and its prefilters, with
-/// which the part that is due to known faults is taken out.
+/// R_dist with its high-pass filter (Eq. 33 and 34), one residual, and its prefilters,
+/// with which the part that is due to known faults is taken out.
 struct DisturbanceFilter {
   FilterBank filter;      ///< one output
-  FilterBank prefilters;  ///< one output a knob
+  FilterBank prefilters;  ///< one output a fault parameter
   SecondOrderSections high_pass;
 };
 
@@ -54,17 +54,17 @@ struct DiagnosisDesign {
   ResidualBank bank;
   std::vector<Multisine> disturbances;
   DisturbanceFilter disturbance;
-  int stride = 1;  ///< samples between regressed ones
+  int decimation = 1;  ///< samples between regressed ones
   DiagnosisOptions options;
   DiagnosisLimits limits;
 
   double sample_time() const { return bank.filters.sample_time; }
-  /// Knobs, then disturbances.
+  /// Fault parameters, then disturbances.
   std::vector<std::string> FaultNames() const;
   Eigen::Index faults() const {
     return static_cast<Eigen::Index>(bank.faults.size() + disturbances.size());
   }
-  /// The knob of a healthy machine: 1, and 0 for disturbances.
+  /// Its value on a healthy machine: 1, and 0 for disturbances.
   double Healthy(Eigen::Index fault) const {
     return fault < static_cast<Eigen::Index>(bank.faults.size()) ? 1.0 : 0.0;
   }

@@ -10,24 +10,23 @@
 
 namespace mjdiag {
 
-/// The row for the nonlinear machine.
+/// The residual for the nonlinear machine.
 struct RobustOptions {
-  ResidualOrder residual{8, {8, 200.0}};  ///< longer rows leave more to choose from
+  ResidualOrder residual{8, {8, 200.0}};  ///< a higher one leaves more to choose from
   int runs = 8;                           ///< nominal runs of the nonlinear plant
 };
 
 struct DiagnosisOptions {
   ResidualOrder residual;
-  /// Rows that the estimator uses; 0: the whole null space. The detector has one.
-  int estimation_rows = 1;
-  /// Knob -> c of Eq. 22; knobs that are left out: 1e-3.
+  /// Residuals that the estimator uses; 0: the whole null space. The detector has one.
+  int estimation_residuals = 1;
+  /// Fault parameter -> c of Eq. 22; those that are left out: 1e-3.
   std::map<std::string, double> magnitudes;
   /// Joints with an unknown force to which the residuals have to be blind (B_d).
   std::vector<std::string> unknown_forces;
 
-  double margin = 2.0;  ///< alpha of Eq. 21
-  double false_alarms =
-      0.0;  ///< wanted probability a run instead of alpha; 0: not used
+  double margin = 2.0;        ///< alpha of Eq. 21
+  double false_alarms = 0.0;  ///< wanted probability a run instead of alpha; 0: none
   /// Nominal runs for the thresholds; empty: the default trajectory.
   std::vector<std::string> trajectories;
   double integral_window = 0.25;  ///< [s] of the mean of |r|

@@ -73,7 +73,7 @@ void RequireSeparableFaults(const DiagnosisDesign& design,
                    inseparable.size() == 1
                        ? "this motion does not excite " + list
                        : "this motion does not tell these faults apart: " + list,
-                   "a trajectory that moves every axis, or fewer knobs");
+                   "a trajectory that moves every axis, or fewer fault parameters");
 }
 
 }  // namespace

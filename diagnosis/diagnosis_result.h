@@ -11,7 +11,7 @@ namespace mjdiag {
 
 struct FaultVerdict {
   std::string name;
-  double value = 0.0;      ///< the knob: 1 healthy; disturbances: 0 healthy
+  double value = 0.0;  ///< of the fault parameter: 1 healthy; disturbances: 0 healthy
   double deviation = 0.0;  ///< from healthy
   double sd = 0.0;
   Interval ci95;

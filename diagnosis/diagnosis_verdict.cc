@@ -14,19 +14,19 @@ double Significance(const FaultVerdict& fault) {
   return fault.deviation == 0.0 ? 0.0 : std::abs(fault.deviation) / fault.sd;
 }
 
-/// Of a knob, which is near 1 more often than not: 1.01, not 1.0100.
-std::string KnobText(double value) {
+/// Of a fault parameter, which is near 1 more often than not: 1.01, not 1.0100.
+std::string ParameterText(double value) {
   std::array<char, 32> digits{};
   std::snprintf(digits.data(), digits.size(), "%.5g", value);
   return digits.data();
 }
 
 std::string HealthyText(const FaultVerdict& fault) {
-  return KnobText(fault.value - fault.deviation);
+  return ParameterText(fault.value - fault.deviation);
 }
 
 bool ReadsAsHealthy(const FaultVerdict& fault) {
-  return KnobText(fault.value) == HealthyText(fault);
+  return ParameterText(fault.value) == HealthyText(fault);
 }
 
 std::string WithDeviation(const FaultVerdict& fault) {
@@ -43,7 +43,8 @@ std::string NamedFaults(const std::vector<FaultVerdict>& ranked) {
   for (const FaultVerdict& fault : ranked) {
     if (!fault.detected || Significance(fault) < least) break;
     if (ReadsAsHealthy(fault)) continue;
-    names += (names.empty() ? "" : ", ") + fault.name + " = " + KnobText(fault.value);
+    names +=
+        (names.empty() ? "" : ", ") + fault.name + " = " + ParameterText(fault.value);
   }
   return names.empty() ? WithDeviation(ranked.front()) : names;
 }

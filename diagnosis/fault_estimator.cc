@@ -52,7 +52,7 @@ bool SolveInPlace(MatrixXd& S, VectorXd& b) noexcept {
 }  // namespace
 
 ResidualNoise MakeResidualNoise(const FilterBank& bank, Index residuals,
-                                const VectorXd& noise_sd, int stride) {
+                                const VectorXd& noise_sd, int decimation) {
   const Index order = bank.order();
   const Index m = bank.outputs();
   const MatrixXd chain = ChainMatrix(bank);
@@ -90,8 +90,8 @@ ResidualNoise MakeResidualNoise(const FilterBank& bank, Index residuals,
   }
   MatrixXd power = MatrixXd::Identity(A.rows(), A.cols());
   MatrixXd added = MatrixXd::Zero(A.rows(), A.cols());
-  MatrixXd last = power;  // A^(stride-1)
-  for (int i = 0; i < stride; ++i) {
+  MatrixXd last = power;  // A^(decimation-1)
+  for (int i = 0; i < decimation; ++i) {
     added += power * drive * power.transpose();
     last = power;
     power = (power * A).eval();

@@ -33,18 +33,18 @@ namespace mjdiag {
 
 /// The noise of n residuals at the rate at which they are regressed.
 struct ResidualNoise {
-  Eigen::MatrixXd A;       ///< over one stride, ns x ns
+  Eigen::MatrixXd A;       ///< from one regressed sample to the next, ns x ns
   Eigen::MatrixXd C;       ///< n x ns
   Eigen::MatrixXd state;   ///< stationary S, ns x ns
-  Eigen::MatrixXd drive;   ///< what a stride adds to S: sum_j A^j B Q B^T A^jT
+  Eigen::MatrixXd drive;   ///< what that adds to S: sum_j A^j B Q B^T A^jT
   Eigen::MatrixXd direct;  ///< D Q D^T, n x n
-  Eigen::MatrixXd carry;   ///< A^(stride-1) B Q D^T, ns x n
+  Eigen::MatrixXd carry;   ///< A^(decimation-1) B Q D^T, ns x n
 };
 
-/// Of the first `residuals` outputs of a bank, every `stride`-th sample.
+/// Of the first `residuals` outputs of a bank, every `decimation`-th sample.
 /// @param noise_sd  nz, of every signal
 ResidualNoise MakeResidualNoise(const FilterBank& bank, Eigen::Index residuals,
-                                const Eigen::VectorXd& noise_sd, int stride);
+                                const Eigen::VectorXd& noise_sd, int decimation);
 
 struct FaultEstimate {
   Eigen::VectorXd value;       ///< nf, deviation from the point of design

@@ -181,14 +181,15 @@ DiagnosisDesign Parse(const json& object) {
   design.bank.residuals = object.at("residuals");
   design.bank.faults = object.at("faults").get<std::vector<std::string>>();
   design.bank.filters = Bank(object.at("filters"), sample_time);
-  for (const json& rows : object.at("rows")) design.bank.rows.push_back(Matrix(rows));
+  for (const json& rows : object.at("rows"))
+    design.bank.relations.push_back(Matrix(rows));
   for (const json& source : object.at("disturbances")) {
     design.disturbances.push_back({source.at("name"),
                                    source.at("frequencies").get<std::vector<double>>(),
                                    Vector(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
-  design.stride = object.at("stride");
+  design.decimation = object.at("stride");
   const json& options = object.at("options");
   design.options.integral_window = options.at("integral_window");
   design.options.forgetting = options.at("forgetting");
@@ -213,7 +214,7 @@ void RequireShapes(const std::string& file, const DiagnosisDesign& design) {
                     other.D.rows() == 1 &&
                     design.disturbance.prefilters.D.rows() ==
                         static_cast<Index>(design.bank.faults.size()) &&
-                    design.stride > 0 && bank.sample_time > 0.0;
+                    design.decimation > 0 && bank.sample_time > 0.0;
   if (!fits) {
     throw InputError(file, "shapes of filters, channels and faults do not fit",
                      "a file that `mjdiag design` wrote");
@@ -225,7 +226,7 @@ json Json(const DiagnosisDesign& design) {
   for (const Multisine& source : design.disturbances)
     disturbances.push_back(Json(source));
   json rows = json::array();
-  for (const MatrixXd& coefficient : design.bank.rows)
+  for (const MatrixXd& coefficient : design.bank.relations)
     rows.push_back(Json(coefficient));
   return {{"schema", kSchema},
           {"setup", design.setup},
@@ -240,7 +241,7 @@ json Json(const DiagnosisDesign& design) {
           {"rows", rows},
           {"disturbances", disturbances},
           {"disturbance", Json(design.disturbance)},
-          {"stride", design.stride},
+          {"stride", design.decimation},
           {"options",
            {{"integral_window", design.options.integral_window},
             {"forgetting", design.options.forgetting},

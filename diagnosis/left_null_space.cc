@@ -45,14 +45,14 @@ MatrixXd Equations(const StateSpace& system, const SignalEntry& unknown, int deg
   return equations;
 }
 
-/// The one row p with p * equations = right_side.
+/// The one row vector p with p * equations = right_side.
 RowVectorXd SolveUnique(const MatrixXd& equations, const RowVectorXd& right_side) {
   const Equilibrated scaled = Equilibrate(equations);
   const SingularValues svd = SingularValueDecomposition(scaled.matrix.transpose());
   const VectorXd& values = svd.values;
   if (equations.rows() > equations.cols() ||
       values[values.size() - 1] <= kNullTolerance * values[0]) {
-    throw NumericalError("the pins leave more than one residual row");
+    throw NumericalError("the pins leave more than one parity relation");
   }
   const VectorXd target = scaled.columns.asDiagonal() * right_side.transpose();
   const VectorXd parts =
@@ -60,17 +60,17 @@ RowVectorXd SolveUnique(const MatrixXd& equations, const RowVectorXd& right_side
   const VectorXd solution = svd.V * parts;
   const double misfit = (scaled.matrix.transpose() * solution - target).norm();
   if (misfit > 1e-8 * target.norm()) {
-    throw NumericalError("no residual row has the pinned coefficients");
+    throw NumericalError("no parity relation has the pinned coefficients");
   }
   return (scaled.rows.asDiagonal() * solution).transpose();
 }
 
-/// N_y as one row [N_y,0 .. N_y,degree] that annihilates the stack.
+/// N_y as one row vector [N_y,0 .. N_y,degree] that annihilates the stack.
 RowVectorXd SolveOutputPart(const MatrixXd& stack, Index outputs,
-                            const std::vector<RowPin>& pins) {
+                            const std::vector<PinnedCoefficient>& pins) {
   RowVectorXd row = RowVectorXd::Zero(stack.rows());
   std::vector<bool> pinned(static_cast<std::size_t>(stack.rows()), false);
-  for (const RowPin& pin : pins) {
+  for (const PinnedCoefficient& pin : pins) {
     const Index index = pin.power * outputs + pin.output;
     row[index] = pin.value;
     pinned[static_cast<std::size_t>(index)] = true;
@@ -134,56 +134,57 @@ int MinimalDegree(const StateSpace& system, const SignalEntry& unknown_inputs,
              std::to_string(equations.rows());
   }
   throw InputError("residual",
-                   "no row of degree " + std::to_string(max_degree) +
+                   "no parity relation of degree " + std::to_string(max_degree) +
                        " or less is blind to nominal motion (ranks " + found + ")",
                    "a higher degree, more sensors or fewer unknown inputs");
 }
 
-PolynomialMatrix CompleteRows(const StateSpace& system, const MatrixXd& output_part) {
+PolynomialMatrix CompleteRelations(const StateSpace& system,
+                                   const MatrixXd& output_part) {
   const Index nx = system.states();
   const Index ny = system.outputs();
   const Index degree = output_part.cols() / ny - 1;
-  PolynomialMatrix rows;
-  rows.coefficients.assign(static_cast<std::size_t>(degree + 1),
-                           MatrixXd::Zero(output_part.rows(), nx + ny));
+  PolynomialMatrix relations;
+  relations.coefficients.assign(static_cast<std::size_t>(degree + 1),
+                                MatrixXd::Zero(output_part.rows(), nx + ny));
   MatrixXd states = MatrixXd::Zero(output_part.rows(), nx);
   for (Index k = degree; k >= 0; --k) {
-    MatrixXd& coefficient = rows.coefficients[static_cast<std::size_t>(k)];
+    MatrixXd& coefficient = relations.coefficients[static_cast<std::size_t>(k)];
     const auto outputs = output_part.middleCols(k * ny, ny);
     coefficient.leftCols(nx) = states;
     coefficient.rightCols(ny) = outputs;
     states = (states * system.A + outputs * system.C).eval();
   }
-  return rows;
+  return relations;
 }
 
-PolynomialMatrix LeftNullRow(const StateSpace& system, int degree,
-                             const std::vector<RowPin>& pins) {
-  return CompleteRows(system, SolveOutputPart(ObservabilityStack(system, degree),
-                                              system.outputs(), pins));
+PolynomialMatrix LeftNullVector(const StateSpace& system, int degree,
+                                const std::vector<PinnedCoefficient>& pins) {
+  return CompleteRelations(system, SolveOutputPart(ObservabilityStack(system, degree),
+                                                   system.outputs(), pins));
 }
 
-ResidualRow PinnedResidualRow(const MechanicalModel& model, int degree,
-                              const std::vector<RowPin>& pins) {
+ParityRelation PinnedParityRelation(const MechanicalModel& model, int degree,
+                                    const std::vector<PinnedCoefficient>& pins) {
   const double time_unit = FastTimeUnit(model);
   const StateSpace system = UnitMassStateSpace(model, time_unit);
   // The coefficient of s^k is time_unit^k times that of the scaled operator; L has -I
   // in front of y.
-  std::vector<RowPin> scaled_pins = pins;
-  for (RowPin& pin : scaled_pins) {
+  std::vector<PinnedCoefficient> scaled_pins = pins;
+  for (PinnedCoefficient& pin : scaled_pins) {
     pin.value *= -std::pow(time_unit, -pin.power);
   }
   const PolynomialMatrix residual =
-      LeftNullRow(system, degree, scaled_pins) * MakeDae(system).L;
-  ResidualRow row{MatrixXd(system.outputs(), degree + 1),
-                  MatrixXd(system.inputs(), degree + 1)};
+      LeftNullVector(system, degree, scaled_pins) * MakeDae(system).L;
+  ParityRelation relation{MatrixXd(system.outputs(), degree + 1),
+                          MatrixXd(system.inputs(), degree + 1)};
   for (int k = 0; k <= degree; ++k) {
     const RowVectorXd coefficient =
         std::pow(time_unit, k) * residual.coefficients[static_cast<std::size_t>(k)];
-    row.outputs.col(k) = coefficient.head(system.outputs()).transpose();
-    row.inputs.col(k) = coefficient.tail(system.inputs()).transpose();
+    relation.outputs.col(k) = coefficient.head(system.outputs()).transpose();
+    relation.inputs.col(k) = coefficient.tail(system.inputs()).transpose();
   }
-  return row;
+  return relation;
 }
 
 }  // namespace mjdiag

@@ -47,7 +47,7 @@ FilterBank WaveformBank(const DiagnosisDesign& design) {
 
 double ForgettingFactor(const DiagnosisDesign& design) {
   const double time = design.options.forgetting;
-  return time > 0.0 ? std::exp(-design.stride * design.sample_time() / time) : 1.0;
+  return time > 0.0 ? std::exp(-design.decimation * design.sample_time() / time) : 1.0;
 }
 
 Index WindowSamples(const DiagnosisDesign& design) {
@@ -66,7 +66,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, MatrixXd basel
       high_pass_(design.disturbance.high_pass),
       estimator_(design.faults(),
                  MakeResidualNoise(design.bank.filters, design.bank.residuals,
-                                   SignalNoise(design), design.stride),
+                                   SignalNoise(design), design.decimation),
                  ForgettingFactor(design), true),
       settling_away_(SettlingSamples(design.bank.filters, kSettled)),
       z_(VectorXd::Zero(design.bank.filters.inputs())),
@@ -110,10 +110,10 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
 
   const VectorXd& filtered = filters_.Step(z_);
   const Index n = design_.bank.residuals;
-  const auto knobs = static_cast<Index>(design_.bank.faults.size());
+  const auto parameters = static_cast<Index>(design_.bank.faults.size());
   residuals_ = filtered.head(n);
   if (samples_ < baseline_.cols()) residuals_ -= baseline_.col(samples_);
-  for (Index i = 0; i < knobs; ++i) {
+  for (Index i = 0; i < parameters; ++i) {
     regressors_.row(i) = filtered.segment((i + 1) * n, n).transpose();
   }
   if (waveforms_.cols() > 0) {
@@ -122,14 +122,14 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
     drive_ = waveforms_.reshaped();
     const VectorXd& response = waveform_filter_.Step(drive_);
     for (Index i = 0; i < waveforms_.cols(); ++i) {
-      regressors_.row(knobs + i) = response.segment(i * n, n).transpose();
+      regressors_.row(parameters + i) = response.segment(i * n, n).transpose();
     }
   }
   disturbance_ = high_pass_.Update(disturbance_filter_.Step(z_)[0]);
 
   Detect();
   regressed_ = samples_ >= std::max(settling_, first_regressed_) &&
-               samples_ % design_.stride == 0;
+               samples_ % design_.decimation == 0;
   if (regressed_) Regress();
   ++samples_;
 }

@@ -9,12 +9,12 @@ using Eigen::VectorXd;
 
 MonitorRecorder::MonitorRecorder(const DiagnosisDesign& design, Index capacity)
     : sample_time_(design.sample_time()),
-      stride_(design.stride),
+      decimation_(design.decimation),
       residuals_(design.bank.residuals, capacity),
       integral_(capacity),
       disturbance_(capacity),
       signals_(design.bank.filters.inputs(), capacity),
-      estimates_(design.faults(), capacity / design.stride + 1) {}
+      estimates_(design.faults(), capacity / design.decimation + 1) {}
 
 void MonitorRecorder::Add(const DiagnosisMonitor& monitor) noexcept {
   if (samples_ < residuals_.cols()) {
@@ -36,13 +36,13 @@ MonitorLog MonitorRecorder::Log() const {
   const VectorXd index =
       VectorXd::LinSpaced(estimates_made_, 0.0,
                           static_cast<double>(std::max<Index>(0, estimates_made_ - 1)));
-  return {
-      residuals_.row(0).head(samples_),
-      integral_.head(samples_),
-      disturbance_.head(samples_),
-      signals_.leftCols(samples_),
-      sample_time_ * (index.array() * stride_ + static_cast<double>(first_estimate_)),
-      estimates_.leftCols(estimates_made_)};
+  return {residuals_.row(0).head(samples_),
+          integral_.head(samples_),
+          disturbance_.head(samples_),
+          signals_.leftCols(samples_),
+          sample_time_ *
+              (index.array() * decimation_ + static_cast<double>(first_estimate_)),
+          estimates_.leftCols(estimates_made_)};
 }
 
 }  // namespace mjdiag

@@ -33,11 +33,11 @@ class MonitorRecorder {
   Eigen::Index samples() const { return samples_; }
   MonitorLog Log() const;
   /// Every residual of the run, n x samples: what becomes a baseline.
-  Eigen::MatrixXd ResidualRows() const { return residuals_.leftCols(samples_); }
+  Eigen::MatrixXd Residuals() const { return residuals_.leftCols(samples_); }
 
  private:
   double sample_time_;
-  int stride_;
+  int decimation_;
   Eigen::Index seen_ = 0;
   Eigen::Index samples_ = 0;
   Eigen::Index estimates_made_ = 0;
@@ -46,7 +46,7 @@ class MonitorRecorder {
   Eigen::VectorXd integral_;     // capacity
   Eigen::VectorXd disturbance_;  // capacity
   Eigen::MatrixXd signals_;      // nz x capacity
-  Eigen::MatrixXd estimates_;    // nf x capacity / stride
+  Eigen::MatrixXd estimates_;    // nf x capacity / decimation
 };
 
 }  // namespace mjdiag

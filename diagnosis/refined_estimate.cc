@@ -8,19 +8,20 @@ namespace mjdiag {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::vector<TurnedModels> TurnAbout(const std::vector<std::string>& names,
-                                    const VectorXd& knobs, const VectorXd& magnitudes,
-                                    const ModelAt& model_at) {
-  std::vector<TurnedModels> turned;
-  for (Index i = 0; i < knobs.size(); ++i) {
-    VectorXd minus = knobs;
-    VectorXd plus = knobs;
+std::vector<PerturbedModels> PerturbAbout(const std::vector<std::string>& names,
+                                          const VectorXd& parameters,
+                                          const VectorXd& magnitudes,
+                                          const ModelAt& model_at) {
+  std::vector<PerturbedModels> perturbed;
+  for (Index i = 0; i < parameters.size(); ++i) {
+    VectorXd minus = parameters;
+    VectorXd plus = parameters;
     minus[i] -= magnitudes[i];
     plus[i] += magnitudes[i];
-    turned.push_back({names[static_cast<std::size_t>(i)], magnitudes[i],
-                      model_at(minus), model_at(plus)});
+    perturbed.push_back({names[static_cast<std::size_t>(i)], magnitudes[i],
+                         model_at(minus), model_at(plus)});
   }
-  return turned;
+  return perturbed;
 }
 
 RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
@@ -28,17 +29,17 @@ RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
                                const VectorXd& magnitudes, const Record& record,
                                Index from) {
   constexpr int kSteps = 12;
-  // Of the standard deviation: what rounding in the rows leaves of a step.
+  // Of the standard deviation: what rounding in the relations leaves of a step.
   constexpr double kConverged = 0.25;
   const auto count = static_cast<Index>(design.bank.faults.size());
-  VectorXd knobs = VectorXd::Ones(count);
+  VectorXd parameters = VectorXd::Ones(count);
   DiagnosisDesign moved = design;
   moved.limits = {};
   for (int step = 1; step <= kSteps; ++step) {
     if (step > 1) {
-      moved.bank =
-          MoveBank(design.bank.rows, MakeResidualSpace(model_at(knobs), options),
-                   TurnAbout(design.bank.faults, knobs, magnitudes, model_at), options);
+      moved.bank = MoveBank(
+          design.bank.relations, MakeResidualSpace(model_at(parameters), options),
+          PerturbAbout(design.bank.faults, parameters, magnitudes, model_at), options);
     }
     DiagnosisMonitor monitor(moved);
     monitor.RegressFrom(from);
@@ -47,9 +48,9 @@ RefinedEstimate RefineEstimate(const DiagnosisDesign& design,
     const VectorXd change = estimate.value.head(count);
     const VectorXd sd = estimate.covariance.diagonal().head(count).cwiseSqrt();
     const bool converged = (change.array().abs() <= kConverged * sd.array()).all();
-    knobs = (knobs + change).cwiseMax(magnitudes);
+    parameters = (parameters + change).cwiseMax(magnitudes);
     if (converged) {
-      estimate.value.head(count) = knobs.array() - 1.0;
+      estimate.value.head(count) = parameters.array() - 1.0;
       return {estimate, step};
     }
   }

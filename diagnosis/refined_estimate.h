@@ -1,7 +1,8 @@
 #pragma once
 // Faults of any size from a record: Gauss-Newton on the residuals. Prefilters that are
-// made about the healthy machine are exact for small faults only; here rows, prefilters
-// and noise are made anew about the estimate until it moves no more,
+// made about the healthy machine are exact for small faults only; here
+// relations, prefilters and noise are made anew about the estimate until it moves no
+// more,
 //
 //   f <- f + (G(f)^T G(f))^-1 G(f)^T r(f),
 //
@@ -18,21 +19,22 @@
 
 namespace mjdiag {
 
-/// The linear model of the machine with its knobs at these values (1: healthy).
-using ModelAt = std::function<MechanicalModel(const Eigen::VectorXd& knobs)>;
+/// The linear model of the machine at these fault parameters (1: healthy).
+using ModelAt = std::function<MechanicalModel(const Eigen::VectorXd& parameters)>;
 
 struct RefinedEstimate {
-  FaultEstimate estimate;  ///< deviations from healthy: knobs, then disturbances
+  FaultEstimate
+      estimate;  ///< deviations from healthy: fault parameters, then disturbances
   int steps = 0;
 };
 
-/// The knobs turned about a point by the given magnitudes, each model from `model_at`.
-std::vector<TurnedModels> TurnAbout(const std::vector<std::string>& names,
-                                    const Eigen::VectorXd& knobs,
-                                    const Eigen::VectorXd& magnitudes,
-                                    const ModelAt& model_at);
+/// Each fault parameter changed by -c and +c about a point, its model from `model_at`.
+std::vector<PerturbedModels> PerturbAbout(const std::vector<std::string>& names,
+                                          const Eigen::VectorXd& parameters,
+                                          const Eigen::VectorXd& magnitudes,
+                                          const ModelAt& model_at);
 
-/// @param magnitudes  c of every knob
+/// @param magnitudes  c of every fault parameter
 /// @param from        first sample that is regressed
 /// NumericalError if the regression is rank deficient or the steps do not converge.
 RefinedEstimate RefineEstimate(const DiagnosisDesign& design,

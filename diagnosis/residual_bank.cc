@@ -64,63 +64,64 @@ Numerators Stack(const std::vector<Numerators>& parts) {
   return stacked;
 }
 
-MatrixXd Covariance(const Numerators& rows, const SynthesisOptions& options) {
+MatrixXd Covariance(const Numerators& relations, const SynthesisOptions& options) {
   return OutputCovariance(
-      MakeFilterBank(rows, options.residual.denominator, options.timing.tick()),
-      NoiseOfSignals(options, rows.front().cols()));
+      MakeFilterBank(relations, options.residual.denominator, options.timing.tick()),
+      NoiseOfSignals(options, relations.front().cols()));
 }
 
 /// Orthonormal in the metric of the output noise. The covariance squares the condition
-/// of the rows, so one pass resolves half of the digits; the next ones do the rest.
-Numerators Orthonormalised(Numerators rows, const SynthesisOptions& options) {
+/// of the relations, so a pass resolves half of the digits; the next ones do the rest.
+Numerators Orthonormalised(Numerators relations, const SynthesisOptions& options) {
   constexpr int kPasses = 6;
   constexpr double kFloor = 1e-13;
   for (int pass = 0; pass < kPasses; ++pass) {
-    const MatrixXd covariance = Covariance(rows, options);
+    const MatrixXd covariance = Covariance(relations, options);
     const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const SymmetricEigenPairs eigen = SymmetricEigenDecomposition(
         scale.asDiagonal() * covariance * scale.asDiagonal());
     const VectorXd root = eigen.values.cwiseMax(kFloor).cwiseSqrt().cwiseInverse();
-    rows = Combine(root.asDiagonal() * eigen.vectors.transpose() * scale.asDiagonal(),
-                   rows);
+    relations = Combine(
+        root.asDiagonal() * eigen.vectors.transpose() * scale.asDiagonal(), relations);
   }
-  const MatrixXd covariance = Covariance(rows, options);
+  const MatrixXd covariance = Covariance(relations, options);
   if (!covariance.isIdentity(1e-3)) {
-    throw NumericalError("the residual rows of degree " +
+    throw NumericalError("the parity relations of degree " +
                          std::to_string(options.residual.degree) + " at " +
                          std::to_string(options.residual.denominator.cutoff) +
                          " Hz cannot be told apart in double precision");
   }
-  return rows;
+  return relations;
 }
 
-/// The rows of `space` nearest to `rows` in the metric of the output noise.
-Numerators Nearest(const Numerators& rows, const Numerators& space,
+/// The relations of `space` nearest to `reference` in the metric of the output noise.
+Numerators Nearest(const Numerators& reference, const Numerators& space,
                    const SynthesisOptions& options) {
-  const MatrixXd joint = Covariance(Stack({rows, space}), options);
-  const Index n = rows.front().rows();
+  const MatrixXd joint = Covariance(Stack({reference, space}), options);
+  const Index n = reference.front().rows();
   return Combine(joint.topRightCorner(n, space.front().rows()), space);
 }
 
 /// Residuals with the prefilters of the faults about the machine they are blind to.
-ResidualBank BankOf(const Numerators& residual, const std::vector<TurnedModels>& faults,
+ResidualBank BankOf(const Numerators& residual,
+                    const std::vector<PerturbedModels>& faults,
                     const SynthesisOptions& options) {
-  const auto turned = [&](const MechanicalModel& model) {
-    return Nearest(residual, MakeResidualSpace(model, options).rows, options);
+  const auto perturbed = [&](const MechanicalModel& model) {
+    return Nearest(residual, MakeResidualSpace(model, options).relations, options);
   };
   ResidualBank bank;
   bank.residuals = residual.front().rows();
-  bank.rows = residual;
+  bank.relations = residual;
   std::vector<Numerators> outputs{residual};
-  for (const TurnedModels& fault : faults) {
+  for (const PerturbedModels& fault : faults) {
     bank.faults.push_back(fault.name);
-    const Numerators minus = turned(fault.minus);
-    const Numerators plus = turned(fault.plus);
-    Numerators slope;
+    const Numerators minus = perturbed(fault.minus);
+    const Numerators plus = perturbed(fault.plus);
+    Numerators derivative;
     for (std::size_t k = 0; k < plus.size(); ++k) {
-      slope.push_back((minus[k] - plus[k]) / (2.0 * fault.magnitude));
+      derivative.push_back((minus[k] - plus[k]) / (2.0 * fault.magnitude));
     }
-    outputs.push_back(std::move(slope));
+    outputs.push_back(std::move(derivative));
   }
   bank.filters = MakeFilterBank(Stack(outputs), options.residual.denominator,
                                 options.timing.tick());
@@ -129,19 +130,21 @@ ResidualBank BankOf(const Numerators& residual, const std::vector<TurnedModels>&
 
 }  // namespace
 
-Numerators Combine(const MatrixXd& combination, const Numerators& rows) {
+Numerators Combine(const MatrixXd& combinations, const Numerators& relations) {
   Numerators result;
-  for (const MatrixXd& coefficient : rows) result.push_back(combination * coefficient);
+  for (const MatrixXd& coefficient : relations) {
+    result.push_back(combinations * coefficient);
+  }
   return result;
 }
 
-ResidualBank Mix(const ResidualBank& bank, const MatrixXd& rows) {
+ResidualBank Mix(const ResidualBank& bank, const MatrixXd& combinations) {
   const Index groups = bank.filters.outputs() / bank.residuals;
   const MatrixXd mixing =
-      Eigen::kroneckerProduct(MatrixXd::Identity(groups, groups), rows);
+      Eigen::kroneckerProduct(MatrixXd::Identity(groups, groups), combinations);
   ResidualBank mixed = bank;
-  mixed.residuals = rows.rows();
-  mixed.rows = Combine(rows, bank.rows);
+  mixed.residuals = combinations.rows();
+  mixed.relations = Combine(combinations, bank.relations);
   mixed.filters.D = mixing * bank.filters.D;
   mixed.filters.B.resize(mixing.rows() * bank.filters.order(), bank.filters.inputs());
   for (Index k = 0; k < bank.filters.order(); ++k) {
@@ -156,30 +159,32 @@ ResidualSpace MakeResidualSpace(const MechanicalModel& model,
   const StateSpace system = DeltaForm(model, options.timing);
   const SignalEntry unknown = Entry(model, system, options);
   const NullSpace null = LeftNullSpace(system, unknown, options.residual.degree);
-  if (null.rows.rows() == 0) {
+  if (null.relations.rows() == 0) {
     // Says from which degree on there is one, or that there is none at all.
     constexpr int kHighest = 40;
     const int degree = MinimalDegree(system, unknown, kHighest);
-    throw InputError("residual",
-                     "no row of degree " + std::to_string(options.residual.degree),
-                     "a degree of at least " + std::to_string(degree));
+    throw InputError(
+        "residual",
+        "no parity relation of degree " + std::to_string(options.residual.degree),
+        "a degree of at least " + std::to_string(degree));
   }
-  const PolynomialMatrix residual = CompleteRows(system, null.rows) * MakeDae(system).L;
-  Numerators rows(residual.coefficients.begin(), residual.coefficients.end());
+  const PolynomialMatrix residual =
+      CompleteRelations(system, null.relations) * MakeDae(system).L;
+  Numerators relations(residual.coefficients.begin(), residual.coefficients.end());
   return {options.residual.degree, null.separation,
-          Orthonormalised(std::move(rows), options)};
+          Orthonormalised(std::move(relations), options)};
 }
 
-ResidualBank SynthesiseBank(const ResidualSpace& space, const MatrixXd& rows,
-                            const std::vector<TurnedModels>& faults,
+ResidualBank SynthesiseBank(const ResidualSpace& space, const MatrixXd& combinations,
+                            const std::vector<PerturbedModels>& faults,
                             const SynthesisOptions& options) {
-  return BankOf(Combine(rows, space.rows), faults, options);
+  return BankOf(Combine(combinations, space.relations), faults, options);
 }
 
 ResidualBank MoveBank(const Numerators& reference, const ResidualSpace& moved,
-                      const std::vector<TurnedModels>& faults,
+                      const std::vector<PerturbedModels>& faults,
                       const SynthesisOptions& options) {
-  return BankOf(Nearest(reference, moved.rows, options), faults, options);
+  return BankOf(Nearest(reference, moved.relations, options), faults, options);
 }
 
 }  // namespace mjdiag

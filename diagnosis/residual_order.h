@@ -1,7 +1,7 @@
 #pragma once
 // How long a residual generator r = d(p)^-1 N(p) z is: the degree of its numerators N,
-// which decides what rows there are, and the denominator d that makes it a proper
-// filter.
+// which decides what parity relations there are, and the denominator d that makes it a
+// proper filter.
 
 #include "mjdiag/diagnosis/filter_bank.h"
 

@@ -138,7 +138,7 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
 
 void Discoverer::Judge() {
   for (const FittedCause& refuted : search_.refuted) {
-    discovery_.notes.push_back("not named, for it spoils what the fit did not see: " +
+    discovery_.notes.push_back("not named, for data outside the fit contradict it: " +
                                Describe(CauseOf(candidates_, refuted)));
   }
   const bool named = !discovery_.causes.empty();
@@ -151,7 +151,8 @@ void Discoverer::Judge() {
     for (const FoundCause& cause : discovery_.causes) {
       tried += (tried.empty() ? "" : ", ") + Describe(cause.cause);
     }
-    discovery_.notes.push_back("not named, for too much is left beside it: " + tried);
+    discovery_.notes.push_back("not named, for too much of the mismatch is left: " +
+                               tried);
     discovery_.causes.clear();
   }
   changes_ = ChangesOf(discovery_);

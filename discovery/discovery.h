@@ -68,7 +68,7 @@ struct LawPlot {
 };
 
 /// The smallest size of a fault that the mismatch of the healthy machine does not
-/// hide, as a change of the knob.
+/// hide, as a change of the fault parameter.
 struct FaultLimit {
   std::string fault;
   double before = 0.0;  ///< with the plant as it was given

@@ -1,7 +1,7 @@
 #pragma once
 // What a better model is for: how small a fault can be seen on the measured machine.
-// The response phi of the innovations to a knob is known to first order (trial.h). A
-// healthy machine whose model is wrong already looks like a fault of size
+// The response phi of the innovations to a fault parameter is known to first order
+// (trial.h). A healthy machine whose model is wrong already looks like a fault of size
 //
 //   theta = phi^T e / phi^T phi,
 //
@@ -18,7 +18,7 @@
 
 namespace mjdiag {
 
-/// Knob -> limit, as a change of the knob. @param changes  to the model
+/// Fault parameter -> limit, as a change of it. @param changes  to the model
 std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,
                                           const Changes& changes);

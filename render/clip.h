@@ -75,8 +75,8 @@ void CheckPicture(const mjModel& model, const PictureOptions& options);
 
 /// Writes an mp4. Nothing is left behind on an error. InputError: no runs, a record
 /// without a joint's channel, unknown camera, axis or joint, an option out of bounds,
-/// times outside of the records, a
-/// ghost of other than two runs, no encoder, `file` not writable or not *.mp4.
+/// times outside of the records, a ghost of other than two runs, no encoder, `file` not
+/// writable or not *.mp4.
 ClipSummary RenderClip(const mjModel& model, std::span<const ClipRun> runs,
                        const ClipOptions& options, const std::filesystem::path& file);
 

@@ -15,10 +15,10 @@ namespace mjdiag {
 /// The estimate of one fault over DiagnosisOverlay::estimate_time. NaN as long as the
 /// motion has not determined it.
 struct EstimateHistory {
-  std::string name;            ///< of the knob
-  double healthy = 1.0;        ///< the knob of a healthy machine
-  Eigen::VectorXd value;       ///< of the knob
-  Eigen::VectorXd half_width;  ///< of its 95 % interval, in the knob's unit
+  std::string name;            ///< of the fault parameter
+  double healthy = 1.0;        ///< its value on a healthy machine
+  Eigen::VectorXd value;       ///< estimated
+  Eigen::VectorXd half_width;  ///< of its 95 % interval, in its unit
 };
 
 struct DiagnosisOverlay {

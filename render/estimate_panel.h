@@ -1,7 +1,7 @@
 #pragma once
 // A panel with what a diagnosis says at a moment: a badge, and a line a fault with its
 // estimate and 95 % interval on a common axis, the deviation from healthy in per cent
-// of the knob's unit (100 (value - healthy)).
+// of the fault parameter's unit (100 (value - healthy)).
 
 #include <opencv2/core.hpp>
 #include <vector>

@@ -13,8 +13,8 @@ namespace mjdiag {
 
 class OffscreenContext {
  public:
-  /// Makes a context and makes it current. InputError if OSMesa is not there
-  /// or refuses.
+  /// Makes a context and makes it current. InputError if OSMesa is not there or
+  /// refuses.
   OffscreenContext();
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;

@@ -44,12 +44,9 @@ void AddRecordFacts(Page& page, const Comparison& comparison,
 
 constexpr const char* kHowToRead =
     "Mismatch is measured minus simulated. The noise floor is what the sensor noise "
-    "found "
-    "in the record explains, through the control loop where there is one. Beyond "
-    "noise: "
-    "the mean square of the mismatch is larger than that of the floor, in a one-sided "
-    "F "
-    "test at a level of ";
+    "found in the record explains, through the control loop where there is one. Beyond "
+    "noise: the mean square of the mismatch is larger than that of the floor, in a "
+    "one-sided F test at a level of ";
 
 void AddChannelTable(Page& page, const Comparison& comparison) {
   Table table;

@@ -20,7 +20,7 @@ bool HasNoise(const DiagnosisDesign& design) {
 
 std::string Verdict(const DiagnosisDesign& design, const DesignFacts& facts) {
   std::string text =
-      "Residual rows exist from degree " + std::to_string(facts.minimal_degree) +
+      "Parity relations exist from degree " + std::to_string(facts.minimal_degree) +
       " on; the residual has degree " + std::to_string(design.options.residual.degree);
   if (!design.limits.known) return text + ".";
   const Interval& limits = design.limits.residual.limits;
@@ -94,11 +94,11 @@ void AddFilters(Page& page, const DiagnosisDesign& design, const DesignFacts& fa
 
 }  // namespace
 
-std::string DescribeRowPrograms(const RowProgramFacts& facts) {
-  std::string text = "Linear programs: " + std::to_string(facts.feasible) + " of " +
-                     std::to_string(facts.programs) + " at degree " +
-                     std::to_string(facts.degree) + " for " +
-                     std::to_string(facts.fault_inputs) + " fault inputs have a row";
+std::string DescribeParityPrograms(const ParityProgramFacts& facts) {
+  std::string text =
+      "Linear programs: " + std::to_string(facts.feasible) + " of " +
+      std::to_string(facts.programs) + " at degree " + std::to_string(facts.degree) +
+      " for " + std::to_string(facts.fault_inputs) + " fault inputs have a solution";
   if (facts.feasible == 0) return text + ".";
   return text + "; the smallest in the " + facts.norm + "-norm has size " +
          FormatNumber(facts.objective) + ", leaves " + FormatNumber(facts.defect, 2) +
@@ -142,7 +142,7 @@ Page DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
                  {"Sampling rate", FormatQuantity(1.0 / design.sample_time(), "Hz")},
                  {"Ranks of the observability stack", Ranks(facts)}});
   if (facts.linear_program) {
-    page.AddParagraph(DescribeRowPrograms(*facts.linear_program));
+    page.AddParagraph(DescribeParityPrograms(*facts.linear_program));
   }
   if (design.limits.known) {
     const ThresholdDesign& residual = design.limits.residual;

@@ -1,6 +1,6 @@
 #pragma once
-// The page of `mjdiag design`: from which degree on the machine has residual rows, what
-// healthy runs leave in the residual and where its thresholds lie ([AB383],
+// The page of `mjdiag design`: from which degree on the machine has parity relations,
+// what healthy runs leave in the residual and where its thresholds lie ([AB383],
 // Fig. 15 and 16), and what the filters let through (Fig. 28 to 30).
 
 #include <optional>
@@ -15,29 +15,30 @@
 namespace mjdiag {
 
 /// What the linear programs of Eq. 18 give for the same machine and degree.
-struct RowProgramFacts {
+struct ParityProgramFacts {
   int degree = 0;
   std::string norm;  ///< that was minimised: "one" or "infinity"
   int fault_inputs = 0;
   int programs = 0;
   int feasible = 0;
-  double objective = 0.0;  ///< the norm of the row; these three only if one is feasible
-  double defect = 0.0;     ///< LinearProgramRow::defect
-  double angle = 0.0;      ///< between row and null space of the decomposition [rad]
+  double objective =
+      0.0;  ///< the norm of the relation; these three only if one is feasible
+  double defect = 0.0;  ///< ParityProgramSolution::defect
+  double angle = 0.0;   ///< between relation and null space of the decomposition [rad]
 };
 
 /// What a design starts from.
 struct DesignFacts {
-  int minimal_degree = 0;  ///< of a residual row
+  int minimal_degree = 0;  ///< of a parity relation
   std::vector<int> observability_ranks;
   Eigen::Index states = 0;
   MechanicalModel healthy;
   std::vector<ChangedMachine> changed;  ///< for ChangePlot; may be empty
-  std::optional<RowProgramFacts> linear_program;
+  std::optional<ParityProgramFacts> linear_program;
 };
 
 /// One sentence on the linear programs.
-std::string DescribeRowPrograms(const RowProgramFacts& facts);
+std::string DescribeParityPrograms(const ParityProgramFacts& facts);
 
 /// Bars, fitted normal distribution and thresholds of the nominal residuals.
 HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds);

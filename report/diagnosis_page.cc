@@ -11,8 +11,8 @@
 namespace mjdiag {
 namespace {
 
-/// Of a knob, which is near 1 more often than not: 1.01, not 1.0100.
-std::string KnobText(double value) {
+/// Of a fault parameter, which is near 1 more often than not: 1.01, not 1.0100.
+std::string ParameterText(double value) {
   std::array<char, 32> digits{};
   std::snprintf(digits.data(), digits.size(), "%.5g", value);
   return digits.data();
@@ -31,7 +31,7 @@ void AddFaultTable(Page& page, const DiagnosisResult& result) {
                    {"Standard deviation", true},
                    {"Detected"}};
   for (const FaultVerdict& fault : RankedFaults(result)) {
-    table.rows.push_back({fault.name, KnobText(fault.value),
+    table.rows.push_back({fault.name, ParameterText(fault.value),
                           FormatNumber(fault.deviation), FormatNumber(fault.sd),
                           DetectionText(fault)});
   }

@@ -125,7 +125,7 @@ TimePlot EstimatePlot(const DiagnosisDesign& design, const DiagnosisResult& resu
   plot.unit = large ? "%" : "ppm";
   plot.scaled = false;
   plot.start_time = log.estimate_time[first];
-  plot.sample_time = design.stride * design.sample_time();
+  plot.sample_time = design.decimation * design.sample_time();
   plot.curves = {{"estimate", CurveRole::kMeasured, factor * estimate},
                  {"bound, +1.96 sd", CurveRole::kNoise, factor * half},
                  {"bound, -1.96 sd", CurveRole::kNoise, -factor * half}};

@@ -26,8 +26,7 @@ SpectrumPlot DisturbanceSpectrum(const DiagnosisDesign& design,
 /// The running estimate of every fault from healthy in ppm or percent, without the
 /// beginning, which has too little data behind it and would set the scale, and the
 /// bound +-1.96 sd inside which 95 of 100 estimates of a healthy machine stay: sensor
-/// noise, and how far healthy runs differ. No plots if there are too few
-/// estimates.
+/// noise, and how far healthy runs differ. No plots if there are too few estimates.
 std::vector<TimePlot> EstimatePlots(const DiagnosisDesign& design,
                                     const DiagnosisResult& result,
                                     const MonitorLog& log);

@@ -8,8 +8,9 @@
 
 namespace mjdiag {
 
-/// schema "mjdiag.discovery/1". A turned knob is a cause whose effect is the name of
-/// the knob and whose only parameter is "value". Beside the fields of the design:
+/// schema "mjdiag.discovery/1". A fault parameter off its healthy value is a cause
+/// whose effect is its name and whose only parameter is "value". Beside the fields of
+/// the design:
 ///
 ///   causes[].fault, parameters.<name>.sd, alternatives[].indistinguishable
 ///   units        {channel: unit of its mismatch and floor}
@@ -17,7 +18,7 @@ namespace mjdiag {
 ///   train_share  of the record that fits saw
 ///   derived      {before, after: {record, validation: {signal: error [%]}}}
 ///   ladder       [{added, train, held_out, error_percent, validation_percent}]
-///   fault_limits [{fault, before, after}]: smallest detectable change of the knob
+///   fault_limits [{fault, before, after}]: smallest detectable change
 ///   unexplained  {signature, site, variable, factor, shape, explained_share, period,
 ///                exponent, runner_up, runner_up_share}
 ///   notes        [text]

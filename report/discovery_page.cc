@@ -143,8 +143,7 @@ void AddLaws(Page& page, const Discovery& discovery) {
   page.AddHeading("Why: the laws that were found");
   page.AddParagraph(
       "Dots: the force that the plant with all other causes does not explain, over "
-      "what "
-      "the cause depends on. Line: the law with the fitted parameters.");
+      "what the cause depends on. Line: the law with the fitted parameters.");
   for (const LawPlot& law : discovery.laws) page.AddPlot(PlotOf(law));
 }
 
@@ -182,8 +181,8 @@ void AddFaultLimits(Page& page, const Discovery& discovery) {
   page.AddHeading("What it is for: how small a fault is seen");
   page.AddTable(FaultLimitTable(discovery));
   page.AddParagraph(
-      "The smallest change of a fault knob that the mismatch of this machine does not "
-      "hide.");
+      "The smallest change of a fault parameter that the mismatch of this machine does "
+      "not hide.");
 }
 
 }  // namespace

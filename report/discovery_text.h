@@ -14,7 +14,7 @@ namespace mjdiag {
 /// nothing was fitted to.
 std::string DiscoveryAnswer(const Discovery& discovery);
 
-/// "coulomb_friction at load", or the name of a knob.
+/// "coulomb_friction at load", or the name of a fault parameter.
 std::string CauseName(const Cause& cause);
 
 /// 1 - after / before in percent, to two digits of what is left: "99.975 %".

@@ -18,8 +18,8 @@ struct TransferFunction {
 };
 
 /// The continuous filter, monic, as Eq. 31 (low-pass, n = 7, fc = 50 Hz), Eq. 33 (its
-/// denominator, n = 7, fc = 750 Hz) and Eq. 34 (high-pass, n = 3, fc = 100 Hz) of the
-/// seed have it. With wc = 2 pi fc the denominator is
+/// denominator, n = 7, fc = 750 Hz) and Eq. 34 (high-pass, n = 3, fc = 100 Hz) of
+/// [AB383] have it. With wc = 2 pi fc the denominator is
 ///   sum_k a_k wc^k s^(n-k),  a_0 = 1,
 ///   a_k = a_(k-1) cos((k-1) pi / (2 n)) / sin(k pi / (2 n))
 /// and the numerator wc^n (low-pass) or s^n (high-pass).

@@ -19,9 +19,9 @@ MatrixXd Commands(const Setup& setup, const Record& record) {
 }
 
 /// Standard deviations that the estimator claims for a healthy run.
-VectorXd EstimatorSd(const Machine& machine, const Record& record, int rows) {
+VectorXd EstimatorSd(const Machine& machine, const Record& record, int residuals) {
   Setup setup = machine.setup();
-  setup.diagnosis.estimation_rows = rows;
+  setup.diagnosis.estimation_residuals = residuals;
   const DiagnosisDesign design = DesignFilters(machine.WithSetup(setup));
   DiagnosisMonitor monitor(design);
   Run(monitor, record);
@@ -39,7 +39,7 @@ InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
   const MatrixXd commands =
       Commands(machine.setup(), SimulateLinear(machine, motion, quiet));
   std::vector<MatrixXd> sensitivities =
-      OutputSensitivities(family.Turned(), options.timing, commands);
+      OutputSensitivities(family.Perturbed(), options.timing, commands);
   const std::vector<Multisine>& sources = family.disturbances;
   MatrixXd waveforms(commands.rows(), static_cast<Index>(sources.size()));
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -75,11 +75,11 @@ std::vector<StudyTable> BoundStudy(const Machine& machine,
   const VectorXd all = EstimatorSd(machine, record, 0);
   StudyTable table{
       "Information bound of trajectory " + machine.setup().trajectories.fallback,
-      {"fault", "bound alone", "bound together", "sd, one row", "times bound",
-       "sd, all rows", "times bound"},
+      {"fault", "bound alone", "bound together", "sd, one residual", "times bound",
+       "sd, all residuals", "times bound"},
       {},
-      {"Standard deviations of the knob's deviation from healthy; linear "
-       "plant, known commands, sensor noise of the setup, start at rest."}};
+      {"Standard deviations of the deviation from healthy; linear plant, "
+       "known commands, sensor noise of the setup, start at rest."}};
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);

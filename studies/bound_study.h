@@ -7,15 +7,16 @@
 
 namespace mjdiag {
 
-/// Cramer-Rao bound of all knobs and disturbances for a motion of the healthy linear
-/// plant: knobs in the order of the plant, then the setup's disturbances.
+/// Cramer-Rao bound of all fault parameters and disturbances for a motion of the
+/// healthy linear plant: fault parameters in the order of the plant, then the setup's
+/// disturbances.
 InformationBound FaultBound(const Machine& machine, const Excitation& motion);
 
 /// Place of a fault in that order; InputError on an unknown one.
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault);
 
-/// Bound alone and together, the standard deviation of the estimators with one row and
-/// with all rows, and their multiples of the bound; of the default trajectory.
+/// Bound alone and together, the standard deviation of the estimators with one residual
+/// and with all of them, and their multiples of the bound; of the default trajectory.
 std::vector<StudyTable> BoundStudy(const Machine& machine, const StudyOptions& options);
 
 }  // namespace mjdiag

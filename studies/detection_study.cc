@@ -42,7 +42,7 @@ std::function<void(double)> Stage(const StudyOptions& options, double from, doub
   };
 }
 
-struct LinearRow {
+struct LinearResult {
   Detection published;
   std::optional<double> by_residual;
   std::optional<double> by_spectrum;
@@ -66,26 +66,26 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
 
   const auto& largest = machine.setup().Study("largest").values;
   const FaultSizes& published = machine.setup().Study("table2");
-  std::vector<LinearRow> rows(largest.size());
+  std::vector<LinearResult> results(largest.size());
   ParallelFor(
       static_cast<int>(largest.size()),
       [&](int i) {
         const auto& [fault, value] = largest[static_cast<std::size_t>(i)];
         const double healthy = HealthyValue(machine.setup(), fault);
-        LinearRow& row = rows[static_cast<std::size_t>(i)];
+        LinearResult& result = results[static_cast<std::size_t>(i)];
         if (const auto size = PublishedSize(published, fault)) {
-          row.published = look(fault, *size - healthy, options.seed);
+          result.published = look(fault, *size - healthy, options.seed);
         }
         const auto smallest = [&](const std::function<bool(const Detection&)>& seen) {
           return SmallestDeviation(value - healthy, kResolution, [&](double deviation) {
             return seen(look(fault, deviation, options.seed));
           });
         };
-        row.by_residual =
+        result.by_residual =
             smallest([](const Detection& d) { return d.residual.has_value(); });
-        row.by_estimate = smallest([](const Detection& d) { return d.estimate; });
+        result.by_estimate = smallest([](const Detection& d) { return d.estimate; });
         if (healthy == 0.0) {
-          row.by_spectrum = smallest([](const Detection& d) { return d.spectrum; });
+          result.by_spectrum = smallest([](const Detection& d) { return d.spectrum; });
         }
       },
       Stage(options, 0.0, 0.5));
@@ -97,24 +97,23 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
        "deviation", "smallest by estimate", "by spectrum", "bound (sd)"},
       {},
       {}};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < results.size(); ++i) {
     const std::string& fault = largest[i].first;
     const double healthy = HealthyValue(machine.setup(), fault);
     const auto size = PublishedSize(published, fault);
-    const LinearRow& row = rows[i];
-    const bool any = row.published.residual || row.published.spectrum;
+    const LinearResult& result = results[i];
+    const bool any = result.published.residual || result.published.spectrum;
     table.rows.push_back(
         {fault, size ? Cell(*size) : Cell("undetectable"), size ? Seen(any) : Cell("-"),
-         row.published.residual ? Cell(*row.published.residual) : Cell("-"),
-         SizeCell(row.by_residual, healthy), DeviationCell(row.by_residual),
-         DeviationCell(row.by_estimate),
-         healthy == 0.0 ? SizeCell(row.by_spectrum, 0.0) : Cell("-"),
+         result.published.residual ? Cell(*result.published.residual) : Cell("-"),
+         SizeCell(result.by_residual, healthy), DeviationCell(result.by_residual),
+         DeviationCell(result.by_estimate),
+         healthy == 0.0 ? SizeCell(result.by_spectrum, 0.0) : Cell("-"),
          Cell(bound.together[static_cast<Eigen::Index>(BoundIndex(machine, fault))])});
   }
   table.notes = {
       "The faults are there from the start: the time is the delay of detection, most "
-      "of "
-      "which is the wait for the first move of that axis."};
+      "of which is the wait for the first move of that axis."};
 
   std::vector<Detection> healthy_runs(static_cast<std::size_t>(options.runs));
   std::vector<int> estimates(static_cast<std::size_t>(options.runs));
@@ -166,13 +165,13 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
       baseline ? "Smallest detectable faults, nonlinear plant, baseline "
                  "subtracted"
                : "Smallest detectable faults, nonlinear plant",
-      {"fault", "published", "seen by residual", "by robust row", "by estimate",
-       "smallest by residual", "by robust row", "by estimate"},
+      {"fault", "published", "seen by residual", "by robust residual", "by estimate",
+       "smallest by residual", "by robust residual", "by estimate"},
       {},
       {}};
   StudyTable alarms{"False alarms in " + std::to_string(kHealthyRuns) +
                         " healthy runs of the nonlinear plant",
-                    {"fault", "by residual", "by robust row", "by estimate"},
+                    {"fault", "by residual", "by robust residual", "by estimate"},
                     {},
                     {}};
   std::vector<Record> healthy_runs(kHealthyRuns);
@@ -190,7 +189,7 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
       return RunNonlinear(
           motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
     };
-    // Three ways to see it; an estimate may come from either row.
+    // Three ways to see it; an estimate may come from either residual.
     enum Way { kResidual, kRobust, kEstimate, kWays };
     const auto sees = [&, &name = fault](Way way, const Record& record) {
       switch (way) {
@@ -236,8 +235,9 @@ std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
     }
   }
   table.notes = {
-      "The robust row is, of all rows of the robust degree, the one that nominal runs "
-      "excite least while the fault is seen; its limits come from nominal runs, too.",
+      "The robust residual is, of all residuals of the robust degree, the one that "
+      "nominal runs excite least while the fault is seen; its limits come from nominal "
+      "runs, too.",
       "An estimate counts when it is outside what nominal runs of this motion gave."};
   return {table, alarms};
 }

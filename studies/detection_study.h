@@ -16,8 +16,9 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
 
 /// Table 3 (`study` "table3", thresholds from nominal runs of the nonlinear plant) or
 /// Table 5 ("table5", with the baseline of the same motion subtracted): every fault at
-/// the published size and the smallest size seen, by the row for all faults, by the row
-/// made robust for that fault, and by the estimate with its limits from nominal runs.
+/// the published size and the smallest size seen, by the residual for all faults, by
+/// the residual made robust for that fault, and by the estimate with its limits from
+/// nominal runs.
 std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options);

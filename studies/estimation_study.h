@@ -11,8 +11,8 @@ namespace mjdiag {
 /// faults of a table present at once on the linear plant: mean estimate over
 /// `options.runs` runs, largest error as a share of the deviation, standard deviation
 /// claimed and found, how often the 95 % interval held the truth with the binomial 99 %
-/// band of that count, and the multiple of the information bound. Every knob and
-/// disturbance is estimated, refined where it lies (RefineEstimate).
+/// band of that count, and the multiple of the information bound. Every fault parameter
+/// and disturbance is estimated, refined where it lies (RefineEstimate).
 std::vector<StudyTable> EstimationStudy(const Machine& machine,
                                         const StudyOptions& options);
 

@@ -119,9 +119,8 @@ std::vector<StudyTable> HiddenStudy(const Machine& machine, int causes,
       "Sizes are drawn evenly in the logarithm of what an effect adds to the squared "
       "innovations, from 200 (14 standard deviations) to 1e8, or to the largest that a "
       "machine has.",
-      "A knob and the effect that changes the same attribute of the model count as "
-      "one: "
-      "no measurement tells them apart."};
+      "A fault parameter and the effect that changes the same attribute of the model "
+      "count as one: no measurement tells them apart."};
   return {Summary(count, causes), runs};
 }
 

@@ -18,7 +18,7 @@ struct StudyOptions {
   std::function<void(double fraction)> progress;
 };
 
-/// A fault with a knob or disturbance value.
+/// A fault parameter or disturbance with its value.
 struct SizedFault {
   std::string name;
   double value = 1.0;

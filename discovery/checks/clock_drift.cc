@@ -62,10 +62,10 @@ std::optional<WindowLag> FindLag(const VectorXd& m, const VectorXd& s, Index fir
   double like = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     for (Index k = 0; k < count; ++k) {
-      const auto [value, slope] =
+      const auto [value, derivative] =
           Between(s, static_cast<double>(first + k) - window.lag);
       design(k, 2) = value;
-      design(k, 3) = slope;
+      design(k, 3) = derivative;
     }
     const VectorXd about =
         design.col(2).array() - design.col(2).mean();  // a rest has nothing to shift

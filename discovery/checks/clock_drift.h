@@ -6,8 +6,8 @@
 // In a window, with s the simulated and m the measured signal, both as differences over
 // a few samples (so that drifting axes count for little), the lag d [samples] is the
 // one of
-//   m[k] = a + b k + g s[k - d]       solved by Gauss-Newton, s between samples by
-//   cubic
+//   m[k] = a + b k + g s[k - d]
+// solved by Gauss-Newton, with s between samples by cubic interpolation.
 //
 // Errors of the model shift signals, too, but by the same time wherever the motion is
 // the same. Over the windows w with their middle t_w in -1/2 .. 1/2 of the record,

@@ -3,8 +3,8 @@
 // in them. Both are edited, not generated: comments, order and layout stay, so that a
 // diff with the old files shows what was found and nothing else.
 //
-// What MuJoCo has itself, native effects and turned fault parameters, becomes attributes
-// of the named elements, with all digits; docs/effects.md says of every effect which.
+// What MuJoCo has itself, native effects and fault parameters, becomes attributes of
+// the named elements, with all digits; docs/effects.md says of every effect which.
 // White noise becomes noise of the sensor in the setup; every other effect
 // <custom><numeric name="effect.<name>.<site>" data="..."/>, which mjdiag turns into
 // forces and which stock MuJoCo ignores.

@@ -41,7 +41,7 @@ class Simulator {
       : problem_(problem),
         candidates_(candidates),
         causes_(causes),
-        known_jacobian_(options.known_jacobian),
+        initial_jacobian_(options.initial_jacobian),
         secant_(options.secant),
         parameters_(ParametersOf(candidates, causes)) {}
   const std::vector<FitParameter>& parameters() const { return parameters_; }
@@ -57,8 +57,8 @@ class Simulator {
   /// J at theta for a step of the fit, all samples.
   const MatrixXd& StepJacobian(const VectorXd& theta) {
     if (jacobian_.size() == 0) {
-      jacobian_ = Differences(theta, known_jacobian_);
-      NoteJacobian(theta, known_jacobian_ == nullptr);
+      jacobian_ = Differences(theta, initial_jacobian_);
+      NoteJacobian(theta, initial_jacobian_ == nullptr);
     } else if (theta != jacobian_theta_ && secant_) {
       Broyden(theta);
       NoteJacobian(theta, false);
@@ -87,14 +87,14 @@ class Simulator {
     jacobian_residual_ = Residual(theta);
   }
 
-  /// J with its first columns from `known`, if any.
-  MatrixXd Differences(const VectorXd& theta, const MatrixXd* known) {
+  /// J with its first columns from `initial`, if any.
+  MatrixXd Differences(const VectorXd& theta, const MatrixXd* initial) {
     const VectorXd base = Residual(theta);
     const double duration =
         static_cast<double>(problem_.run().samples()) * problem_.run().sample_time;
     MatrixXd J(base.size(), theta.size());
-    const Index kept = known != nullptr ? known->cols() : 0;
-    if (kept > 0) J.leftCols(kept) = known->topRows(base.size());
+    const Index kept = initial != nullptr ? initial->cols() : 0;
+    if (kept > 0) J.leftCols(kept) = initial->topRows(base.size());
     ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
       const Index i = kept + number;
       J.col(i) = Difference(theta, base, i, duration);
@@ -153,7 +153,7 @@ class Simulator {
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const std::vector<FittedCause>& causes_;
-  const MatrixXd* known_jacobian_;
+  const MatrixXd* initial_jacobian_;
   bool secant_;
   std::vector<FitParameter> parameters_;
   VectorXd theta_;
@@ -281,12 +281,12 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   return fit;
 }
 
-FitOptions CompareFrom(const MatrixXd* known_jacobian, int iterations,
+FitOptions CompareFrom(const MatrixXd* initial_jacobian, int iterations,
                        double tolerance) {
   return {.iterations = iterations,
           .tolerance = tolerance,
           .jacobian = false,
-          .known_jacobian = known_jacobian,
+          .initial_jacobian = initial_jacobian,
           .secant = true};
 }
 

@@ -39,7 +39,7 @@ struct FitOptions {
   bool jacobian = true;
   /// J of the first parameters at the start, instead of differences: of causes that
   /// have been fitted before. Not owned.
-  const Eigen::MatrixXd* known_jacobian = nullptr;
+  const Eigen::MatrixXd* initial_jacobian = nullptr;
   /// J from differences at the start only, then by Broyden's updates: one run a step
   /// instead of one for every parameter. Near enough to compare causes.
   bool secant = false;
@@ -57,9 +57,9 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates,
                    const std::vector<FittedCause>& start, const FitOptions& options);
 
-/// For fits that are compared: by secants, from what is known of J (or null), none
-/// computed at the end.
-FitOptions CompareFrom(const Eigen::MatrixXd* known_jacobian, int iterations,
+/// For fits that are compared: by secants, from a J of the first parameters (or null),
+/// none computed at the end.
+FitOptions CompareFrom(const Eigen::MatrixXd* initial_jacobian, int iterations,
                        double tolerance);
 
 /// The same; none where the start diverges or takes away more than there is.

@@ -14,8 +14,8 @@
 namespace mjdiag {
 
 /// The simpler law at the same place, with values to start from; none if there is none,
-/// or if it is no candidate. A fault
-/// parameter that is the same change of the plant stands for it.
+/// or if it is no candidate. A fault parameter that is the same change of the plant
+/// stands for it.
 std::optional<FittedCause> SimplerLaw(const mjModel& plant,
                                       const std::vector<Candidate>& candidates,
                                       const FittedCause& cause);

@@ -1,7 +1,8 @@
 #pragma once
 // Machines whose course depends on the last digit: with backlash and dry friction any
 // change, however small, may make a replay stick and slip at other instants, and the
-// sum of squares is a smooth bowl under a rough surface. Slopes end somewhere on it.
+// sum of squares is a smooth bowl under a rough surface. A descent by
+// gradients ends somewhere on it.
 
 #include <optional>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/plugin/effects/fault_parameter.h"
+#include "mjdiag/plugin/effects/fault_effect.h"
 #include "mjdiag/plugin/effects/registry.h"
 
 namespace mjdiag {
@@ -45,7 +45,7 @@ std::string Describe(const Candidate& candidate) {
 std::vector<Candidate> AllSites(const Machine& machine) {
   const SiteMap map(machine.plant(), machine.linear(), machine.channels());
   std::vector<Candidate> candidates;
-  for (const PlacedEffect& fault : FaultParameters(machine.plant())) {
+  for (const PlacedEffect& fault : FaultEffects(machine.plant())) {
     AddSitesOf(fault.effect, map, candidates);
   }
   for (const Effect* effect : Effects()) {

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/fault_parameter.h"
+#include "mjdiag/plugin/effects/fault_effect.h"
 
 namespace mjdiag {
 namespace {
@@ -51,7 +51,7 @@ bool Indistinguishable(const Cause& a, const Cause& b) {
 
 std::vector<Cause> Twins(const mjModel& model, const Cause& cause) {
   std::vector<Cause> twins;
-  for (Cause& fault : FaultParameters(model)) {
+  for (Cause& fault : FaultEffects(model)) {
     const Effect* twin = fault.effect->Twin();
     if (twin == nullptr) continue;
     if (SameKind(cause, fault)) {

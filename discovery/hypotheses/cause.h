@@ -1,5 +1,5 @@
 #pragma once
-// A cause: an effect or a turned fault parameter at a site with values, the answer to
+// A cause: an effect or a changed fault parameter at a site with values, the answer to
 // why a simulation differs from a measurement.
 
 #include <mujoco/mujoco.h>

@@ -22,7 +22,7 @@ constexpr Index kBatch = 48;
 }  // namespace
 
 Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
-                   const VectorXd& residual, const MatrixXd& sensitivities)
+                   const VectorXd& residual, const MatrixXd& jacobian)
     : problem_(problem),
       dynamics_(dynamics),
       channels_(problem.run().outputs.rows()),
@@ -31,9 +31,9 @@ Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamic
       blocks_(problem.train() / block_ - skip_),
       full_(
           residual.segment(channels_ * block_ * skip_, channels_ * block_ * blocks_)) {
-  if (sensitivities.cols() > 0) {
-    const MatrixXd J = sensitivities.middleRows(channels_ * block_ * skip_,
-                                                channels_ * block_ * blocks_);
+  if (jacobian.cols() > 0) {
+    const MatrixXd J =
+        jacobian.middleRows(channels_ * block_ * skip_, channels_ * block_ * blocks_);
     const MatrixXd all = OrthonormalColumns(J);
     full_ -= all * (all.transpose() * full_);
     found_ = OrthonormalColumns(Averaged(J, channels_, block_));
@@ -181,16 +181,16 @@ std::vector<double> Screener::RoughGains(const Sweep& sweep,
   for (std::size_t i = 0; i < count; i += kEvery) {
     sample.push_back(sweep.make(sweep.values[i]));
   }
-  std::vector<double> known_size;  // log
+  std::vector<double> judged;  // log
   ForEachResponse(sample, candidate, [&](std::size_t, const auto& response) {
-    known_size.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
+    judged.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
   });
   std::vector<double> gains = Common(sweep, candidate);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t before = i / kEvery;
-    const std::size_t after = std::min(before + 1, known_size.size() - 1);
+    const std::size_t after = std::min(before + 1, judged.size() - 1);
     const double part = static_cast<double>(i % kEvery) / kEvery;
-    const double size = (1.0 - part) * known_size[before] + part * known_size[after];
+    const double size = (1.0 - part) * judged[before] + part * judged[after];
     gains[i] /= std::exp(size);
   }
   return gains;

@@ -18,10 +18,10 @@ namespace mjdiag {
 class Screener {
  public:
   /// @param dynamics     of the samples of the problem that are for fits, in blocks
-  /// @param residual       scaled innovations
-  /// @param sensitivities  J of what has been found; may be empty
+  /// @param residual     scaled innovations
+  /// @param jacobian     J of what has been found; may be empty
   Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
-           const Eigen::VectorXd& residual, const Eigen::MatrixXd& sensitivities);
+           const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian);
 
   /// Squared residual, as far as what has been found cannot take it away.
   double Rest() const { return full_.squaredNorm(); }

@@ -26,8 +26,8 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const VectorXd& residual,
-                 const MatrixXd& sensitivities, int starts_each) {
-  const Screener screener(problem, dynamics, residual, sensitivities);
+                 const MatrixXd& jacobian, int starts_each) {
+  const Screener screener(problem, dynamics, residual, jacobian);
   std::vector<std::vector<Start>> found(candidates.size());
   std::vector<int> tried(candidates.size());
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
@@ -62,22 +62,22 @@ Screening Screen(const DiscoveryProblem& problem,
 
 Screening ScreenBeside(const DiscoveryProblem& problem,
                        const std::vector<Candidate>& candidates,
-                       const std::vector<FittedCause>& causes,
-                       const MatrixXd& sensitivities, int starts_each) {
+                       const std::vector<FittedCause>& causes, const MatrixXd& jacobian,
+                       int starts_each) {
   const DiscoveryProblem seen = problem.TrainPart();
   const auto run = seen.Linearised(ChangesOf(candidates, causes));
   const auto& [track, dynamics] = *run;
   return Screen(seen, candidates, seen.MotionOf(track), dynamics, seen.Scaled(track),
-                sensitivities, starts_each);
+                jacobian, starts_each);
 }
 
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
                                double present, const ObservedMotion& motion,
                                const ErrorDynamics& dynamics, const VectorXd& residual,
-                               const MatrixXd& sensitivities, int most) {
+                               const MatrixXd& jacobian, int most) {
   const double duration =
       static_cast<double>(problem.train() - problem.skip()) * problem.run().sample_time;
-  const Screener screener(problem, dynamics, residual, sensitivities);
+  const Screener screener(problem, dynamics, residual, jacobian);
   double gain = 0.0;
   std::vector<Trial> trials;
   if (const auto sweep = MakeSweep(problem.machine(), wave, motion, duration)) {

@@ -5,7 +5,7 @@
 //
 //   gain = b^T G^-1 b,   G = Phi^T Phi,   b = Phi^T e
 //
-// with Phi its response, orthogonal to the sensitivities J of what has been found
+// with Phi its response, orthogonal to the Jacobian J of what has been found
 // already, for those are fitted again together with it. With noise alone a gain is
 // chi-squared distributed with as many degrees of freedom as the trial has amplitudes.
 
@@ -38,20 +38,20 @@ struct Screening {
 
 /// @param dynamics       of the train part at least, in blocks
 /// @param residual       scaled innovations, only the train part is used
-/// @param sensitivities  J of what has been found, (ny samples) x parameters; may be
+/// @param jacobian       J of what has been found, (ny samples) x parameters; may be
 ///                       empty
 /// @param starts_each    how many starts of one candidate to keep at most
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
-                 const Eigen::MatrixXd& sensitivities, int starts_each);
+                 const Eigen::MatrixXd& jacobian, int starts_each);
 
 /// The same beside the plant with those causes in it, on what they leave.
-/// @param sensitivities  J of the causes
+/// @param jacobian  of the causes
 Screening ScreenBeside(const DiscoveryProblem& problem,
                        const std::vector<Candidate>& candidates,
                        const std::vector<FittedCause>& causes,
-                       const Eigen::MatrixXd& sensitivities, int starts_each);
+                       const Eigen::MatrixXd& jacobian, int starts_each);
 
 /// Starts of one wave (a candidate with a sweep) that promise more than its present
 /// period or frequency, best first. Every value of the sweep is judged exactly: Screen,
@@ -62,6 +62,6 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
                                double present, const ObservedMotion& motion,
                                const ErrorDynamics& dynamics,
                                const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& sensitivities, int most);
+                               const Eigen::MatrixXd& jacobian, int most);
 
 }  // namespace mjdiag

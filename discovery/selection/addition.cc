@@ -56,7 +56,7 @@ class Contest {
   void FitToBeginning(std::vector<Entry>& entries, std::size_t count,
                       int iterations) const;
   /// Jacobian of what has been found, if anything has.
-  const MatrixXd* Known() const {
+  const MatrixXd* FoundJacobian() const {
     const MatrixXd& J = present_.fit().jacobian;
     return J.cols() > 0 ? &J : nullptr;
   }
@@ -74,7 +74,7 @@ void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     fits[i] = TryFit(data_.beginning, data_.candidates, entries[i].causes,
-                     CompareFrom(Known(), iterations, 1e-3));
+                     CompareFrom(FoundJacobian(), iterations, 1e-3));
   });
   // On more data a difference grows in proportion.
   const double growth =
@@ -119,7 +119,7 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     fits[i] = TryFit(data_.problem, data_.candidates, entries[i].causes,
-                     CompareFrom(Known(), 8, 1e-4));
+                     CompareFrom(FoundJacobian(), 8, 1e-4));
   });
   return fits;
 }

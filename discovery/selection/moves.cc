@@ -35,15 +35,16 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                                          const std::vector<FittedCause>& causes,
                                          const MatrixXd& jacobian) {
   constexpr double kFar = 60.0;  // in units of the deviance
-  const MatrixXd* known = jacobian.cols() > 0 ? &jacobian : nullptr;
+  const MatrixXd* initial = jacobian.cols() > 0 ? &jacobian : nullptr;
   const auto early = [&](const CauseFit& fit) {
     return Deviance(fit.residual, present.independent(), data.problem.skip(),
                     data.beginning.train());
   };
   const auto rough =
-      TryFit(data.beginning, data.candidates, causes, CompareFrom(known, 8, 1e-3));
+      TryFit(data.beginning, data.candidates, causes, CompareFrom(initial, 8, 1e-3));
   if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
-  auto fit = TryFit(data.problem, data.candidates, causes, CompareFrom(known, 8, 1e-5));
+  auto fit =
+      TryFit(data.problem, data.candidates, causes, CompareFrom(initial, 8, 1e-5));
   if (!fit) return std::nullopt;
   return present.Changed(std::move(*fit));
 }

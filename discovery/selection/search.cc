@@ -49,7 +49,7 @@ class Search {
   Chance ChanceOf(int trials) const {
     return {options_.false_alarm, trials, unsteadiness_};
   }
-  void FitWhatIsKnown();
+  void FitCausesFoundBefore();
   bool Keep(Additions additions, const Chance& chance);
   void MeetUnsteadiness();
   bool AddCause();
@@ -66,8 +66,8 @@ class Search {
   int rounds_ = 0;
 };
 
-void Search::FitWhatIsKnown() {
-  Report("fit of what is known", 0.0);
+void Search::FitCausesFoundBefore() {
+  Report("fit of the causes found before", 0.0);
   CauseFit fit = FitCauses(data_.problem, data_.candidates, found_before_,
                            {.iterations = 10, .tolerance = 1e-5, .secant = true});
   // Before anything is found all of the mismatch may be one cause, which has any
@@ -151,7 +151,7 @@ void Search::Settle() {
   Report("whether every cause is needed", 0.8);
   while (Drop(data_, result_)) {
   }
-  Report("whether the course is steady", 0.9);
+  Report("whether runs are repeatable", 0.9);
   MeetUnsteadiness();
 }
 
@@ -177,11 +177,11 @@ void Search::FitClosely() {
       FitCauses(data_.problem, data_.candidates, fit.causes,
                 {.iterations = 8,
                  .tolerance = 1e-8,
-                 .known_jacobian = fit.exact ? &fit.jacobian : nullptr}));
+                 .initial_jacobian = fit.exact ? &fit.jacobian : nullptr}));
 }
 
 SearchResult Search::Run() {
-  FitWhatIsKnown();
+  FitCausesFoundBefore();
   AddCauses();
   if (!result_.served) return std::move(result_);
   if (options_.preliminary && options_.preliminary(result_.fit())) {

@@ -56,8 +56,8 @@ int mjdiag_prepare(mjModel* model, const char* setup) {
              : 1;
 }
 
-int mjdiag_set_fault(mjModel* model, const char* knob, double value) {
-  return Guard([&] { mjdiag::ApplyFault(*model, {Text(knob), value}); }) ? 0 : 1;
+int mjdiag_set_fault(mjModel* model, const char* parameter, double value) {
+  return Guard([&] { mjdiag::ApplyFault(*model, {Text(parameter), value}); }) ? 0 : 1;
 }
 
 mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* setup,

@@ -37,8 +37,8 @@ MJDIAG_API const char* mjdiag_last_error(void);
  * once, before mj_makeData. */
 MJDIAG_API int mjdiag_prepare(mjModel* model, const char* setup);
 
-/* Turns a fault knob of the plant (1: healthy). Call before stepping. */
-MJDIAG_API int mjdiag_set_fault(mjModel* model, const char* knob, double value);
+/* Sets a fault parameter of the plant (1: healthy). Call before stepping. */
+MJDIAG_API int mjdiag_set_fault(mjModel* model, const char* parameter, double value);
 
 /* Resets the data, puts the machine at rest at the start of a trajectory of the setup
  * (NULL: its default) and lets its controllers drive it. The model must be prepared and

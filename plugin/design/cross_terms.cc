@@ -26,9 +26,9 @@ bool Explains(double leak, const FaultVerdict& fault, double reach) {
          std::abs(leak) > 0.5 * std::abs(fault.deviation);
 }
 
-/// Faults of the plant, by the place of their knob.
+/// Faults of the plant, by the place of their parameter.
 struct Named {
-  std::size_t knob = 0;
+  std::size_t parameter = 0;
   double deviation = 0.0;  // from healthy
 };
 
@@ -53,7 +53,7 @@ class Simulator {
     Changes changes;
     for (const Named& fault : named) {
       changes.faults.push_back(
-          {design_.bank.faults[fault.knob], 1.0 + fault.deviation});
+          {design_.bank.faults[fault.parameter], 1.0 + fault.deviation});
     }
     RunWith(machine_.With(changes), motion_.excitation, observer, options,
             motion_.runs.linear);
@@ -68,9 +68,9 @@ class Simulator {
 
 class CrossTerms {
  public:
-  CrossTerms(const std::vector<FaultVerdict>& faults, std::size_t knobs)
+  CrossTerms(const std::vector<FaultVerdict>& faults, std::size_t parameters)
       : faults_(faults),
-        knobs_(knobs),
+        parameters_(parameters),
         reach_(
             TwoSidedNormalQuantile(kFalseFault / static_cast<double>(faults.size()))),
         leaks_(VectorXd::Zero(static_cast<Index>(faults.size()))) {}
@@ -78,7 +78,7 @@ class CrossTerms {
   const std::vector<Named>& named() const { return named_; }
 
   bool IsNamed(std::size_t i) const {
-    return std::ranges::find(named_, i, &Named::knob) != named_.end();
+    return std::ranges::find(named_, i, &Named::parameter) != named_.end();
   }
 
   bool IsCrossTerm(std::size_t i) const {
@@ -86,11 +86,11 @@ class CrossTerms {
   }
 
   /// Of what cross terms do not explain, the strongest that a plant can have is named;
-  /// false if there is none. Disturbances, which come after the knobs, are not turned.
+  /// false if there is none. Disturbances come after the parameters and are not named.
   bool NameNext() {
     std::optional<Named> next;
     double most = 0.0;
-    for (std::size_t i = 0; i < knobs_; ++i) {
+    for (std::size_t i = 0; i < parameters_; ++i) {
       const double rest = faults_[i].deviation - Leak(i);
       const double strength = std::abs(rest) / faults_[i].sd;
       if (!faults_[i].detected || IsNamed(i) || IsCrossTerm(i) || rest <= -1.0 ||
@@ -113,25 +113,25 @@ class CrossTerms {
     VectorXd missed(count);
     for (Index k = 0; k < count; ++k) {
       const Named& fault = named_[static_cast<std::size_t>(k)];
-      const FaultVerdict& seen = faults_[fault.knob];
+      const FaultVerdict& seen = faults_[fault.parameter];
       place[k] = fault.deviation / seen.sd;
-      missed[k] = (Leak(fault.knob) - seen.deviation) / seen.sd;
+      missed[k] = (Leak(fault.parameter) - seen.deviation) / seen.sd;
     }
     if (place_.size() != count) {
-      slope_ = MatrixXd::Identity(count, count);
-    } else if (place != place_) {  // a knob at its least may not have moved
+      jacobian_ = MatrixXd::Identity(count, count);
+    } else if (place != place_) {  // a parameter at its least may not have moved
       const VectorXd step = place - place_;
-      slope_ +=
-          (missed - missed_ - slope_ * step) * step.transpose() / step.squaredNorm();
+      jacobian_ +=
+          (missed - missed_ - jacobian_ * step) * step.transpose() / step.squaredNorm();
     }
     place_ = place;
     missed_ = missed;
-    const VectorXd change = -Solve(slope_, missed);
+    const VectorXd change = -Solve(jacobian_, missed);
     bool settled = true;
     for (Index k = 0; k < count; ++k) {
       Named& fault = named_[static_cast<std::size_t>(k)];
       const double most = kLongest * std::abs(fault.deviation);
-      const double sd = faults_[fault.knob].sd;
+      const double sd = faults_[fault.parameter].sd;
       const double step = std::clamp(sd * change[k], -most, most);
       settled = settled && std::abs(step) < kSettled * sd;
       fault.deviation = std::max(fault.deviation + step, kLeast - 1.0);
@@ -142,20 +142,20 @@ class CrossTerms {
  private:
   static constexpr double kSettled = 0.5;  // of the standard deviation
   static constexpr double kLongest = 0.5;  // a step, of the deviation
-  static constexpr double kLeast = 0.01;   // of a knob
+  static constexpr double kLeast = 0.01;   // of a fault parameter
 
   double Leak(std::size_t i) const { return leaks_[static_cast<Index>(i)]; }
 
   const std::vector<FaultVerdict>& faults_;
-  std::size_t knobs_;
+  std::size_t parameters_;
   double reach_;
   std::vector<Named> named_;
   VectorXd leaks_;
   // Of the last step: where it began, in standard deviations, what was missed there,
-  // and the derivative of what is missed as it has been learned.
+  // and the Jacobian of what is missed as it has been learned.
   VectorXd place_;
   VectorXd missed_;
-  MatrixXd slope_;
+  MatrixXd jacobian_;
 };
 
 }  // namespace
@@ -182,7 +182,7 @@ void RemoveCrossTerms(DiagnosisResult& result, const DiagnosisDesign& design,
     faults[i].detected = false;
   }
   for (const Named& named : terms.named()) {
-    FaultVerdict& fault = faults[named.knob];
+    FaultVerdict& fault = faults[named.parameter];
     const double shift = named.deviation - fault.deviation;
     fault.deviation += shift;
     fault.value += shift;

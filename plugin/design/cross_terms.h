@@ -1,7 +1,7 @@
 #pragma once
 // What large faults put into the estimates. Prefilters are made about the healthy
-// machine, so a deviation d of one knob leaves errors of the order d^2 in all
-// estimates, small beside d but many times their own noise. They are found by
+// machine, so a deviation d of one fault parameter leaves errors of the order d^2 in
+// all estimates, small beside d but many times their own noise. They are found by
 // simulation: with D(f) the estimate of a run of the plant with the faults f, less that
 // of the healthy plant in the same noise,
 //

@@ -17,8 +17,8 @@
 //    are there. DiagnosisVerdict says it in a sentence (diagnosis_verdict.h), and
 //    DiagnosisJson for other programs (diagnosis_json.h).
 //
-// Times are in seconds since the first sample, faults in knobs (1: healthy) and
-// disturbances in their magnitude gamma (0: healthy).
+// Times are in seconds since the first sample, faults are values of fault parameters
+// (1: healthy), disturbances of their magnitude gamma (0: healthy).
 
 #include <mujoco/mujoco.h>
 

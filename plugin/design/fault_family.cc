@@ -101,14 +101,14 @@ std::vector<std::string> FaultFamily::Names() const {
   return names;
 }
 
-std::vector<TurnedModels> FaultFamily::Turned() const {
-  return TurnAbout(parameters, Eigen::VectorXd::Ones(magnitudes.size()), magnitudes,
-                   model_at);
+std::vector<PerturbedModels> FaultFamily::Perturbed() const {
+  return PerturbAbout(parameters, Eigen::VectorXd::Ones(magnitudes.size()), magnitudes,
+                      model_at);
 }
 
 FaultFamily MakeFaultFamily(const Machine& machine) {
   FaultFamily family;
-  for (const FaultKnob& parameter : FaultKnobs(machine.plant())) {
+  for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
     family.parameters.push_back(parameter.name);
   }
   family.magnitudes = Magnitudes(machine.setup(), family.parameters);

@@ -26,7 +26,7 @@ struct FaultFamily {
   std::vector<std::string> Names() const;
   /// For every parameter the models with it moved by -c and +c from healthy ([AB383],
   /// Eq. 22 and 23).
-  std::vector<TurnedModels> Turned() const;
+  std::vector<PerturbedModels> Perturbed() const;
 };
 
 /// InputError if the setup gives a magnitude for a parameter that the plant does not

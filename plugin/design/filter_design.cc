@@ -5,7 +5,7 @@
 #include <random>
 
 #include "mjdiag/diagnosis/distributions.h"
-#include "mjdiag/diagnosis/row_choice.h"
+#include "mjdiag/diagnosis/parity_choice.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/plant/start_state.h"
@@ -41,7 +41,7 @@ MatrixXd UnknownForces(const Setup& setup, const MechanicalModel& model) {
 }
 
 /// White noise of a unit on every actuator: any input that excites all modes serves to
-/// compare rows, and its size does not matter on the linear plant.
+/// compare parity relations, and its size does not matter on the linear plant.
 Excitation RandomInputs(const Setup& setup) {
   Excitation excitation;
   excitation.inputs = Record(setup.rates.tick());
@@ -61,74 +61,75 @@ Excitation DefaultExcitation(const Setup& setup) {
   return setup.control.axes.empty() ? RandomInputs(setup) : DefaultMotion(setup);
 }
 
-/// Energies of the rows under unit white noise on the commands, for plants without
-/// knobs or disturbances.
-MatrixXd CommandEnergy(const FilterBank& rows, Index outputs) {
-  VectorXd noise = VectorXd::Ones(rows.inputs());
+/// Energies of the residuals under unit white noise on the commands, for plants without
+/// fault parameters or disturbances.
+MatrixXd CommandEnergy(const FilterBank& bank, Index outputs) {
+  VectorXd noise = VectorXd::Ones(bank.inputs());
   noise.head(outputs).setZero();
-  return OutputCovariance(rows, noise);
+  return OutputCovariance(bank, noise);
 }
 
-/// The row in which every tone of the disturbances stands out best from the noise at
-/// its own frequency, for that is where a spectrum looks for it.
-VectorXd RowForTones(const FilterBank& rows, const VectorXd& sensor_noise,
-                     const std::vector<Multisine>& sources) {
+/// The parity relation in which every tone of the disturbances stands out best from the
+/// noise at its own frequency, for that is where a spectrum looks for it.
+VectorXd RelationForTones(const FilterBank& bank, const VectorXd& sensor_noise,
+                          const std::vector<Multisine>& sources) {
   const Index ny = sensor_noise.size();
   std::vector<MatrixXd> tones;
   std::vector<MatrixXd> noises;
   for (const Multisine& source : sources) {
     for (const double frequency : source.frequencies) {
-      const Eigen::MatrixXcd response = FrequencyResponse(rows, frequency);
+      const Eigen::MatrixXcd response = FrequencyResponse(bank, frequency);
       const Eigen::VectorXcd tone =
-          response.rightCols(rows.inputs() - ny) * source.amplitude;
+          response.rightCols(bank.inputs() - ny) * source.amplitude;
       const Eigen::MatrixXcd noise = response.leftCols(ny) * sensor_noise.asDiagonal();
       tones.emplace_back((tone * tone.adjoint()).real());
       noises.emplace_back((noise * noise.adjoint()).real());
     }
   }
   if (!tones.empty() && sensor_noise.minCoeff() > 0.0) {
-    return BestRatioRow(tones, noises);
+    return BestRatioRelation(tones, noises);
   }
-  return MostSensitiveRow({CommandEnergy(rows, ny)});
+  return MostSensitiveRelation({CommandEnergy(bank, ny)});
 }
 
 DisturbanceFilter DesignDisturbanceFilter(const Machine& machine,
-                                          const std::vector<TurnedModels>& turned,
+                                          const std::vector<PerturbedModels>& perturbed,
                                           const std::vector<Multisine>& disturbances) {
   const DiagnosisOptions& wanted = machine.setup().diagnosis;
   SynthesisOptions options = SynthesisOf(machine);
   options.residual.denominator = wanted.disturbance_denominator;
   const ResidualSpace space = MakeResidualSpace(machine.linear(), options);
-  const FilterBank all =
-      MakeFilterBank(space.rows, options.residual.denominator, options.timing.tick());
-  const VectorXd row = RowForTones(all, options.sensor_noise, disturbances);
-  const ResidualBank bank = SynthesiseBank(space, row.transpose(), turned, options);
+  const FilterBank all = MakeFilterBank(space.relations, options.residual.denominator,
+                                        options.timing.tick());
+  const VectorXd relation = RelationForTones(all, options.sensor_noise, disturbances);
+  const ResidualBank bank =
+      SynthesiseBank(space, relation.transpose(), perturbed, options);
   return {Outputs(bank.filters, 0, 1),
-          Outputs(bank.filters, 1, static_cast<Index>(turned.size())),
+          Outputs(bank.filters, 1, static_cast<Index>(perturbed.size())),
           DigitalButterworth(FilterKind::kHighPass, wanted.high_pass_order,
                              wanted.high_pass_cutoff, options.timing.tick())};
 }
 
-int Stride(const Setup& setup) {
+int Decimation(const Setup& setup) {
   const double ticks = setup.diagnosis.sampling * setup.rates.control;
-  const auto stride = static_cast<int>(std::lround(ticks));
-  if (stride < 1 || std::abs(ticks - stride) > 1e-6 * ticks) {
+  const auto decimation = static_cast<int>(std::lround(ticks));
+  if (decimation < 1 || std::abs(ticks - decimation) > 1e-6 * ticks) {
     throw InputError("setup '" + setup.name + "': diagnosis.estimation.sampling",
                      std::to_string(setup.diagnosis.sampling) + " s",
                      "a multiple of the control tick");
   }
-  return stride;
+  return decimation;
 }
 
-/// Rows of too high a degree under too low a cut-off lose their digits: they then leave
-/// a residual on the very machine they are made for.
+/// Parity relations of too high a degree under too low a cut-off lose their digits:
+/// they then leave a residual on the very machine they are made for.
 void RequireBlindness(const DiagnosisDesign& design, const MatrixXd& healthy_run) {
   constexpr double kLeak = 0.3;  // of the noise of the residual
   const MatrixXd residuals =
       FilterSignals(design.bank.filters, healthy_run).topRows(design.bank.residuals);
   const double leak = residuals.cwiseAbs().maxCoeff();
   if (leak > kLeak) {
-    throw NumericalError("rows of degree " +
+    throw NumericalError("parity relations of degree " +
                          std::to_string(design.options.residual.degree) + " at " +
                          std::to_string(design.options.residual.denominator.cutoff) +
                          " Hz lose their digits: a healthy run without noise leaves " +
@@ -142,7 +143,7 @@ void RequireBlindness(const DiagnosisDesign& design, const MatrixXd& healthy_run
 struct NominalLog {
   MonitorLog log;
   VectorXd estimate;
-  MatrixXd rows;
+  MatrixXd residuals;
 };
 
 NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine,
@@ -154,7 +155,7 @@ NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine,
   options.seed = seed;
   RunWith(machine, excitation, observer, options, linear);
   return {recording.recorder.Log(), recording.monitor.estimate(),
-          recording.recorder.ResidualRows()};
+          recording.recorder.Residuals()};
 }
 
 /// Runs of one motion that differ in their noise.
@@ -206,7 +207,7 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
   limits.residual =
       options.false_alarms > 0.0
           ? ThresholdsByFalseAlarms(residuals, options.false_alarms,
-                                    static_cast<double>(repeated[0].rows.cols()))
+                                    static_cast<double>(repeated[0].residuals.cols()))
           : ThresholdsByMargin(residuals, options.margin);
   limits.integral = limits.residual.alpha * integral;
   limits.disturbance = DesignDisturbanceThresholds(disturbances, design.sample_time(),
@@ -253,10 +254,11 @@ Record LinearRun(const Machine& machine) {
   return SimulateLinear(machine, DefaultExcitation(machine.setup()), options);
 }
 
-DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings) {
+DiagnosisDesign DesignFilters(const Machine& machine,
+                              const ResidualSettings& settings) {
   const MechanicalModel& healthy = machine.linear();
   const FaultFamily family = MakeFaultFamily(machine);
-  const std::vector<TurnedModels> turned = family.Turned();
+  const std::vector<PerturbedModels> perturbed = family.Perturbed();
   SynthesisOptions options = SynthesisOf(machine);
   options.residual = settings.residual;
   DiagnosisDesign design;
@@ -267,14 +269,15 @@ DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& setting
   design.sensor_noise = options.sensor_noise;
   design.options = machine.setup().diagnosis;
   design.options.residual = settings.residual;
-  design.options.estimation_rows = settings.rows;
-  design.stride = Stride(machine.setup());
+  design.options.estimation_residuals = settings.count;
+  design.decimation = Decimation(machine.setup());
   design.disturbances = family.disturbances;
-  design.disturbance = DesignDisturbanceFilter(machine, turned, family.disturbances);
+  design.disturbance = DesignDisturbanceFilter(machine, perturbed, family.disturbances);
 
   const ResidualSpace space = MakeResidualSpace(healthy, options);
-  const Index size = space.rows.front().rows();
-  design.bank = SynthesiseBank(space, MatrixXd::Identity(size, size), turned, options);
+  const Index size = space.relations.front().rows();
+  design.bank =
+      SynthesiseBank(space, MatrixXd::Identity(size, size), perturbed, options);
   const MatrixXd signals = Signals(design, LinearRun(machine));
   RequireBlindness(design, signals);
   std::vector<MatrixXd> energies = FaultEnergies(design.bank, signals);
@@ -282,13 +285,13 @@ DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& setting
     energies.push_back(CommandEnergy(design.bank.filters, healthy.b.cols()));
   }
   design.bank =
-      Mix(design.bank, CompleteBasis(MostSensitiveRow(energies), settings.rows));
+      Mix(design.bank, CompleteBasis(MostSensitiveRelation(energies), settings.count));
   return design;
 }
 
 DiagnosisDesign DesignFilters(const Machine& machine) {
   const DiagnosisOptions& wanted = machine.setup().diagnosis;
-  return DesignFilters(machine, {wanted.residual, wanted.estimation_rows});
+  return DesignFilters(machine, {wanted.residual, wanted.estimation_residuals});
 }
 
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
@@ -318,7 +321,7 @@ MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine,
                           const Excitation& excitation, const NominalRuns& options) {
   MatrixXd mean;
   for (const NominalLog& nominal : RunMany(design, machine, excitation, {}, options)) {
-    mean = mean.size() == 0 ? nominal.rows : (mean + nominal.rows).eval();
+    mean = mean.size() == 0 ? nominal.residuals : (mean + nominal.residuals).eval();
   }
   return mean / static_cast<double>(options.runs);
 }

@@ -14,8 +14,8 @@
 
 namespace mjdiag {
 
-/// How residual rows of this plant are made: timing, degree, denominator, sensor noise
-/// and unknown forces of the setup. InputError names an unknown joint.
+/// How residual generators of this plant are made: timing, degree, denominator, sensor
+/// noise and unknown forces of the setup. InputError names an unknown joint.
 SynthesisOptions SynthesisOf(const Machine& machine);
 
 /// z = [y; u] of a record as deviations from rest, nz x samples.
@@ -25,16 +25,16 @@ Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);
 /// inputs where the setup has no controllers.
 Record LinearRun(const Machine& machine);
 
-/// Which rows the residuals are made of.
-struct RowSettings {
+/// Of which order the residuals are, and how many there are.
+struct ResidualSettings {
   ResidualOrder residual;
-  int rows = 1;  ///< how many; 0: all of the null space
+  int count = 1;  ///< 0: all of the null space
 };
 
-/// Residual row, prefilters and disturbance filter of the healthy plant, without
-/// limits. The row is the one that sees all faults best on LinearRun.
-DiagnosisDesign DesignFilters(const Machine& machine, const RowSettings& settings);
-/// With the rows that the setup asks for.
+/// Residual generator, prefilters and disturbance filter of the healthy plant, without
+/// limits. The parity relation is the one that sees all faults best on LinearRun.
+DiagnosisDesign DesignFilters(const Machine& machine, const ResidualSettings& settings);
+/// With the residuals that the setup asks for.
 DiagnosisDesign DesignFilters(const Machine& machine);
 
 /// The runs from which limits and baselines come.
@@ -50,8 +50,8 @@ struct NominalRuns {
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
                                 const NominalRuns& options);
 
-/// Limits for one motion, with its baseline subtracted in every run (section A.6 of the
-/// seed); the runs do not share seeds with those of the baseline.
+/// Limits for one motion, with its baseline subtracted in every run ([AB383],
+/// section A.6); the runs do not share seeds with those of the baseline.
 DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& machine,
                                 const Excitation& excitation,
                                 const Eigen::MatrixXd& baseline,

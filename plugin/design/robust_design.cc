@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/diagnosis/row_choice.h"
+#include "mjdiag/diagnosis/parity_choice.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr std::uint64_t kFirstSeed = 5001;
 
-/// Residuals of every row over nominal runs, k x N each.
+/// Residuals of every parity relation over nominal runs, k x N each.
 std::vector<MatrixXd> NominalResiduals(const DiagnosisDesign& design,
                                        const Machine& machine,
                                        const Excitation& excitation) {
@@ -34,7 +34,7 @@ std::vector<MatrixXd> NominalResiduals(const DiagnosisDesign& design,
   return residuals;
 }
 
-/// Mean energy of the rows over the runs: of all of it, or of what differs between
+/// Mean energy of the residuals over the runs: of all of it, or of what differs between
 /// them.
 MatrixXd NuisanceEnergy(const std::vector<MatrixXd>& residuals, bool baseline) {
   const auto runs = static_cast<double>(residuals.size());
@@ -74,14 +74,14 @@ MatrixXd Response(const DiagnosisDesign& design, const Machine& machine,
   if (found == names.end()) {
     std::string known;
     for (const auto& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw InputError("robust row", "there is no fault '" + fault + "'",
+    throw InputError("robust residual", "there is no fault '" + fault + "'",
                      "one of " + known);
   }
   const Index index = found - names.begin();
-  const auto knobs = static_cast<Index>(design.bank.faults.size());
+  const auto parameters = static_cast<Index>(design.bank.faults.size());
   const MatrixXd signals = Signals(design, LinearRun(machine));
-  if (index >= knobs) {
-    return DisturbanceResponse(design, index - knobs, signals.cols());
+  if (index >= parameters) {
+    return DisturbanceResponse(design, index - parameters, signals.cols());
   }
   const Index n = design.bank.residuals;
   return FilterSignals(design.bank.filters, signals).middleRows((index + 1) * n, n);
@@ -96,8 +96,8 @@ DiagnosisDesign DesignRobustFilters(const Machine& machine, const std::string& f
   const MatrixXd response = Response(design, machine, fault);
   const MatrixXd nuisance =
       NuisanceEnergy(NominalResiduals(design, machine, excitation), baseline);
-  design.bank = Mix(design.bank, LeastExcitedRow(nuisance, response).transpose());
-  design.options.estimation_rows = 1;
+  design.bank = Mix(design.bank, LeastExcitedRelation(nuisance, response).transpose());
+  design.options.estimation_residuals = 1;
   return design;
 }
 

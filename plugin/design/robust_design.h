@@ -1,8 +1,8 @@
 #pragma once
-// A residual for the nonlinear machine: among all rows of the null space, and longer
-// ones, that which recorded nominal runs of the nonlinear plant excite least while it
-// sees one fault ([AB383], section 6). The linear model does not know friction in
-// the guides; its residual is full of it.
+// A residual for the nonlinear machine: among all parity relations of a null space, of
+// a higher degree than else, that which recorded nominal runs of the nonlinear plant
+// excite least while it sees one fault ([AB383], section 6). The linear model does not
+// know friction in the guides; its residual is full of it.
 
 #include <mujoco/mujoco.h>
 
@@ -15,11 +15,12 @@
 namespace mjdiag {
 
 /// Filters like those of DesignFilters, but with the degree and denominator of the
-/// setup's [diagnosis.robust] and the one row that LeastExcitedRow finds for the fault
-/// (a knob of the plant or a disturbance of the setup, InputError on another).
+/// setup's [diagnosis.robust] and the one relation that LeastExcitedRelation finds for
+/// the fault (a fault parameter of the plant or a disturbance of the setup, InputError
+/// on another).
 /// @param excitation  motion of the nominal runs
-/// @param baseline    judge the rows by what differs between runs, for a diagnosis that
-///                    subtracts a baseline
+/// @param baseline    judge relations by what differs between runs, for a diagnosis
+///                    that subtracts a baseline
 DiagnosisDesign DesignRobustFilters(const Machine& machine, const std::string& fault,
                                     const Excitation& excitation, bool baseline);
 

@@ -5,7 +5,7 @@
 // (registry.h). Effects are stateless descriptions: the values of their parameters are
 // passed in, in the order in which `parameters` has them.
 //
-// The fault parameters that a plant declares are effects as well (fault_parameter.h).
+// The fault parameters that a plant declares are effects as well (fault_effect.h).
 
 #include <mujoco/mujoco.h>
 

@@ -99,14 +99,14 @@ VectorXd MotionWithSpring(MechanicalModel model, Index joint, double added,
 
 Eigen::MatrixXd CentralDifferences(const Eigen::MatrixXd& x, double sample_time) {
   const Index n = x.cols();
-  Eigen::MatrixXd slope(x.rows(), n);
+  Eigen::MatrixXd derivative(x.rows(), n);
   for (Index k = 0; k < n; ++k) {
     const Index before = std::max<Index>(k - 1, 0);
     const Index after = std::min<Index>(k + 1, n - 1);
     const double span = std::max<double>(1.0, static_cast<double>(after - before));
-    slope.col(k) = (x.col(after) - x.col(before)) / (span * sample_time);
+    derivative.col(k) = (x.col(after) - x.col(before)) / (span * sample_time);
   }
-  return slope;
+  return derivative;
 }
 
 }  // namespace mjdiag

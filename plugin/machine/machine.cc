@@ -42,7 +42,7 @@ Setup WithNoiseOf(Setup setup, const std::vector<PlacedEffect>& effects) {
 
 Machine::Machine(Setup setup) {
   ModelPtr model = LoadPlant(setup);
-  FaultKnobs(*model);  // complains of those that are malformed
+  FaultParameters(*model);  // complains of those that are malformed
   setup_ = std::make_shared<Setup>(WithNoiseOf(std::move(setup), EffectsOf(*model)));
   Adopt(std::move(model));
 }

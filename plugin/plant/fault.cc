@@ -12,50 +12,52 @@ namespace {
 
 constexpr std::string_view kPrefix = "fault.";
 
-KnobKind ParseKind(const std::string& knob, const std::string& word) {
-  if (word == "damping") return KnobKind::kDamping;
-  if (word == "stiffness") return KnobKind::kStiffness;
-  if (word == "gear") return KnobKind::kGear;
+FaultParameterKind ParseKind(const std::string& where, const std::string& word) {
+  if (word == "damping") return FaultParameterKind::kDamping;
+  if (word == "stiffness") return FaultParameterKind::kStiffness;
+  if (word == "gear") return FaultParameterKind::kGear;
   throw InputError(
-      knob, "unknown kind of knob \"" + word + "\"",
+      where, "unknown kind of fault parameter \"" + word + "\"",
       "\"damping\" or \"stiffness\" and joints, or \"gear\" and actuators");
 }
 
-FaultKnob ParseKnob(const mjModel& model, const std::string& text_name,
-                    const std::string& data) {
+FaultParameter ParseFaultParameter(const mjModel& model, const std::string& text_name,
+                                   const std::string& data) {
   const std::string where = "custom text " + text_name;
   std::istringstream words(data);
   std::string word;
   words >> word;
-  FaultKnob knob{text_name.substr(kPrefix.size()), ParseKind(where, word), {}};
-  const mjtObj target = knob.kind == KnobKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
+  FaultParameter parameter{
+      text_name.substr(kPrefix.size()), ParseKind(where, word), {}};
+  const mjtObj target =
+      parameter.kind == FaultParameterKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
   while (words >> word) {
     try {
-      knob.elements.push_back(FindElement(model, target, word));
+      parameter.elements.push_back(FindElement(model, target, word));
     } catch (const InputError& error) {
       throw InputError(where + ": " + error.what());
     }
   }
-  if (knob.elements.empty()) {
+  if (parameter.elements.empty()) {
     throw InputError(where, "no element behind \"" + data + "\"",
                      "the names of joints or actuators");
   }
-  return knob;
+  return parameter;
 }
 
-FaultKnob FindKnob(const mjModel& model, const std::string& name) {
+FaultParameter FindFaultParameter(const mjModel& model, const std::string& name) {
   std::string known;
-  for (FaultKnob& knob : FaultKnobs(model)) {
-    if (knob.name == name) return knob;
-    known += (known.empty() ? "" : ", ") + knob.name;
+  for (FaultParameter& parameter : FaultParameters(model)) {
+    if (parameter.name == name) return parameter;
+    known += (known.empty() ? "" : ", ") + parameter.name;
   }
-  throw InputError("fault " + name, "the plant declares no such knob",
+  throw InputError("fault " + name, "the plant declares no such fault parameter",
                    known.empty() ? "no fault" : "one of " + known);
 }
 
-void Scale(mjModel& model, KnobKind kind, int element, double factor) {
+void Scale(mjModel& model, FaultParameterKind kind, int element, double factor) {
   switch (kind) {
-    case KnobKind::kDamping: {
+    case FaultParameterKind::kDamping: {
       // A ball joint has three degrees of freedom, a free joint six.
       const int first = model.jnt_dofadr[element];
       const int last = element + 1 < model.njnt ? model.jnt_dofadr[element + 1]
@@ -64,10 +66,10 @@ void Scale(mjModel& model, KnobKind kind, int element, double factor) {
               last - first);
       return;
     }
-    case KnobKind::kStiffness:
+    case FaultParameterKind::kStiffness:
       model.jnt_stiffness[element] *= factor;
       return;
-    case KnobKind::kGear:
+    case FaultParameterKind::kGear:
       mju_scl(model.actuator_gear + 6 * element, model.actuator_gear + 6 * element,
               factor, 6);
       return;
@@ -76,25 +78,26 @@ void Scale(mjModel& model, KnobKind kind, int element, double factor) {
 
 }  // namespace
 
-std::vector<FaultKnob> FaultKnobs(const mjModel& model) {
-  std::vector<FaultKnob> knobs;
+std::vector<FaultParameter> FaultParameters(const mjModel& model) {
+  std::vector<FaultParameter> parameters;
   for (int id = 0; id < model.ntext; ++id) {
     const std::string name = ElementName(model, mjOBJ_TEXT, id);
     if (!name.starts_with(kPrefix)) continue;
-    knobs.push_back(ParseKnob(model, name, model.text_data + model.text_adr[id]));
+    parameters.push_back(
+        ParseFaultParameter(model, name, model.text_data + model.text_adr[id]));
   }
-  return knobs;
+  return parameters;
 }
 
 void ApplyFault(mjModel& model, const Fault& fault) {
-  const FaultKnob knob = FindKnob(model, fault.name);
+  const FaultParameter parameter = FindFaultParameter(model, fault.name);
   if (!std::isfinite(fault.value) || fault.value < 0.0) {
     throw InputError("fault " + fault.name,
                      "value " + std::to_string(fault.value) + " is out of range",
                      "a finite number of at least 0");
   }
-  for (const int element : knob.elements) {
-    Scale(model, knob.kind, element, fault.value);
+  for (const int element : parameter.elements) {
+    Scale(model, parameter.kind, element, fault.value);
   }
 }
 

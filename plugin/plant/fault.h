@@ -1,9 +1,9 @@
 #pragma once
-// Fault knobs: a plant declares them itself, as
+// Fault parameters: a plant declares them itself, as
 //   <custom><text name="fault.zeta_x" data="damping X"/></custom>
-// and a fault is a knob turned: it scales dof_damping ("damping <joints>"),
-// jnt_stiffness ("stiffness <joints>") or actuator_gear ("gear <actuators>").
-// [AB383], Eq. 4, 5 and 6.
+// and a fault is one of them off its healthy value, 1: it scales dof_damping ("damping
+// <joints>"), jnt_stiffness ("stiffness <joints>") or actuator_gear ("gear
+// <actuators>"). [AB383], Eq. 4, 5 and 6.
 
 #include <mujoco/mujoco.h>
 
@@ -12,15 +12,15 @@
 
 namespace mjdiag {
 
-enum class KnobKind { kDamping, kStiffness, kGear };
+enum class FaultParameterKind { kDamping, kStiffness, kGear };
 
-struct FaultKnob {
+struct FaultParameter {
   std::string name;  ///< without "fault."
-  KnobKind kind = KnobKind::kDamping;
+  FaultParameterKind kind = FaultParameterKind::kDamping;
   std::vector<int> elements;  ///< joint ids, or actuator ids for kGear
 };
 
-/// A knob with the factor it is turned to; 1: healthy.
+/// A fault parameter with its value; 1: healthy.
 struct Fault {
   std::string name;
   double value = 1.0;
@@ -28,13 +28,13 @@ struct Fault {
   bool operator==(const Fault&) const = default;
 };
 
-/// The knobs that the plant declares, in the order of the file. InputError names an
-/// unknown kind of knob, joint or actuator.
-std::vector<FaultKnob> FaultKnobs(const mjModel& model);
+/// Those that the plant declares, in the order of the file. InputError names an unknown
+/// kind of fault parameter, joint or actuator.
+std::vector<FaultParameter> FaultParameters(const mjModel& model);
 
-/// Scales what the knob names. InputError on an unknown knob (lists the known ones), or
-/// a value that is not finite and >= 0. The preload of a turned spring is kept as it is
-/// in qpos_spring, so the equilibrium moves as it would on the machine.
+/// Scales what the fault parameter names. InputError on an unknown one (lists the known
+/// ones), or a value that is not finite and >= 0. The preload of a faulty spring is
+/// kept as it is in qpos_spring, so the equilibrium moves as it would on the machine.
 void ApplyFault(mjModel& model, const Fault& fault);
 
 }  // namespace mjdiag

@@ -18,9 +18,9 @@ Eigen::VectorXd StaticEquilibrium(const mjModel& model);
 Eigen::MatrixXd OutputMatrix(const mjModel& model, const Channels& channels,
                              const Eigen::VectorXd& position);
 
-/// M, D, K (springs and gravity), Gamma and b of the channels at the
-/// static equilibrium `rest`. Static friction is left out, as in [AB383], section
-/// 2.2.3. Requires slide and hinge joints only (InputError names others).
+/// M, D, K (springs and gravity), Gamma and b of the channels at the static equilibrium
+/// `rest`. Static friction is left out, as in [AB383], section 2.2.3. Requires slide
+/// and hinge joints only (InputError names others).
 MechanicalModel Linearize(const mjModel& model, const Channels& channels,
                           const Eigen::VectorXd& rest);
 

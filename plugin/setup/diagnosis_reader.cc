@@ -46,7 +46,8 @@ void ReadThresholds(const TomlTable& table, const Setup& setup,
 }
 
 void ReadEstimation(const TomlTable& table, DiagnosisOptions& options) {
-  options.estimation_rows = table.Integer("rows", 0, 100, options.estimation_rows);
+  options.estimation_residuals =
+      table.Integer("rows", 0, 100, options.estimation_residuals);
   options.sampling = table.Number("sampling", kPositive, options.sampling);
   options.horizon = table.Number("horizon", kNonNegative, options.horizon);
   options.forgetting = table.Number("forgetting", kNonNegative, options.forgetting);

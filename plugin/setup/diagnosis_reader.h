@@ -7,7 +7,7 @@
 
 namespace mjdiag {
 
-/// Knobs and joints are checked against the plant when the diagnosis is designed.
+/// Fault parameters and joints are checked when the diagnosis is designed.
 /// @param setup  everything but the diagnosis
 /// InputError with file, line and key.
 DiagnosisOptions ReadDiagnosis(const TomlTable& table, const Setup& setup);

@@ -137,7 +137,7 @@ struct Setup {
   std::string name;
   std::filesystem::path plant;                     ///< MJCF file
   std::optional<std::filesystem::path> analytic;   ///< linear chain, see linear_chain.h
-  std::optional<std::filesystem::path> published;  ///< printed residual row
+  std::optional<std::filesystem::path> published;  ///< printed parity relation
   Rates rates;
   Physics physics;
   Channels channels;

@@ -98,7 +98,7 @@ TEST_F(BadInput, TruncatedMatIsRefused) {
   }
 }
 
-TEST_F(BadInput, UnknownJointInAKnobIsNamed) {
+TEST_F(BadInput, UnknownJointInAFaultParameterIsNamed) {
   const std::string setup =
       Changed("emps", "plant.xml", "damping load", "damping lode");
   EXPECT_THAT(Refused("simulate --setup '" + setup + "'"),

@@ -163,7 +163,7 @@ TEST_F(Diagnosis, NamesALargeFaultWithoutWhatLeaksIntoTheOthers) {
 }
 
 // On the nonlinear plant the linear estimate of eta_y alone would be off by more than
-// the deviation, and four other knobs would be named.
+// the deviation, and four other faults would be named.
 TEST_F(Diagnosis, AgainstABaselineLargeFaultsAreNamedAloneAndAtTheirValues) {
   const std::string out = Path("run");
   const json document = JsonOf(
@@ -193,7 +193,7 @@ TEST_F(Diagnosis, WritesThePageOfADesignBesideItsFilters) {
   EXPECT_FALSE(json::parse(ReadAll(Filters())).contains("linear_program"));
 }
 
-TEST_F(Diagnosis, FindsByLinearProgramsARowOfTheSameNullSpace) {
+TEST_F(Diagnosis, FindsByLinearProgramsARelationOfTheSameNullSpace) {
   const std::string out = Path("lp");
   const CommandResult result =
       RunCommand(std::string("design ") + kLinear + "--method lp --out " + out);
@@ -224,9 +224,10 @@ TEST_F(Diagnosis, RefusesAMethodThatItDoesNotKnow) {
               HasSubstr("simplex"));
 }
 
-TEST_F(Diagnosis, RefusesADegreeWithoutRows) {
-  EXPECT_THAT(Refused("design --setup mjcf/ab383 --set diagnosis.degree=5"),
-              AllOf(HasSubstr("no row of degree 5"), HasSubstr("at least 6")));
+TEST_F(Diagnosis, RefusesADegreeWithoutParityRelations) {
+  EXPECT_THAT(
+      Refused("design --setup mjcf/ab383 --set diagnosis.degree=5"),
+      AllOf(HasSubstr("no parity relation of degree 5"), HasSubstr("at least 6")));
 }
 
 TEST_F(Diagnosis, RefusesADenominatorBelowTheNumerator) {
@@ -235,7 +236,7 @@ TEST_F(Diagnosis, RefusesADenominatorBelowTheNumerator) {
 }
 
 TEST_F(Diagnosis, RefusesAPlantWhoseSensorsSeeTooLittle) {
-  // With all three motor forces unknown no row is left.
+  // With all three motor forces unknown no parity relation is left.
   EXPECT_THAT(Refused("design --setup mjcf/ab383 --set "
                       "'diagnosis.unknown_forces=[\"X\",\"Y\",\"Z\"]'"),
               HasSubstr("fewer unknown inputs"));
@@ -312,7 +313,7 @@ TEST(Study, WritesAPageWithItsTables) {
   EXPECT_THAT(result.out, HasSubstr("report.html"));
   EXPECT_THAT(ReadAll(out + "/report.html"),
               AllOf(HasSubstr("Study bound of AB383"), HasSubstr("<td>zeta_x</td>"),
-                    HasSubstr("Standard deviations of the knob")));
+                    HasSubstr("Standard deviations of the deviation")));
 }
 
 TEST(Study, ListsThePresetsWhenOneIsUnknown) {

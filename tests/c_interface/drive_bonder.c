@@ -29,9 +29,11 @@ int main(int argc, char** argv) {
   if (mjdiag_prepare(model, argv[1]) != 0) return Fail("prepare");
   data = mj_makeData(model);
 
-  if (mjdiag_set_fault(model, "no_such_knob", 1.1) == 0) return Fail("unknown knob");
+  if (mjdiag_set_fault(model, "no_such_parameter", 1.1) == 0)
+    return Fail("unknown parameter");
   if (mjdiag_set_fault(model, "zeta_x", 1.1) != 0) return Fail("set fault");
-  if (mjdiag_attach(model, data, argv[1], "moonwalk", 1) != NULL) return Fail("moonwalk");
+  if (mjdiag_attach(model, data, argv[1], "moonwalk", 1) != NULL)
+    return Fail("moonwalk");
   mjdiag_instance* machine = mjdiag_attach(model, data, argv[1], "x", 1);
   if (machine == NULL) return Fail("attach");
 

@@ -41,7 +41,8 @@ TEST_F(DiagnosisAllocation, DoesNotHappenInRunningBank) {
 }
 
 TEST_F(DiagnosisAllocation, DoesNotHappenInAnEstimatorOfManyRows) {
-  // 28 rows over order 15: whole products would outgrow what Eigen keeps on the stack.
+  // 28 outputs over order 15: whole products would outgrow what Eigen keeps on the
+  // stack.
   constexpr Index kResiduals = 28;
   constexpr Index kFaults = 8;
   const FilterBank filters =
@@ -67,7 +68,7 @@ TEST_F(DiagnosisAllocation, DoesNotHappenInADiagnosisAndItsRecorder) {
       test::Measured(test::Motion(test::Stage(), test::Drive(1000)), 1);
   // Both starts, and ticks beyond the room of the recorder.
   for (const double start : {0.0, 5e-3}) {
-    DiagnosisRecording recording(design, 900, MatrixXd::Zero(test::kRows, 500));
+    DiagnosisRecording recording(design, 900, MatrixXd::Zero(test::kRelations, 500));
     std::vector<double> y(2);
     std::vector<double> u(2);
     EXPECT_EQ(CountAllocations([&] {

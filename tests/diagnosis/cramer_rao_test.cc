@@ -18,9 +18,9 @@ using Eigen::VectorXd;
 constexpr Index kSamples = 1500;
 
 InformationBound StageBound() {
-  return CramerRaoBound(
-      OutputSensitivities(test::TurnedStages(), test::kTiming, test::Drive(kSamples)),
-      Eigen::Vector2d::Constant(test::kNoise));
+  return CramerRaoBound(OutputSensitivities(test::PerturbedStages(), test::kTiming,
+                                            test::Drive(kSamples)),
+                        Eigen::Vector2d::Constant(test::kNoise));
 }
 
 TEST(CramerRaoBound, OfAFreeMassWithUnknownGainIsAnalytic) {
@@ -113,7 +113,7 @@ TEST(CramerRaoBound, IsReachedByMaximumLikelihood) {
   const MatrixXd commands = test::Drive(kSamples);
   const MatrixXd motion = test::Motion(test::Stage(test::Moved(truth)), commands);
   const std::vector<MatrixXd> columns =
-      OutputSensitivities(test::TurnedStages(), test::kTiming, commands);
+      OutputSensitivities(test::PerturbedStages(), test::kTiming, commands);
   MatrixXd sensitivity(2 * kSamples, 3);
   for (Index i = 0; i < 3; ++i) {
     sensitivity.col(i) = columns[static_cast<std::size_t>(i)].reshaped();

@@ -49,7 +49,7 @@ TEST(DaeModel, BarMatrixMultipliesCoefficients) {
   }
 }
 
-TEST(DaeModel, BarMatrixAnnihilatesTheRowOfExample4) {
+TEST(DaeModel, BarMatrixAnnihilatesTheRelationOfExample4) {
   // N = [s + 1, 1, s^2 + s + 1]
   const DaeModel dae = MakeDae(MassSpringDamper());
   Eigen::RowVectorXd row(9);

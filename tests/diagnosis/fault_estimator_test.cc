@@ -38,8 +38,8 @@ std::string Text(const Vector3d& numbers) {
          std::to_string(numbers[2]);
 }
 
-ResidualNoise Noise(int stride) {
-  return MakeResidualNoise(NoiseBank(), kResiduals, kSignalNoise, stride);
+ResidualNoise Noise(int decimation) {
+  return MakeResidualNoise(NoiseBank(), kResiduals, kSignalNoise, decimation);
 }
 
 /// G of samples * kResiduals rows. Slow signals, so that errors add up coherently.
@@ -54,8 +54,8 @@ MatrixXd Regressors(Index samples) {
 }
 
 FaultEstimator Regressed(const MatrixXd& regressors, const VectorXd& residuals,
-                         int stride, double forgetting, bool at_rest = false) {
-  FaultEstimator estimator(regressors.cols(), Noise(stride), forgetting, at_rest);
+                         int decimation, double forgetting, bool at_rest = false) {
+  FaultEstimator estimator(regressors.cols(), Noise(decimation), forgetting, at_rest);
   for (Index t = 0; t < residuals.size(); t += kResiduals) {
     estimator.Add(residuals.segment(t, kResiduals),
                   regressors.middleRows(t, kResiduals).transpose());
@@ -100,7 +100,7 @@ TEST_P(Weightings, CovarianceIsThatOfRepeatedEstimates) {
   // these are allowed. Of intervals of 95 % a binomial count lies within
   // 2.576 sqrt(R 0.95 0.05) of 0.95 R in 99 of 100 cases.
   constexpr int kDraws = 1000;
-  constexpr int kStride = 4;
+  constexpr int kDecimation = 4;
   constexpr Index kSamples = 200;
   const MatrixXd regressors = Regressors(kSamples);
   const FilterBank bank = NoiseBank();
@@ -112,14 +112,14 @@ TEST_P(Weightings, CovarianceIsThatOfRepeatedEstimates) {
   for (int draw = 0; draw < kDraws; ++draw) {
     const MatrixXd white =
         kSignalNoise.asDiagonal() *
-        test::WhiteNoise(3, settled + kSamples * kStride, 1.0, 100 + draw);
+        test::WhiteNoise(3, settled + kSamples * kDecimation, 1.0, 100 + draw);
     const MatrixXd coloured = FilterSignals(bank, white);
     VectorXd residuals = regressors * truth;
     for (Index t = 0; t < kSamples; ++t) {
       residuals.segment(t * kResiduals, kResiduals) +=
-          coloured.col(settled + t * kStride);
+          coloured.col(settled + t * kDecimation);
     }
-    const FaultEstimate estimate = Regressed(regressors, residuals, kStride,
+    const FaultEstimate estimate = Regressed(regressors, residuals, kDecimation,
                                              GetParam().forgetting, GetParam().at_rest)
                                        .Estimate();
     covariance = estimate.covariance;
@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(FaultEstimator, Weightings,
                          testing::Values(Weighting{1.0, false}, Weighting{0.97, false},
                                          Weighting{1.0, true}));
 
-TEST(ResidualNoise, IsThatOfTheFilterAndItsStride) {
+TEST(ResidualNoise, IsThatOfTheFilterAndItsDecimation) {
   // Autocovariance at lag L from the impulse response.
   const FilterBank bank = NoiseBank();
   const Index samples = SettlingSamples(bank, 1e-12);
@@ -172,18 +172,18 @@ TEST(FaultEstimator, IntervalsCoverTheFaultsOfAMachine) {
   // All three faults at once; regressors from the same noisy readings as the residuals.
   // Of 200 runs 182 to 197 hold (binomial, 99 %).
   constexpr int kRuns = 200;
-  constexpr int kStride = 4;
+  constexpr int kDecimation = 4;
   constexpr Index kSamples = 3000;
   const Vector3d fault(2e-3, -1e-2, 1e-3);
   const SynthesisOptions options = test::StageOptions();
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
-  const Index n = test::kRows;
+  const Index n = test::kRelations;
   const ResidualBank bank =
-      SynthesiseBank(space, MatrixXd::Identity(n, n), test::TurnedStages(), options);
+      SynthesiseBank(space, MatrixXd::Identity(n, n), test::PerturbedStages(), options);
   const VectorXd noise =
       (VectorXd(4) << test::kNoise, test::kNoise, 0.0, 0.0).finished();
   const ResidualNoise residual_noise =
-      MakeResidualNoise(bank.filters, n, noise, kStride);
+      MakeResidualNoise(bank.filters, n, noise, kDecimation);
   const MatrixXd motion =
       test::Motion(test::Stage(test::Moved(fault)), test::Drive(kSamples));
   Vector3d covered = Vector3d::Zero();
@@ -192,7 +192,7 @@ TEST(FaultEstimator, IntervalsCoverTheFaultsOfAMachine) {
     const MatrixXd outputs = FilterSignals(
         bank.filters, test::Measured(motion, static_cast<std::uint64_t>(run)));
     FaultEstimator estimator(3, residual_noise, 1.0);
-    for (Index t = 200; t < kSamples; t += kStride) {
+    for (Index t = 200; t < kSamples; t += kDecimation) {
       estimator.Add(outputs.col(t).head(n),
                     outputs.col(t).tail(3 * n).reshaped(n, 3).transpose());
     }

@@ -37,13 +37,13 @@ TEST(MonitorRecorder, KeepsTheResidualsOfTheFilters) {
   const MatrixXd signals = Signals(kSamples);
   DiagnosisRecording recording(Design(), kSamples);
   Feed(recording, signals, 0, kSamples);
-  const MatrixXd rows = recording.recorder.ResidualRows();
+  const MatrixXd residuals = recording.recorder.Residuals();
   const MatrixXd expected =
-      FilterSignals(Design().bank.filters, signals).topRows(test::kRows);
+      FilterSignals(Design().bank.filters, signals).topRows(test::kRelations);
   // The offset was added and taken off again: a rounding of 1e-17 m under 20 nm.
-  EXPECT_LT((rows - expected).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((residuals - expected).cwiseAbs().maxCoeff(), 1e-6);
   const MonitorLog log = recording.recorder.Log();
-  EXPECT_EQ(log.residual, rows.row(0).transpose());
+  EXPECT_EQ(log.residual, residuals.row(0).transpose());
   EXPECT_TRUE(log.signals.isApprox(signals, 1e-12));
   const Index window = 800;
   EXPECT_NEAR(log.integral[kSamples - 1],
@@ -56,7 +56,7 @@ TEST(MonitorRecorder, KeepsEveryEstimateWithItsTime) {
   DiagnosisRecording recording(Design(), 4000);
   Feed(recording, Signals(4000), 0, 4000);
   const MonitorLog log = recording.recorder.Log();
-  ASSERT_EQ(log.estimates.cols(), 4000 / Design().stride);
+  ASSERT_EQ(log.estimates.cols(), 4000 / Design().decimation);
   EXPECT_EQ(log.estimates.rightCols(1), recording.monitor.estimate());
   EXPECT_DOUBLE_EQ(log.estimate_time[0], 0.0);
   EXPECT_NEAR(log.estimate_time[999], 999 * 4 / 8000.0, 1e-12);
@@ -72,7 +72,7 @@ TEST(MonitorRecorder, KeepsNoMoreThanItHasRoomForWhileTheMonitorRunsOn) {
   EXPECT_EQ(full.monitor.residuals(), whole.monitor.residuals());
   EXPECT_EQ(full.monitor.estimate(), whole.monitor.estimate());
   EXPECT_EQ(full.recorder.samples(), 40);
-  EXPECT_EQ(full.recorder.ResidualRows(), whole.recorder.ResidualRows().leftCols(40));
+  EXPECT_EQ(full.recorder.Residuals(), whole.recorder.Residuals().leftCols(40));
   EXPECT_EQ(full.recorder.Log().residual.size(), 40);
 }
 

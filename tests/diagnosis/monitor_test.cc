@@ -81,7 +81,7 @@ TEST(DiagnosisMonitor, GivesTheSameBitsTickByTickAndOverARecord) {
   }
   const MonitorLog one = offline.recorder.Log();
   const MonitorLog other = online.recorder.Log();
-  EXPECT_EQ(offline.recorder.ResidualRows(), online.recorder.ResidualRows());
+  EXPECT_EQ(offline.recorder.Residuals(), online.recorder.Residuals());
   EXPECT_EQ(one.residual, other.residual);
   EXPECT_EQ(one.integral, other.integral);
   EXPECT_EQ(one.disturbance, other.disturbance);
@@ -112,7 +112,7 @@ TEST(DiagnosisMonitor, SaysBetweenTicksWhatItKnows) {
       -0.1 * test::Drive(kSamples).row(0).segment(kOnset, kEnd - kOnset).transpose();
   const MatrixXd signals = MotionWithExtraForce(extra);
   const MatrixXd expected =
-      FilterSignals(Design().bank.filters, signals).topRows(test::kRows);
+      FilterSignals(Design().bank.filters, signals).topRows(test::kRelations);
   DiagnosisMonitor monitor(Design());
   Index alarms = 0;
   for (Index k = 0; k < kSamples; ++k) {
@@ -121,7 +121,7 @@ TEST(DiagnosisMonitor, SaysBetweenTicksWhatItKnows) {
     ASSERT_LT((monitor.residuals() - expected.col(k)).cwiseAbs().maxCoeff(), 1e-6);
     ASSERT_EQ(monitor.residual_alarm(), std::abs(monitor.residuals()[0]) >= 6.0);
     ASSERT_EQ(monitor.lasting_alarm(), monitor.integral() > 2.0);
-    ASSERT_EQ(monitor.regressed(), k % Design().stride == 0);
+    ASSERT_EQ(monitor.regressed(), k % Design().decimation == 0);
     if (monitor.residual_alarm() && alarms++ == 0) {
       EXPECT_EQ(monitor.first_detection(), k);
     }
@@ -188,8 +188,8 @@ TEST(DiagnosisMonitor, SubtractsTheBaseline) {
       test::Motion(test::Stage({.damping = 1.05}), test::Drive(kSamples));
   const DiagnosisRecording first = Recorded(motion);
   EXPECT_TRUE(first.monitor.first_detection().has_value());
-  const MatrixXd baseline = first.recorder.ResidualRows();
-  EXPECT_TRUE(Recorded(motion, baseline).recorder.ResidualRows().isZero(0.0));
+  const MatrixXd baseline = first.recorder.Residuals();
+  EXPECT_TRUE(Recorded(motion, baseline).recorder.Residuals().isZero(0.0));
   EXPECT_EQ(Diagnosed(test::Measured(motion, 5), baseline).first_detection(),
             std::nullopt);
 }
@@ -201,7 +201,7 @@ TEST(DiagnosisMonitor, RefusesABaselineOfOtherResiduals) {
 TEST(DiagnosisMonitor, RunsOnBeyondItsBaseline) {
   const MatrixXd signals = test::Motion(test::Stage(), test::Drive(100));
   const DiagnosisMonitor monitor =
-      Diagnosed(signals, MatrixXd::Constant(test::kRows, 99, 1e3));
+      Diagnosed(signals, MatrixXd::Constant(test::kRelations, 99, 1e3));
   EXPECT_EQ(monitor.samples(), 100);
   EXPECT_LT(monitor.residuals().cwiseAbs().maxCoeff(), 1.0);
 }
@@ -256,7 +256,7 @@ TEST(DiagnosisMonitor, RegressesFromTheSampleThatItIsTold) {
   EXPECT_EQ(recording.recorder.Log().residual.size(), 1000);
 }
 
-TEST(DiagnosisMonitor, NamesKnobsAndDisturbances) {
+TEST(DiagnosisMonitor, NamesFaultParametersAndDisturbances) {
   const std::vector<std::string> expected{"damping", "stiffness", "gain", "gamma"};
   EXPECT_EQ(Design().FaultNames(), expected);
   EXPECT_EQ(Design().faults(), 4);

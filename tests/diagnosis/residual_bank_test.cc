@@ -18,23 +18,25 @@ using Eigen::VectorXd;
 
 constexpr Index kSamples = 4000;
 
-FilterBank Filters(const Numerators& rows, const SynthesisOptions& options) {
-  return MakeFilterBank(rows, options.residual.denominator, options.timing.tick());
+FilterBank Filters(const Numerators& relations, const SynthesisOptions& options) {
+  return MakeFilterBank(relations, options.residual.denominator, options.timing.tick());
 }
 
-/// Largest |r| of every row of the machine's residual space over a noise-free motion,
-/// in standard deviations of its noise.
+/// Largest |r| of every relation of the machine's residual space over a noise-free
+/// motion, in standard deviations of its noise.
 double Seen(const SynthesisOptions& options, const MatrixXd& signals) {
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
-  return FilterSignals(Filters(space.rows, options), signals).cwiseAbs().maxCoeff();
+  return FilterSignals(Filters(space.relations, options), signals)
+      .cwiseAbs()
+      .maxCoeff();
 }
 
-/// The bank of all residual rows of the stage and of all its faults.
+/// The bank of all residuals of the stage and of all its faults.
 ResidualBank WholeBank(double magnitude, const SynthesisOptions& options) {
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
-  const Index size = space.rows.front().rows();
+  const Index size = space.relations.front().rows();
   return SynthesiseBank(space, MatrixXd::Identity(size, size),
-                        test::TurnedStages(magnitude), options);
+                        test::PerturbedStages(magnitude), options);
 }
 
 /// z with a force on one coordinate that is none of the commands.
@@ -55,7 +57,7 @@ TEST_P(ResidualDegree, IsBlindToNominalMotionAtUnitNoise) {
   options.residual.degree = GetParam();
   options.residual.denominator.order = GetParam();
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
-  const FilterBank bank = Filters(space.rows, options);
+  const FilterBank bank = Filters(space.relations, options);
   ASSERT_EQ(bank.outputs(), 2 * (options.residual.degree + 1) - 6);
   const VectorXd noise =
       (VectorXd(4) << test::kNoise, test::kNoise, 0.0, 0.0).finished();
@@ -73,7 +75,8 @@ TEST(ResidualSpace, HasUnequalNoiseOnTheSensorsInItsUnit) {
   options.sensor_noise = Eigen::Vector2d(20e-9, 500e-9);
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
   const VectorXd noise = (VectorXd(4) << 20e-9, 500e-9, 0.0, 0.0).finished();
-  EXPECT_TRUE(OutputCovariance(Filters(space.rows, options), noise).isIdentity(1e-6));
+  EXPECT_TRUE(
+      OutputCovariance(Filters(space.relations, options), noise).isIdentity(1e-6));
 }
 
 TEST(ResidualSpace, DecoupledFromAForceIsBlindToItAndToNoOther) {
@@ -119,7 +122,7 @@ TEST(ResidualSpace, SaysWhichDegreeIsEnough) {
   options.residual.degree = 2;
   EXPECT_EQ(
       test::MessageOf<InputError>([&] { MakeResidualSpace(test::Stage(), options); }),
-      "residual: no row of degree 2; expected a degree of at least 3");
+      "residual: no parity relation of degree 2; expected a degree of at least 3");
 }
 
 TEST(ResidualSpace, RefusesADenominatorOfLowerOrder) {
@@ -165,22 +168,22 @@ MatrixXd Coefficients(const FilterBank& bank) {
   return rows;
 }
 
-TEST(ResidualBank, PhiIsEquation24UpToRowsThatAreBlind) {
+TEST(ResidualBank, PhiIsEquation24UpToRelationsThatAreBlind) {
   // N (dH, dL) with N H = 0 give dN = -N dH H^+ and with it the derivative of N L,
-  // N (dL - dH H^+ L): the negative of phi. Rows of the null space may be added to N,
-  // hence residual rows to phi; both are compared in the complement of those. The
+  // N (dL - dH H^+ L): the negative of phi. Vectors of the null space may be added to
+  // N, hence residuals to phi; both are compared in the complement of those. The
   // cut-off of 640 Hz makes powers of p comparable.
   SynthesisOptions options = test::StageOptions();
   options.residual.denominator = {4, 640.0};
   const int degree = options.residual.degree;
   constexpr double kStep = 1e-4;
   const StateSpace system = DeltaForm(test::Stage(), options.timing);
-  const MatrixXd output_part = LeftNullSpace(system, degree).rows;
-  const PolynomialMatrix null_rows = CompleteRows(system, output_part);
-  MatrixXd N(null_rows.rows(), (degree + 1) * null_rows.cols());
+  const MatrixXd output_part = LeftNullSpace(system, degree).relations;
+  const PolynomialMatrix null_vectors = CompleteRelations(system, output_part);
+  MatrixXd N(null_vectors.rows(), (degree + 1) * null_vectors.cols());
   for (int k = 0; k <= degree; ++k) {
-    N.middleCols(k * null_rows.cols(), null_rows.cols()) =
-        null_rows.coefficients[static_cast<std::size_t>(k)];
+    N.middleCols(k * null_vectors.cols(), null_vectors.cols()) =
+        null_vectors.coefficients[static_cast<std::size_t>(k)];
   }
   const auto filters_of = [&](const MatrixXd& bar_rows) {
     Numerators numerators;
@@ -205,15 +208,15 @@ TEST(ResidualBank, PhiIsEquation24UpToRowsThatAreBlind) {
 
   // The same N in both: the bank's residuals are combinations of N L.
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
-  const Index n = space.rows.front().rows();
+  const Index n = space.relations.front().rows();
   const ResidualBank bank = SynthesiseBank(space, MatrixXd::Identity(n, n),
-                                           test::TurnedStages(kStep), options);
+                                           test::PerturbedStages(kStep), options);
   const MatrixXd all = Coefficients(bank.filters);
   const MatrixXd mixing = all.topRows(n) * PseudoInverse(blind);
   ASSERT_LT((mixing * blind - all.topRows(n)).norm(), 1e-9 * all.topRows(n).norm());
 
   Index row = n;
-  for (const TurnedModels& fault : test::TurnedStages(kStep)) {
+  for (const PerturbedModels& fault : test::PerturbedStages(kStep)) {
     const MatrixXd dH = (bar_H(fault.plus) - bar_H(fault.minus)) / (2.0 * kStep);
     const MatrixXd dL = (bar_L(fault.plus) - bar_L(fault.minus)) / (2.0 * kStep);
     const MatrixXd equation_24 =
@@ -238,14 +241,14 @@ TEST(ResidualBank, NoiseOfPhiIsUncorrelatedWithThatOfTheResiduals) {
   EXPECT_TRUE(correlation.topLeftCorner(n, n).isIdentity(1e-6));
 }
 
-TEST(ResidualBank, OfOneRowIsTheMixOfAll) {
+TEST(ResidualBank, OfOneResidualIsTheMixOfAll) {
   const SynthesisOptions options = test::StageOptions();
   const ResidualSpace space = MakeResidualSpace(test::Stage(), options);
   const ResidualBank whole = WholeBank(1e-3, options);
-  const MatrixXd rows = (MatrixXd(1, 4) << 0.6, 0.0, -0.8, 0.0).finished();
-  const ResidualBank mixed = Mix(whole, rows);
+  const MatrixXd combination = (MatrixXd(1, 4) << 0.6, 0.0, -0.8, 0.0).finished();
+  const ResidualBank mixed = Mix(whole, combination);
   const ResidualBank direct =
-      SynthesiseBank(space, rows, test::TurnedStages(1e-3), options);
+      SynthesiseBank(space, combination, test::PerturbedStages(1e-3), options);
   EXPECT_EQ(mixed.residuals, 1);
   EXPECT_EQ(mixed.faults, test::kFaults);
   const MatrixXd expected = Coefficients(direct.filters);
@@ -256,7 +259,7 @@ TEST(ResidualBank, OfOneRowIsTheMixOfAll) {
   const MatrixXd after = FilterSignals(mixed.filters, signals);
   for (Index group = 0; group < 4; ++group) {
     EXPECT_TRUE(
-        after.row(group).isApprox(rows * before.middleRows(4 * group, 4), 1e-9));
+        after.row(group).isApprox(combination * before.middleRows(4 * group, 4), 1e-9));
   }
 }
 

@@ -17,15 +17,15 @@ inline DiagnosisDesign StageDesign() {
   design.inputs = {"motor", "small_motor"};
   design.offset = Eigen::Vector2d(0.25, -0.125);
   design.sensor_noise = options.sensor_noise;
-  design.bank = SynthesiseBank(space, Eigen::MatrixXd::Identity(kRows, kRows),
-                               TurnedStages(), options);
+  design.bank = SynthesiseBank(space, Eigen::MatrixXd::Identity(kRelations, kRelations),
+                               PerturbedStages(), options);
   design.disturbances = {{"gamma", {60.0, 145.0}, Eigen::Vector2d(0.5, 0.2)}};
   design.disturbance.filter =
-      MakeFilterBank(Combine(Eigen::MatrixXd::Identity(1, kRows), space.rows),
+      MakeFilterBank(Combine(Eigen::MatrixXd::Identity(1, kRelations), space.relations),
                      {5, 750.0}, options.timing.tick());
   design.disturbance.high_pass =
       DigitalButterworth(FilterKind::kHighPass, 3, 100.0, options.timing.tick());
-  design.stride = 4;
+  design.decimation = 4;
   design.options.integral_window = 0.1;
   design.limits.residual.limits = {-6.0, 6.0};
   // The mean of |r| is 0.8 standard deviations.

@@ -20,20 +20,20 @@ namespace mjdiag::test {
 
 inline constexpr TickTiming kTiming{1.0 / 32000.0, 4};
 inline constexpr double kNoise = 20e-9;  ///< of each encoder, a sample [m]
-/// Residuals begin at degree 3, with two rows; the four of degree 4 tell the faults
-/// apart a hundred times better.
+/// Residuals begin at degree 3, with two relations; the four of degree 4 tell the
+/// faults apart a hundred times better.
 inline constexpr int kDegree = 4;
-inline constexpr Eigen::Index kRows = 4;
+inline constexpr Eigen::Index kRelations = 4;
 
-/// Fault knobs; 1 is healthy.
-struct Knobs {
+/// Fault parameters; 1 is healthy.
+struct StageParameters {
   double damping = 1.0;    ///< of the stage's guide
   double stiffness = 1.0;  ///< of the coupling
   double gain = 1.0;       ///< of the main motor
 };
 
 /// q = positions of base, stage and load [m].
-inline MechanicalModel Stage(const Knobs& knobs = {}) {
+inline MechanicalModel Stage(const StageParameters& parameters = {}) {
   const auto between = [](double value) -> Eigen::Matrix2d {
     return (Eigen::Matrix2d() << value, -value, -value, value).finished();
   };
@@ -43,12 +43,12 @@ inline MechanicalModel Stage(const Knobs& knobs = {}) {
   model.outputs = {"stage", "load"};
   model.M = Eigen::Vector3d(60.0, 6.0, 1.5).asDiagonal();
   model.D = Eigen::Vector3d(8e3, 0.0, 0.0).asDiagonal();
-  model.D.topLeftCorner(2, 2) += between(200.0 * knobs.damping);
+  model.D.topLeftCorner(2, 2) += between(200.0 * parameters.damping);
   model.D.bottomRightCorner(2, 2) += between(150.0);
   model.K = Eigen::Vector3d(2e7, 0.0, 0.0).asDiagonal();
-  model.K.bottomRightCorner(2, 2) += between(5e6 * knobs.stiffness);
+  model.K.bottomRightCorner(2, 2) += between(5e6 * parameters.stiffness);
   model.Gamma = Eigen::MatrixXd::Zero(3, 2);
-  model.Gamma.col(0) = knobs.gain * Eigen::Vector3d(-1.0, 1.0, 0.0);
+  model.Gamma.col(0) = parameters.gain * Eigen::Vector3d(-1.0, 1.0, 0.0);
   model.Gamma.col(1) = Eigen::Vector3d(0.0, -1.0, 1.0);
   model.b = Eigen::MatrixXd::Zero(3, 2);
   model.b.col(0) = Eigen::Vector3d(-1.0, 1.0, 0.0);
@@ -58,20 +58,20 @@ inline MechanicalModel Stage(const Knobs& knobs = {}) {
 
 inline const std::vector<std::string> kFaults{"damping", "stiffness", "gain"};
 
-/// The knobs moved by `deviations`, in the order of kFaults.
-inline Knobs Moved(const Eigen::Vector3d& deviations) {
+/// The parameters moved by `deviations`, in the order of kFaults.
+inline StageParameters Moved(const Eigen::Vector3d& deviations) {
   return {1.0 + deviations[0], 1.0 + deviations[1], 1.0 + deviations[2]};
 }
 
-/// Every knob turned by -c and +c.
-inline std::vector<TurnedModels> TurnedStages(double magnitude = 1e-3) {
-  std::vector<TurnedModels> turned;
+/// Every parameter changed by -c and +c.
+inline std::vector<PerturbedModels> PerturbedStages(double magnitude = 1e-3) {
+  std::vector<PerturbedModels> perturbed;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d step = magnitude * Eigen::Vector3d::Unit(i);
-    turned.push_back({kFaults[static_cast<std::size_t>(i)], magnitude,
-                      Stage(Moved(-step)), Stage(Moved(step))});
+    perturbed.push_back({kFaults[static_cast<std::size_t>(i)], magnitude,
+                         Stage(Moved(-step)), Stage(Moved(step))});
   }
-  return turned;
+  return perturbed;
 }
 
 inline SynthesisOptions StageOptions() {

@@ -57,7 +57,7 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
   EXPECT_EQ(force.unit, "N");
 }
 
-TEST(Discovery, NamesATurnedKnobAsTheFault) {
+TEST(Discovery, NamesAChangedFaultParameterAsTheFault) {
   const test::StageUnderTest stage;
   const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),
                                     nullptr, CausesOnly());
@@ -80,7 +80,7 @@ TEST(Discovery, DoesNotNameWhatSpoilsTheValidationRecord) {
   const Discovery judged = Discover(stage.machine, measured, &validation, CausesOnly());
   EXPECT_EQ(Named(judged).find("force_saturation"), std::string::npos);
   EXPECT_TRUE(std::ranges::any_of(judged.notes, [](const std::string& note) {
-    return note.find("spoils") != std::string::npos &&
+    return note.find("outside the fit") != std::string::npos &&
            note.find("force_saturation@drive") != std::string::npos;
   }));
 }

@@ -13,8 +13,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-RowProgramFacts Solved() {
-  RowProgramFacts facts;
+ParityProgramFacts Solved() {
+  ParityProgramFacts facts;
   facts.degree = 7;
   facts.norm = "one";
   facts.fault_inputs = 2;
@@ -42,7 +42,7 @@ TEST(ResidualHistogram, HasTheAreaOfItsNormalCurve) {
   EXPECT_DOUBLE_EQ(plot.marks[1].value, 6.0);
 }
 
-TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
+TEST(DesignPage, SaysWhichParityRelationsExistAndWhatIsHealthy) {
   const Machine bonder = test::Bonder();
   mjdiag::Setup setup = bonder.setup();
   setup.diagnosis.trajectories.clear();
@@ -75,16 +75,17 @@ TEST(DesignPage, SaysWhichRowsExistAndWhatIsHealthy) {
   EXPECT_THAT(whole, HasSubstr("beta = 0.01"));
 }
 
-TEST(DescribeRowPrograms, GivesNoFiguresOfARowThatIsNotThere) {
-  EXPECT_EQ(DescribeRowPrograms(Solved()),
-            "Linear programs: 12 of 16 at degree 7 for 2 fault inputs have a row; the "
-            "smallest in the one-norm has size 2.50, leaves 1.0e-17 of the unknowns "
-            "and lies 2.0e-11 rad from the null space of the singular value "
-            "decomposition.");
-  RowProgramFacts none = Solved();
+TEST(DescribeParityPrograms, GivesNoFiguresOfARelationThatIsNotThere) {
+  EXPECT_EQ(
+      DescribeParityPrograms(Solved()),
+      "Linear programs: 12 of 16 at degree 7 for 2 fault inputs have a solution; the "
+      "smallest in the one-norm has size 2.50, leaves 1.0e-17 of the unknowns "
+      "and lies 2.0e-11 rad from the null space of the singular value "
+      "decomposition.");
+  ParityProgramFacts none = Solved();
   none.feasible = 0;
-  EXPECT_EQ(DescribeRowPrograms(none),
-            "Linear programs: 0 of 16 at degree 7 for 2 fault inputs have a row.");
+  EXPECT_EQ(DescribeParityPrograms(none),
+            "Linear programs: 0 of 16 at degree 7 for 2 fault inputs have a solution.");
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ TEST(DiscoveryJson, HasTheFieldsOfTheDesign) {
   EXPECT_TRUE(document.at("unexplained").at("signature").is_null());
 }
 
-TEST(DiscoveryJson, GivesATurnedKnobByItsNameAndValue) {
-  const json knob = ToJson(SampleDiscovery(), "").at("causes").at(1);
-  EXPECT_EQ(knob.at("effect"), "eta");
-  EXPECT_EQ(knob.at("site"), "drive");
-  EXPECT_EQ(knob.at("fault"), true);
-  EXPECT_EQ(knob.at("parameters").at("value").at("value"), 1.0342);
-  EXPECT_EQ(knob.at("alternatives").at(0).at("indistinguishable"), true);
+TEST(DiscoveryJson, GivesAFaultByItsNameAndValue) {
+  const json fault = ToJson(SampleDiscovery(), "").at("causes").at(1);
+  EXPECT_EQ(fault.at("effect"), "eta");
+  EXPECT_EQ(fault.at("site"), "drive");
+  EXPECT_EQ(fault.at("fault"), true);
+  EXPECT_EQ(fault.at("parameters").at("value").at("value"), 1.0342);
+  EXPECT_EQ(fault.at("alternatives").at(0).at("indistinguishable"), true);
 }
 
 TEST(DiscoveryJson, HasNoPlantWithoutAPath) {

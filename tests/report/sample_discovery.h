@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/plugin/effects/fault_parameter.h"
+#include "mjdiag/plugin/effects/fault_effect.h"
 
 namespace mjdiag {
 
@@ -48,14 +48,14 @@ inline FoundCause SampleFriction() {
   return friction;
 }
 
-inline FoundCause SampleKnob() {
-  FoundCause knob;
-  knob.cause = {FaultParameter({"eta", KnobKind::kGear, {0}}), "drive",
-                Eigen::VectorXd::Constant(1, 1.0342)};
-  knob.parameters = {{"value", "1", 1.0342, 2e-5, 1.03416, 1.03424}};
-  knob.probability = 1.0;
-  knob.alternatives = {{ParseEffect("motor_constant@drive:factor=1.0342"), 0.5, true}};
-  return knob;
+inline FoundCause SampleFault() {
+  FoundCause fault;
+  fault.cause = {FaultEffect({"eta", FaultParameterKind::kGear, {0}}), "drive",
+                 Eigen::VectorXd::Constant(1, 1.0342)};
+  fault.parameters = {{"value", "1", 1.0342, 2e-5, 1.03416, 1.03424}};
+  fault.probability = 1.0;
+  fault.alternatives = {{ParseEffect("motor_constant@drive:factor=1.0342"), 0.5, true}};
+  return fault;
 }
 
 inline LawPlot SampleLaw() {
@@ -76,7 +76,7 @@ inline Discovery SampleDiscovery() {
   Discovery discovery;
   discovery.setup = "slide <1>";
   discovery.verdict = DiscoveryVerdict::kExplained;
-  discovery.causes = {SampleFriction(), SampleKnob()};
+  discovery.causes = {SampleFriction(), SampleFault()};
   discovery.notes = {"backlash at load cannot be judged: it is never reversed."};
   discovery.train_share = 0.7;
   discovery.before = SampleReplay(5e-6);

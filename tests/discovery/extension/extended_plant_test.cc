@@ -106,7 +106,7 @@ TEST(ExtendedPlant, MovesAsEmpsWithEveryEffectByItself) {
   }
 }
 
-TEST(ExtendedPlant, MovesAsTheMachineWithEveryFaultTurned) {
+TEST(ExtendedPlant, MovesAsTheMachineWithEveryFault) {
   const Changes ab383 = test::With(
       {}, {{"zeta_x", 1.37}, {"beta_y", 0.91}, {"eta_x", 0.93}, {"eta_z", 1.01}});
   ExpectSameMotion(Extension(Folder("ab383")), ab383, "AB383");

@@ -29,7 +29,7 @@ TEST_F(NestedLaw, AResonanceThatIsEverStifferIsAMass) {
 }
 
 // 203.5 N s/m is the damping of the stage: 10 % more on average is zeta = 1.1.
-TEST_F(NestedLaw, TheKnobStandsForTheSymmetricLawThatItIs) {
+TEST_F(NestedLaw, TheFaultParameterStandsForTheSymmetricLawThatItIs) {
   const double damping = stage_.machine.plant().dof_damping[0];
   const auto simpler = SimplerOf("asymmetric_viscous_friction@load",
                                  Eigen::Vector2d(0.05 * damping, 0.15 * damping));

@@ -79,8 +79,8 @@ def observability_stack(A, C, degree):
     return stack / np.where(size > 0.0, size, 1.0)
 
 
-def null_rows(A, B, C, degree):
-    """Numerators over z = [y; u] of every row, (degree + 1) nz columns."""
+def parity_relations(A, B, C, degree):
+    """Numerators over z = [y; u] of every parity relation, (degree + 1) nz columns."""
     outputs = len(C)
     rows = linalg.null_space(observability_stack(A, C, degree).T, rcond=1e-11).T
     blocks = rows.reshape(len(rows), degree + 1, outputs)
@@ -157,8 +157,8 @@ def covariance(system, noise):
     return C @ states @ C.T + D @ D.T
 
 
-def slopes(given, machine, numerators, scale, zs):
-    """-dR/df of every fault by its effect on the healthy row, and as the filters say."""
+def derivatives(given, machine, numerators, scale, zs):
+    """-dR/df of every fault by its effect on the healthy relation, and as the filters say."""
     errors = []
     for i, magnitude in enumerate(given["magnitudes"][0]):
         minus = Machine(given, f"minus{i}.")
@@ -187,13 +187,13 @@ def main():
     zs = points(np.random.default_rng(20240607), 40)
     A, B, C = machine.delta(scale)
 
-    show("nullity", [len(null_rows(A, B, C, d)) for d in range(degree + 1)])
-    show("angle", angle_between(given["space"], null_rows(A, B, C, degree), signals,
+    show("nullity", [len(parity_relations(A, B, C, d)) for d in range(degree + 1)])
+    show("angle", angle_between(given["space"], parity_relations(A, B, C, degree), signals,
                                 len(C)))
     for name in ("space", "disturbance"):
         show(f"{name}.misfit", misfit(machine, given[name], scale, zs))
     show("bank.misfit", misfit(machine, given["bank"][:1], scale, zs))
-    show("slopes", slopes(given, machine, given["bank"], scale, zs))
+    show("derivatives", derivatives(given, machine, given["bank"], scale, zs))
 
     for name in ("space", "bank", "disturbance"):
         order, cutoff = given[f"{name}.denominator"][0]

@@ -139,12 +139,12 @@ struct WornGuide {
   Values ForPython() const {
     Values values;
     AddMachine(values, "", machine.linear());
-    const std::vector<TurnedModels> turned = MakeFaultFamily(machine).Turned();
-    MatrixXd magnitudes(1, turned.size());
-    for (std::size_t i = 0; i < turned.size(); ++i) {
-      AddMachine(values, "minus" + std::to_string(i) + ".", turned[i].minus);
-      AddMachine(values, "plus" + std::to_string(i) + ".", turned[i].plus);
-      magnitudes(0, static_cast<Index>(i)) = turned[i].magnitude;
+    const std::vector<PerturbedModels> perturbed = MakeFaultFamily(machine).Perturbed();
+    MatrixXd magnitudes(1, perturbed.size());
+    for (std::size_t i = 0; i < perturbed.size(); ++i) {
+      AddMachine(values, "minus" + std::to_string(i) + ".", perturbed[i].minus);
+      AddMachine(values, "plus" + std::to_string(i) + ".", perturbed[i].plus);
+      magnitudes(0, static_cast<Index>(i)) = perturbed[i].magnitude;
     }
     values["magnitudes"] = magnitudes;
     values["step"] = Scalar(options.timing.step);
@@ -155,7 +155,7 @@ struct WornGuide {
     values["noise"].leftCols(design.sensor_noise.size()) =
         design.sensor_noise.transpose();
     values["record"] = signals;
-    values["space"] = SideBySide(space.rows);
+    values["space"] = SideBySide(space.relations);
     values["space.denominator"] = AsRow(options.residual.denominator);
     values["bank"] = SideBySide(NumeratorsOf(design.bank.filters));
     values["bank.denominator"] = AsRow(options.residual.denominator);
@@ -220,25 +220,26 @@ double Difference(const MatrixXd& actual, const MatrixXd& reference) {
   return (actual - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 }
 
-TEST_F(DiagnosisScipy, FindsTheSameRows) {
-  // Three outputs and twenty states: no row below degree 6, one of 6, four up to 7.
+TEST_F(DiagnosisScipy, FindsTheSameParityRelations) {
+  // Three outputs and twenty states: none below degree 6, one of 6, four up to 7.
   const MatrixXd& nullity = Value("nullity");
   ASSERT_EQ(nullity.cols(), 8);
   const StateSpace system = DeltaForm(Ours().machine.linear(), Ours().options.timing);
   for (int degree = 0; degree <= 7; ++degree) {
-    EXPECT_EQ(LeftNullSpace(system, degree).rows.rows(), nullity(0, degree)) << degree;
+    EXPECT_EQ(LeftNullSpace(system, degree).relations.rows(), nullity(0, degree))
+        << degree;
   }
   EXPECT_EQ(nullity(0, 5), 0);
   EXPECT_EQ(nullity(0, 6), 1);
   EXPECT_EQ(nullity(0, 7), 4);
-  EXPECT_EQ(Ours().space.rows.front().rows(), 4);
+  EXPECT_EQ(Ours().space.relations.front().rows(), 4);
   // Rounding, times 1e4 for the spread of the singular values of the stack in the
   // coordinates of the reference, times 1e4 for that of the coefficients within a
   // power.
   EXPECT_LT(Number("angle"), 1e-7);
 }
 
-TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
+TEST_F(DiagnosisScipy, ConfirmsThatRelationsAreBlindToNominalMotion) {
   // N [G; I] at points of the complex plane, over the sum of the magnitudes of what
   // cancels in it: rounding is left, times the condition of the resolvent (1e5 and more
   // near the poles of the guides).
@@ -247,11 +248,12 @@ TEST_F(DiagnosisScipy, ConfirmsThatRowsAreBlindToNominalMotion) {
   EXPECT_LT(Number("disturbance.misfit"), 1e-9);
 }
 
-TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheSlopesOfTheResidual) {
-  // Both sides are central differences over a turn of c = 1e-3 of a knob, but of
-  // different things: they agree up to their terms of c^2, times how strongly the row
-  // bends, which is some tens for the guide dampers. A wrong slope is off by one.
-  EXPECT_THAT(Value("slopes").reshaped(), Each(Lt(1e-3)));
+TEST_F(DiagnosisScipy, ConfirmsThatPrefiltersAreTheDerivativesOfTheResidual) {
+  // Both sides are central differences over a change of c = 1e-3 of a fault
+  // parameter, but of different things: they agree up to their terms of c^2,
+  // times how strongly the relation bends, which is some tens for the guide dampers. A
+  // wrong derivative is off by one.
+  EXPECT_THAT(Value("derivatives").reshaped(), Each(Lt(1e-3)));
 }
 
 TEST_F(DiagnosisScipy, HasTheSameDenominators) {
@@ -267,7 +269,7 @@ TEST_F(DiagnosisScipy, HasTheSameDenominators) {
   }
 }
 
-TEST_F(DiagnosisScipy, ConfirmsThatRowsHaveUnitNoise) {
+TEST_F(DiagnosisScipy, ConfirmsThatRelationsHaveUnitNoise) {
   // Rounding, times 1e4 for the Lyapunov equation of poles that near to 1.
   constexpr double kRounding = 1e-11;
   const MatrixXd& covariance = Value("space.covariance");

@@ -72,7 +72,7 @@ std::vector<std::string> Driven(const MechanicalModel& model,
   return entries;
 }
 
-TEST(FaultyMachine, ScalesTheEntriesOfTheKnobAndNothingElse) {
+TEST(FaultyMachine, ScalesTheEntriesOfTheParameterAndNothingElse) {
   const Machine machine = test::Bonder();
   const MechanicalModel& healthy = machine.linear();
   const std::vector<std::pair<std::string, std::vector<std::string>>> expected = {
@@ -83,16 +83,17 @@ TEST(FaultyMachine, ScalesTheEntriesOfTheKnobAndNothingElse) {
       {"eta_x", Driven(healthy, "u_x")},
       {"eta_y", Driven(healthy, "u_y")},
       {"eta_z", Driven(healthy, "u_z")}};
-  for (const auto& [knob, entries] : expected) {
-    const MechanicalModel faulty = Faulty(machine, {{knob, 0.97}});
-    EXPECT_THAT(Changes(healthy, faulty), UnorderedElementsAreArray(entries)) << knob;
+  for (const auto& [parameter, entries] : expected) {
+    const MechanicalModel faulty = Faulty(machine, {{parameter, 0.97}});
+    EXPECT_THAT(Changes(healthy, faulty), UnorderedElementsAreArray(entries))
+        << parameter;
   }
   const std::vector<std::string> names = MakeFaultFamily(machine).parameters;
   EXPECT_THAT(Changes(healthy, Faulty(machine, At(names, VectorXd::Ones(7)))),
               testing::IsEmpty());
 }
 
-TEST(FaultyMachine, ScalesByTheValueOfTheKnob) {
+TEST(FaultyMachine, ScalesByTheValueOfTheParameter) {
   const Machine machine = test::Bonder();
   const MechanicalModel& healthy = machine.linear();
   const MechanicalModel faulty =
@@ -141,20 +142,20 @@ void ExpectSameModel(const MechanicalModel& actual, const MechanicalModel& expec
 TEST(FaultFamily, TurnsOneParameterAtATimeBothWays) {
   const Machine machine = test::Bonder({"diagnosis.estimation.magnitudes.beta_y=0.05"});
   const FaultFamily family = MakeFaultFamily(machine);
-  const std::vector<TurnedModels> turned = family.Turned();
+  const std::vector<PerturbedModels> perturbed = family.Perturbed();
   const std::vector<std::string>& names = family.parameters;
-  ASSERT_EQ(turned.size(), names.size());
-  for (std::size_t i = 0; i < turned.size(); ++i) {
+  ASSERT_EQ(perturbed.size(), names.size());
+  for (std::size_t i = 0; i < perturbed.size(); ++i) {
     SCOPED_TRACE(names[i]);
     const double c = family.magnitudes[static_cast<Index>(i)];
-    EXPECT_EQ(turned[i].name, names[i]);
-    EXPECT_EQ(turned[i].magnitude, c);
-    ExpectSameModel(turned[i].minus, Faulty(machine, {{names[i], 1.0 - c}}));
-    ExpectSameModel(turned[i].plus, Faulty(machine, {{names[i], 1.0 + c}}));
+    EXPECT_EQ(perturbed[i].name, names[i]);
+    EXPECT_EQ(perturbed[i].magnitude, c);
+    ExpectSameModel(perturbed[i].minus, Faulty(machine, {{names[i], 1.0 - c}}));
+    ExpectSameModel(perturbed[i].plus, Faulty(machine, {{names[i], 1.0 + c}}));
   }
 }
 
-TEST(FaultFamily, HasTheModelsOfThePlantWithTheParametersTurned) {
+TEST(FaultFamily, HasTheModelsOfThePlantWithTheParametersChanged) {
   const Machine machine = test::Bonder();
   const FaultFamily family = MakeFaultFamily(machine);
   const VectorXd ones = VectorXd::Ones(7);
@@ -193,7 +194,7 @@ actuators.u = { element = "motor", unit = "N m" }
   const test::TemporaryFolder folder_;
 };
 
-TEST_F(Pendulum, HasModelsAboutTheEquilibriumThatTheKnobMovesItTo) {
+TEST_F(Pendulum, HasModelsAboutTheEquilibriumThatTheParameterMovesItTo) {
   const Machine machine = Load();
   const FaultFamily family = MakeFaultFamily(machine);
   const MechanicalModel& healthy = machine.linear();

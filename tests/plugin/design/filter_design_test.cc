@@ -316,7 +316,7 @@ TEST(DesignFilters, NamesTheJointsIfAnUnknownForceActsOnNone) {
                 joints);
 }
 
-TEST(DesignFilters, NamesTheKnobsIfAMagnitudeIsOfNone) {
+TEST(DesignFilters, NamesTheParametersIfAMagnitudeIsOfNone) {
   EXPECT_EQ(
       ErrorWith("diagnosis.estimation.magnitudes.zeta_q=0.01"),
       "setup 'AB383 wire bonder': diagnosis.estimation.magnitudes: the plant has "
@@ -325,8 +325,9 @@ TEST(DesignFilters, NamesTheKnobsIfAMagnitudeIsOfNone) {
 }
 
 TEST(DesignFilters, SaysWhichDegreeThePlantNeeds) {
-  EXPECT_EQ(ErrorWith("diagnosis.degree=5"),
-            "residual: no row of degree 5; expected a degree of at least 6");
+  EXPECT_EQ(
+      ErrorWith("diagnosis.degree=5"),
+      "residual: no parity relation of degree 5; expected a degree of at least 6");
 }
 
 TEST(DesignFilters, RefusesADenominatorBelowTheDegree) {
@@ -341,7 +342,7 @@ TEST(DesignFilters, RefusesASamplingThatIsNoMultipleOfTheTick) {
   };
   EXPECT_EQ(ErrorWith("diagnosis.estimation.sampling=0.0003"), message("0.000300"));
   EXPECT_EQ(ErrorWith("diagnosis.estimation.sampling=1e-5"), message("0.000010"));
-  EXPECT_EQ(Bench({"diagnosis.estimation.sampling=0.002"}).design.stride, 16);
+  EXPECT_EQ(Bench({"diagnosis.estimation.sampling=0.002"}).design.decimation, 16);
 }
 
 TEST(Run, RefusesARecordAtAnotherRate) {

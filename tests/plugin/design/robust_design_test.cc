@@ -61,9 +61,9 @@ TEST_F(RobustDesign, IsExcitedLessByAHealthyMachineWithFriction) {
 TEST_F(RobustDesign, HasOneResidualOfItsOwnDegreeAndPrefiltersForAllFaults) {
   const DiagnosisDesign design = Robust("eta_y");
   EXPECT_EQ(design.bank.residuals, 1);
-  EXPECT_EQ(design.options.estimation_rows, 1);
+  EXPECT_EQ(design.options.estimation_residuals, 1);
   EXPECT_EQ(design.options.residual.degree, setup_.diagnosis.robust.residual.degree);
-  EXPECT_EQ(design.bank.rows.size(), design.options.residual.degree + 1);
+  EXPECT_EQ(design.bank.relations.size(), design.options.residual.degree + 1);
   EXPECT_EQ(design.bank.filters.outputs(), 1 + design.bank.faults.size());
 }
 
@@ -75,9 +75,10 @@ TEST_F(RobustDesign, IsBlindToNominalMotionOfTheLinearPlant) {
   EXPECT_GT(outputs.bottomRows(7).rowwise().norm().minCoeff(), 1.0);
 }
 
-// Against a baseline what every run leaves alike costs nothing: another row is best.
+// Against a baseline what every run leaves alike costs nothing: another is best.
 TEST_F(RobustDesign, DependsOnWhetherABaselineIsSubtracted) {
-  EXPECT_NE(Robust("zeta_x", true).bank.rows[0], Robust("zeta_x", false).bank.rows[0]);
+  EXPECT_NE(Robust("zeta_x", true).bank.relations[0],
+            Robust("zeta_x", false).bank.relations[0]);
 }
 
 TEST_F(RobustDesign, SeesADisturbanceOfTheSetupToo) {
@@ -86,9 +87,10 @@ TEST_F(RobustDesign, SeesADisturbanceOfTheSetupToo) {
 }
 
 TEST_F(RobustDesign, NamesTheFaultsThatThereAre) {
-  EXPECT_EQ(test::MessageOf<InputError>([&] { Robust("zeta_q"); }),
-            "robust row: there is no fault 'zeta_q'; expected one of zeta_x, zeta_y, "
-            "beta_x, beta_y, eta_x, eta_y, eta_z, gamma");
+  EXPECT_EQ(
+      test::MessageOf<InputError>([&] { Robust("zeta_q"); }),
+      "robust residual: there is no fault 'zeta_q'; expected one of zeta_x, zeta_y, "
+      "beta_x, beta_y, eta_x, eta_y, eta_z, gamma");
 }
 
 }  // namespace

@@ -21,11 +21,11 @@ using testing::HasSubstr;
 
 ModelPtr Bonder() { return CopyModel(test::Bonder().plant()); }
 
-/// A model whose only knob is `data`.
-ModelPtr WithKnob(const std::string& data) {
+/// A model whose only fault parameter is `data`.
+ModelPtr WithParameter(const std::string& data) {
   const test::TemporaryFolder folder;
   return LoadModel(folder.Write(
-      "fault_test.xml", R"(<mujoco><custom><text name="fault.knob" data=")" + data +
+      "fault_test.xml", R"(<mujoco><custom><text name="fault.zeta" data=")" + data +
                             R"("/></custom><worldbody><body>
       <joint name="x" type="slide"/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>)"));
@@ -40,14 +40,15 @@ std::string ErrorOf(const std::function<void()>& action) {
   return "no error";
 }
 
-TEST(FaultKnobs, OfTheBonderAreTheOnesItDeclares) {
+TEST(FaultParameters, OfTheBonderAreTheOnesItDeclares) {
   std::vector<std::string> names;
-  for (const FaultKnob& knob : FaultKnobs(*Bonder())) names.push_back(knob.name);
+  for (const FaultParameter& parameter : FaultParameters(*Bonder()))
+    names.push_back(parameter.name);
   EXPECT_THAT(names, ElementsAre("zeta_x", "zeta_y", "beta_x", "beta_y", "eta_x",
                                  "eta_y", "eta_z"));
 }
 
-/// Ratio of every number that a knob may scale, faulty to healthy, where it is not 1.
+/// Names of all that a fault parameter may scale and that differs.
 std::vector<std::string> Changes(const mjModel& healthy, const mjModel& faulty) {
   std::vector<std::string> changes;
   for (int j = 0; j < healthy.njnt; ++j) {
@@ -70,7 +71,7 @@ std::vector<std::string> Changes(const mjModel& healthy, const mjModel& faulty) 
   return changes;
 }
 
-TEST(ApplyFault, ScalesWhatTheKnobNamesAndNothingElse) {
+TEST(ApplyFault, ScalesWhatTheParameterNamesAndNothingElse) {
   const ModelPtr healthy = Bonder();
   const std::vector<std::pair<std::string, std::vector<std::string>>> expected = {
       {"zeta_x", {"damping X"}},
@@ -80,10 +81,10 @@ TEST(ApplyFault, ScalesWhatTheKnobNamesAndNothingElse) {
       {"eta_x", {"gear x_motor"}},
       {"eta_y", {"gear y_motor"}},
       {"eta_z", {"gear z_motor"}}};
-  for (const auto& [knob, changes] : expected) {
+  for (const auto& [parameter, changes] : expected) {
     const ModelPtr faulty = CopyModel(*healthy);
-    ApplyFault(*faulty, {knob, 0.97});
-    EXPECT_EQ(Changes(*healthy, *faulty), changes) << knob;
+    ApplyFault(*faulty, {parameter, 0.97});
+    EXPECT_EQ(Changes(*healthy, *faulty), changes) << parameter;
   }
 }
 
@@ -98,7 +99,7 @@ TEST(ApplyFault, MultipliesByTheValue) {
   EXPECT_DOUBLE_EQ(faulty->actuator_gear[6 * y_motor + 1], 0.5);
 }
 
-TEST(ApplyFault, ListsTheKnobsThatThereAre) {
+TEST(ApplyFault, ListsTheParametersThatThereAre) {
   const ModelPtr bonder = Bonder();
   EXPECT_THAT(ErrorOf([&] {
                 ApplyFault(*bonder, {"zeta_q", 1.0});
@@ -117,16 +118,16 @@ TEST(ApplyFault, RefusesValuesThatAreNoFactors) {
   }
 }
 
-TEST(FaultKnobs, NameWhatIsWrongInTheirDeclaration) {
-  EXPECT_THAT(ErrorOf([] { FaultKnobs(*WithKnob("damping Q")); }),
-              AllOf(HasSubstr("fault.knob"), HasSubstr("no joint named \"Q\""),
+TEST(FaultParameters, NameWhatIsWrongInTheirDeclaration) {
+  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("damping Q")); }),
+              AllOf(HasSubstr("fault.zeta"), HasSubstr("no joint named \"Q\""),
                     HasSubstr("one of x")));
-  EXPECT_THAT(ErrorOf([] { FaultKnobs(*WithKnob("friction x")); }),
-              AllOf(HasSubstr("fault.knob"), HasSubstr("friction")));
-  EXPECT_THAT(ErrorOf([] { FaultKnobs(*WithKnob("gear x")); }),
+  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("friction x")); }),
+              AllOf(HasSubstr("fault.zeta"), HasSubstr("friction")));
+  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("gear x")); }),
               HasSubstr("no actuator named \"x\""));
-  EXPECT_THAT(ErrorOf([] { FaultKnobs(*WithKnob("damping")); }),
-              AllOf(HasSubstr("fault.knob"), HasSubstr("no element")));
+  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("damping")); }),
+              AllOf(HasSubstr("fault.zeta"), HasSubstr("no element")));
 }
 
 }  // namespace

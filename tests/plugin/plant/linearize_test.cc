@@ -15,7 +15,7 @@
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/transition.h"
 #include "mjdiag/plugin/setup/chain_file.h"
-#include "mjdiag/plugin/setup/published_row_file.h"
+#include "mjdiag/plugin/setup/published_relation_file.h"
 #include "mjdiag/signals/error.h"
 #include "support/bonder.h"
 #include "support/temporary_folder.h"
@@ -200,8 +200,8 @@ TEST(Linearize, BonderHasTheRecoveredModes) {
 }
 
 TEST(Linearize, BonderReproducesEveryPrintedCoefficient) {
-  const PublishedRowComparison comparison = ComparePublishedRow(
-      LinearBonder(), ReadPublishedRow(kBonder + "published_row.toml"));
+  const PublishedRelationComparison comparison = ComparePublishedRelation(
+      LinearBonder(), ReadPublishedRelation(kBonder + "published_row.toml"));
   EXPECT_EQ(comparison.coefficients.size(), 35u);
   for (const CoefficientComparison& c : comparison.coefficients) {
     EXPECT_LT(c.half_ulps, 2.0) << c.channel << " s^" << c.power;
@@ -213,10 +213,11 @@ TEST(Linearize, BonderOnePercentOffMissesThePrint) {
   const ModelPtr bonder = CopyModel(Bonder().plant());
   const int y_stage = FindElement(*bonder, mjOBJ_BODY, "y_stage");
   bonder->body_mass[y_stage] *= 1.01;
-  EXPECT_GT(ComparePublishedRow(LinearBonder(*bonder),
-                                ReadPublishedRow(kBonder + "published_row.toml"))
-                .worst_half_ulp,
-            2.0);
+  EXPECT_GT(
+      ComparePublishedRelation(LinearBonder(*bonder),
+                               ReadPublishedRelation(kBonder + "published_row.toml"))
+          .worst_half_ulp,
+      2.0);
 }
 
 TEST(Linearize, BonderIsSeenAfterSevenDerivatives) {

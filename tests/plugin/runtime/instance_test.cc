@@ -68,8 +68,8 @@ TEST(ControlCallback, DoesNotAllocate) {
 }
 
 TEST(ControlCallback, DoesNotAllocateWithADiagnosisInIt) {
-  // With every row of the null space, a baseline and a recorder that is full before the
-  // run ends.
+  // With every residual of the null space, a baseline and a recorder that is full
+  // before the run ends.
   const Machine machine = test::Bonder(
       {"diagnosis.estimation.rows=0", "diagnosis.estimation.forgetting=0.1"});
   for (const bool at_rest : {true, false}) {

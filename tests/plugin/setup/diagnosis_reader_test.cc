@@ -97,7 +97,7 @@ TEST_F(DiagnosisReader, ReadsEveryKey) {
   EXPECT_EQ(options.false_alarms, 0.01);
   EXPECT_EQ(options.integral_window, 0.5);
   EXPECT_THAT(options.trajectories, ElementsAre("slow", "fast"));
-  EXPECT_EQ(options.estimation_rows, 0);
+  EXPECT_EQ(options.estimation_residuals, 0);
   EXPECT_EQ(options.sampling, 0.002);
   EXPECT_EQ(options.horizon, 1.5);
   EXPECT_EQ(options.forgetting, 0.75);

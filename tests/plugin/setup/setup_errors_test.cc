@@ -191,12 +191,10 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
        "axes.r.actuator: 'u' drives axis 's'; expected an actuator for each axis"},
       {"amplitude = { u =", "amplitude = { q =", 44,
        "disturbances.hum.amplitude.q: there is no actuator channel 'q'; expected one "
-       "of "
-       "u, t"},
+       "of u, t"},
       {"amplitude = { u = { ratio = 0.01, maximum = 450.0 } }", "", 42,
        "disturbances.hum.amplitude: is empty; expected ratio and maximum of an "
-       "actuator "
-       "channel"},
+       "actuator channel"},
       {"by = { s = 0.02 }", "by = { z = 0.02 }", 54,
        "trajectories.slow.moves[0].by.z: there is no axis 'z'; expected one of s, r"},
       {"by = { s = 0.02 }", "by = { r = 0.02 }", 54,
@@ -213,8 +211,7 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
        "s_ref_acceleration, s_ref_snap, s_ref_velocity, t, u"},
       {"channel = \"u\"", "channel = \"q\"", 67,
        "compare.forces.force.channel: there is no actuator channel 'q'; expected one "
-       "of "
-       "u, t"},
+       "of u, t"},
       {"[actuators.t]", "[actuators.q]", 27,
        "actuators.q: the channel 'q' exists already; expected names that differ from "
        "each other"},
@@ -300,8 +297,7 @@ TEST_F(SetupErrors, RefusesABadDiagnosisInOneLine) {
        "diagnosis.disturbance.order: is 0; expected an integer from 1 to 20"},
       {"cutoff = 200.0", "cutoff = 750.0", 86,
        "diagnosis.disturbance.cutoff: is 750.000000 Hz; expected less than half the "
-       "control "
-       "rate"},
+       "control rate"},
       {"high_pass = { order = 2,", "high_pass = { order = 13,", 87,
        "diagnosis.disturbance.high_pass.order: is 13; expected an integer from 1 to "
        "12"},

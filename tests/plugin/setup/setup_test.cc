@@ -162,7 +162,7 @@ TEST_F(SetupFile, FillsTheFiltersAndThresholdsOfTheDiagnosis) {
 
 TEST_F(SetupFile, FillsTheEstimationAndDisturbancesOfTheDiagnosis) {
   const DiagnosisOptions diagnosis = ReadSetup(folder_).diagnosis;
-  EXPECT_EQ(diagnosis.estimation_rows, 2);
+  EXPECT_EQ(diagnosis.estimation_residuals, 2);
   EXPECT_EQ(diagnosis.sampling, 0.004);
   EXPECT_EQ(diagnosis.horizon, 1.5);
   EXPECT_EQ(diagnosis.forgetting, 0.75);
@@ -205,7 +205,7 @@ TEST_F(SetupFile, WithoutDiagnosisHasTheDefaultsOfTheManual) {
   EXPECT_EQ(diagnosis.false_alarms, 0.0);
   EXPECT_EQ(diagnosis.integral_window, 0.25);
   EXPECT_THAT(diagnosis.trajectories, IsEmpty());
-  EXPECT_EQ(diagnosis.estimation_rows, 1);
+  EXPECT_EQ(diagnosis.estimation_residuals, 1);
   EXPECT_EQ(diagnosis.sampling, 0.0005);
   EXPECT_EQ(diagnosis.horizon, 0.0);
   EXPECT_EQ(diagnosis.forgetting, 0.0);

@@ -1,7 +1,7 @@
 #pragma once
 // The linear programs of [AB383], Eq. 17 to 19 beside the bank of `mjdiag design`:
-// do they find a row where the singular value decomposition finds a null space, and is
-// it the same one?
+// do they find a parity relation where the singular value decomposition finds a null
+// space, and is it the same one?
 
 #include "app/subject.h"
 #include "mjdiag/diagnosis/residual_bank.h"
@@ -15,12 +15,12 @@ SignalEntry UnknownForces(const MechanicalModel& healthy,
 
 /// Poses the programs on the delta form of the control tick in coordinates of unit
 /// mass, with the unknown forces of the setup as unknown inputs and the forces that the
-/// knobs of the plant turn as faults, at the degree of the setup.
+/// fault parameters of the plant change as faults, at the degree of the setup.
 ///
 /// Fault inputs are directions of generalised force, each of unit length in the
-/// coordinates of the delta form, so that the size of the row does not depend on their
-/// units. InputError if the plant has no knobs.
-RowProgramFacts SolveRowPrograms(const Machine& machine,
-                                 const MechanicalModel& healthy);
+/// coordinates of the delta form, so that the size of the relation does not depend on
+/// their units. InputError if the plant has no fault parameters.
+ParityProgramFacts SolveParityPrograms(const Machine& machine,
+                                       const MechanicalModel& healthy);
 
 }  // namespace mjdiag::app

@@ -1,4 +1,4 @@
-#include "mjdiag/diagnosis/published_row.h"
+#include "mjdiag/diagnosis/published_relation.h"
 
 #include <gtest/gtest.h>
 
@@ -16,17 +16,18 @@ MechanicalModel Oscillator() {
           scalar(3.0), scalar(50.0), scalar(1.0), scalar(1.0)};
 }
 
-PublishedRow Row() {
-  PublishedRow row;
-  row.degree = 2;
-  row.digits = 3;
-  row.pins = {{"y", 0, -50.0}};
-  row.polynomials = {{"y", {-50.0, -3.01, -2.0}}, {"u", {1.004, 0.0}}};
-  return row;
+PublishedRelation Printed() {
+  PublishedRelation relation;
+  relation.degree = 2;
+  relation.digits = 3;
+  relation.pins = {{"y", 0, -50.0}};
+  relation.polynomials = {{"y", {-50.0, -3.01, -2.0}}, {"u", {1.004, 0.0}}};
+  return relation;
 }
 
-TEST(PublishedRow, ComparesInHalvesOfTheLastPrintedDigit) {
-  const PublishedRowComparison comparison = ComparePublishedRow(Oscillator(), Row());
+TEST(PublishedRelation, ComparesInHalvesOfTheLastPrintedDigit) {
+  const PublishedRelationComparison comparison =
+      ComparePublishedRelation(Oscillator(), Printed());
   ASSERT_EQ(comparison.coefficients.size(), 3u);  // not the pin, not the zero
   EXPECT_EQ(comparison.coefficients[0].channel, "y");
   EXPECT_EQ(comparison.coefficients[0].power, 1);
@@ -37,13 +38,13 @@ TEST(PublishedRow, ComparesInHalvesOfTheLastPrintedDigit) {
   EXPECT_DOUBLE_EQ(comparison.worst_half_ulp, comparison.coefficients[0].half_ulps);
 }
 
-TEST(PublishedRow, RefusesChannelsThatTheModelLacks) {
-  PublishedRow row = Row();
-  row.polynomials[1].channel = "v";
-  EXPECT_THROW(ComparePublishedRow(Oscillator(), row), InputError);
-  row = Row();
-  row.pins[0].channel = "u";
-  EXPECT_THROW(ComparePublishedRow(Oscillator(), row), InputError);
+TEST(PublishedRelation, RefusesChannelsThatTheModelLacks) {
+  PublishedRelation relation = Printed();
+  relation.polynomials[1].channel = "v";
+  EXPECT_THROW(ComparePublishedRelation(Oscillator(), relation), InputError);
+  relation = Printed();
+  relation.pins[0].channel = "u";
+  EXPECT_THROW(ComparePublishedRelation(Oscillator(), relation), InputError);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-#include "app/row_programs.h"
+#include "app/parity_programs.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 
 #include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/diagnosis/linear_program_row.h"
+#include "mjdiag/diagnosis/parity_programs.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/decompositions.h"
@@ -27,11 +27,11 @@ MatrixXd ColumnSpace(const MatrixXd& matrix) {
   return svd.U.leftCols(values[0] > 0.0 ? rank : 0);
 }
 
-/// Generalised forces that a turned knob makes, whatever the motion: damping, stiffness
-/// and motor forces change by dD q', dK q and dGamma u. Each change is taken relative
-/// to its matrix and in coordinates of unit mass, so that a change of one matrix is not
-/// confused with the rounding of another.
-MatrixXd ForcesOf(const TurnedModels& knob, const MechanicalModel& healthy) {
+/// Generalised forces that a changed fault parameter makes, whatever the motion:
+/// damping, stiffness and motor forces change by dD q', dK q and dGamma u. Each change
+/// is taken relative to its matrix and in coordinates of unit mass, so that a change of
+/// one matrix is not confused with the rounding of another.
+MatrixXd ForcesOf(const PerturbedModels& fault, const MechanicalModel& healthy) {
   const Eigen::LLT<MatrixXd> mass(healthy.M);
   const Index n = healthy.M.rows();
   const auto relative = [&](const MatrixXd& change, const MatrixXd& whole) {
@@ -46,22 +46,22 @@ MatrixXd ForcesOf(const TurnedModels& knob, const MechanicalModel& healthy) {
     return relative(columns(change), columns(whole));
   };
   MatrixXd changes(n, 2 * n + healthy.Gamma.cols());
-  changes << square(knob.plus.D - knob.minus.D, healthy.D),
-      square(knob.plus.K - knob.minus.K, healthy.K),
-      relative(knob.plus.Gamma - knob.minus.Gamma, healthy.Gamma);
+  changes << square(fault.plus.D - fault.minus.D, healthy.D),
+      square(fault.plus.K - fault.minus.K, healthy.K),
+      relative(fault.plus.Gamma - fault.minus.Gamma, healthy.Gamma);
   return mass.matrixL() * ColumnSpace(changes);
 }
 
 SignalEntry FaultEntry(const Machine& machine, const MechanicalModel& healthy,
                        const TickTiming& timing) {
-  const std::vector<TurnedModels> knobs = MakeFaultFamily(machine).Turned();
-  if (knobs.empty()) {
-    throw InputError("--method lp", "the plant has no fault knobs",
-                     "at least one, for the rows have to see a fault");
+  const std::vector<PerturbedModels> faults = MakeFaultFamily(machine).Perturbed();
+  if (faults.empty()) {
+    throw InputError("--method lp", "the plant has no fault parameters",
+                     "at least one, for a parity relation has to see a fault");
   }
   MatrixXd forces(healthy.M.rows(), 0);
-  for (const TurnedModels& knob : knobs) {
-    const MatrixXd more = ForcesOf(knob, healthy);
+  for (const PerturbedModels& fault : faults) {
+    const MatrixXd more = ForcesOf(fault, healthy);
     MatrixXd all(forces.rows(), forces.cols() + more.cols());
     all << forces, more;
     forces = all;
@@ -75,17 +75,17 @@ SignalEntry FaultEntry(const Machine& machine, const MechanicalModel& healthy,
   return entry;
 }
 
-/// [N_y,0 .. N_y,degree] of a row N = [N_x, N_y].
-VectorXd OutputPart(const PolynomialMatrix& row, Index outputs) {
-  VectorXd part(outputs * (row.degree() + 1));
-  for (int k = 0; k <= row.degree(); ++k) {
+/// [N_y,0 .. N_y,degree] of a relation N = [N_x, N_y].
+VectorXd OutputPart(const PolynomialMatrix& relation, Index outputs) {
+  VectorXd part(outputs * (relation.degree() + 1));
+  for (int k = 0; k <= relation.degree(); ++k) {
     part.segment(k * outputs, outputs) =
-        row.coefficients[static_cast<std::size_t>(k)].row(0).tail(outputs);
+        relation.coefficients[static_cast<std::size_t>(k)].row(0).tail(outputs);
   }
   return part;
 }
 
-/// Between a vector and the span of some rows [rad].
+/// Between a vector and the span of the rows of a matrix [rad].
 double Angle(const VectorXd& vector, const MatrixXd& rows) {
   const MatrixXd basis = ColumnSpace(rows.transpose());
   const VectorXd inside = basis * (basis.transpose() * vector);
@@ -101,27 +101,27 @@ SignalEntry UnknownForces(const MechanicalModel& healthy,
   return HeldForces(healthy, options.timing, forces);
 }
 
-RowProgramFacts SolveRowPrograms(const Machine& machine,
-                                 const MechanicalModel& healthy) {
+ParityProgramFacts SolveParityPrograms(const Machine& machine,
+                                       const MechanicalModel& healthy) {
   const SynthesisOptions options = SynthesisOf(machine);
   const StateSpace system = DeltaForm(healthy, options.timing);
   const SignalEntry unknown = UnknownForces(healthy, options);
   const SignalEntry faults = FaultEntry(machine, healthy, options.timing);
   const DaeModel dae = MakeDae(system, unknown, faults);
-  RowProgramFacts facts;
+  ParityProgramFacts facts;
   facts.degree = options.residual.degree;
   facts.norm = "one";
   facts.fault_inputs = static_cast<int>(dae.F.cols());
-  const std::optional<LinearProgramRow> row = mjdiag::SolveRowPrograms(
-      dae, options.residual.degree, RowProgramOptions{RowNorm::kOne});
+  const std::optional<ParityProgramSolution> solution = mjdiag::SolveParityPrograms(
+      dae, options.residual.degree, ParityProgramOptions{RelationNorm::kOne});
   facts.programs = facts.fault_inputs * (dae.F.degree() + options.residual.degree + 1);
-  if (!row) return facts;
-  facts.programs = row->programs;
-  facts.feasible = row->feasible;
-  facts.objective = row->objective;
-  facts.defect = row->defect;
+  if (!solution) return facts;
+  facts.programs = solution->programs;
+  facts.feasible = solution->feasible;
+  facts.objective = solution->objective;
+  facts.defect = solution->defect;
   const NullSpace null_space = LeftNullSpace(system, unknown, options.residual.degree);
-  facts.angle = Angle(OutputPart(row->N, system.outputs()), null_space.rows);
+  facts.angle = Angle(OutputPart(solution->N, system.outputs()), null_space.relations);
   return facts;
 }
 

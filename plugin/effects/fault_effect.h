@@ -1,7 +1,7 @@
 #pragma once
 // Fault parameters as effects: a plant declares them itself (fault.h), and what a
-// discovery asks of an effect it asks of them as well. Their one parameter is the
-// factor that they are turned to; 1: healthy.
+// discovery asks of an effect it asks of them as well. Their one parameter is their
+// value; 1: healthy.
 
 #include <mujoco/mujoco.h>
 
@@ -13,10 +13,10 @@
 
 namespace mjdiag {
 
-EffectPtr FaultParameter(FaultKnob declared);
+EffectPtr FaultEffect(FaultParameter declared);
 
 /// All that the plant declares, in the order of the file, at their healthy value. The
 /// site of one with several elements is their names, apart by blanks.
-std::vector<PlacedEffect> FaultParameters(const mjModel& plant);
+std::vector<PlacedEffect> FaultEffects(const mjModel& plant);
 
 }  // namespace mjdiag

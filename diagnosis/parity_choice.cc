@@ -1,4 +1,4 @@
-#include "mjdiag/diagnosis/row_choice.h"
+#include "mjdiag/diagnosis/parity_choice.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -26,22 +26,22 @@ MatrixXd NormalisedSum(const std::vector<MatrixXd>& matrices) {
   return sum;
 }
 
-/// Each over what the row has of it; one of which it has nothing weighs the most.
-MatrixXd WeightedSum(const std::vector<MatrixXd>& matrices, const VectorXd& row) {
+/// Each over what a has of it; one of which a has nothing weighs the most.
+MatrixXd WeightedSum(const std::vector<MatrixXd>& matrices, const VectorXd& a) {
   constexpr double kLeast = 1e-12;
-  MatrixXd sum = MatrixXd::Zero(row.size(), row.size());
+  MatrixXd sum = MatrixXd::Zero(a.size(), a.size());
   for (const MatrixXd& matrix : matrices) {
-    const double share = std::max(row.dot(matrix * row), kLeast * matrix.trace());
+    const double share = std::max(a.dot(matrix * a), kLeast * matrix.trace());
     if (share > 0.0) sum += matrix / share;
   }
   return sum;
 }
 
-/// sum log a^T G a; minus infinity if the row has nothing of one of them.
-double LogProduct(const std::vector<MatrixXd>& matrices, const VectorXd& row) {
+/// sum log a^T G a; minus infinity if a has nothing of one of them.
+double LogProduct(const std::vector<MatrixXd>& matrices, const VectorXd& a) {
   double sum = 0.0;
   for (const MatrixXd& matrix : matrices) {
-    if (matrix.trace() > 0.0) sum += std::log(std::max(0.0, row.dot(matrix * row)));
+    if (matrix.trace() > 0.0) sum += std::log(std::max(0.0, a.dot(matrix * a)));
   }
   return sum;
 }
@@ -67,12 +67,12 @@ std::vector<MatrixXd> FaultEnergies(const ResidualBank& bank, const MatrixXd& si
   return energies;
 }
 
-VectorXd MostSensitiveRow(const std::vector<MatrixXd>& energies) {
+VectorXd MostSensitiveRelation(const std::vector<MatrixXd>& energies) {
   const Index size = energies.front().rows();
-  return BestRatioRow(energies, {MatrixXd::Identity(size, size)});
+  return BestRatioRelation(energies, {MatrixXd::Identity(size, size)});
 }
 
-VectorXd LeastExcitedRow(const MatrixXd& nuisance, const MatrixXd& response) {
+VectorXd LeastExcitedRelation(const MatrixXd& nuisance, const MatrixXd& response) {
   const MatrixXd solved = Factor(nuisance).solve(response);
   // Of the programme of column j the least energy is 1 / g_j^T Q^-1 g_j.
   Index best = 0;
@@ -80,7 +80,7 @@ VectorXd LeastExcitedRow(const MatrixXd& nuisance, const MatrixXd& response) {
   return solved.col(best).normalized();
 }
 
-VectorXd BestRatioRow(const MatrixXd& energy, const MatrixXd& nuisance) {
+VectorXd BestRatioRelation(const MatrixXd& energy, const MatrixXd& nuisance) {
   const auto factor = Factor(nuisance);
   const MatrixXd half = factor.matrixL().solve(energy);
   const MatrixXd ratio = factor.matrixL().solve(half.transpose());
@@ -88,9 +88,10 @@ VectorXd BestRatioRow(const MatrixXd& energy, const MatrixXd& nuisance) {
   return factor.matrixU().solve(top).normalized();
 }
 
-VectorXd BestRatioRow(const std::vector<MatrixXd>& energies,
-                      const std::vector<MatrixXd>& nuisances) {
-  VectorXd row = BestRatioRow(NormalisedSum(energies), NormalisedSum(nuisances));
+VectorXd BestRatioRelation(const std::vector<MatrixXd>& energies,
+                           const std::vector<MatrixXd>& nuisances) {
+  VectorXd chosen =
+      BestRatioRelation(NormalisedSum(energies), NormalisedSum(nuisances));
   // The gradient of sum log a^T G_i a - sum log a^T Q_i a vanishes where a is the best
   // ratio of sum G_i / (a^T G_i a) to sum Q_i / (a^T Q_i a). A step that gains nothing
   // is halved, which keeps two faults that pull apart from taking turns.
@@ -99,28 +100,28 @@ VectorXd BestRatioRow(const std::vector<MatrixXd>& energies,
   };
   constexpr int kIterations = 200;
   constexpr double kShortest = 1e-8;
-  double best = product(row);
+  double best = product(chosen);
   double step = 1.0;
   for (int k = 0; k < kIterations && step > kShortest; ++k) {
-    VectorXd next =
-        BestRatioRow(WeightedSum(energies, row), WeightedSum(nuisances, row));
-    if (next.dot(row) < 0.0) next = -next;
-    next = (row + step * next).normalized();
+    VectorXd next = BestRatioRelation(WeightedSum(energies, chosen),
+                                      WeightedSum(nuisances, chosen));
+    if (next.dot(chosen) < 0.0) next = -next;
+    next = (chosen + step * next).normalized();
     const double gained = product(next);
     if (gained > best) {
-      row = next;
+      chosen = next;
       best = gained;
     } else {
       step *= 0.5;
     }
   }
-  return row;
+  return chosen;
 }
 
 MatrixXd CompleteBasis(const VectorXd& first, int n) {
   const Index size = first.size();
-  const Index rows = n == 0 ? size : std::min<Index>(n, size);
-  MatrixXd basis = OrthonormalBasis(first).leftCols(rows).transpose();
+  const Index count = n == 0 ? size : std::min<Index>(n, size);
+  MatrixXd basis = OrthonormalBasis(first).leftCols(count).transpose();
   basis.row(0) = first.transpose();
   return basis;
 }

@@ -1,4 +1,4 @@
-#include "mjdiag/diagnosis/linear_program_row.h"
+#include "mjdiag/diagnosis/parity_programs.h"
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
@@ -26,7 +26,7 @@ constexpr double kZero = 1e-13;
 /// Of Clp, in equations and costs of order one; its default is 1e-7.
 constexpr double kSolverTolerance = 1e-9;
 
-/// A later row must be smaller by this part to count as smaller.
+/// A later solution must be smaller by this part to count as smaller.
 constexpr double kTie = 1e-9;
 
 /// Orthonormal columns that span all v with v^T matrix = 0.
@@ -64,10 +64,10 @@ CoinPackedMatrix Packed(const MatrixXd& dense) {
 /// model: min of a weighted norm of v subject to v^T equations = 0 and, for one column
 /// j, v^T conditions_j >= 1. From program to program one bound moves, and each starts
 /// from the basis of the one before.
-class RowPrograms {
+class ParityPrograms {
  public:
-  RowPrograms(const MatrixXd& equations, const MatrixXd& conditions,
-              const VectorXd& weights, RowNorm norm)
+  ParityPrograms(const MatrixXd& equations, const MatrixXd& conditions,
+                 const VectorXd& weights, RelationNorm norm)
       : unknowns_(equations.rows()), first_condition_(equations.cols()) {
     model_.setLogLevel(0);
     model_.setPrimalTolerance(kSolverTolerance);
@@ -100,10 +100,10 @@ class RowPrograms {
   }
 
   void Load(const MatrixXd& equations, const MatrixXd& conditions,
-            const VectorXd& weights, RowNorm norm) {
+            const VectorXd& weights, RelationNorm norm) {
     const Index conditions_end = first_condition_ + conditions.cols();
     // The infinity norm is a column t more, with plus_i + minus_i <= t / weights_i.
-    const bool bounded = norm == RowNorm::kInfinity;
+    const bool bounded = norm == RelationNorm::kInfinity;
     const Index rows = conditions_end + (bounded ? unknowns_ : 0);
     const Index columns = 2 * unknowns_ + (bounded ? 1 : 0);
     MatrixXd matrix = MatrixXd::Zero(rows, columns);
@@ -136,39 +136,41 @@ class RowPrograms {
   ClpSimplex model_;
 };
 
-double Size(const VectorXd& row, RowNorm norm) {
-  return norm == RowNorm::kOne ? row.lpNorm<1>() : row.lpNorm<Eigen::Infinity>();
+double Size(const VectorXd& nbar, RelationNorm norm) {
+  return norm == RelationNorm::kOne ? nbar.lpNorm<1>() : nbar.lpNorm<Eigen::Infinity>();
 }
 
-PolynomialMatrix RowPolynomial(const VectorXd& row, int degree) {
-  const Index width = row.size() / (degree + 1);
+PolynomialMatrix RelationPolynomial(const VectorXd& nbar, int degree) {
+  const Index width = nbar.size() / (degree + 1);
   PolynomialMatrix result;
   for (int i = 0; i <= degree; ++i) {
-    result.coefficients.emplace_back(row.segment(i * width, width).transpose());
+    result.coefficients.emplace_back(nbar.segment(i * width, width).transpose());
   }
   return result;
 }
 
 void CheckDegree(const DaeModel& dae, int degree) {
   if (degree < 0) {
-    throw InputError("residual row", "degree " + std::to_string(degree), "0 or more");
+    throw InputError("parity relation", "degree " + std::to_string(degree),
+                     "0 or more");
   }
   if (dae.H.cols() == 0 || dae.F.cols() == 0) {
-    throw InputError("residual row",
+    throw InputError("parity relation",
                      std::to_string(dae.H.cols()) + " unknowns and " +
                          std::to_string(dae.F.cols()) + " fault inputs",
                      "at least one of each");
   }
   if (dae.F.rows() != dae.H.rows()) {
-    throw InputError("residual row", "F with " + std::to_string(dae.F.rows()) + " rows",
+    throw InputError("parity relation",
+                     "F with " + std::to_string(dae.F.rows()) + " rows",
                      "as many as H has, " + std::to_string(dae.H.rows()));
   }
 }
 
 }  // namespace
 
-std::optional<LinearProgramRow> SolveRowPrograms(const DaeModel& dae, int degree,
-                                                 const RowProgramOptions& options) {
+std::optional<ParityProgramSolution> SolveParityPrograms(
+    const DaeModel& dae, int degree, const ParityProgramOptions& options) {
   CheckDegree(dae, degree);
   const MatrixXd hbar = BarMatrix(dae.H, degree);
   const MatrixXd fbar = BarMatrix(dae.F, degree);
@@ -177,13 +179,13 @@ std::optional<LinearProgramRow> SolveRowPrograms(const DaeModel& dae, int degree
   const MatrixXd null_space = LeftNullSpace(scaled.matrix);
   const MatrixXd scaled_fbar = scaled.rows.asDiagonal() * fbar;
   const MatrixXd conditions = scaled_fbar.colwise().normalized();
-  RowPrograms programs(scaled.matrix, conditions, scaled.rows / scaled.rows.mean(),
-                       options.norm);
+  ParityPrograms programs(scaled.matrix, conditions, scaled.rows / scaled.rows.mean(),
+                          options.norm);
 
-  LinearProgramRow best;
+  ParityProgramSolution best;
   best.programs = static_cast<int>(fbar.cols());
   for (Index j = 0; j < fbar.cols(); ++j) {
-    // What no row of the null space sees has no solution; Clp, which meets the
+    // What no relation of the null space sees has no solution; Clp, which meets the
     // equations to a tolerance, can find one all the same.
     if ((null_space.transpose() * conditions.col(j)).norm() <= kNonzero) continue;
     const std::optional<VectorXd> solution = programs.Solve(j);
@@ -191,14 +193,14 @@ std::optional<LinearProgramRow> SolveRowPrograms(const DaeModel& dae, int degree
     const VectorXd exact = null_space * (null_space.transpose() * *solution);
     if (conditions.col(j).dot(exact) < 0.5) continue;
     ++best.feasible;
-    const VectorXd row =
+    const VectorXd nbar =
         scaled.rows.asDiagonal() * (exact / scaled_fbar.col(j).dot(exact));
-    const double size = Size(row, options.norm);
+    const double size = Size(nbar, options.norm);
     if (best.feasible > 1 && size >= (1.0 - kTie) * best.objective) continue;
-    best.N = RowPolynomial(row, degree);
+    best.N = RelationPolynomial(nbar, degree);
     best.column = static_cast<int>(j);
     best.objective = size;
-    best.defect = (row.transpose() * hbar).norm() / (row.norm() * hbar.norm());
+    best.defect = (nbar.transpose() * hbar).norm() / (nbar.norm() * hbar.norm());
   }
   if (best.feasible == 0) return std::nullopt;
   return best;

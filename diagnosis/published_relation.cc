@@ -1,4 +1,4 @@
-#include "mjdiag/diagnosis/published_row.h"
+#include "mjdiag/diagnosis/published_relation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +17,13 @@ Index PlaceOf(const std::vector<std::string>& channels, const std::string& chann
   return found == channels.end() ? -1 : std::distance(channels.begin(), found);
 }
 
-std::vector<RowPin> PinsOf(const MechanicalModel& model,
-                           const PublishedRow& published) {
-  std::vector<RowPin> pins;
+std::vector<PinnedCoefficient> PinsOf(const MechanicalModel& model,
+                                      const PublishedRelation& published) {
+  std::vector<PinnedCoefficient> pins;
   for (const PrintedPin& pin : published.pins) {
     const Index output = PlaceOf(model.outputs, pin.channel);
     if (output < 0) {
-      throw InputError("published row",
+      throw InputError("published parity relation",
                        "pin on unknown channel \"" + pin.channel + "\"",
                        "an output of the model");
     }
@@ -33,19 +33,21 @@ std::vector<RowPin> PinsOf(const MechanicalModel& model,
 }
 
 /// The computed polynomial of a channel, ascending powers.
-Eigen::RowVectorXd PolynomialOf(const MechanicalModel& model, const ResidualRow& row,
+Eigen::RowVectorXd PolynomialOf(const MechanicalModel& model,
+                                const ParityRelation& relation,
                                 const std::string& channel) {
   if (const Index output = PlaceOf(model.outputs, channel); output >= 0) {
-    return row.outputs.row(output);
+    return relation.outputs.row(output);
   }
   if (const Index input = PlaceOf(model.inputs, channel); input >= 0) {
-    return row.inputs.row(input);
+    return relation.inputs.row(input);
   }
-  throw InputError("published row", "unknown channel \"" + channel + "\"",
+  throw InputError("published parity relation", "unknown channel \"" + channel + "\"",
                    "an input or output of the model");
 }
 
-bool IsPinned(const PublishedRow& published, const std::string& channel, int power) {
+bool IsPinned(const PublishedRelation& published, const std::string& channel,
+              int power) {
   return std::any_of(published.pins.begin(), published.pins.end(),
                      [&](const PrintedPin& pin) {
                        return pin.channel == channel && pin.power == power;
@@ -59,13 +61,14 @@ double HalfUlp(double printed, int digits) {
 
 }  // namespace
 
-PublishedRowComparison ComparePublishedRow(const MechanicalModel& model,
-                                           const PublishedRow& published) {
-  const ResidualRow row =
-      PinnedResidualRow(model, published.degree, PinsOf(model, published));
-  PublishedRowComparison comparison;
+PublishedRelationComparison ComparePublishedRelation(
+    const MechanicalModel& model, const PublishedRelation& published) {
+  const ParityRelation relation =
+      PinnedParityRelation(model, published.degree, PinsOf(model, published));
+  PublishedRelationComparison comparison;
   for (const PrintedPolynomial& polynomial : published.polynomials) {
-    const Eigen::RowVectorXd computed = PolynomialOf(model, row, polynomial.channel);
+    const Eigen::RowVectorXd computed =
+        PolynomialOf(model, relation, polynomial.channel);
     const auto powers =
         std::min(static_cast<Index>(polynomial.coefficients.size()), computed.size());
     for (int power = 0; power < powers; ++power) {

@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/effects/fault_parameter.h"
+#include "mjdiag/plugin/effects/fault_effect.h"
 
 #include <algorithm>
 #include <utility>
@@ -16,10 +16,10 @@ constexpr double kMost = 100.0;
 
 class FaultParameterEffect final : public Effect {
  public:
-  explicit FaultParameterEffect(FaultKnob declared)
+  explicit FaultParameterEffect(FaultParameter declared)
       : Effect({.name = declared.name,
-                .site = declared.kind == KnobKind::kGear ? SiteKind::kActuator
-                                                         : SiteKind::kJoint,
+                .site = declared.kind == FaultParameterKind::kGear ? SiteKind::kActuator
+                                                                   : SiteKind::kJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {{"value", Role::kFactor, "1", 0.0, kMost}},
@@ -50,13 +50,13 @@ class FaultParameterEffect final : public Effect {
     return plant.dof_damping[plant.jnt_dofadr[declared_.elements.front()]];
   }
 
-  FaultKnob declared_;
+  FaultParameter declared_;
 };
 
 std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const {
   const std::string name = SiteName(map.plant());
   const int first = declared_.elements.front();
-  if (declared_.kind != KnobKind::kGear) {
+  if (declared_.kind != FaultParameterKind::kGear) {
     return {{name, map.plant().jnt_dofadr[first], -1}};
   }
   const std::string motor = ElementName(map.plant(), mjOBJ_ACTUATOR, first);
@@ -67,7 +67,7 @@ std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const
 }
 
 std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
-  if (declared_.kind == KnobKind::kGear) {
+  if (declared_.kind == FaultParameterKind::kGear) {
     return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
   }
   const auto joints = static_cast<Index>(declared_.elements.size());
@@ -78,7 +78,7 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
     const int dof = at.plant.jnt_dofadr[joint];
     const int address = at.plant.jnt_qposadr[joint];
     entry(dof, i) = 1.0;
-    if (declared_.kind == KnobKind::kDamping) {
+    if (declared_.kind == FaultParameterKind::kDamping) {
       signals.col(i) = -at.plant.dof_damping[dof] * at.motion.velocity.row(dof);
     } else {
       const double rest = at.plant.qpos_spring[address] - at.plant.qpos0[address];
@@ -95,11 +95,11 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
 const Effect* FaultParameterEffect::Twin() const {
   if (declared_.elements.size() != 1) return nullptr;
   switch (declared_.kind) {
-    case KnobKind::kDamping:
+    case FaultParameterKind::kDamping:
       return &ViscousFriction();
-    case KnobKind::kStiffness:
+    case FaultParameterKind::kStiffness:
       return &StructuralStiffness();
-    case KnobKind::kGear:
+    case FaultParameterKind::kGear:
       return &MotorConstant();
   }
   return nullptr;
@@ -108,26 +108,26 @@ const Effect* FaultParameterEffect::Twin() const {
 // Damping is added in N s/m, everything else scaled.
 EffectValues FaultParameterEffect::ToTwin(const mjModel& plant,
                                           const EffectValues& values) const {
-  if (declared_.kind != KnobKind::kDamping) return values;
+  if (declared_.kind != FaultParameterKind::kDamping) return values;
   return ValuesOf({(values[0] - 1.0) * Damping(plant)});
 }
 
 std::optional<EffectValues> FaultParameterEffect::FromTwin(
     const mjModel& plant, const EffectValues& twin) const {
-  if (declared_.kind != KnobKind::kDamping) return twin;
+  if (declared_.kind != FaultParameterKind::kDamping) return twin;
   if (Damping(plant) == 0.0) return std::nullopt;
   return ValuesOf({1.0 + twin[0] / Damping(plant)});
 }
 
 }  // namespace
 
-EffectPtr FaultParameter(FaultKnob declared) {
+EffectPtr FaultEffect(FaultParameter declared) {
   return std::make_shared<FaultParameterEffect>(std::move(declared));
 }
 
-std::vector<PlacedEffect> FaultParameters(const mjModel& plant) {
+std::vector<PlacedEffect> FaultEffects(const mjModel& plant) {
   std::vector<PlacedEffect> placed;
-  for (FaultKnob& declared : FaultKnobs(plant)) {
+  for (FaultParameter& declared : FaultParameters(plant)) {
     const auto effect = std::make_shared<FaultParameterEffect>(std::move(declared));
     placed.push_back({effect, effect->SiteName(plant), ValuesOf({1.0})});
   }
