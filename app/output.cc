@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "mjdiag/report/page_file.h"
-#include "mjdiag/report/plot_library.h"
+#include "mjdiag/report/page/page_file.h"
+#include "mjdiag/report/page/plot_library.h"
 #include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/record_file.h"
 
 namespace mjdiag::app {

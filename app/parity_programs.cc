@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/diagnosis/parity_programs.h"
+#include "mjdiag/diagnosis/model/left_null_space.h"
+#include "mjdiag/diagnosis/residuals/parity_programs.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/decompositions.h"

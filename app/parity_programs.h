@@ -4,7 +4,7 @@
 // space, and is it the same one?
 
 #include "app/subject.h"
-#include "mjdiag/diagnosis/residual_bank.h"
+#include "mjdiag/diagnosis/residuals/residual_bank.h"
 #include "mjdiag/report/design_page.h"
 
 namespace mjdiag::app {

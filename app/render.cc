@@ -15,7 +15,7 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/signals/error.h"

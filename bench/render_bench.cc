@@ -30,7 +30,7 @@
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/render/drawn_joints.h"
-#include "mjdiag/render/offscreen_context.h"
+#include "mjdiag/render/scene/offscreen_context.h"
 #include "support/bonder.h"
 #include "support/temporary_folder.h"
 

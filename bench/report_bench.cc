@@ -14,7 +14,7 @@
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/report/diagnosis_page.h"
-#include "mjdiag/report/page_file.h"
+#include "mjdiag/report/page/page_file.h"
 #include "mjdiag/report/report.h"
 #include "support/bonder.h"
 #include "support/temporary_folder.h"

@@ -36,7 +36,7 @@ if(TARGET mjdiag_precompiled)
 endif()
 
 # mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>]
-#               [HEADERS_OF <targets...>] [PART <part>])
+#               [HEADERS_OF <targets...>] [WITH <folders...>] [PART <part>])
 #
 # Makes a library target from the .cc files directly in the folder <path>: for
 # plugin/plant mjdiag_plugin_plant (alias mjdiag::plugin_plant). Its headers are
@@ -44,19 +44,28 @@ endif()
 # an include root of its own that holds nothing but links to its headers. A folder that
 # includes upwards in the table of the design therefore does not compile.
 #
-# HEADERS_OF: libraries of headers only, which a program that links the folder does not
+# WITH: folders inside <path> that belong to it, which may include its headers and not the
+# other way round. HEADERS_OF: libraries of headers only, which a program that links the folder does not
 # need. PART: of the installed package (Parts.cmake), by default the first folder of the
 # path. Which headers are installed, docs/api.md says (InstallHeaders.cmake).
 function(mjdiag_folder path)
-  cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF" ${ARGN})
+  cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF;WITH" ${ARGN})
   set(source ${PROJECT_SOURCE_DIR}/${path})
-  file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cc)
-  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${source} ${source}/*.h)
+  set(folders ${source})
+  foreach(inner IN LISTS arg_WITH)
+    list(APPEND folders ${source}/${inner})
+  endforeach()
+  list(TRANSFORM folders APPEND /*.cc OUTPUT_VARIABLE sources)
+  list(TRANSFORM folders APPEND /*.h OUTPUT_VARIABLE headers)
+  file(GLOB sources CONFIGURE_DEPENDS ${sources})
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${source} ${headers})
   string(REPLACE "/" "_" name ${path})
   set(root ${PROJECT_BINARY_DIR}/include/${name})
   # Headers that are gone must not be found any more.
   file(REMOVE_RECURSE ${root})
-  file(MAKE_DIRECTORY ${root}/mjdiag/${path})
+  foreach(inner IN LISTS arg_WITH ITEMS .)
+    file(MAKE_DIRECTORY ${root}/mjdiag/${path}/${inner})
+  endforeach()
   foreach(header IN LISTS headers)
     file(CREATE_LINK ${source}/${header} ${root}/mjdiag/${path}/${header} SYMBOLIC)
   endforeach()
@@ -65,7 +74,7 @@ function(mjdiag_folder path)
   add_library(mjdiag::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
                         POSITION_INDEPENDENT_CODE ON UNITY_BUILD ${MJDIAG_UNITY}
-                        UNITY_BUILD_BATCH_SIZE 6)
+                        UNITY_BUILD_BATCH_SIZE 0)  # all of a folder
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${root}>
                                               $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/diagnosis_options.h"
-#include "mjdiag/diagnosis/disturbance_spectrum.h"
-#include "mjdiag/diagnosis/residual_bank.h"
-#include "mjdiag/diagnosis/thresholds.h"
+#include "mjdiag/diagnosis/disturbance/disturbance_spectrum.h"
+#include "mjdiag/diagnosis/residuals/residual_bank.h"
+#include "mjdiag/diagnosis/statistics/thresholds.h"
 #include "mjdiag/signals/second_order_sections.h"
 
 namespace mjdiag {

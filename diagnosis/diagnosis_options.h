@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/disturbance_spectrum.h"
-#include "mjdiag/diagnosis/residual_order.h"
+#include "mjdiag/diagnosis/disturbance/disturbance_spectrum.h"
+#include "mjdiag/diagnosis/residuals/residual_order.h"
 
 namespace mjdiag {
 

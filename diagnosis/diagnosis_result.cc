@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

@@ -12,7 +12,7 @@
 #include <span>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
-#include "mjdiag/diagnosis/fault_estimator.h"
+#include "mjdiag/diagnosis/residuals/fault_estimator.h"
 
 namespace mjdiag {
 

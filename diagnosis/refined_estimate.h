@@ -14,7 +14,7 @@
 #include <functional>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
-#include "mjdiag/diagnosis/fault_estimator.h"
+#include "mjdiag/diagnosis/residuals/fault_estimator.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"

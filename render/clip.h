@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "mjdiag/render/diagnosis_overlay.h"
-#include "mjdiag/render/scene_renderer.h"
+#include "mjdiag/render/scene/scene_renderer.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "mjdiag/render/frame_folder.h"
-#include "mjdiag/render/image_pixels.h"
+#include "mjdiag/render/scene/image_pixels.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/file_replacement.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "mjdiag/render/image.h"
+#include "mjdiag/render/scene/image.h"
 
 namespace mjdiag {
 

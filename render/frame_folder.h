@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "mjdiag/render/image.h"
+#include "mjdiag/render/scene/image.h"
 
 namespace mjdiag {
 

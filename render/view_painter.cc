@@ -4,8 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "mjdiag/render/image_pixels.h"
 #include "mjdiag/render/palette.h"
+#include "mjdiag/render/scene/image_pixels.h"
 #include "mjdiag/render/strokes.h"
 
 namespace mjdiag {

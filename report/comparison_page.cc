@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "mjdiag/comparison/comparison.h"
-#include "mjdiag/report/page.h"
-#include "mjdiag/report/run_description.h"
+#include "mjdiag/report/page/page.h"
+#include "mjdiag/report/page/run_description.h"
 
 namespace mjdiag {
 

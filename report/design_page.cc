@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "mjdiag/diagnosis/distributions.h"
-#include "mjdiag/report/page.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {

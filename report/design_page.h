@@ -9,8 +9,8 @@
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 #include "mjdiag/report/filter_plots.h"
-#include "mjdiag/report/page.h"
-#include "mjdiag/report/run_description.h"
+#include "mjdiag/report/page/page.h"
+#include "mjdiag/report/page/run_description.h"
 
 namespace mjdiag {
 

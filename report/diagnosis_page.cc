@@ -5,7 +5,7 @@
 
 #include "mjdiag/diagnosis/diagnosis_verdict.h"
 #include "mjdiag/report/diagnosis_plots.h"
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "mjdiag/diagnosis/diagnosis_result.h"
-#include "mjdiag/report/page.h"
-#include "mjdiag/report/run_description.h"
+#include "mjdiag/report/page/page.h"
+#include "mjdiag/report/page/run_description.h"
 
 namespace mjdiag {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/diagnosis_result.h"
-#include "mjdiag/report/plot.h"
+#include "mjdiag/report/page/plot.h"
 
 namespace mjdiag {
 

@@ -2,7 +2,7 @@
 
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/discovery_text.h"
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/report/plot.h"
+#include "mjdiag/report/page/plot.h"
 
 namespace mjdiag {
 

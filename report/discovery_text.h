@@ -6,7 +6,7 @@
 #include <string>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 
 namespace mjdiag {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
-#include "mjdiag/diagnosis/mechanical_model.h"
-#include "mjdiag/report/plot.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
+#include "mjdiag/report/page/plot.h"
 
 namespace mjdiag {
 

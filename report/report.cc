@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <string_view>
 
-#include "mjdiag/report/base64.h"
-#include "mjdiag/report/html.h"
-#include "mjdiag/report/page_assets.h"
-#include "mjdiag/report/page_document.h"
-#include "mjdiag/report/plot_library.h"
+#include "mjdiag/report/page/base64.h"
+#include "mjdiag/report/page/html.h"
+#include "mjdiag/report/page/page_assets.h"
+#include "mjdiag/report/page/page_document.h"
+#include "mjdiag/report/page/plot_library.h"
 #include "mjdiag/report/report_document.h"
 #include "mjdiag/report/run_folder.h"
 #include "mjdiag/signals/text_file.h"

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 
 namespace mjdiag {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "mjdiag/report/page_document.h"
-#include "mjdiag/report/page_file.h"
+#include "mjdiag/report/page/page_document.h"
+#include "mjdiag/report/page/page_file.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {

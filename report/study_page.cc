@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/report/page.h"
+#include "mjdiag/report/page/page.h"
 
 namespace mjdiag {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/report/page.h"
-#include "mjdiag/report/run_description.h"
+#include "mjdiag/report/page/page.h"
+#include "mjdiag/report/page/run_description.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {

@@ -1,7 +1,7 @@
 #pragma once
 // The information bound of every fault, and what the estimators make of it.
 
-#include "mjdiag/diagnosis/cramer_rao.h"
+#include "mjdiag/diagnosis/residuals/cramer_rao.h"
 #include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/study_table.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
 

@@ -16,7 +16,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/diagnosis/interval.h"
+#include "mjdiag/diagnosis/statistics/interval.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"

@@ -6,7 +6,7 @@
 
 #include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/comparison/noise_floor.h"
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 
 namespace mjdiag {
 

@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 
 namespace mjdiag {
 namespace {

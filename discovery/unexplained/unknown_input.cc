@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/discovery/unexplained/input_smoother.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/signals/decompositions.h"

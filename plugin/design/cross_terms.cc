@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "mjdiag/diagnosis/distributions.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"

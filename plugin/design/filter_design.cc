@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "mjdiag/diagnosis/distributions.h"
-#include "mjdiag/diagnosis/parity_choice.h"
+#include "mjdiag/diagnosis/residuals/parity_choice.h"
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/plant/start_state.h"

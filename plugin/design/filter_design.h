@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
-#include "mjdiag/diagnosis/residual_bank.h"
+#include "mjdiag/diagnosis/residuals/residual_bank.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 

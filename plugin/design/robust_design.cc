@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/diagnosis/parity_choice.h"
+#include "mjdiag/diagnosis/residuals/parity_choice.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"

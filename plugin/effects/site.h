@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {

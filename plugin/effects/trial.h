@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
 #include "mjdiag/plugin/effects/site.h"
 

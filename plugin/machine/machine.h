@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/plant/fault.h"
 #include "mjdiag/plugin/setup/setup.h"

@@ -3,7 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {

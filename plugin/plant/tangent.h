@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 
 namespace mjdiag {
 

@@ -21,7 +21,7 @@
 
 #include <Eigen/Core>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/signals/state_space.h"
 
 namespace mjdiag {

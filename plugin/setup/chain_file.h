@@ -27,7 +27,7 @@
 
 #include <filesystem>
 
-#include "mjdiag/diagnosis/linear_chain.h"
+#include "mjdiag/diagnosis/model/linear_chain.h"
 
 namespace mjdiag {
 

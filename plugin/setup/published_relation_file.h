@@ -11,7 +11,7 @@
 
 #include <filesystem>
 
-#include "mjdiag/diagnosis/published_relation.h"
+#include "mjdiag/diagnosis/residuals/published_relation.h"
 
 namespace mjdiag {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "mjdiag/diagnosis/disturbance_spectrum.h"
+#include "mjdiag/diagnosis/disturbance/disturbance_spectrum.h"
 #include "mjdiag/signals/butterworth.h"
 
 namespace mjdiag::test::residual {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
-#include "mjdiag/diagnosis/residual_bank.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
+#include "mjdiag/diagnosis/residuals/residual_bank.h"
 #include "mjdiag/signals/simulate_lti.h"
 
 namespace mjdiag::test {

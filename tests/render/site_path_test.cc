@@ -6,7 +6,7 @@
 #include <array>
 
 #include "mjdiag/render/drawn_joints.h"
-#include "mjdiag/render/scene_renderer.h"
+#include "mjdiag/render/scene/scene_renderer.h"
 #include "mjdiag/signals/error.h"
 #include "render/test_machine.h"
 #include "support/message_of.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mjdiag/report/page_file.h"
+#include "mjdiag/report/page/page_file.h"
 #include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"

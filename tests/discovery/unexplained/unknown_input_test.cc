@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "mjdiag/diagnosis/mechanical_model.h"
+#include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/signals/error.h"
 #include "support/gaussian_noise.h"

@@ -12,9 +12,9 @@
 #include <sstream>
 #include <string>
 
-#include "mjdiag/diagnosis/delta_form.h"
 #include "mjdiag/diagnosis/diagnosis_recording.h"
-#include "mjdiag/diagnosis/left_null_space.h"
+#include "mjdiag/diagnosis/model/delta_form.h"
+#include "mjdiag/diagnosis/model/left_null_space.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "support/bonder.h"

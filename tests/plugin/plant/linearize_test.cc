@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "mjdiag/diagnosis/left_null_space.h"
-#include "mjdiag/diagnosis/linear_chain.h"
+#include "mjdiag/diagnosis/model/left_null_space.h"
+#include "mjdiag/diagnosis/model/linear_chain.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/transition.h"
 #include "mjdiag/plugin/setup/chain_file.h"

@@ -1,0 +1,36 @@
+// The reading times factor.
+
+#include "mjdiag/plugin/effects/encoder/reading_error.h"
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+class EncoderScaleEffect final : public ReadingErrorEffect {
+ public:
+  EncoderScaleEffect()
+      : ReadingErrorEffect({.name = "encoder_scale",
+                            .site = SiteKind::kSensor,
+                            .variable = LawVariable::kPosition,
+                            .parameters = {Free("factor", Role::kFactor, "1")},
+                            .meaning = "the reading times factor"}) {}
+
+  double Read(double y, double, const EffectValues& values) const noexcept override {
+    return values[0] * y;
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    return {LinearTrial(at.y(), {}, 1.0)};
+  }
+  Sized Draw(const Scales&, Random& r) const override {
+    return AroundOne(r.Sign() * 0.01);
+  }
+};
+
+}  // namespace
+
+const Effect& EncoderScale() {
+  static const EncoderScaleEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

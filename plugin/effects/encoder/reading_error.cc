@@ -1,0 +1,38 @@
+#include "mjdiag/plugin/effects/encoder/reading_error.h"
+
+#include "mjdiag/plugin/plant/mujoco_model.h"
+
+namespace mjdiag {
+namespace {
+
+class ReadingError final : public ActiveEffect {
+ public:
+  ReadingError(const ReadingErrorEffect& effect, std::vector<std::size_t> channels,
+               const EffectValues& values)
+      : effect_(effect), channels_(std::move(channels)), values_(values) {}
+  void Distort(std::span<double> readings, double time) noexcept override {
+    for (const std::size_t i : channels_) {
+      readings[i] = effect_.Read(readings[i], time, values_);
+    }
+  }
+
+ private:
+  const ReadingErrorEffect& effect_;
+  std::vector<std::size_t> channels_;
+  EffectValues values_;
+};
+
+}  // namespace
+
+std::unique_ptr<ActiveEffect> ReadingErrorEffect::Activate(
+    const mjModel& model, const Channels& channels, int element,
+    const EffectValues& values) const {
+  const std::string sensor = ElementName(model, mjOBJ_SENSOR, element);
+  std::vector<std::size_t> read;
+  for (std::size_t i = 0; i < channels.sensors.size(); ++i) {
+    if (channels.sensors[i].element == sensor) read.push_back(i);
+  }
+  return std::make_unique<ReadingError>(*this, std::move(read), values);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,40 @@
+// Dry friction: -force sign(v), sticking at rest.
+
+#include "mjdiag/plugin/effects/friction/dry_friction.h"
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+
+namespace mjdiag {
+namespace {
+
+class CoulombFrictionEffect final : public Effect {
+ public:
+  CoulombFrictionEffect()
+      : Effect({.name = "coulomb_friction",
+                .form = Form::kAttributes,
+                .variable = LawVariable::kVelocity,
+                .parameters = {NotNegative("force", Role::kAmplitude, "N")},
+                .meaning = "dry friction: -force sign(v), sticking at rest"}) {}
+
+  void Apply(mjModel& model, int joint, const EffectValues& values) const override {
+    AddDryFriction(model, joint, values[0]);
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    return {LinearTrial(-Direction(at.v()), at.JointEntry(), 0.0, true)};
+  }
+  std::optional<double> Law(double v, const EffectValues& values) const override {
+    return -values[0] * Sign(v);
+  }
+  Sized Draw(const Scales& k, Random&) const override {
+    return Proportional(k.SmallForce());
+  }
+};
+
+}  // namespace
+
+const Effect& CoulombFriction() {
+  static const CoulombFrictionEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag
