@@ -14,7 +14,7 @@ function(run)
 endfunction()
 function(build source folder)
   run(${CMAKE_COMMAND} -G Ninja -S ${source} -B ${work}/${folder}
-      -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Debug
+      -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=None
       "-DCMAKE_CXX_FLAGS=${FLAGS}")
   run(${CMAKE_COMMAND} --build ${work}/${folder})
 endfunction()

@@ -15,12 +15,13 @@ std::string Named(const Discovery& discovery) {
   return names;
 }
 
-// A fixed handful of the benchmark `mjdiag study --preset hidden`, on shorter records:
-// dry friction, an offset, a spring, an encoder's scale.
+// Of the benchmark `mjdiag study --preset hidden` dry friction and an encoder's scale, on
+// shorter records and with fewer physics steps a tick; the benchmark has all kinds.
 class HiddenInTheBonder : public ::testing::TestWithParam<int> {};
 
 TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
-  const Machine machine = test::Bonder({"trajectories.multi.duration=0.75"});
+  const Machine machine =
+      test::Bonder({"trajectories.multi.duration=0.5"}).WithSubsteps(2);
   const int run = GetParam();
   const HiddenOutcome outcome =
       RunHidden(machine, TypesOfRun(run, 1), static_cast<std::uint64_t>(run + 1));
@@ -29,7 +30,7 @@ TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
   EXPECT_LT(outcome.unseen_ratio, 1.2);
 }
 
-INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 7, 15, 22));
+INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 22));
 
 }  // namespace
 }  // namespace mjdiag

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
