@@ -15,8 +15,8 @@ std::string Named(const Discovery& discovery) {
   return names;
 }
 
-// Of the benchmark `mjdiag study --preset hidden` dry friction and an encoder's scale, on
-// shorter records and with fewer physics steps a tick; the benchmark has all kinds.
+// Of the benchmark `mjdiag study --preset hidden` dry friction and an offset, on shorter
+// records and with fewer physics steps a tick; the benchmark has all kinds.
 class HiddenInTheBonder : public ::testing::TestWithParam<int> {};
 
 TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
@@ -30,7 +30,7 @@ TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
   EXPECT_LT(outcome.unseen_ratio, 1.2);
 }
 
-INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 22));
+INSTANTIATE_TEST_SUITE_P(AHandful, HiddenInTheBonder, ::testing::Values(0, 7));
 
 }  // namespace
 }  // namespace mjdiag
