@@ -1,3 +1,26 @@
+# mjdiag_join(<result> <tests...>): one file of several tests. All of a test lies in one
+# unnamed namespace inside mjdiag. In that it gets a namespace of its own, so that names of
+# different tests do not meet.
+function(mjdiag_join result)
+  set(joined "")
+  set(number 0)
+  foreach(file IN LISTS ARGN)
+    math(EXPR number "${number} + 1")
+    file(READ ${file} text)
+    string(REPLACE "\nnamespace {\n" "\nnamespace { namespace test_${number} {\n" text
+           "${text}")
+    string(REPLACE "\n}  // namespace\n" "\n}}\n" text "${text}")
+    string(APPEND joined "#line 1 \"${file}\"\n${text}")
+  endforeach()
+  set(before "")
+  if(EXISTS ${result})
+    file(READ ${result} before)
+  endif()
+  if(NOT joined STREQUAL before)
+    file(WRITE ${result} "${joined}")
+  endif()
+endfunction()
+
 # mjdiag_join_tests(<folder> <result> <sources...>): the sources to compile for these
 # tests, some of which hold several of them (Folder.cmake says why).
 function(mjdiag_join_tests folder result)
@@ -10,7 +33,6 @@ function(mjdiag_join_tests folder result)
   set(compiled)
   set(count 0)
   foreach(source IN LISTS ARGN ITEMS end)
-    set(joins FALSE)
     if(NOT source STREQUAL end)
       file(READ ${source} text)
       string(REGEX MATCHALL "\n(namespace {|}  // namespace)\n" marks "${text}")
@@ -25,10 +47,7 @@ function(mjdiag_join_tests folder result)
     list(LENGTH batch length)
     if(length EQUAL size OR (source STREQUAL end AND length GREATER 0))
       set(joined ${CMAKE_CURRENT_BINARY_DIR}/joined/${folder}_${count}.cc)
-      add_custom_command(OUTPUT ${joined}
-        COMMAND ${CMAKE_COMMAND} -P ${PROJECT_SOURCE_DIR}/cmake/JoinTests.cmake ${joined}
-                ${batch}
-        DEPENDS ${batch} ${PROJECT_SOURCE_DIR}/cmake/JoinTests.cmake VERBATIM)
+      mjdiag_join(${joined} ${batch})
       list(APPEND compiled ${joined})
       set(batch)
       math(EXPR count "${count} + 1")

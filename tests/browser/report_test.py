@@ -5,7 +5,6 @@
 
 Makes a report of each kind with the command, and opens it in Chromium."""
 
-import array
 import base64
 import json
 import os
@@ -18,6 +17,7 @@ import unittest
 sys.dont_write_bytecode = True  # leave the tree as it was
 
 from browser import Browser, Tab
+from long_page import LONG, LONG_PLOTS, STEP, long_wave, write_long_page
 from picture import Picture
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
@@ -25,9 +25,6 @@ MJDIAG = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
 PICTURES = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else ""
 KINDS = ("diagnosis", "comparison", "discovery", "study", "design")
 PHONE = {"width": 390, "height": 844, "mobile": True}
-LONG = 200_000  # samples
-LONG_PLOTS = 3
-STEP = 1e-4  # s
 
 # Stretch of a plot that a drag selects, as parts of its width.
 FROM, TO = 0.3, 0.6
@@ -110,27 +107,6 @@ def measure_voice_coil(folder):
         line = next(line for line in lines if line.startswith(start))
         line = line.replace("out/voice_coil", folder).replace("mjdiag ", MJDIAG + " ")
         subprocess.run(line, shell=True, cwd=ROOT, check=True, capture_output=True)
-
-
-def long_wave():
-    wave = array.array("f", (((k * 7919) % 1000) / 1000.0 for k in range(LONG)))
-    wave[123457], wave[76543] = -1.0, 2.0  # peaks of one sample
-    return wave
-
-
-def write_long_page(folder):
-    """A page of three time plots and a hostile name, as a command would write it."""
-    samples = base64.b64encode(long_wave().tobytes()).decode()
-    name = "<img src=x onerror=console.error('run')>"
-    plots = [{"kind": "time", "height": 240, "x_label": "time [s]",
-              "y_label": name + " [m]", "unit": "m", "start": 0.0, "step": STEP,
-              "curves": [{"label": name, "role": "measured", "samples": samples}],
-              "levels": [{"value": 0.5, "label": name}], "bands": [], "marks": []}] * LONG_PLOTS
-    page = {"schema": "mjdiag.page/1", "title": name, "verdict": None, "command": name,
-            "versions": [], "blocks": [
-                {"kind": "plot", "caption": name, "plot": plot} for plot in plots]}
-    with open(os.path.join(folder, "long.page.json"), "w") as file:
-        json.dump(page, file)
 
 
 class ReportTest(unittest.TestCase):
