@@ -32,14 +32,15 @@ std::string Refused(const std::string& arguments) {
   return result.err;
 }
 
-/// Filters of the linear plant, made once for all tests of this process.
 class Diagnosis : public ::testing::Test {
  protected:
   std::string Path(const std::string& name) const {
     return (folder_.path() / name).string();
   }
-  std::string Filters() const {
-    const std::string out = Path("design");
+  /// Filters of the linear plant, made once for all tests of this process.
+  static std::string Filters() {
+    static const TemporaryFolder folder;
+    const std::string out = (folder.path() / "design").string();
     if (!fs::exists(out)) {
       EXPECT_EQ(RunCommand(std::string("design ") + kLinear + "--out " + out).status,
                 0);
