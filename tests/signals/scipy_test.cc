@@ -1,11 +1,9 @@
 // Against SciPy, which runs here and now: no stored numbers that could be our own.
 
+#include "support/scipy.h"
+
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <map>
-#include <sstream>
 #include <string>
 
 #include "mjdiag/signals/butterworth.h"
@@ -20,62 +18,13 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using test::Difference;
 
-constexpr const char* kPython = "/usr/bin/python3";
-
-struct Output {
-  int status = -1;
-  std::string text;
-};
-
-Output RunCommand(const std::string& command) {
-  Output output;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return output;
-  char block[4096];
-  for (std::size_t n = 0; (n = fread(block, 1, sizeof block, pipe)) > 0;) {
-    output.text.append(block, n);
-  }
-  output.status = pclose(pipe);
-  return output;
-}
-
-std::map<std::string, MatrixXd> Parse(const std::string& text) {
-  std::map<std::string, MatrixXd> values;
-  std::istringstream stream(text);
-  std::string name;
-  Eigen::Index rows = 0;
-  Eigen::Index columns = 0;
-  while (stream >> name >> rows >> columns) {
-    MatrixXd matrix(rows, columns);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      for (Eigen::Index j = 0; j < columns; ++j) stream >> matrix(i, j);
-    }
-    values[name] = matrix;
-  }
-  return values;
-}
-
-class Scipy : public testing::Test {
+class Scipy : public test::ScipyTest {
  protected:
   static void SetUpTestSuite() {
-    const std::string python(kPython);
-    present_ = RunCommand(python + " -c 'import scipy.signal' 2>/dev/null").status == 0;
-    if (!present_) return;
-    const Output output = RunCommand(python + " " + MJDIAG_SOURCE_DIR +
-                                     "/tests/signals/scipy_reference.py");
-    ASSERT_EQ(output.status, 0);
-    values_ = Parse(output.text);
+    if (HasScipy()) RunScript("tests/signals/scipy_reference.py");
   }
-
-  void SetUp() override {
-    if (present_) return;
-    const char* ci = std::getenv("CI");
-    ASSERT_FALSE(ci && std::string(ci) == "true") << "python3-scipy is not installed";
-    GTEST_SKIP() << "python3-scipy is not installed: no comparison with SciPy";
-  }
-
-  static const MatrixXd& Value(const std::string& name) { return values_.at(name); }
   static VectorXd Row(const std::string& name, Eigen::Index row = 0) {
     return Value(name).row(row);
   }
@@ -83,20 +32,7 @@ class Scipy : public testing::Test {
     return {Value(prefix + "A"), Value(prefix + "B"), Value(prefix + "C"),
             Value(prefix + "D"), sample_time};
   }
-
- private:
-  inline static bool present_ = false;
-  inline static std::map<std::string, MatrixXd> values_;
 };
-
-/// Largest difference, relative to the largest reference value.
-double Difference(const MatrixXd& actual, const MatrixXd& reference) {
-  if (actual.rows() != reference.rows() || actual.cols() != reference.cols()) {
-    ADD_FAILURE() << "shapes differ";
-    return 1.0;
-  }
-  return (actual - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
-}
 
 /// Numerator and denominator (two rows) of the whole filter.
 MatrixXd Multiply(const SecondOrderSections& sections, Eigen::Index order) {

@@ -6,9 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 #include <sstream>
 #include <string>
 
@@ -18,6 +15,7 @@
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "support/bonder.h"
+#include "support/scipy.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -26,42 +24,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Values = std::map<std::string, MatrixXd>;
+using test::Difference;
+using test::Values;
 using testing::Each;
 using testing::Lt;
-
-constexpr const char* kPython = "/usr/bin/python3";
-
-struct Output {
-  int status = -1;
-  std::string text;
-};
-
-Output RunCommand(const std::string& command) {
-  Output output;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return output;
-  char block[4096];
-  for (std::size_t n = 0; (n = fread(block, 1, sizeof block, pipe)) > 0;) {
-    output.text.append(block, n);
-  }
-  output.status = pclose(pipe);
-  return output;
-}
-
-Values Parse(const std::string& text) {
-  Values values;
-  std::istringstream stream(text);
-  std::string name;
-  Index rows = 0;
-  Index columns = 0;
-  while (stream >> name >> rows >> columns) {
-    MatrixXd matrix(rows, columns);
-    for (double& value : matrix.reshaped<Eigen::RowMajor>()) stream >> value;
-    values[name] = matrix;
-  }
-  return values;
-}
 
 std::string Text(const Values& values) {
   std::ostringstream text;
@@ -177,48 +143,22 @@ struct WornGuide {
   MonitorLog log;
 };
 
-class DiagnosisScipy : public testing::Test {
+class DiagnosisScipy : public test::ScipyTest {
  protected:
   static void SetUpTestSuite() {
-    const std::string python(kPython);
-    present_ = RunCommand(python + " -c 'import scipy.signal' 2>/dev/null").status == 0;
-    if (!present_) return;
+    if (!HasScipy()) return;
     ours_ = new WornGuide;
     const test::TemporaryFolder folder;
     const std::string given = folder.Write("given.txt", Text(ours_->ForPython()));
-    const Output output =
-        RunCommand(python + " " + MJDIAG_SOURCE_DIR +
-                   "/tests/plugin/design/diagnosis_reference.py " + given);
-    ASSERT_EQ(output.status, 0);
-    values_ = Parse(output.text);
+    RunScript("tests/plugin/design/diagnosis_reference.py " + given);
   }
   static void TearDownTestSuite() { delete ours_; }
 
-  void SetUp() override {
-    if (present_) return;
-    const char* ci = std::getenv("CI");
-    ASSERT_FALSE(ci && std::string(ci) == "true") << "python3-scipy is not installed";
-    GTEST_SKIP() << "python3-scipy is not installed: no comparison with SciPy";
-  }
-
   static const WornGuide& Ours() { return *ours_; }
-  static const MatrixXd& Value(const std::string& name) { return values_.at(name); }
-  static double Number(const std::string& name) { return Value(name)(0, 0); }
 
  private:
-  inline static bool present_ = false;
   inline static WornGuide* ours_ = nullptr;
-  inline static Values values_;
 };
-
-/// Largest difference, relative to the largest reference value.
-double Difference(const MatrixXd& actual, const MatrixXd& reference) {
-  if (actual.rows() != reference.rows() || actual.cols() != reference.cols()) {
-    ADD_FAILURE() << "shapes differ";
-    return 1.0;
-  }
-  return (actual - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
-}
 
 TEST_F(DiagnosisScipy, FindsTheSameParityRelations) {
   // Three outputs and twenty states: none below degree 6, one of 6, four up to 7.
