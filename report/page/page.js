@@ -248,21 +248,21 @@
   // All time plots show the same window, [from, to] or null for all of their record,
   // in rows made for it.
   const timeCharts = charts.filter((chart) => chart.plot.kind === 'time');
-  let drawing = false;
+  let redrawing = false;
   let shown = null;
   function show(window) {
-    drawing = true;
+    redrawing = true;
     shown = window;
     for (const chart of timeCharts) {
       chart.rows = sampling.rows(chart.plot, window, chart.frame.clientWidth);
       chart.graph.updateOptions({ file: chart.rows, dateWindow: window });
     }
-    drawing = false;
+    redrawing = false;
   }
 
   // After the reader has zoomed or moved one of them.
   function follow(graph, initial) {
-    if (initial || drawing) return;
+    if (initial || redrawing) return;
     const window = graph.isZoomed('x') ? graph.xAxisRange() : null;
     if (String(window) !== String(shown)) show(window);
   }
