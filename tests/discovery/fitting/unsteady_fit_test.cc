@@ -35,7 +35,7 @@ TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {
 
 // A gap of a nanoradian in a stiff guide: no change is too small to change the course.
 TEST(UnsteadyFit, SeesThatACourseDependsOnTheLastDigit) {
-  const Machine machine = test::Bonder({"trajectories.multi.duration=0.75"});
+  const Machine machine = test::Bonder();
   const Trajectories& motions = machine.setup().trajectories;
   const Record measured =
       Simulate(machine.With(test::With({"backlash@u4:gap=8.9e-10"})),
