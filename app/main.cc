@@ -91,4 +91,6 @@ const std::string& CommandLine() { return command_line; }
 
 }  // namespace mjdiag::app
 
+// Nothing thrown outside its try is for a user: it ends the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) { return mjdiag::app::Main(argc, argv); }

@@ -192,6 +192,7 @@ void Render(RenderOptions options) {
   const std::vector<TitledRecord> records =
       titled.empty() ? SimulateRuns(subject, options.motion) : titled;
   std::vector<ClipRun> runs;
+  runs.reserve(records.size());
   for (const TitledRecord& run : records) runs.push_back({run.title, &run.record});
   if (options.diagnose) {
     options.clip.picture.diagnosis = DiagnosisOf(options, machine, records);

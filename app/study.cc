@@ -82,6 +82,7 @@ std::string ToText(const StudyTable& table) {
   Table text(table.columns);
   for (const auto& cells : table.rows) {
     std::vector<std::string> row;
+    row.reserve(cells.size());
     for (const Cell& cell : cells) row.push_back(cell.text);
     text.Add(row);
   }

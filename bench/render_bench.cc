@@ -226,7 +226,7 @@ void ClipOverBareFrames(benchmark::State& state, const std::string& kind) {
     over_bare.push_back(run("bare", bares) / clip);
     over_apart.push_back(InProcess("bare_apart").elapsed / clip);
   }
-  const double frames = static_cast<double>(kFrames * over_bare.size());
+  const auto frames = static_cast<double>(kFrames * over_bare.size());
   state.counters["over_bare"] = Median(over_bare);
   state.counters["over_bare_apart"] = Median(over_apart);
   state.counters["clip_frames_per_s"] = frames / clips.elapsed;
@@ -247,6 +247,8 @@ BENCHMARK_CAPTURE(ClipOverBareFrames, with_diagnosis, "with_diagnosis")
 }  // namespace
 }  // namespace mjdiag
 
+// What it throws ends it, with its text.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   if (argc == 3 && std::string(argv[1]) == mjdiag::kLoop) {
     return mjdiag::RunLoop(argv[2]);

@@ -99,7 +99,7 @@ std::map<std::string, NoiseFloor> EstimateNoiseFloor(const Machine& machine,
     std::vector<Eigen::VectorXd> draws;
     for (const Record& run : noisy) {
       const Eigen::VectorXd difference = run.At(channel).samples - quiet;
-      draws.push_back(difference.tail(difference.size() - skip));
+      draws.emplace_back(difference.tail(difference.size() - skip));
     }
     floors[channel] = FloorOf(draws, clean.sample_time());
   };

@@ -271,7 +271,7 @@ DiagnosisDesign ReadFilters(const std::filesystem::path& file) {
       throw InputError(file.string(), "has no schema \"" + std::string(kSchema) + "\"",
                        "a file of `mjdiag design`");
     }
-    const DiagnosisDesign design = Parse(document);
+    DiagnosisDesign design = Parse(document);
     RequireShapes(file.string(), design);
     return design;
   } catch (const json::exception& error) {

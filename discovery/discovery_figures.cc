@@ -64,7 +64,7 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
   std::vector<std::string> units;
   for (const std::string& joint : joints) {
     const int id = FindElement(machine_.plant(), mjOBJ_JOINT, joint);
-    units.push_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
+    units.emplace_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
   }
   return UnexplainedForces(problem_.machine().linear(), problem_.observer(),
                            problem_.step(), machine_.rates().substeps,

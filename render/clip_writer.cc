@@ -35,7 +35,7 @@ class QuietOpenCv {
 std::string OpenEncoder(const std::filesystem::path& file, double fps, cv::Size size,
                         cv::VideoWriter& video) {
   const QuietOpenCv quiet;
-  for (const std::string codec : {"avc1", "mp4v"}) {
+  for (const char* codec : {"avc1", "mp4v"}) {
     const int code = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
     if (video.open(file.string(), cv::CAP_FFMPEG, code, fps, size)) return codec;
   }

@@ -18,7 +18,7 @@ std::vector<double> MomentArms(const mjModel& model) {
   mj_comPos(&model, data.get());
   mj_tendon(&model, data.get());
   mj_transmission(&model, data.get());
-  return {data->actuator_moment, data->actuator_moment + model.nu * model.nv};
+  return {data->actuator_moment, RowOf(data->actuator_moment, model.nv, model.nu)};
 }
 
 // The joint that takes most of the actuator's static stroke; -1: none.
@@ -46,7 +46,7 @@ std::vector<DrawnJoint> DrawnJoints(const mjModel& model) {
   const std::vector<double> arms = MomentArms(model);
   std::vector<bool> driven(model.njnt, false);
   for (int actuator = 0; actuator < model.nu; ++actuator) {
-    const int joint = DrivenJoint(model, arms.data() + actuator * model.nv);
+    const int joint = DrivenJoint(model, RowOf(arms.data(), model.nv, actuator));
     if (joint >= 0) driven[joint] = true;
   }
 

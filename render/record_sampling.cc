@@ -6,7 +6,7 @@
 namespace mjdiag {
 
 double SampleAt(const Record& record, const Eigen::VectorXd& samples, double time) {
-  const double last = static_cast<double>(samples.size() - 1);
+  const auto last = static_cast<double>(samples.size() - 1);
   const double position =
       std::clamp((time - record.start_time()) / record.sample_time(), 0.0, last);
   const auto below = static_cast<Eigen::Index>(position);
@@ -20,7 +20,7 @@ SampleRange SamplesWithin(const Record& record, TimeRange range) {
     return (time - record.start_time()) / record.sample_time();
   };
   // The slack keeps a sample that lies on the boundary but for rounding.
-  const double end = static_cast<double>(record.samples() - 1);
+  const auto end = static_cast<double>(record.samples() - 1);
   const double first = std::clamp(std::ceil(index(range.begin) - 1e-6), 0.0, end);
   const double last = std::clamp(std::floor(index(range.end) + 1e-6), first, end);
   return {static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(last)};

@@ -60,7 +60,7 @@ SitePath DrawnPath(const mjModel& model, int site, const Amplification& amplific
     mj_kinematics(&model, &data);
     path.times.push_back(time);
     path.positions.emplace_back(
-        Eigen::Map<const Eigen::Vector3d>(data.site_xpos + 3 * site));
+        Eigen::Map<const Eigen::Vector3d>(RowOf(data.site_xpos, 3, site)));
   }
   return path;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "mjdiag/render/palette.h"
 #include "mjdiag/render/strokes.h"
@@ -27,12 +28,12 @@ ValueRange WithHeadroom(ValueRange values) {
 
 StripChart::StripChart(const ClipLayout& layout, const ChartLayout& place,
                        const Trace& trace, std::span<const Record* const> runs,
-                       TimeRange range, const StripMarks& marks)
+                       TimeRange range, StripMarks marks)
     : place_(place),
       font_(layout.small),
       line_width_(std::max(1.0, std::round(layout.small.em / 8.0))),
       range_(range),
-      marks_(marks) {
+      marks_(std::move(marks)) {
   ValueRange data = RangeWithZero(trace, runs, range);
   for (const StripMarks::Level& level : marks_.levels) {
     data = {std::min(data.low, level.value), std::max(data.high, level.value)};
@@ -132,7 +133,7 @@ void StripChart::DrawTimeAxis(Typesetter& type, cv::Mat& picture) const {
 
 std::string StripChart::Caption(Typesetter& type) const {
   const int width = place_.plot.width;
-  const std::string full = caption_ + unit_;
+  std::string full = caption_ + unit_;
   if (type.Width(full, font_) <= width) return full;
   return type.Fit(short_caption_ + unit_, width, font_);
 }

@@ -31,7 +31,7 @@ class StripChart {
  public:
   StripChart(const ClipLayout& layout, const ChartLayout& place, const Trace& trace,
              std::span<const Record* const> runs, TimeRange range,
-             const StripMarks& marks = {});
+             StripMarks marks = {});
 
   /// Caption, axes, grid and the faint traces: what stays the same in all frames.
   void DrawBackground(Typesetter& type, cv::Mat& picture);

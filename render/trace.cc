@@ -45,7 +45,7 @@ std::vector<Trace> TrackingErrors(std::span<const Record* const> runs,
       const Channel& reference =
           TracedChannel(*run, axis + std::string(kReferenceSuffix));
       trace.unit = measured.unit;
-      trace.runs.push_back(reference.samples - measured.samples);
+      trace.runs.emplace_back(reference.samples - measured.samples);
     }
     traces.push_back(std::move(trace));
   }

@@ -41,7 +41,7 @@ std::string FaceCharacter(char32_t character) {
   if (character == kTimes || character == kMinus) return "x";
   if (character == kDot) return ".";
   if (character < 0x20 || character > 0x7E) return "?";
-  return std::string(1, static_cast<char>(character));
+  return {static_cast<char>(character)};
 }
 
 double StrokeWidth(const Font& font) {

@@ -29,9 +29,10 @@ std::vector<Mark> Moments(const DiagnosisResult& result) {
         {*result.first_detection, "residual left its thresholds at " +
                                       FormatQuantity(*result.first_detection, "s")});
   }
-  if (result.lasting)
+  if (result.lasting) {
     marks.push_back(
         {*result.lasting, "lasting from " + FormatQuantity(*result.lasting, "s")});
+  }
   return marks;
 }
 
@@ -191,7 +192,7 @@ HistogramPlot RunHistogram(const DiagnosisDesign& design, const DiagnosisResult&
       VectorXd::LinSpaced(201, fit.mean - 4.0 * fit.sd, fit.mean + 4.0 * fit.sd);
   const VectorXd density = NormalDensity(x, fit.mean, fit.sd);
   // A bin wider than the distribution holds all of it.
-  const double samples = static_cast<double>(log.residual.size());
+  const auto samples = static_cast<double>(log.residual.size());
   plot.curves = {{"healthy runs, normal distribution", CurveRole::kSimulated, x,
                   (samples * width * density).cwiseMin(samples)}};
   return plot;

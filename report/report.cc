@@ -135,7 +135,7 @@ std::string ReportHtml(const Report& report) {
                                : report.title);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n";
   html += "<meta charset=\"utf-8\">\n";
-  html += "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+  html += R"(<meta http-equiv="Content-Security-Policy" content=")";
   html += kContentPolicy;
   html += "\">\n";
   html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
@@ -159,7 +159,7 @@ std::string ReportHtml(const Page& page) {
 
 std::filesystem::path WriteReport(const std::filesystem::path& folder) {
   const std::string html = ReportHtml(ReadRunFolder(folder));
-  const std::filesystem::path file = folder / "report.html";
+  std::filesystem::path file = folder / "report.html";
   WriteTextFile(file, html);
   return file;
 }

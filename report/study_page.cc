@@ -21,6 +21,7 @@ Table ForPage(const StudyTable& study) {
   }
   for (const std::vector<Cell>& cells : study.rows) {
     std::vector<std::string> row;
+    row.reserve(study.columns.size());
     for (const Cell& cell : cells) row.push_back(cell.text);
     row.resize(study.columns.size());  // short rows end with empty cells
     table.rows.push_back(row);

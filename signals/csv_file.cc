@@ -223,7 +223,7 @@ void AppendNumber(std::string& text, double value) {
 }
 
 std::string FormatHeader(const std::string& name, const std::string& unit) {
-  const std::string header = name + " [" + unit + "]";
+  std::string header = name + " [" + unit + "]";
   if (header.find_first_of(",;\t\"") == std::string::npos) return header;
   std::string quoted = "\"";
   for (const char c : header) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -186,7 +186,8 @@ class MatSource : public RecordSource {
   /// The fields of `units` also give the order: version 7.3 sorts its variables.
   void ApplyUnits() {
     std::size_t position = 0;
-    for (const auto& [field, unit] : ReadTexts(file_.get(), kUnits)) {
+    for (const auto& [name, unit] : ReadTexts(file_.get(), kUnits)) {
+      const std::string& field = name;  // Clang 14 captures no structured bindings
       const auto from = columns_.begin() + static_cast<std::ptrdiff_t>(position);
       const auto column =
           std::find_if(from, columns_.end(),
@@ -271,6 +272,7 @@ VariablePtr MakeText(std::string text) {
 VariablePtr MakeStruct(std::string_view name, const std::vector<std::string>& fields,
                        const std::vector<std::string>& texts) {
   std::vector<const char*> names;
+  names.reserve(fields.size());
   for (const std::string& field : fields) names.push_back(field.c_str());
   std::array<std::size_t, 2> dims{1, 1};
   VariablePtr variable(Mat_VarCreateStruct(std::string(name).c_str(), 2, dims.data(),

@@ -26,7 +26,7 @@ Cell SizeCell(const std::optional<double>& deviation, double healthy) {
 
 /// A deviation as people write it: +0.5 %.
 Cell DeviationCell(const std::optional<double>& deviation) {
-  if (!deviation) return Cell("not seen");
+  if (!deviation) return "not seen";
   Cell cell(*deviation);
   cell.text = (*deviation > 0.0 ? "+" : "") + Cell(100.0 * *deviation).text + " %";
   return cell;
@@ -70,7 +70,9 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
   ParallelFor(
       static_cast<int>(largest.size()),
       [&](int i) {
-        const auto& [fault, value] = largest[static_cast<std::size_t>(i)];
+        // Lambdas below capture both, which Clang 14 does not let structured bindings be.
+        const std::string& fault = largest[static_cast<std::size_t>(i)].first;
+        const double value = largest[static_cast<std::size_t>(i)].second;
         const double healthy = HealthyValue(machine.setup(), fault);
         LinearResult& result = results[static_cast<std::size_t>(i)];
         if (const auto size = PublishedSize(published, fault)) {

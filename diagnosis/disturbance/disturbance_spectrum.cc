@@ -30,7 +30,7 @@ VectorXd LineFrequencies(const std::vector<SpectralLine>& lines,
   const double bin = 1.0 / (static_cast<double>(segment) * sample_time);
   VectorXd frequency(static_cast<Index>(lines.size()));
   for (Index j = 0; j < frequency.size(); ++j) {
-    const double around = static_cast<double>(lines[static_cast<std::size_t>(j)].bin);
+    const auto around = static_cast<double>(lines[static_cast<std::size_t>(j)].bin);
     frequency[j] = LineFrequency(residual, sample_time, around * bin, segment);
   }
   return frequency;

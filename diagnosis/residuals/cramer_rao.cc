@@ -23,6 +23,7 @@ std::vector<MatrixXd> OutputSensitivities(const std::vector<PerturbedModels>& fa
                                           const TickTiming& timing,
                                           const MatrixXd& commands) {
   std::vector<MatrixXd> sensitivities;
+  sensitivities.reserve(faults.size());
   for (const PerturbedModels& fault : faults) {
     sensitivities.emplace_back((Readings(fault.plus, timing, commands) -
                                 Readings(fault.minus, timing, commands)) /

@@ -41,7 +41,7 @@ VectorXd Polynomial(const Denominator& denominator, double sample_time) {
     const double angle = std::numbers::pi * (2 * i + 1 + n) / (2.0 * n);
     const auto pole =
         (std::exp(std::polar(radius, angle) * sample_time) - 1.0) / kDeltaScale;
-    coefficients.push_back(0.0);
+    coefficients.emplace_back(0.0);
     for (std::size_t k = coefficients.size() - 1; k > 0; --k) {
       coefficients[k] = coefficients[k - 1] - pole * coefficients[k];
     }

@@ -57,6 +57,7 @@ Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitte
 Changes ChangesOf(const std::vector<Candidate>& candidates,
                   const std::vector<FittedCause>& causes) {
   std::vector<Cause> list;
+  list.reserve(causes.size());
   for (const FittedCause& fitted : causes) {
     list.push_back(CauseOf(candidates, fitted));
   }

@@ -199,6 +199,7 @@ std::vector<double> Screener::RoughGains(const Sweep& sweep,
 std::vector<double> Screener::Gains(const Sweep& sweep, const Candidate& candidate,
                                     const std::vector<double>& places) const {
   std::vector<Trial> trials;
+  trials.reserve(places.size());
   for (const double place : places) trials.push_back(sweep.make(ValueAt(sweep, place)));
   std::vector<double> gains;
   for (const auto& start : Judge(trials, candidate)) {
@@ -223,6 +224,7 @@ std::vector<double> Screener::Peaks(const Sweep& sweep, const Candidate& candida
   std::ranges::sort(maxima, std::greater<>());
   if (maxima.size() > count) maxima.resize(count);
   std::vector<double> tops;
+  tops.reserve(maxima.size());
   for (const auto& [gain, place] : maxima) tops.push_back(place);
   // A strong wave loses much within a small part of a step: halve it.
   constexpr int kHalvings = 5;
@@ -285,6 +287,7 @@ std::vector<double> Screener::BestPlaces(const Sweep& sweep,
                                          const Candidate& candidate,
                                          std::size_t count) const {
   std::vector<Trial> trials;
+  trials.reserve(places.size());
   for (const double place : places) trials.push_back(sweep.make(ValueAt(sweep, place)));
   const std::vector<std::optional<Start>> starts = Judge(trials, candidate);
   std::vector<std::pair<double, double>> gains;
@@ -306,7 +309,7 @@ std::vector<double> Screener::BestPlaces(const Sweep& sweep,
 /// Between two values of a sweep, whose angles are evenly spaced: periods by their
 /// inverse, frequencies as they are; between neighbours both are near enough to even.
 double Screener::ValueAt(const Sweep& sweep, double place) {
-  const double last = static_cast<double>(sweep.values.size() - 1);
+  const auto last = static_cast<double>(sweep.values.size() - 1);
   const double inside = std::clamp(place, 0.0, last);
   const auto below = static_cast<std::size_t>(inside);
   const std::size_t above = std::min(below + 1, sweep.values.size() - 1);

@@ -56,7 +56,7 @@ int ParameterCount(const std::vector<FittedCause>& causes) {
 
 double Criterion(const CauseFit& fit, const VectorXd& independent, Index first,
                  Index last) {
-  const double samples = static_cast<double>(last - first);
+  const auto samples = static_cast<double>(last - first);
   const double n = std::max(2.0, samples * independent.sum());
   return Deviance(fit.residual, independent, first, last) +
          ParameterCount(fit.causes) * std::log(n);

@@ -128,7 +128,7 @@ Explanation SignatureSearch::Binned(const Variable& variable,
 }
 
 bool SignatureSearch::HasMean() const {
-  const double n = static_cast<double>(f_.size());
+  const auto n = static_cast<double>(f_.size());
   const double independent = n / per_independent_;
   if (independent < 3.0) return std::abs(f_.mean()) > 4.0 * sd_;
   const double slow = std::min(1.0, 4.0 / independent);
@@ -219,7 +219,7 @@ double SignatureSearch::FindPeriod(const VectorXd& x) const {
   fft.fwd(spectrum, sum);
   Index peak = 0;
   spectrum.segment(1, cells / 2 - 1).cwiseAbs2().maxCoeff(&peak);
-  double best = static_cast<double>(peak + 1);
+  auto best = static_cast<double>(peak + 1);
   for (const double step : {0.1, 0.01}) {
     const double centre = best;
     double gain = 0.0;
@@ -301,7 +301,7 @@ Explanation SignatureSearch::OverTime(const Variable& time) const {
     found.y[b] = f_.segment(first, size).mean();
     rest.segment(first, size).array() -= found.y[b];
   }
-  const double samples = static_cast<double>(n);
+  const auto samples = static_cast<double>(n);
   const double independent = samples / SamplesPerIndependent(rest);
   const double left = rest.squaredNorm();
   found.share = 1.0 - left * (1.0 + kMostBins / independent) / total_;

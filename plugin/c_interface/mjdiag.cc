@@ -62,7 +62,7 @@ int mjdiag_set_fault(mjModel* model, const char* parameter, double value) {
 
 mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* setup,
                                const char* trajectory, uint64_t seed) {
-  auto made = std::make_unique<mjdiag_instance>(model, data, nullptr);
+  auto made = std::make_unique<mjdiag_instance>(mjdiag_instance{model, data, nullptr});
   const bool good = Guard([&] {
     mjdiag::Setup parts = mjdiag::ReadSetup(Text(setup));
     mjdiag::CheckTimeStep(parts, *model);

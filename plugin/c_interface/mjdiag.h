@@ -16,7 +16,7 @@
 #define MJDIAG_H_
 
 #include <mujoco/mujoco.h>
-#include <stdint.h>
+#include <stdint.h> /* NOLINT(modernize-deprecated-headers): for C */
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,7 +24,7 @@ extern "C" {
 
 #define MJDIAG_API __attribute__((visibility("default")))
 
-typedef struct mjdiag_instance mjdiag_instance;
+typedef struct mjdiag_instance mjdiag_instance; /* NOLINT(modernize-use-using) */
 
 /* "0.1.0" */
 MJDIAG_API const char* mjdiag_version(void);

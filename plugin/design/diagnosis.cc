@@ -51,7 +51,7 @@ Index HorizonStart(const DiagnosisDesign& design, const Record& record) {
         "horizon", FormatQuantity(horizon, "s"),
         "no more than the record's " + FormatQuantity(record.duration(), "s"));
   }
-  return record.samples() - static_cast<Index>(horizon / record.sample_time() + 0.5);
+  return record.samples() - std::lround(horizon / record.sample_time());
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ ModelAt FaultModels(const Machine& machine,
     }
     return machine.With(changes).linear();
   };
-  const MechanicalModel base = machine.linear();
+  const MechanicalModel& base = machine.linear();
   std::vector<Slope> slopes;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     // Half the value tells more than a small step: the models are affine.

@@ -200,6 +200,7 @@ DiagnosisLimits LimitsOf(const DiagnosisDesign& design,
       integral = std::max(integral, nominal.log.integral.maxCoeff());
     }
   }
+  disturbances.reserve(repeated.size());
   for (const NominalLog& nominal : repeated) {
     disturbances.push_back(nominal.log.disturbance);
   }

@@ -1,13 +1,14 @@
 #include "mjdiag/plugin/effects/joint_force.h"
 
+#include <utility>
+
 namespace mjdiag {
 namespace {
 
 class JointForce final : public ActiveEffect {
  public:
-  JointForce(const JointForceEffect& effect, const JointOf& joint,
-             const EffectValues& values)
-      : effect_(effect), joint_(joint), values_(values) {}
+  JointForce(const JointForceEffect& effect, const JointOf& joint, EffectValues values)
+      : effect_(effect), joint_(joint), values_(std::move(values)) {}
   void Push(const mjModel&, mjData& data) noexcept override {
     const double q = data.qpos[joint_.position] - joint_.rest;
     const double v = data.qvel[joint_.dof];

@@ -70,6 +70,7 @@ std::vector<Site> SiteMap::Sensors() const {
 
 std::vector<Site> SiteMap::Joints(const std::vector<Index>& joints) const {
   std::vector<Site> sites;
+  sites.reserve(joints.size());
   for (const Index joint : joints) {
     sites.push_back({model_.coordinates[static_cast<std::size_t>(joint)], joint, -1});
   }

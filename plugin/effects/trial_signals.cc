@@ -15,6 +15,7 @@ double Range(const VectorXd& x) { return x.maxCoeff() - x.minCoeff(); }
 
 std::vector<double> LogGrid(double least, double most, int count) {
   std::vector<double> grid;
+  grid.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     grid.push_back(least *
                    std::pow(most / least, static_cast<double>(i) / (count - 1)));

@@ -16,9 +16,8 @@ FaultParameterKind ParseKind(const std::string& where, const std::string& word) 
   if (word == "damping") return FaultParameterKind::kDamping;
   if (word == "stiffness") return FaultParameterKind::kStiffness;
   if (word == "gear") return FaultParameterKind::kGear;
-  throw InputError(
-      where, "unknown kind of fault parameter \"" + word + "\"",
-      "\"damping\" or \"stiffness\" and joints, or \"gear\" and actuators");
+  throw InputError(where, "unknown kind of fault parameter \"" + word + "\"",
+                   R"("damping" or "stiffness" and joints, or "gear" and actuators)");
 }
 
 FaultParameter ParseFaultParameter(const mjModel& model, const std::string& text_name,
@@ -69,10 +68,11 @@ void Scale(mjModel& model, FaultParameterKind kind, int element, double factor) 
     case FaultParameterKind::kStiffness:
       model.jnt_stiffness[element] *= factor;
       return;
-    case FaultParameterKind::kGear:
-      mju_scl(model.actuator_gear + 6 * element, model.actuator_gear + 6 * element,
-              factor, 6);
+    case FaultParameterKind::kGear: {
+      mjtNum* gear = RowOf(model.actuator_gear, 6, element);
+      mju_scl(gear, gear, factor, 6);
       return;
+    }
   }
 }
 

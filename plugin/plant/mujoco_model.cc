@@ -39,7 +39,7 @@ InputError MjcfError(const std::filesystem::path& mjcf, const std::string& repor
   std::string where = mjcf.string();
   std::smatch match;
   if (std::regex_search(report, match, kLine)) where += ":" + match[1].str();
-  return InputError(where, OneLine(report), "a valid MJCF model");
+  return {where, OneLine(report), "a valid MJCF model"};
 }
 
 /// Number of elements of a kind.

@@ -3,6 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -28,6 +29,11 @@ DataPtr MakeData(const mjModel& model);
 /// mj_name2id that fails with InputError("<model>: no <kind> named ..., expected one of
 /// ...") instead of returning -1.
 int FindElement(const mjModel& model, mjtObj kind, const std::string& name);
+/// Where row `row` of an array of mjModel or mjData begins, of `width` numbers each.
+template <typename Number>
+Number* RowOf(Number* array, int width, int row) {
+  return array + static_cast<std::ptrdiff_t>(width) * row;
+}
 /// Name of an element, or "<kind> <id>" for a nameless one.
 std::string ElementName(const mjModel& model, mjtObj kind, int id);
 

@@ -1,7 +1,6 @@
 #include "mjdiag/plugin/runtime/instance.h"
 
 #include <bit>
-#include <cstdint>
 #include <mutex>
 
 #include "mjdiag/plugin/plant/channels.h"
@@ -12,7 +11,7 @@ namespace mjdiag {
 namespace {
 
 constexpr double kMark = 7.2657474e-169;
-static_assert(sizeof(mjtNum) == sizeof(std::uintptr_t), "a slot must hold a pointer");
+static_assert(sizeof(mjtNum) == sizeof(void*), "a slot must hold a pointer");
 
 mjtNum* Slots(const mjModel& model, const mjData& data) {
   return model.nuserdata < kInstanceSlots
@@ -26,8 +25,7 @@ mjfGeneric previous_callback = nullptr;
 void ControlCallback(const mjModel* model, mjData* data) {
   const mjtNum* slots = Slots(*model, *data);
   if (slots != nullptr && slots[0] == kMark) {
-    auto* instance =
-        reinterpret_cast<Instance*>(std::bit_cast<std::uintptr_t>(slots[1]));
+    auto* instance = std::bit_cast<Instance*>(slots[1]);
     instance->OnStep(*model, *data);
   } else if (previous_callback != nullptr) {
     previous_callback(model, data);
@@ -87,7 +85,7 @@ void Attach(const mjModel& model, mjData& data, Instance& instance) {
   }
   InstallControlCallback();
   slots[0] = kMark;
-  slots[1] = std::bit_cast<double>(reinterpret_cast<std::uintptr_t>(&instance));
+  slots[1] = std::bit_cast<mjtNum>(&instance);
 }
 
 void Detach(const mjModel& model, mjData& data) {

@@ -125,7 +125,7 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
     next.noalias() = tick_model.A * x;
     next.noalias() += tick_model.B * u;
     x.swap(next);
-    if (Eigen::Index worst; !(x.cwiseAbs().maxCoeff(&worst) < mjMAXVAL)) {
+    if (Eigen::Index worst = 0; !(x.cwiseAbs().maxCoeff(&worst) < mjMAXVAL)) {
       throw NumericalError("simulation: linear plant diverged at " +
                            std::to_string(static_cast<double>(tick) * rates.tick()) +
                            " s in joint '" + linear.coordinates[worst % nq] + "'");

@@ -30,7 +30,7 @@ Eigen::Vector3d ReadVector(const TomlTable& table, std::string_view key,
 }
 
 Eigen::Vector3d ReadDirection(const TomlTable& table) {
-  const Eigen::Vector3d axis = ReadVector(table, "axis");
+  Eigen::Vector3d axis = ReadVector(table, "axis");
   if (std::abs(axis.norm() - 1.0) > 1e-12) {
     table.Fail("axis", "is not of unit length", "a unit vector");
   }
@@ -41,7 +41,7 @@ Eigen::Vector3d ReadDirection(const TomlTable& table) {
 std::string ReadBodyName(const TomlTable& table, std::string_view key,
                          const LinearChain& chain) {
   if (!table.Has(key)) return "";
-  const std::string name = table.Text(key);
+  std::string name = table.Text(key);
   const bool known =
       std::any_of(chain.bodies.begin(), chain.bodies.end(),
                   [&](const ChainBody& body) { return body.name == name; });

@@ -112,6 +112,7 @@ struct Channels {
 template <typename Element>
 std::vector<std::string> ChannelsOf(const std::vector<Element>& elements) {
   std::vector<std::string> names;
+  names.reserve(elements.size());
   for (const Element& element : elements) names.push_back(element.channel);
   return names;
 }

@@ -8,6 +8,7 @@
 #include <GL/osmesa.h>
 
 #include <array>
+#include <cstddef>
 
 namespace mjdiag {
 
@@ -27,7 +28,7 @@ class OffscreenContext {
  private:
   static constexpr int kSide = 8;  // of the unused default framebuffer [px]
   OSMesaContext context_;
-  std::array<unsigned char, 4 * kSide * kSide> default_framebuffer_{};
+  std::array<unsigned char, std::size_t{4} * kSide * kSide> default_framebuffer_{};
 };
 
 }  // namespace mjdiag

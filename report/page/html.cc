@@ -58,7 +58,7 @@ std::string PlotHtml(const json& block) {
          "</figcaption><div class=\"legend\"></div><div class=\"chart\" role=\"img\" "
          "aria-label=\"" +
          label + "\" style=\"height:" + std::to_string(plot.at("height").get<int>()) +
-         "px\"></div><script type=\"application/json\">" +
+         R"(px"></div><script type="application/json">)" +
          EscapeForScript(plot.dump()) + "</script></figure>\n";
 }
 
@@ -101,7 +101,7 @@ std::string VerdictHtml(const json& verdict, std::string_view target) {
   const std::string_view tone = TextAt(verdict, "tone");
   const std::string text = EscapeHtml(TextAt(verdict, "text"));
   return "<p class=\"verdict " + std::string(tone) +
-         "\"><span class=\"mark\" aria-hidden=\"true\">" + std::string(MarkOf(tone)) +
+         R"("><span class="mark" aria-hidden="true">)" + std::string(MarkOf(tone)) +
          "</span><span>" +
          (target.empty()
               ? text

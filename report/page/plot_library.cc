@@ -28,7 +28,7 @@ std::string ReadWithoutSourceMap(const fs::path& file) {
   std::string text = ReadTextFile(file);
   const auto map = text.rfind("# sourceMappingURL=");
   if (map == std::string::npos) return text;
-  const auto comment = text.rfind("/", map);  // "//#" in a script, "/*#" in a style
+  const auto comment = text.rfind('/', map);  // "//#" in a script, "/*#" in a style
   text.resize(text[comment - 1] == '/' ? comment - 1 : comment);
   return text;
 }

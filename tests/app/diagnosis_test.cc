@@ -75,16 +75,17 @@ double ValueOf(const json& diagnosis, const std::string& fault) {
 TEST_F(Diagnosis, OfARecordEqualsTheOneInsideTheCallbackToTheLastBit) {
   const std::string filters = Filters();
   const std::string out = Path("run");
+  const std::string at_once =
+      "--duration 0.5 --fault zeta_x=1.005 --fault eta_z=0.999 --diagnose --filters " +
+      filters + " --out " + out;
+  const std::string afterwards = "diagnose --setup mjcf/ab383 --filters " + filters +
+                                 " --record " + out + "/record.csv";
   for (const char* plant : {"--linear ", "--no-friction "}) {
-    ASSERT_EQ(RunCommand(std::string("simulate --setup mjcf/ab383 ") + plant +
-                         "--duration 0.5 --fault zeta_x=1.005 --fault eta_z=0.999 "
-                         "--diagnose --filters " +
-                         filters + " --out " + out)
+    ASSERT_EQ(RunCommand(std::string("simulate --setup mjcf/ab383 ") + plant + at_once)
                   .status,
               0);
     const json inside = json::parse(ReadAll(out + "/diagnosis.json"));
-    json offline = JsonOf("diagnose --setup mjcf/ab383 --filters " + filters +
-                          " --record " + out + "/record.csv");
+    json offline = JsonOf(afterwards);
     offline.erase("command");
     offline.erase("record");
     EXPECT_EQ(inside, offline);
@@ -258,9 +259,9 @@ TEST_F(Diagnosis, RefusesAHorizonLongerThanTheRecord) {
 
 TEST_F(Diagnosis, NamesTheFaultsThatCannotBeToldApart) {
   const std::string setup =
-      Changed("plant.xml", "<text name=\"fault.zeta_x\" data=\"damping X\"/>",
-              "<text name=\"fault.zeta_x\" data=\"damping X\"/>"
-              "<text name=\"fault.worn\" data=\"damping X\"/>");
+      Changed("plant.xml", R"(<text name="fault.zeta_x" data="damping X"/>)",
+              R"(<text name="fault.zeta_x" data="damping X"/>)"
+              R"(<text name="fault.worn" data="damping X"/>)");
   EXPECT_THAT(
       Refused("simulate --linear --duration 0.3 --diagnose --setup '" + setup + "'"),
       AllOf(HasSubstr("tell these faults apart"), HasSubstr("zeta_x, worn")));

@@ -99,7 +99,7 @@ TEST(Mismatch, SpectrumShowsTheFrequencyOfTheError) {
       Motion().array() + 1e-6 * Eigen::ArrayXd::LinSpaced(kSamples, 0.0, last).sin();
   const Spectrum spectrum =
       Measure(measured, Motion(), FloorOf(1e-8, kSamples)).spectrum;
-  Eigen::Index peak;
+  Eigen::Index peak = 0;
   spectrum.density.maxCoeff(&peak);
   const double resolution = spectrum.frequency[1] - spectrum.frequency[0];
   EXPECT_THAT(spectrum.frequency[peak], DoubleNear(frequency, resolution));

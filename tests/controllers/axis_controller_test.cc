@@ -150,7 +150,7 @@ TEST(FeedforwardFeedback, ResetForgetsTheErrorAndStaysSilentAtRest) {
 }
 
 TEST(FeedforwardFeedback, RefusesACompensatorThatIsNone) {
-  const auto make = [](DiscreteCompensator c) {
+  const auto make = [](const DiscreteCompensator& c) {
     return [c] { MakeFeedforwardFeedback({}, c, ControlMode::kBoth); };
   };
   EXPECT_THAT(make({{}, {1.0}}), ThrowsMessage<InputError>(HasSubstr("is empty")));

@@ -79,7 +79,7 @@ TEST(Setpoint, KeepsEveryBound) {
 TEST(Setpoint, EndsExactlyAtItsDistance) {
   for (const Case& c : RandomCases(3000)) {
     const Setpoint setpoint = Plan(c);
-    const double end = static_cast<double>(setpoint.ticks());
+    const auto end = static_cast<double>(setpoint.ticks());
     EXPECT_EQ(setpoint.At(end).position, c.distance);
     // The last polynomial runs into that point, it is not jumped to.
     const double last = end * (1.0 - 1e-15);
@@ -90,7 +90,7 @@ TEST(Setpoint, EndsExactlyAtItsDistance) {
 TEST(Setpoint, IsAtRestAtBothEndsAndBeyond) {
   for (const Case& c : RandomCases(1000)) {
     const Setpoint setpoint = Plan(c);
-    const double end = static_cast<double>(setpoint.ticks());
+    const auto end = static_cast<double>(setpoint.ticks());
     for (const double ticks : {-5.0, 0.0, end * (1.0 - 1e-15), end, end + 7.0}) {
       const Motion m = setpoint.At(ticks);
       EXPECT_NEAR(m.velocity, 0.0, 1e-10 * c.limits.velocity);
@@ -170,8 +170,8 @@ long ShortestProfile(const Case& c) {
   for (long ts = 1; 8 * ts < best && ts < 200; ++ts) {
     for (long tj = 0; 8 * ts + 4 * tj < best && tj < 200; ++tj) {
       for (long ta = 0; 8 * ts + 4 * tj + 2 * ta < best && ta < 400; ++ta) {
-        const double rise = static_cast<double>(ts + tj);
-        const double ramp = static_cast<double>(2 * ts + tj + ta);
+        const auto rise = static_cast<double>(ts + tj);
+        const auto ramp = static_cast<double>(2 * ts + tj + ta);
         const double reached = std::min(
             {v, a * ramp, j * rise * ramp, s * static_cast<double>(ts) * rise * ramp});
         const double cruise = std::abs(c.distance) / reached -

@@ -26,6 +26,7 @@ DiagnosisResult Found(std::vector<FaultVerdict> faults) {
 
 std::vector<std::string> Names(const std::vector<FaultVerdict>& faults) {
   std::vector<std::string> names;
+  names.reserve(faults.size());
   for (const FaultVerdict& fault : faults) names.push_back(fault.name);
   return names;
 }

@@ -58,8 +58,8 @@ inline Eigen::VectorXd Sine(double amplitude, double frequency, double phase = 0
 
 inline DisturbanceThresholds Design(NoiseSource& noise,
                                     const DisturbanceOptions& options = {}) {
-  std::vector<Eigen::VectorXd> nominal;
-  for (int i = 0; i < 5; ++i) nominal.push_back(noise.Record());
+  std::vector<Eigen::VectorXd> nominal(5);
+  for (Eigen::VectorXd& run : nominal) run = noise.Record();
   return DesignDisturbanceThresholds(nominal, kSampleTime, options);
 }
 

@@ -58,7 +58,7 @@ class Emps : public ::testing::Test {
     const ModelPtr plant = CopyModel(given.plant());
     plant->body_mass[FindElement(*plant, mjOBJ_BODY, "load")] = 95.1089;
     plant->dof_damping[0] = 203.5034;
-    return Machine(given.setup(), *plant);
+    return {given.setup(), *plant};
   }
   /// The other two of the authors' symmetric model. A positive offset of theirs opposes
   /// the motor.

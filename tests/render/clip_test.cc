@@ -130,7 +130,7 @@ TEST_F(Clip, GhostShowsTheHealthyMachineInTheFaultyOnesView) {
     int count = 0;
     for (int y = 0; y < picture.rows; ++y) {
       for (int x = 0; x < picture.cols; ++x) {
-        const auto bgr = picture.at<cv::Vec3b>(y, x);
+        const auto& bgr = picture.at<cv::Vec3b>(y, x);
         count += bgr[0] > bgr[2] + 60 && bgr[1] > bgr[2] + 30 ? 1 : 0;
       }
     }
@@ -279,9 +279,8 @@ TEST(ClipWriter, LeavesNothingWithoutFinish) {
   const test::TemporaryFolder folder;
   {
     ClipWriter writer(folder / "clip.mp4", 320, 240, 30.0, folder / "frames");
-    for (int i = 0; i < 20; ++i) {
-      writer.Write({320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)});
-    }
+    const std::vector<std::uint8_t> grey(std::size_t{3} * 320 * 240, 100);
+    for (int i = 0; i < 20; ++i) writer.Write({320, 240, grey});
   }
   EXPECT_EQ(folder.size(), 0);
 }

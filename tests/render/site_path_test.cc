@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/render/drawn_joints.h"
 #include "mjdiag/render/scene/scene_renderer.h"
 #include "mjdiag/signals/error.h"
@@ -47,7 +48,7 @@ TEST(SitePath, FollowsTheAmplifiedMotionOverTheTimesShown) {
   SetPositions(*model, amplification.DrawnPositions(faulty, 0.033), *data);
   mj_kinematics(model.get(), data.get());
   EXPECT_TRUE(path.positions[13].isApprox(
-      Eigen::Map<const Eigen::Vector3d>(data->site_xpos + 3 * tip), 1e-12));
+      Eigen::Map<const Eigen::Vector3d>(RowOf(data->site_xpos, 3, tip)), 1e-12));
   // The fault moves the tip by millimetres on the picture, not by micrometres.
   const SitePath nominal = DrawnPath(*model, tip, amplification, healthy, range, *data);
   EXPECT_GT((path.positions[10] - nominal.positions[10]).norm(), 2e-3);
@@ -79,7 +80,7 @@ TEST(SitePath, LiesWhereThePictureShowsTheSite) {
     }
     ASSERT_GT(count, 10.0) << camera;
     const auto pixel = renderer.projection()(Eigen::Map<const Eigen::Vector3d>(
-        data->site_xpos + 3 * mj_name2id(model.get(), mjOBJ_SITE, "tip")));
+        RowOf(data->site_xpos, 3, mj_name2id(model.get(), mjOBJ_SITE, "tip"))));
     ASSERT_TRUE(pixel.has_value());
     EXPECT_LT((*pixel - centre / count).norm(), 3.0) << camera;
   }

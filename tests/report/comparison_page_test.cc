@@ -43,7 +43,7 @@ TEST(ComparisonPage, ShowsSignalMismatchAndSpectrumOfEveryChannel) {
         "u, measured and simulated", "u, mismatch", "u, spectrum of the mismatch"}) {
     EXPECT_THAT(html, HasSubstr("<figcaption>" + std::string(caption)));
   }
-  EXPECT_THAT(html, HasSubstr("\"label\":\"worst window\""));
+  EXPECT_THAT(html, HasSubstr(R"("label":"worst window")"));
 }
 
 TEST(ComparisonPage, SaysHowToDoItAgain) {

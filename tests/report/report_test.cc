@@ -98,9 +98,9 @@ TEST(Report, HoldsEveryKindOfPlotInItsPlace) {
   const std::string html = ReportHtml(page);
   EXPECT_THAT(html, HasSubstr("<figcaption>force over velocity</figcaption>"));
   EXPECT_THAT(html, HasSubstr("height:321px"));
-  const auto xy = html.find("\"kind\":\"xy\"");
-  const auto bars = html.find("\"kind\":\"histogram\"");
-  const auto magnitude = html.find("\"kind\":\"bode\"");
+  const auto xy = html.find(R"("kind":"xy")");
+  const auto bars = html.find(R"("kind":"histogram")");
+  const auto magnitude = html.find(R"("kind":"bode")");
   EXPECT_LT(xy, bars);
   EXPECT_LT(bars, magnitude);
   EXPECT_NE(magnitude, std::string::npos);

@@ -44,7 +44,7 @@ class RunFolder : public ::testing::Test {
   }
   std::string Html() const { return ReadTextFile(WriteReport(folder_.path())); }
   std::string Refused() const {
-    const std::string message =
+    std::string message =
         test::MessageOf<InputError>([&] { WriteReport(folder_.path()); });
     EXPECT_FALSE(fs::exists(folder_.path() / "report.html"));
     return message;

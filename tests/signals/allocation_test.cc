@@ -21,6 +21,7 @@ std::atomic<long> allocations{0};
 
 #if MJDIAG_COUNTS_ALLOCATIONS
 // Eigen and operator new both end here; glibc allows a program to put its own in front.
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;

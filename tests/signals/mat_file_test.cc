@@ -101,9 +101,8 @@ TEST(MatFile, SaysWhichVariableIsWrong) {
   EXPECT_EQ(error("matrix"),
             "r.mat: variable \"matrix\": an array of 3 x 2; expected a real vector");
   EXPECT_EQ(error("text"), "r.mat: variable \"text\": text; expected a real vector");
-  EXPECT_EQ(
-      error("short"),
-      "r.mat: variable \"short\": 2 samples; expected 4 as variable \"time\" has");
+  EXPECT_EQ(error("short"),
+            R"(r.mat: variable "short": 2 samples; expected 4 as variable "time" has)");
   EXPECT_EQ(error("bad"),
             "r.mat: variable \"bad\", element 2: NaN; expected a finite number");
   EXPECT_EQ(

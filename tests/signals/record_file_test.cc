@@ -17,7 +17,6 @@ namespace mjdiag {
 namespace {
 
 using Eigen::Index;
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
@@ -37,9 +36,10 @@ Record DemandingRecord(double sample_time, double start_time) {
   constexpr Index kSamples = 500;
   std::mt19937_64 random(7);
   Record record(sample_time, start_time);
-  for (const char* name : {"x", "joint.X", "joint_X", "2nd, \"odd\" [name]",
-                           "a_name_of_more_than_the_sixty_three_letters_that_"
-                           "matlab_allows_in_a_name"}) {
+  const char* const long_name =
+      "a_name_of_more_than_the_sixty_three_letters_that_matlab_allows_in_a_name";
+  for (const char* name :
+       {"x", "joint.X", "joint_X", "2nd, \"odd\" [name]", long_name}) {
     Eigen::VectorXd samples(kSamples);
     for (double& sample : samples) {
       do {
@@ -175,27 +175,27 @@ TEST_F(CsvRecord, SaysWhereItIsWrong) {
   EXPECT_EQ(Error("t,x\n0,1\n1,2\n"),
             "r.csv: no column \"time\"; expected one of t, x");
   EXPECT_EQ(Error("time,x\n0,1\n1,nan\n"),
-            "r.csv: line 3, column \"x\": \"nan\"; expected a finite number");
+            R"(r.csv: line 3, column "x": "nan"; expected a finite number)");
   EXPECT_EQ(Error("#\n\ntime,x\n0,inf\n1,2\n"),
-            "r.csv: line 4, column \"x\": \"inf\"; expected a finite number");
+            R"(r.csv: line 4, column "x": "inf"; expected a finite number)");
   EXPECT_EQ(Error("time,x\n0,1\n1,high\n"),
-            "r.csv: line 3, column \"x\": \"high\"; expected a finite number");
+            R"(r.csv: line 3, column "x": "high"; expected a finite number)");
   EXPECT_EQ(Error("time,x\n0,1\n1,\n"),
-            "r.csv: line 3, column \"x\": \"\"; expected a finite number");
+            R"(r.csv: line 3, column "x": ""; expected a finite number)");
   EXPECT_EQ(Error("time,x\n0,1.5mm\n1,\n"),
-            "r.csv: line 2, column \"x\": \"1.5mm\"; expected a finite number");
+            R"(r.csv: line 2, column "x": "1.5mm"; expected a finite number)");
   EXPECT_EQ(Error("time,x\n0,1\n1\n"),
             "r.csv: line 3: 1 cells; expected 2 as the header row has");
   EXPECT_EQ(Error("time,x\n0,1,2\n1,2\n"),
             "r.csv: line 2: 3 cells; expected 2 as the header row has");
   EXPECT_THAT(Error("time,x [furlong]\n0,1\n1,2\n"),
-              testing::StartsWith("r.csv: column \"x\": unknown unit \"furlong\"; "));
+              testing::StartsWith(R"(r.csv: column "x": unknown unit "furlong"; )"));
   EXPECT_EQ(Error("time [m],x\n0,1\n1,2\n"),
-            "r.csv: column \"time\": time in \"m\"; expected a unit of time");
+            R"(r.csv: column "time": time in "m"; expected a unit of time)");
   EXPECT_EQ(Error("0,1\n1,2\n"),
             "r.csv: line 1: a number in the header row; expected names of columns");
   EXPECT_EQ(Error("time,x,x\n0,1,1\n1,2,2\n"),
-            "r.csv: column \"x\": a second channel \"x\"; expected every name once");
+            R"(r.csv: column "x": a second channel "x"; expected every name once)");
   EXPECT_EQ(Error("time\n0\n1\n"),
             "r.csv: no channel besides the time; expected at least one");
   EXPECT_THAT(Error(std::string("\0\1\2", 3)), HasSubstr("unknown format"));

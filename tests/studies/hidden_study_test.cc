@@ -24,7 +24,7 @@ TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
       test::Bonder({"trajectories.multi.duration=0.5"}).WithSubsteps(2);
   const int run = GetParam();
   const HiddenOutcome outcome =
-      RunHidden(machine, TypesOfRun(run, 1), static_cast<std::uint64_t>(run + 1));
+      RunHidden(machine, TypesOfRun(run, 1), static_cast<std::uint64_t>(run) + 1);
   EXPECT_TRUE(outcome.right) << "hidden: " << Describe(outcome.hidden.truth[0])
                              << ", found: " << Named(outcome.answer);
   EXPECT_LT(outcome.unseen_ratio, 1.2);

@@ -18,6 +18,7 @@ inline std::atomic<long> allocations{0};
 
 #if MJDIAG_COUNTS_ALLOCATIONS
 // Eigen and operator new both end here.
+// NOLINTBEGIN(bugprone-reserved-identifier,misc-definitions-in-headers)
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
 extern "C" [[gnu::weak]] void* malloc(std::size_t size) {
@@ -28,6 +29,7 @@ extern "C" [[gnu::weak]] void* aligned_alloc(std::size_t alignment, std::size_t 
   ++mjdiag::test::allocations;
   return __libc_memalign(alignment, size);
 }
+// NOLINTEND(bugprone-reserved-identifier,misc-definitions-in-headers)
 #endif
 
 namespace mjdiag::test {

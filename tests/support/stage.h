@@ -36,7 +36,7 @@ struct Stage {
     const ModelPtr plant = LoadModel(setup.plant);
     plant->opt.timestep = setup.rates.step();
     PreparePlant(setup.physics, *plant);
-    return Machine(setup, *plant);
+    return {setup, *plant};
   }
 };
 

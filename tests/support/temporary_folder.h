@@ -2,7 +2,7 @@
 // A folder of its own for a test, removed at its end. Tests run side by side, each in
 // its own process: nothing they write may have a name that another could choose.
 
-#include <stdlib.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX
 
 #include <filesystem>
 #include <fstream>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {
@@ -18,7 +19,7 @@ class ForceSaturationEffect final : public Effect {
                 .meaning = "the drive gives no more than that"}) {}
 
   void Apply(mjModel& model, int actuator, const EffectValues& values) const override {
-    mjtNum* range = model.actuator_forcerange + 2 * actuator;
+    mjtNum* range = RowOf(model.actuator_forcerange, 2, actuator);
     const double limit = values[0];
     const bool limited = model.actuator_forcelimited[actuator] != 0;
     range[0] = limited ? std::max(range[0], -limit) : -limit;

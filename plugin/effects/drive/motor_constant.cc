@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {
@@ -18,7 +19,7 @@ class MotorConstantEffect final : public Effect {
                 .meaning = "the force of the motor times factor"}) {}
 
   void Apply(mjModel& model, int actuator, const EffectValues& values) const override {
-    mjtNum* gear = model.actuator_gear + 6 * actuator;
+    mjtNum* gear = RowOf(model.actuator_gear, 6, actuator);
     std::for_each(gear, gear + 6, [&](mjtNum& g) { g *= values[0]; });
   }
   std::vector<Trial> Trials(const SiteMotion& at) const override {

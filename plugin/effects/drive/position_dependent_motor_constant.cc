@@ -11,7 +11,7 @@ namespace {
 
 /// Length of a unit of travel in the actuator's own length.
 double GearOf(const mjModel& model, int actuator) {
-  return mju_norm(model.actuator_gear + 6 * actuator, 6);
+  return mju_norm(RowOf(model.actuator_gear, 6, actuator), 6);
 }
 
 class VaryingMotor final : public ActiveEffect {

@@ -1,5 +1,7 @@
 #include "mjdiag/plugin/effects/encoder/reading_error.h"
 
+#include <utility>
+
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
@@ -8,8 +10,8 @@ namespace {
 class ReadingError final : public ActiveEffect {
  public:
   ReadingError(const ReadingErrorEffect& effect, std::vector<std::size_t> channels,
-               const EffectValues& values)
-      : effect_(effect), channels_(std::move(channels)), values_(values) {}
+               EffectValues values)
+      : effect_(effect), channels_(std::move(channels)), values_(std::move(values)) {}
   void Distort(std::span<double> readings, double time) noexcept override {
     for (const std::size_t i : channels_) {
       readings[i] = effect_.Read(readings[i], time, values_);

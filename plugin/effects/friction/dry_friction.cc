@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
+
 namespace mjdiag {
 
 void AddDryFriction(mjModel& model, int joint, double force) {
@@ -18,10 +20,10 @@ void TakeDryFriction(mjModel& model, int joint, double force) {
 }
 
 void StiffenFriction(mjModel& model, int dof) {
-  mjtNum* solref = model.dof_solref + mjNREF * dof;
+  mjtNum* solref = RowOf(model.dof_solref, mjNREF, dof);
   solref[0] = 2.0 * model.opt.timestep;
   solref[1] = 1.0;
-  mjtNum* solimp = model.dof_solimp + mjNIMP * dof;
+  mjtNum* solimp = RowOf(model.dof_solimp, mjNIMP, dof);
   solimp[0] = 0.99;
   solimp[1] = 0.999;
   solimp[2] = 1e-4;

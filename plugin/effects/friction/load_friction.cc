@@ -11,6 +11,7 @@
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {
@@ -18,13 +19,12 @@ namespace {
 /// Force of a motor as MuJoCo is going to compute it from the command of this step.
 double MotorForce(const mjModel& model, const mjData& data, int motor) {
   const auto clamped = [motor](double value, const mjtByte* limited,
-                               const mjtNum* range) {
-    return limited[motor] == 0
-               ? value
-               : std::clamp(value, range[2 * motor], range[2 * motor + 1]);
+                               const mjtNum* ranges) {
+    const mjtNum* range = RowOf(ranges, 2, motor);
+    return limited[motor] == 0 ? value : std::clamp(value, range[0], range[1]);
   };
-  const mjtNum* gain = model.actuator_gainprm + mjNGAIN * motor;
-  const mjtNum* bias = model.actuator_biasprm + mjNBIAS * motor;
+  const mjtNum* gain = RowOf(model.actuator_gainprm, mjNGAIN, motor);
+  const mjtNum* bias = RowOf(model.actuator_biasprm, mjNBIAS, motor);
   double force = gain[0] * clamped(data.ctrl[motor], model.actuator_ctrllimited,
                                    model.actuator_ctrlrange);
   if (model.actuator_biastype[motor] == mjBIAS_AFFINE) {

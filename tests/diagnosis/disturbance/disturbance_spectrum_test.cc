@@ -193,7 +193,7 @@ TEST(AnalyseDisturbance, TakesNominalLinesForNominal) {
   };
   std::vector<VectorXd> nominal;
   for (const double level : {1e-7, 2e-7, 3e-7, 4e-7, 5e-7}) {
-    nominal.push_back(noise.Record() + comb(level));
+    nominal.emplace_back(noise.Record() + comb(level));
   }
   const auto thresholds = DesignDisturbanceThresholds(nominal, kSampleTime, {});
   for (int i = 0; i < 50; ++i) {
@@ -255,8 +255,8 @@ TEST(AnalyseDisturbance, FindsAToneThatSetsInWithinTheRecord) {
 TEST(AnalyseDisturbance, SeesNoiseThatRoseInAPartOfTheBand) {
   // A tenth of the bins, too few to move the median of all.
   NoiseSource noise(13);
-  std::vector<VectorXd> nominal;
-  for (int i = 0; i < 5; ++i) nominal.push_back(noise.White());
+  std::vector<VectorXd> nominal(5);
+  for (VectorXd& run : nominal) run = noise.White();
   const auto thresholds = DesignDisturbanceThresholds(nominal, kSampleTime, {});
   VectorXd extra = noise.White(3.0 * kNoise);
   SectionFilter low(DigitalButterworth(FilterKind::kLowPass, 8, 400.0, kSampleTime));

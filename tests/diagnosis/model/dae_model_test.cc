@@ -43,7 +43,7 @@ TEST(DaeModel, BarMatrixMultipliesCoefficients) {
   const Eigen::RowVectorXd product = stacked * BarMatrix(dae.H, 1);
   const PolynomialMatrix expected = row * dae.H;
   ASSERT_EQ(product.size(), 6);
-  for (int i = 0; i < 3; ++i) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
     EXPECT_TRUE(product.segment(2 * i, 2).isApprox(
         expected.coefficients[static_cast<std::size_t>(i)]));
   }

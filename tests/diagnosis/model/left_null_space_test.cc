@@ -201,7 +201,7 @@ TEST(CompleteRelations, SatisfyTheDivisionOfTheirOutputPart) {
   const MatrixXd output_part = test::WhiteNoise(2, 3 * 2, 1.0, 1);
   const PolynomialMatrix relations = CompleteRelations(system, output_part);
   ASSERT_EQ(relations.degree(), 2);
-  const auto outputs = [&](int k) { return output_part.middleCols(2 * k, 2); };
+  const auto outputs = [&](Eigen::Index k) { return output_part.middleCols(2 * k, 2); };
   const MatrixXd first = outputs(1) * system.C + outputs(2) * system.C * system.A;
   EXPECT_TRUE(relations.coefficients[0].leftCols(6).isApprox(first, 1e-14));
   EXPECT_TRUE(

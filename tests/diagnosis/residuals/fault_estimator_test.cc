@@ -67,8 +67,8 @@ FaultEstimator Regressed(const MatrixXd& regressors, const VectorXd& residuals,
 VectorXd RootWeights(Index rows, double forgetting) {
   VectorXd weights(rows);
   for (Index i = 0; i < rows; ++i) {
-    const auto age = static_cast<double>((rows - 1 - i) / kResiduals);
-    weights[i] = std::pow(forgetting, 0.5 * age);
+    const Index age = (rows - 1 - i) / kResiduals;
+    weights[i] = std::pow(forgetting, 0.5 * static_cast<double>(age));
   }
   return weights;
 }

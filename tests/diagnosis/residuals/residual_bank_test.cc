@@ -187,7 +187,7 @@ TEST(ResidualBank, PhiIsEquation24UpToRelationsThatAreBlind) {
   }
   const auto filters_of = [&](const MatrixXd& bar_rows) {
     Numerators numerators;
-    for (int k = 0; k <= degree; ++k) {
+    for (Index k = 0; k <= degree; ++k) {
       numerators.emplace_back(bar_rows.middleCols(4 * k, 4));
     }
     return Coefficients(Filters(numerators, options));

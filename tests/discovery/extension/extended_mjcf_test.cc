@@ -29,7 +29,7 @@ class ExtendedMjcf : public ::testing::Test {
       specs.push_back(ParseEffect(effect));
       ApplyEffect(*expected_, specs.back());
     }
-    const std::string text = ExtendMjcf(file, *plant, faults, specs, extended_.path());
+    std::string text = ExtendMjcf(file, *plant, faults, specs, extended_.path());
     model_ = LoadModel(extended_.Write("plant.xml", text));
     return text;
   }
@@ -178,7 +178,7 @@ TEST_F(ExtendedMjcf, IsNotMisledByCommentsAndQuotes) {
 </mujoco>
 )",
              {"viscous_friction@a & b:coefficient=1", "force_offset@a & b:force=2"});
-  EXPECT_THAT(text, HasSubstr("<!-- <joint name=\"a\" damping=\"5\"/> -->"));
+  EXPECT_THAT(text, HasSubstr(R"(<!-- <joint name="a" damping="5"/> -->)"));
   EXPECT_THAT(text, HasSubstr(R"(name = "a &amp; b" damping="1" />)"));
   EXPECT_THAT(text, HasSubstr(R"(data="a > b"/><numeric )"
                               R"(name="effect.force_offset.a &amp; b" size="1")"));

@@ -25,7 +25,7 @@ class ExtendedSetup : public ::testing::Test {
     nominal_.Write("stage.xml", "x");
     extended_.Write("plant.xml", "x");
     const std::string file = nominal_.Write("setup.toml", setup);
-    const std::string text =
+    std::string text =
         ExtendSetup(file, ReadSetup(file),
                     {ParseEffect("encoder_noise@encoder:sd=3e-6")}, extended_.path());
     setup_ = ReadSetup(extended_.Write("setup.toml", text));

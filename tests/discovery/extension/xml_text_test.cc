@@ -50,7 +50,7 @@ TEST(XmlText, ChangesWhatItIsToldAndNothingElse) {
   EXPECT_EQ(changed([](XmlText& xml) { xml.SetAttribute(1, "x", "a\"b"); }),
             Replaced(kText, "x='1'", "x='a&quot;b'"));
   EXPECT_EQ(changed([](XmlText& xml) { xml.SetAttribute(3, "w", "4"); }),
-            Replaced(kText, "z=\"3\"/>", "z=\"3\" w=\"4\"/>"));
+            Replaced(kText, "z=\"3\"/>", R"(z="3" w="4"/>)"));
   EXPECT_EQ(changed([](XmlText& xml) {
               xml.InsertLast(2, {"<d/>", "<e/>"});
             }),

@@ -41,7 +41,7 @@ TEST(DriveEffects, ForceRippleDoesTheWorkOfItsPotential) {
 // At qpos0, wherever the joint has its zero.
 TEST(DriveEffects, ForceRippleCountsFromTheRestPosition) {
   EffectBench bench({"force_ripple@q:amplitude=4,period=0.01"},
-                    "type=\"slide\" ref=\"0.303\"");
+                    R"(type="slide" ref="0.303")");
   EXPECT_NEAR(bench.ForceAt(0.303, 0.0), 0.0, 1e-12);
   EXPECT_NEAR(bench.ForceAt(0.3055, 0.0), 4.0, 1e-9);
 }
@@ -55,7 +55,7 @@ TEST(DriveEffects, MotorConstantScalesTheForce) {
 
 TEST(DriveEffects, PositionDependentMotorConstantFollowsTheTravelOfTheMotor) {
   EffectBench bench({"position_dependent_motor_constant@motor:slope=2,curvature=-30"},
-                    "type=\"slide\" ref=\"0.3\"", "gear=\"5\"");
+                    R"(type="slide" ref="0.3")", "gear=\"5\"");
   for (const double s : {-0.1, 0.0, 0.02, 0.2}) {
     EXPECT_NEAR(bench.ForceAt(0.3 + s, 0.0, 7.0), 35.0 * (1.0 + 2.0 * s - 30.0 * s * s),
                 1e-12);
@@ -71,7 +71,7 @@ TEST(DriveEffects, ForceSaturationLimitsTheDriveInBothDirections) {
 
 TEST(DriveEffects, ForceSaturationKeepsANarrowerLimit) {
   EffectBench bench({"force_saturation@motor:limit=2"}, "type=\"slide\"",
-                    "forcelimited=\"true\" forcerange=\"-1 3\"");
+                    R"(forcelimited="true" forcerange="-1 3")");
   EXPECT_DOUBLE_EQ(bench.ForceAt(0.0, 0.0, 70.0), 2.0);
   EXPECT_DOUBLE_EQ(bench.ForceAt(0.0, 0.0, -70.0), -1.0);
 }

@@ -27,7 +27,8 @@ std::vector<fs::path> Sources() {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       const fs::path& file = entry.path();
       const bool source = file.extension() == ".cc" || file.extension() == ".h";
-      const bool effect = file.parent_path().parent_path() == root / "plugin" / "effects";
+      const bool effect =
+          file.parent_path().parent_path() == root / "plugin" / "effects";
       if (source && !effect) sources.push_back(file);
     }
   }

@@ -64,7 +64,7 @@ TEST(FrictionEffects, StribeckFrictionWithoutAConstantPartHoldsAsWell) {
 
 TEST(FrictionEffects, ViscousFrictionAddsToTheDampingThatThereIs) {
   EffectBench bench({"viscous_friction@q:coefficient=3"},
-                    "type=\"slide\" damping=\"1\"");
+                    R"(type="slide" damping="1")");
   bench.v() = 0.3;
   bench.StepUntil(0.5);
   EXPECT_NEAR(bench.v(), 0.3 * std::exp(-4.0 / kMass * 0.5), 1e-4 * 0.3);

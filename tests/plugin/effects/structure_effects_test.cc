@@ -33,7 +33,7 @@ double Period(EffectBench& bench, double position) {
 }
 
 TEST(StructureEffects, LinearStiffnessSwingsAboutTheRestPosition) {
-  EffectBench bench({"linear_stiffness@q:stiffness=800"}, "type=\"slide\" ref=\"0.3\"");
+  EffectBench bench({"linear_stiffness@q:stiffness=800"}, R"(type="slide" ref="0.3")");
   EXPECT_NEAR(Period(bench, 0.31), kTurn * std::sqrt(kMass / 800.0), 1e-5);
   EXPECT_NEAR(bench.q(), 0.29, 1e-5);
 }
@@ -41,7 +41,7 @@ TEST(StructureEffects, LinearStiffnessSwingsAboutTheRestPosition) {
 // 300 N/m that pull to 0.2 and 100 N/m to 0.
 TEST(StructureEffects, LinearStiffnessIsASecondSpringBesideAPreloadedOne) {
   EffectBench bench({"linear_stiffness@q:stiffness=100"},
-                    "type=\"slide\" stiffness=\"300\" springref=\"0.2\"");
+                    R"(type="slide" stiffness="300" springref="0.2")");
   for (const double q : {-0.1, 0.0, 0.15, 0.4}) {
     EXPECT_NEAR(bench.ForceAt(q, 0.0), -300.0 * (q - 0.2) - 100.0 * q, 1e-10);
   }
@@ -49,7 +49,7 @@ TEST(StructureEffects, LinearStiffnessIsASecondSpringBesideAPreloadedOne) {
 
 TEST(StructureEffects, StructuralStiffnessScalesTheSpring) {
   EffectBench bench({"structural_stiffness@q:factor=0.64"},
-                    "type=\"slide\" stiffness=\"800\" springref=\"0.01\"");
+                    R"(type="slide" stiffness="800" springref="0.01")");
   EXPECT_NEAR(Period(bench, 0.0), kTurn * std::sqrt(kMass / (0.64 * 800.0)), 1e-5);
 }
 
@@ -78,7 +78,7 @@ TEST(StructureEffects, AddedMassIsInertiaAboutAHinge) {
 }
 
 TEST(StructureEffects, AddedMassHasWeight) {
-  EffectBench bench({"added_mass@q:mass=0.5"}, "type=\"slide\" axis=\"0 0 1\"");
+  EffectBench bench({"added_mass@q:mass=0.5"}, R"(type="slide" axis="0 0 1")");
   bench.model().opt.gravity[2] = -10.0;
   bench.StepUntil(0.1, 10.0 * (kMass + 0.5));
   EXPECT_NEAR(bench.v(), 0.0, 1e-12);
@@ -137,7 +137,7 @@ TEST(StructureEffects, FlexibleModeDecaysWithItsDampingRatio) {
 
 TEST(StructureEffects, BacklashTakesTheSpringAwayWithinItsGap) {
   EffectBench bench({"backlash@q:gap=0.002"},
-                    "type=\"slide\" stiffness=\"800\" springref=\"0.1\"");
+                    R"(type="slide" stiffness="800" springref="0.1")");
   for (const double strain : {-0.003, -0.001, -0.0004, 0.0, 0.0009, 0.001, 0.005}) {
     const double beyond = std::max(0.0, std::abs(strain) - 0.001);
     EXPECT_NEAR(bench.ForceAt(0.1 + strain, 0.0),

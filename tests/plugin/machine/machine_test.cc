@@ -39,7 +39,7 @@ std::vector<std::string> EffectsIn(const Machine& machine) {
 
 TEST(Machine, IsDerivedOnceWhicheverCopyIsAsked) {
   const Machine machine = test::Bonder();
-  const Machine copy = machine;
+  const Machine copy = machine;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(&copy.plant(), &machine.plant());
   const MechanicalModel* linear = &copy.linear();
   const Eigen::VectorXd* rest = &copy.rest();
@@ -53,6 +53,7 @@ TEST(Machine, IsDerivedOnceThoughSeveralThreadsAskAtATime) {
   const Machine machine = test::Bonder();
   std::vector<const MechanicalModel*> seen(4);
   std::vector<std::thread> threads;
+  threads.reserve(seen.size());
   for (auto& linear : seen) {
     threads.emplace_back([&linear, machine] { linear = &machine.linear(); });
   }

@@ -59,7 +59,7 @@ TEST(Observer, KnowsTheSpreadOfInnovationsOfATrueModel) {
   const test::Stage stage;
   const test::Replay replay(stage.machine, stage.Measure({}));
   const VectorXd residual = replay.Scaled(replay.Follow({}));
-  const double n = static_cast<double>(residual.size());
+  const auto n = static_cast<double>(residual.size());
   EXPECT_NEAR(residual.squaredNorm() / n, 1.0, 5.0 * std::sqrt(2.0 / n) + 0.03);
 }
 

@@ -183,9 +183,9 @@ TEST_F(DiagnosisReader, RefusesBadValuesInOneLine) {
        "diagnosis.cutoff: is 500.000000 Hz; expected less than half the control rate"},
       {"cutoff = 40.0", "cutoff = \"low\"", 4,
        "diagnosis.cutoff: is text; expected a number > 0"},
-      {"[\"X\", \"Y\"]", "\"X\"", 5,
+      {R"(["X", "Y"])", "\"X\"", 5,
        "diagnosis.unknown_forces: is text; expected an array of texts"},
-      {"[\"X\", \"Y\"]", "[\"X\", 3]", 5,
+      {R"(["X", "Y"])", "[\"X\", 3]", 5,
        "diagnosis.unknown_forces[1]: is an integer; expected a text"},
       // thresholds
       {"margin = 3.0", "margin = 0.99", 7,
@@ -196,10 +196,10 @@ TEST_F(DiagnosisReader, RefusesBadValuesInOneLine) {
        "diagnosis.thresholds.false_alarms: is -0.1; expected a number >= 0 and < 1"},
       {"integral_window = 0.5", "integral_window = 0", 9,
        "diagnosis.thresholds.integral_window: is 0; expected a number > 0"},
-      {"[\"slow\", \"fast\"]", "[\"slow\", \"swift\"]", 10,
+      {R"(["slow", "fast"])", R"(["slow", "swift"])", 10,
        "diagnosis.thresholds.trajectories: there is no trajectory 'swift'; expected "
        "names under [trajectories]"},
-      {"[\"slow\", \"fast\"]", "[3]", 10,
+      {R"(["slow", "fast"])", "[3]", 10,
        "diagnosis.thresholds.trajectories[0]: is an integer; expected a text"},
       // estimation
       {"rows = 0", "rows = -1", 12,

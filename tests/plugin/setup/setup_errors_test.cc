@@ -262,9 +262,9 @@ TEST_F(SetupErrors, RefusesABadDiagnosisInOneLine) {
        "estimation, order, robust, thresholds, unknown_forces"},
       {"degree = 3", "degree = 3.0", 69,
        "diagnosis.degree: is a number; expected an integer from 1 to 40"},
-      {"unknown_forces = [\"slide\", \"hinge\"]", "unknown_forces = \"slide\"", 72,
+      {R"(unknown_forces = ["slide", "hinge"])", "unknown_forces = \"slide\"", 72,
        "diagnosis.unknown_forces: is text; expected an array of texts"},
-      {"unknown_forces = [\"slide\", \"hinge\"]", "unknown_forces = [1]", 72,
+      {R"(unknown_forces = ["slide", "hinge"])", "unknown_forces = [1]", 72,
        "diagnosis.unknown_forces[0]: is an integer; expected a text"},
       {"magnitudes = { zeta = 0.02, beta = 0.03 }", "magnitudes = 0.02", 83,
        "diagnosis.estimation.magnitudes: is a number; expected a table"},
@@ -323,8 +323,7 @@ TEST_F(SetupErrors, RefusesABadDiagnosisInOneLine) {
       {"runs = 12", "runs = 1", 96,
        "diagnosis.robust.runs: is 1; expected an integer from 2 to 1000"},
       // names
-      {"trajectories = [\"slow\", \"fast\"]", "trajectories = [\"slow\", \"swift\"]",
-       77,
+      {R"(trajectories = ["slow", "fast"])", R"(trajectories = ["slow", "swift"])", 77,
        "diagnosis.thresholds.trajectories: there is no trajectory 'swift'; expected "
        "names under [trajectories]"},
       // studies

@@ -146,7 +146,7 @@ class SetupFile : public ::testing::Test {
     try {
       ReadSetup(folder_, overrides);
     } catch (const InputError& error) {
-      const std::string message = error.what();
+      std::string message = error.what();
       EXPECT_THAT(message, ::testing::Not(::testing::HasSubstr("\n")));
       return message;
     }

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<int> GeomsOf(const PosedScene& scene) {
   std::vector<int> geoms;
+  geoms.reserve(static_cast<std::size_t>(scene.get().ngeom));
   for (int i = 0; i < scene.get().ngeom; ++i) {
     geoms.push_back(scene.get().geoms[i].objid);
   }

@@ -42,7 +42,7 @@ TEST(LoadFriction, CountsTheForceOfASpringAgainstThatOfTheMotor) {
   const double q = 0.01;
   for (const double share : {0.9, 1.1}) {
     EffectBench bench({"load_friction@q:coefficient=0.2"},
-                      "type=\"slide\" stiffness=\"1000\"");
+                      R"(type="slide" stiffness="1000")");
     bench.q() = q;
     // (k q - u) / (k q + u) = share c
     const double part = share * 0.2;
