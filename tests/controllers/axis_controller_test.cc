@@ -3,30 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <random>
 #include <vector>
 
 #include "mjdiag/signals/error.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Counts what a controller allocates. Not inlined: the compiler would see free() meet
-// a pointer from new and warn.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "support/count_allocations.h"
 
 namespace mjdiag {
 namespace {
@@ -212,15 +194,17 @@ TEST(AxisController, AllocatesNothingWhileItRuns) {
   const auto both =
       MakeFeedforwardFeedback(kFeedforward, kFeedback, ControlMode::kBoth);
   const auto nested = MakeNestedLoops(kEmps, kMillisecond);
-  const long before = allocations;
   double sum = 0.0;
-  for (AxisController* controller : {both.get(), nested.get()}) {
-    controller->Reset(0.1);
-    for (int k = 0; k < 100; ++k) {
-      sum += controller->Update({.position = 0.1 * k}, 0.1, 0.0);
+  const long allocated = test::CountAllocations([&] {
+    for (AxisController* controller : {both.get(), nested.get()}) {
+      controller->Reset(0.1);
+      for (int k = 0; k < 100; ++k) {
+        sum += controller->Update({.position = 0.1 * k}, 0.1, 0.0);
+      }
     }
-  }
-  EXPECT_EQ(allocations - before, 0);
+  });
+  EXPECT_EQ(allocated, 0);
+  EXPECT_EQ(test::allocations > 0, test::kCountsAllocations);
   EXPECT_TRUE(std::isfinite(sum));
 }
 

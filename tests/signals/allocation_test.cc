@@ -2,50 +2,24 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <vector>
 
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/simulate_lti.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define MJDIAG_COUNTS_ALLOCATIONS 0
-#else
-#define MJDIAG_COUNTS_ALLOCATIONS 1
-#endif
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-#if MJDIAG_COUNTS_ALLOCATIONS
-// Eigen and operator new both end here; glibc allows a program to put its own in front.
-// NOLINTNEXTLINE(bugprone-reserved-identifier)
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-#endif
+#include "support/count_allocations.h"
 
 namespace mjdiag {
 namespace {
 
+using test::CountAllocations;
+
 /// Keeps the compiler from leaving out an allocation that nothing uses.
 void Use(const void* memory) { asm volatile("" : : "g"(memory) : "memory"); }
-
-template <typename Function>
-long CountAllocations(const Function& function) {
-  const long before = allocations;
-  function();
-  return allocations - before;
-}
 
 class Allocation : public testing::Test {
  protected:
   void SetUp() override {
-    if (!MJDIAG_COUNTS_ALLOCATIONS) GTEST_SKIP() << "malloc belongs to the sanitizer";
+    if (!test::kCountsAllocations) GTEST_SKIP() << "malloc belongs to the sanitizer";
   }
 };
 

@@ -8,10 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <map>
-#include <new>
 #include <regex>
 
 #include "mjdiag/plugin/effects/placed_effect.h"
@@ -20,23 +18,8 @@
 #include "mjdiag/signals/text_file.h"
 #include "plugin/effects/effect_bench.h"
 #include "support/bonder.h"
+#include "support/count_allocations.h"
 #include "support/message_of.h"
-
-// Counts operator new, through which containers allocate. (malloc itself is already
-// replaced in this test program, by count_allocations.h.) Not inlined: GCC would take a
-// malloc that it sees for the partner of a delete that it does not.
-namespace {
-long allocations = 0;
-}  // namespace
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace mjdiag {
 namespace {
@@ -234,15 +217,16 @@ TEST_F(CheckedEffect, ActsWithoutAllocating) {
   std::array<double, 3> readings{};
   for (int step = 0; step < 100; ++step) {
     mj_step1(plant_.get(), data.get());
-    const long before = allocations;
-    effects.Distort(readings, 1e-3 * step);
-    effects.Act(*plant_, *data);
-    effects.Release(*data);
-    ASSERT_EQ(allocations, before) << "in step " << step;
+    const long allocated = test::CountAllocations([&] {
+      effects.Distort(readings, 1e-3 * step);
+      effects.Act(*plant_, *data);
+      effects.Release(*data);
+    });
+    ASSERT_EQ(allocated, 0) << "in step " << step;
     effects.Act(*plant_, *data);
     mj_step2(plant_.get(), data.get());
   }
-  EXPECT_GT(allocations, 0) << "the counter does not count";
+  EXPECT_EQ(test::allocations > 0, test::kCountsAllocations);
 }
 
 TEST(CarriedEffect, MayBeThereSeveralTimesInOneNumeric) {
