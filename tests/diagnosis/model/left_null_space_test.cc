@@ -198,7 +198,7 @@ TEST(MinimalDegree, SaysTheRanksWhereThereIsNone) {
 TEST(CompleteRelations, SatisfyTheDivisionOfTheirOutputPart) {
   // N_x,k = sum_{i>k} N_y,i C A^(i-k-1), for any N_y.
   const StateSpace system = DeltaForm(test::Stage(), test::kTiming);
-  const MatrixXd output_part = test::WhiteNoise(2, 3 * 2, 1.0, 1);
+  const MatrixXd output_part = test::WhiteNoise(2, Eigen::Index{3} * 2, 1.0, 1);
   const PolynomialMatrix relations = CompleteRelations(system, output_part);
   ASSERT_EQ(relations.degree(), 2);
   const auto outputs = [&](Eigen::Index k) { return output_part.middleCols(2 * k, 2); };
