@@ -44,10 +44,11 @@ endif()
 # an include root of its own that holds nothing but links to its headers. A folder that
 # includes upwards in the table of the design therefore does not compile.
 #
-# WITH: folders inside <path> that belong to it, which may include its headers and not the
-# other way round. HEADERS_OF: libraries of headers only, which a program that links the folder does not
-# need. PART: of the installed package (Parts.cmake), by default the first folder of the
-# path. Which headers are installed, docs/api.md says (InstallHeaders.cmake).
+# WITH: folders inside <path> that belong to it, which may include its headers and not
+# the other way round. HEADERS_OF: libraries of headers only, which a program that links
+# the folder does not need. PART: of the installed package (Parts.cmake), by default the
+# first folder of the path. Which headers are installed, docs/api.md says
+# (InstallHeaders.cmake).
 function(mjdiag_folder path)
   cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF;WITH" ${ARGN})
   set(source ${PROJECT_SOURCE_DIR}/${path})

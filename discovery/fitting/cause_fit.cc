@@ -47,7 +47,7 @@ class Simulator {
   const std::vector<FitParameter>& parameters() const { return parameters_; }
 
   const VectorXd& Residual(const VectorXd& theta) {
-    if (theta != theta_ || residual_.size() == 0) {
+    if (residual_.size() == 0 || theta != theta_) {
       residual_ = RunAt(theta);
       theta_ = theta;
     }

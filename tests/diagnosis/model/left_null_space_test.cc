@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "diagnosis/five_masses.h"
 #include "diagnosis/test_stage.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
@@ -15,23 +16,11 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Five masses in a row, 0.1 to 1000 N/mm, force on the first, scales on the outer two.
+/// Five masses, force on the first, scales on the outer two.
 MechanicalModel Chain() {
-  constexpr int kMasses = 5;
-  const VectorXd mass = (VectorXd(kMasses) << 2.0, 0.4, 7.0, 1.0, 0.05).finished();
-  const VectorXd spring = (VectorXd(kMasses) << 1e2, 1e4, 1e6, 3e5, 2e3).finished();
-  MechanicalModel model;
-  model.M = mass.asDiagonal();
-  model.K = MatrixXd::Zero(kMasses, kMasses);
-  for (int i = 0; i < kMasses; ++i) {
-    model.K(i, i) += spring[i];
-    if (i == 0) continue;
-    model.K(i - 1, i - 1) += spring[i];
-    model.K(i, i - 1) = model.K(i - 1, i) = -spring[i];
-  }
-  model.D = 1e-4 * model.K + 0.1 * model.M;
-  model.Gamma = VectorXd::Unit(kMasses, 0);
-  model.b = MatrixXd::Zero(kMasses, 2);
+  MechanicalModel model = test::FiveMasses();
+  model.Gamma = VectorXd::Unit(test::kMasses, 0);
+  model.b = MatrixXd::Zero(test::kMasses, 2);
   model.b(0, 0) = model.b(4, 1) = 1.0;
   model.inputs = {"u"};
   model.outputs = {"y1", "y5"};

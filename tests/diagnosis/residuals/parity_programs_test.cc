@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "diagnosis/five_masses.h"
 #include "mjdiag/diagnosis/model/left_null_space.h"
 #include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/signals/decompositions.h"
@@ -20,6 +21,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+using test::kMasses;
 
 SignalEntry None(const StateSpace& system) {
   return {MatrixXd(system.states(), 0), MatrixXd(system.outputs(), 0)};
@@ -39,25 +41,11 @@ DaeModel MassSpringDamper() {
   return MakeDae(system, None(system), InStates(system, system.B));
 }
 
-constexpr Index kMasses = 5;
-
-/// Five masses in a row between 50 g and 7 kg, springs from 0.1 to 1000 N/mm, motors on
-/// the first and the third, a scale on each of `scales`. The unit of time is `unit`
-/// times that of the fastest mode. With scales on the outer two, relations exist from
-/// degree 4 on, with one, two, four and six independent ones.
+/// Five masses, motors on the first and the third, a scale on each of `scales`. The unit
+/// of time is `unit` times that of the fastest mode. With scales on the outer two,
+/// relations exist from degree 4 on, with one, two, four and six independent ones.
 StateSpace Chain(const std::vector<Index>& scales = {0, 4}, double unit = 1.0) {
-  const VectorXd mass = (VectorXd(kMasses) << 2.0, 0.4, 7.0, 1.0, 0.05).finished();
-  const VectorXd spring = (VectorXd(kMasses) << 1e2, 1e4, 1e6, 3e5, 2e3).finished();
-  MechanicalModel model;
-  model.M = mass.asDiagonal();
-  model.K = MatrixXd::Zero(kMasses, kMasses);
-  for (Index i = 0; i < kMasses; ++i) {
-    model.K(i, i) += spring[i];
-    if (i == 0) continue;
-    model.K(i - 1, i - 1) += spring[i];
-    model.K(i, i - 1) = model.K(i - 1, i) = -spring[i];
-  }
-  model.D = 1e-4 * model.K + 0.1 * model.M;
+  MechanicalModel model = test::FiveMasses();
   model.Gamma = MatrixXd::Zero(kMasses, 2);
   model.Gamma(0, 0) = model.Gamma(2, 1) = 1.0;
   model.b = MatrixXd::Identity(kMasses, kMasses)(Eigen::all, scales);

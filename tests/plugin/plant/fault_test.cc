@@ -4,17 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <functional>
 #include <limits>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/bonder.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
 namespace {
 
+using test::MessageOf;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -29,15 +30,6 @@ ModelPtr WithParameter(const std::string& data) {
                             R"("/></custom><worldbody><body>
       <joint name="x" type="slide"/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>)"));
-}
-
-std::string ErrorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(FaultParameters, OfTheBonderAreTheOnesItDeclares) {
@@ -101,7 +93,7 @@ TEST(ApplyFault, MultipliesByTheValue) {
 
 TEST(ApplyFault, ListsTheParametersThatThereAre) {
   const ModelPtr bonder = Bonder();
-  EXPECT_THAT(ErrorOf([&] {
+  EXPECT_THAT(MessageOf<InputError>([&] {
                 ApplyFault(*bonder, {"zeta_q", 1.0});
               }),
               AllOf(HasSubstr("zeta_q"), HasSubstr("zeta_x, zeta_y, beta_x, beta_y")));
@@ -111,7 +103,7 @@ TEST(ApplyFault, RefusesValuesThatAreNoFactors) {
   const ModelPtr bonder = Bonder();
   for (const double value : {-0.1, std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity()}) {
-    EXPECT_THAT(ErrorOf([&] {
+    EXPECT_THAT(MessageOf<InputError>([&] {
                   ApplyFault(*bonder, {"zeta_x", value});
                 }),
                 HasSubstr("out of range"));
@@ -119,14 +111,16 @@ TEST(ApplyFault, RefusesValuesThatAreNoFactors) {
 }
 
 TEST(FaultParameters, NameWhatIsWrongInTheirDeclaration) {
-  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("damping Q")); }),
-              AllOf(HasSubstr("fault.zeta"), HasSubstr("no joint named \"Q\""),
-                    HasSubstr("one of x")));
-  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("friction x")); }),
-              AllOf(HasSubstr("fault.zeta"), HasSubstr("friction")));
-  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("gear x")); }),
+  EXPECT_THAT(
+      MessageOf<InputError>([] { FaultParameters(*WithParameter("damping Q")); }),
+      AllOf(HasSubstr("fault.zeta"), HasSubstr("no joint named \"Q\""),
+            HasSubstr("one of x")));
+  EXPECT_THAT(
+      MessageOf<InputError>([] { FaultParameters(*WithParameter("friction x")); }),
+      AllOf(HasSubstr("fault.zeta"), HasSubstr("friction")));
+  EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("gear x")); }),
               HasSubstr("no actuator named \"x\""));
-  EXPECT_THAT(ErrorOf([] { FaultParameters(*WithParameter("damping")); }),
+  EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("damping")); }),
               AllOf(HasSubstr("fault.zeta"), HasSubstr("no element")));
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "mjdiag/signals/error.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -32,12 +33,7 @@ auto Read(const std::string& text) {
 std::string ErrorAfter(const std::string& from, const std::string& to) {
   std::string text = kText;
   text.replace(text.find(from), from.size(), to);
-  try {
-    Read(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::MessageOf<InputError>([&] { Read(text); });
 }
 
 TEST(PublishedRelationFile, ReadsWhatItSays) {
