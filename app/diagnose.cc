@@ -17,23 +17,16 @@ struct DiagnoseOptions {
   OutputOptions output;
   DiagnosisSource source;
   std::string record;
-  bool refine = false;
 };
 
 void Diagnose(const DiagnoseOptions& options) {
-  if (options.refine && options.source.baseline) {
-    throw InputError("--refine", "does not go with --baseline",
-                     "one of the two: a baseline belongs to the healthy filters");
-  }
   const Machine machine = LoadSubject(options.machine).nominal;
   const Record record = ReadRecord(options.record, machine.setup().record);
   const Excitation motion =
       NeedsMotion(options.source) ? Replay(machine.setup(), record) : Excitation{};
   PrepareOutput(options.output);
   const PreparedDiagnosis prepared = Prepare(machine, options.source, motion);
-  const Diagnosis diagnosis = mjdiag::Diagnose(
-      machine, prepared, record,
-      options.refine ? EstimateMethod::kRefined : EstimateMethod::kLinear);
+  const Diagnosis diagnosis = mjdiag::Diagnose(machine, prepared, record);
   auto document = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
@@ -55,9 +48,6 @@ void AddDiagnose(CLI::App& app) {
       ->required();
   command->add_flag("--linear", options->source.nominal.linear,
                     "Thresholds from runs of the linearised plant");
-  command->add_flag("--refine", options->refine,
-                    "Make the filters anew about the estimate until it settles: exact "
-                    "for large faults where the linear model holds");
   command->callback([options] { Diagnose(*options); });
 }
 

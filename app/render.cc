@@ -17,6 +17,7 @@
 #include "app/subject.h"
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
+#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/signals/error.h"
 
@@ -104,6 +105,15 @@ std::vector<TitledRecord> ReadRuns(const Machine& machine,
 /// determine the faults.
 void NoteEstimate(const DiagnosisMonitor& monitor, Eigen::Index column,
                   std::vector<EstimateHistory>& histories) {
+  if (monitor.twin() != nullptr) {
+    for (std::size_t i = 0; i < histories.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      histories[i].value[column] = histories[i].healthy + monitor.estimate()[at];
+      histories[i].half_width[column] =
+          TwoSidedNormalQuantile(0.05) * monitor.estimate_sd()[at];
+    }
+    return;
+  }
   std::optional<FaultEstimate> estimate;
   if (monitor.estimator().samples() > 0 && monitor.estimator().Inseparable().empty()) {
     estimate = monitor.estimator().Estimate();
@@ -124,8 +134,8 @@ void NoteEstimate(const DiagnosisMonitor& monitor, Eigen::Index column,
 
 /// The monitor of `simulate --diagnose` over a run, sample by sample, with what it knew
 /// at every estimate.
-DiagnosisOverlay OverlayOf(const PreparedDiagnosis& prepared, const Record& record,
-                           std::size_t run) {
+DiagnosisOverlay OverlayOf(const Machine& machine, const PreparedDiagnosis& prepared,
+                           const Record& record, std::size_t run) {
   const DiagnosisDesign& design = prepared.design;
   // A clip shows some hundred moments.
   constexpr Eigen::Index kMostEstimates = 2000;
@@ -145,6 +155,9 @@ DiagnosisOverlay OverlayOf(const PreparedDiagnosis& prepared, const Record& reco
                                  Eigen::VectorXd(count), Eigen::VectorXd(count)});
   }
   DiagnosisRecording recording(design, record.samples(), prepared.baseline);
+  if (auto twin = MakeTwinEstimator(machine, prepared.nominal.linear)) {
+    recording.monitor.Follow(std::move(twin));
+  }
   const DiagnosisMonitor& monitor = recording.monitor;
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index first = k * every;
@@ -175,7 +188,7 @@ DiagnosisOverlay DiagnosisOf(const RenderOptions& options, const Machine& machin
     motion = options.records.empty() ? MakeExcitation(machine.setup(), options.motion)
                                      : Replay(machine.setup(), record);
   }
-  return OverlayOf(Prepare(machine, source, motion), record, runs.size() - 1);
+  return OverlayOf(machine, Prepare(machine, source, motion), record, runs.size() - 1);
 }
 
 void Render(RenderOptions options) {

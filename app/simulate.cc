@@ -11,6 +11,7 @@
 #include "app/output.h"
 #include "app/subject.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
+#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
@@ -74,6 +75,9 @@ void Simulate(const SimulateOptions& options) {
     source.nominal.linear = options.motion.linear;
     prepared = Prepare(subject.nominal, source, excitation);
     recording.emplace(prepared->design, excitation.samples(), prepared->baseline);
+    if (auto twin = MakeTwinEstimator(subject.nominal, prepared->nominal.linear)) {
+      recording->monitor.Follow(std::move(twin));
+    }
     observer.emplace(*recording);
     subject.options.observer = &*observer;
   }
@@ -104,7 +108,8 @@ void Simulate(const SimulateOptions& options) {
   }
   std::function<NamedPage()> page;
   if (options.diagnose) {
-    const Diagnosis diagnosis = Conclude(subject.nominal, *prepared, *recording);
+    recording->Finish();
+    const Diagnosis diagnosis = ConcludeWithLog(*recording);
     document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
     text += "\n" + Describe(diagnosis.result);
     if (!options.output.folder.empty()) {

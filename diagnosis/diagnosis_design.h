@@ -47,6 +47,7 @@ struct DiagnosisLimits {
 
 struct DiagnosisDesign {
   std::string setup;
+  bool linear = false;  ///< the machine is taken as linear, without dry friction
   std::vector<std::string> outputs;  ///< channels of y
   std::vector<std::string> inputs;   ///< channels of u
   Eigen::VectorXd offset;            ///< readings at rest, ny

@@ -12,13 +12,14 @@ nlohmann::json OrNull(const std::optional<double>& value) {
 nlohmann::json Faults(const std::vector<FaultVerdict>& verdicts) {
   nlohmann::json faults = nlohmann::json::array();
   for (const FaultVerdict& fault : verdicts) {
-    faults.push_back({{"name", fault.name},
-                      {"value", fault.value},
-                      {"deviation", fault.deviation},
-                      {"sd", fault.sd},
-                      {"ci95", {fault.ci95.min, fault.ci95.max}},
-                      {"detected", fault.detected},
-                      {"cross_term", fault.cross_term}});
+    faults.push_back({
+        {"name", fault.name},
+        {"value", fault.value},
+        {"deviation", fault.deviation},
+        {"sd", fault.sd},
+        {"ci95", {fault.ci95.min, fault.ci95.max}},
+        {"detected", fault.detected},
+    });
   }
   return faults;
 }
@@ -43,20 +44,22 @@ nlohmann::json Disturbance(const DisturbanceReport& report) {
 }  // namespace
 
 std::string DiagnosisJson(const DiagnosisResult& result) {
-  const nlohmann::json document{{"schema", "mjdiag.diagnosis/1"},
-                                {"setup", result.setup},
-                                {"samples", result.samples},
-                                {"sample_time", result.sample_time},
-                                {"detected", result.detected},
-                                {"first_detection", OrNull(result.first_detection)},
-                                {"lasting_since", OrNull(result.lasting)},
-                                {"residual",
-                                 {{"min", result.residual.min},
-                                  {"max", result.residual.max},
-                                  {"threshold_min", result.limits.min},
-                                  {"threshold_max", result.limits.max}}},
-                                {"faults", Faults(result.faults)},
-                                {"disturbance", Disturbance(result.disturbance)}};
+  const nlohmann::json document{
+      {"schema", "mjdiag.diagnosis/1"},
+      {"setup", result.setup},
+      {"samples", result.samples},
+      {"sample_time", result.sample_time},
+      {"detected", result.detected},
+      {"first_detection", OrNull(result.first_detection)},
+      {"lasting_since", OrNull(result.lasting)},
+      {"residual",
+       {{"min", result.residual.min},
+        {"max", result.residual.max},
+        {"threshold_min", result.limits.min},
+        {"threshold_max", result.limits.max}}},
+      {"faults", Faults(result.faults)},
+      {"misfit", result.by_twin ? nlohmann::json(result.misfit) : nlohmann::json()},
+      {"disturbance", Disturbance(result.disturbance)}};
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

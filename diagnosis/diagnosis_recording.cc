@@ -28,6 +28,7 @@ void Feed(Watcher& watcher, const DiagnosisDesign& design, const Record& record)
   const Eigen::MatrixXd y = SamplesOf(record, design.outputs);
   const Eigen::MatrixXd u = SamplesOf(record, design.inputs);
   for (Index k = 0; k < record.samples(); ++k) watcher.Add(Tick(y, k), Tick(u, k));
+  watcher.Finish();
 }
 
 }  // namespace
@@ -45,8 +46,10 @@ void Run(DiagnosisRecording& recording, const Record& record) {
 }
 
 DiagnosisRecording RecordDiagnosis(const DiagnosisDesign& design, const Record& record,
-                                   const Eigen::MatrixXd& baseline, Index from) {
+                                   const Eigen::MatrixXd& baseline, Index from,
+                                   std::unique_ptr<TwinEstimator> twin) {
   DiagnosisRecording recording(design, record.samples(), baseline);
+  if (twin) recording.monitor.Follow(std::move(twin));
   recording.monitor.RegressFrom(from);
   Run(recording, record);
   return recording;

@@ -24,6 +24,12 @@ struct DiagnosisRecording {
     recorder.Add(monitor);
   }
 
+  /// At the end of a run (DiagnosisMonitor::Finish).
+  void Finish() noexcept {
+    monitor.Finish();
+    recorder.AddFinal(monitor);
+  }
+
   DiagnosisMonitor monitor;
   MonitorRecorder recorder;
 };
@@ -36,8 +42,10 @@ void Run(DiagnosisRecording& recording, const Record& record);
 /// The recording of a whole record.
 /// @param baseline  see DiagnosisMonitor
 /// @param from      first sample that is regressed
+/// @param twin      of the machine, or null
 DiagnosisRecording RecordDiagnosis(const DiagnosisDesign& design, const Record& record,
                                    const Eigen::MatrixXd& baseline = {},
-                                   Eigen::Index from = 0);
+                                   Eigen::Index from = 0,
+                                   std::unique_ptr<TwinEstimator> twin = nullptr);
 
 }  // namespace mjdiag

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/diagnosis/twin/naming.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -33,8 +34,27 @@ std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
                         deviation,
                         sd,
                         {value - half * sd, value + half * sd},
-                        std::abs(deviation) > reach * sd && !usual,
-                        false});
+                        std::abs(deviation) > reach * sd && !usual});
+  }
+  return verdicts;
+}
+
+std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
+                                const TwinReading& reading) {
+  const std::vector<std::string> names = design.FaultNames();
+  const double half = TwoSidedNormalQuantile(0.05);
+  std::vector<FaultVerdict> verdicts;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    const double deviation = reading.deviation[at];
+    const double value = design.Healthy(at) + deviation;
+    const double sd = reading.sd[at];
+    verdicts.push_back({names[i],
+                        value,
+                        deviation,
+                        sd,
+                        {value - half * sd, value + half * sd},
+                        reading.named[i]});
   }
   return verdicts;
 }
@@ -61,8 +81,7 @@ Eigen::VectorXd WithoutFaults(const DiagnosisDesign& design, const MonitorLog& l
 }
 
 void RequireSeparableFaults(const DiagnosisDesign& design,
-                            const FaultEstimator& estimator) {
-  const std::vector<Index> inseparable = estimator.Inseparable();
+                            const std::vector<Index>& inseparable) {
   if (inseparable.empty()) return;
   const std::vector<std::string> names = design.FaultNames();
   std::string list;
@@ -88,8 +107,7 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
   return {deviation - middle, std::hypot(sd, spread), limits.Holds(deviation)};
 }
 
-DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log,
-                         const FaultEstimate& estimate) {
+DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log) {
   const DiagnosisDesign& design = monitor.design();
   DiagnosisResult result;
   result.setup = design.setup;
@@ -104,21 +122,25 @@ DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log,
                               design.limits.disturbance, design.options.disturbance);
   };
   result.disturbance = analyse(log.disturbance);
-  // Noisier sensors than the setup says make estimates less certain than it says.
-  FaultEstimate honest = estimate;
-  honest.covariance *= std::max(1.0, result.disturbance.noise_ratio);
-  result.faults = Judge(design, honest);
+  if (monitor.twin() != nullptr) {
+    const TwinReading reading = monitor.twin()->Read();
+    RequireSeparableFaults(design, reading.inseparable);
+    result.faults = Judge(design, reading);
+    result.by_twin = true;
+    result.misfit = reading.misfit;
+  } else {
+    RequireSeparableFaults(design, monitor.estimator().Inseparable());
+    // Noisier sensors than the setup says make estimates less certain than it says.
+    FaultEstimate honest = monitor.estimator().Estimate();
+    honest.covariance *= std::max(1.0, result.disturbance.noise_ratio);
+    result.faults = Judge(design, honest);
+  }
   if (AnyDetected(result.faults)) {
     result.disturbance = analyse(WithoutFaults(design, log, result.faults));
   }
   result.detected = result.first_detection.has_value() ||
                     result.disturbance.disturbed || AnyDetected(result.faults);
   return result;
-}
-
-DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log) {
-  RequireSeparableFaults(monitor.design(), monitor.estimator());
-  return Conclude(monitor, log, monitor.estimator().Estimate());
 }
 
 DiagnosisResult Conclude(const DiagnosisRecording& recording) {

@@ -16,8 +16,6 @@ struct FaultVerdict {
   double sd = 0.0;
   Interval ci95;
   bool detected = false;
-  /// Far from healthy, but no farther than the faults that are detected put it.
-  bool cross_term = false;
 };
 
 struct DiagnosisResult {
@@ -31,13 +29,14 @@ struct DiagnosisResult {
   Interval residual;  ///< extremes of r
   Interval limits;    ///< Eq. 20
   std::vector<FaultVerdict> faults;
+  /// The faults come from the machine's twin, told apart all together; else one by one
+  /// from its residuals, where a large one leaks into the others.
+  bool by_twin = false;
+  /// Of the twin: squared innovations over what is expected of them, 1 where it explains
+  /// all that it sees.
+  double misfit = 1.0;
   DisturbanceReport disturbance;
 };
-
-/// An estimate counts as a fault if it is farther from healthy than its standard
-/// deviation explains with this probability over all faults, and outside the limits
-/// that nominal runs gave it.
-inline constexpr double kFalseFault = 1e-4;
 
 /// An estimate as healthy runs have it (DiagnosisLimits::estimates): without the part
 /// that they show, too, and not surer than they agree on.
@@ -50,15 +49,11 @@ struct CalibratedEstimate {
 CalibratedEstimate Calibrate(const DiagnosisDesign& design, Eigen::Index fault,
                              double deviation, double sd);
 
-/// From a monitor at the end of its run.
+/// From a monitor at the end of its run, finished (DiagnosisMonitor::Finish).
 /// @param log  what a recorder kept of the whole run
 /// InputError names the faults that the motion does not tell apart.
 DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log);
 
 DiagnosisResult Conclude(const DiagnosisRecording& recording);
-
-/// The same with estimates from elsewhere (RefineEstimate).
-DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log,
-                         const FaultEstimate& estimate);
 
 }  // namespace mjdiag

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mjdiag/diagnosis/twin/twin_estimator.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -36,9 +37,10 @@ std::string WithDeviation(const FaultVerdict& fault) {
 }
 
 /// "zeta_x = 1.2, eta_y = 0.98"; empty without a detected fault.
-std::string NamedFaults(const std::vector<FaultVerdict>& ranked) {
+std::string NamedFaults(const std::vector<FaultVerdict>& ranked, bool by_twin) {
   if (ranked.empty() || !ranked.front().detected) return "";
-  const double least = kNamedSignificance * Significance(ranked.front());
+  const double least =
+      by_twin ? 0.0 : kNamedSignificance * Significance(ranked.front());
   std::string names;
   for (const FaultVerdict& fault : ranked) {
     if (!fault.detected || Significance(fault) < least) break;
@@ -64,13 +66,17 @@ std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result) {
 }
 
 std::string DetectionText(const FaultVerdict& fault) {
-  if (fault.cross_term) return "cross term";
   return fault.detected ? "yes" : "no";
 }
 
 std::string DiagnosisVerdict(const DiagnosisResult& result) {
+  if (result.by_twin && !(result.misfit < kLargestMisfit)) {
+    return "Neither the healthy machine nor its faults explain this run: what is left "
+           "has " +
+           FormatNumber(std::sqrt(result.misfit)) + " times the noise.";
+  }
   if (!result.detected) return "Nothing is wrong that this run shows.";
-  const std::string faults = NamedFaults(RankedFaults(result));
+  const std::string faults = NamedFaults(RankedFaults(result), result.by_twin);
   if (!faults.empty()) return "Detected: " + faults + ".";
   if (!result.disturbance.tones.empty()) return "A periodic disturbance is there.";
   if (result.disturbance.noise_raised) return "The sensors are noisier than usual.";

@@ -1,10 +1,11 @@
 #pragma once
 // What a diagnosis says in words, strongest first.
 //
-// A large fault leaks into the estimates of the others: with damping up by a fifth, a
-// motor constant reads 1 - 4e-7, many times its standard deviation and of no interest.
-// Faults are therefore ranked by their significance |deviation| / sd, and the sentence
-// leaves out what is dwarfed by the strongest.
+// Faults are ranked by their significance |deviation| / sd. Where they were estimated
+// without a twin, from the residuals of a healthy design, a large fault leaks into the
+// others: with damping up by a fifth, a motor constant reads 1 - 4e-7, many times its
+// standard deviation and of no interest. The sentence then leaves out what is dwarfed
+// by the strongest.
 
 #include <string>
 #include <vector>
@@ -13,17 +14,17 @@
 
 namespace mjdiag {
 
-/// A detected fault is named only if its significance is at least this part of the
+/// Without a twin a detected fault is named only if its significance is at least this part of the
 /// strongest one's.
 inline constexpr double kNamedSignificance = 0.05;
 
 /// Detected faults first, by falling significance; the others keep their order.
 std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result);
 
-/// "yes", "no", or "cross term" of a fault that others put far from healthy.
+/// "yes" or "no".
 std::string DetectionText(const FaultVerdict& fault);
 
-/// The answer in one sentence. Besides the dwarfed faults it leaves out those whose
+/// The answer in one sentence. Besides those it leaves out those whose
 /// value reads as healthy in five digits, unless none is left: then the strongest is
 /// named by its deviation, "eta_z = 1 - 4.00e-07".
 std::string DiagnosisVerdict(const DiagnosisResult& result);

@@ -174,6 +174,7 @@ DiagnosisDesign Parse(const json& object) {
   DiagnosisDesign design;
   const double sample_time = object.at("sample_time");
   design.setup = object.at("setup");
+  design.linear = object.value("linear", false);
   design.outputs = object.at("outputs").get<std::vector<std::string>>();
   design.inputs = object.at("inputs").get<std::vector<std::string>>();
   design.offset = Vector(object.at("offset"));
@@ -230,6 +231,7 @@ json Json(const DiagnosisDesign& design) {
     rows.push_back(Json(coefficient));
   return {{"schema", kSchema},
           {"setup", design.setup},
+          {"linear", design.linear},
           {"sample_time", design.sample_time()},
           {"outputs", design.outputs},
           {"inputs", design.inputs},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mjdiag/signals/error.h"
 
@@ -16,6 +17,8 @@ using Eigen::VectorXd;
 constexpr double kSettled = 1e-6;
 /// A first reading within this many standard deviations is one at rest.
 constexpr double kSigmas = 6.0;
+/// Regressed samples after which standard deviations are looked at again.
+constexpr Index kSpreadEvery = 16;
 
 VectorXd SignalNoise(const DiagnosisDesign& design) {
   VectorXd noise = VectorXd::Zero(design.bank.filters.inputs());
@@ -76,11 +79,33 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, MatrixXd basel
                                 static_cast<Index>(design.disturbances.size()))),
       drive_(VectorXd::Zero(waveforms_.size())),
       estimate_(VectorXd::Zero(design.faults())),
+      estimate_sd_(VectorXd::Constant(design.faults(),
+                                      std::numeric_limits<double>::quiet_NaN())),
       window_(VectorXd::Zero(WindowSamples(design))) {
   if (baseline_.size() > 0 && baseline_.rows() != design.bank.residuals) {
     throw InputError("baseline", std::to_string(baseline_.rows()) + " residuals",
                      std::to_string(design.bank.residuals));
   }
+}
+
+void DiagnosisMonitor::Follow(std::unique_ptr<TwinEstimator> twin) {
+  const std::vector<std::string> names = design_.FaultNames();
+  bool same = twin->faults().size() == names.size();
+  for (std::size_t i = 0; same && i < names.size(); ++i) {
+    same = twin->faults()[i].name == names[i];
+  }
+  if (!same) {
+    throw InputError("twin", "its faults are not those of the filters",
+                     "a twin of the machine that the filters are made for");
+  }
+  twin_ = std::move(twin);
+}
+
+void DiagnosisMonitor::Finish() noexcept {
+  if (!twin_) return;
+  twin_->CatchUp();
+  if (twin_->estimator().active() > 0) twin_->ReadSpread(estimate_sd_);
+  twin_->Read(estimate_);
 }
 
 void DiagnosisMonitor::Start() noexcept {
@@ -130,6 +155,7 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
   Detect();
   regressed_ = samples_ >= std::max(settling_, first_regressed_) &&
                samples_ % design_.decimation == 0;
+  if (twin_ && samples_ >= first_regressed_) twin_->Add(outputs, inputs);
   if (regressed_) Regress();
   ++samples_;
 }
@@ -149,6 +175,14 @@ void DiagnosisMonitor::Detect() noexcept {
 }
 
 void DiagnosisMonitor::Regress() noexcept {
+  if (twin_) {
+    if (twin_->estimator().active() > 0 &&
+        samples_ % (kSpreadEvery * design_.decimation) == 0) {
+      twin_->ReadSpread(estimate_sd_);
+    }
+    twin_->Read(estimate_);
+    return;
+  }
   if (estimator_.samples() == 0 && samples_ > 0) estimator_.AssumeStationary();
   estimator_.Add(residuals_, regressors_);
   estimator_.Solve(estimate_);

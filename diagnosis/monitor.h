@@ -8,11 +8,13 @@
 // keeps them for what looks at a whole run.
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 #include "mjdiag/diagnosis/residuals/fault_estimator.h"
+#include "mjdiag/diagnosis/twin/twin_estimator.h"
 
 namespace mjdiag {
 
@@ -23,6 +25,14 @@ class DiagnosisMonitor {
   ///                  InputError if n is not the number of residuals
   explicit DiagnosisMonitor(const DiagnosisDesign& design,
                             Eigen::MatrixXd baseline = {});
+
+  /// From now on faults are estimated by the twin of the machine, and no more from the
+  /// residuals. InputError if it has other faults than the design.
+  void Follow(std::unique_ptr<TwinEstimator> twin);
+  /// Null without one.
+  const TwinEstimator* twin() const { return twin_.get(); }
+  /// At the end of a run: what the twin has yet to catch up with.
+  void Finish() noexcept;
 
   /// One control tick. Does not allocate, lock, throw or do I/O.
   /// @param outputs  readings y, ny
@@ -49,6 +59,8 @@ class DiagnosisMonitor {
   /// Latest recursive estimate, deviations from healthy, nf; 0 as long as the motion
   /// has not told all faults apart.
   const Eigen::VectorXd& estimate() const { return estimate_; }
+  /// Its standard deviations, nf; of a twin, now and then. NaN before that.
+  const Eigen::VectorXd& estimate_sd() const { return estimate_sd_; }
   const FaultEstimator& estimator() const { return estimator_; }
 
   /// Whether the residual is outside its limits now. Never before the filters have
@@ -73,6 +85,7 @@ class DiagnosisMonitor {
   RunningBank waveform_filter_;
   SectionFilter high_pass_;
   FaultEstimator estimator_;
+  std::unique_ptr<TwinEstimator> twin_;
   Eigen::Index first_regressed_ = 0;
   Eigen::Index settling_away_ = 0;  // samples of a transient
   Eigen::Index settling_ = 0;       // samples before which nothing is judged
@@ -85,6 +98,7 @@ class DiagnosisMonitor {
   Eigen::MatrixXd waveforms_;   // nu x disturbances
   Eigen::VectorXd drive_;       // of waveform_filter_
   Eigen::VectorXd estimate_;
+  Eigen::VectorXd estimate_sd_;
   Eigen::VectorXd window_;  // ring of |r|
   double window_sum_ = 0.0;
   double integral_ = 0.0;

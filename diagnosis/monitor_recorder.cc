@@ -14,7 +14,8 @@ MonitorRecorder::MonitorRecorder(const DiagnosisDesign& design, Index capacity)
       integral_(capacity),
       disturbance_(capacity),
       signals_(design.bank.filters.inputs(), capacity),
-      estimates_(design.faults(), capacity / design.decimation + 1) {}
+      estimates_(design.faults(), capacity / design.decimation + 1),
+      estimate_sd_(estimates_.rows(), estimates_.cols()) {}
 
 void MonitorRecorder::Add(const DiagnosisMonitor& monitor) noexcept {
   if (samples_ < residuals_.cols()) {
@@ -27,9 +28,17 @@ void MonitorRecorder::Add(const DiagnosisMonitor& monitor) noexcept {
   if (monitor.regressed() && estimates_made_ < estimates_.cols()) {
     if (estimates_made_ == 0) first_estimate_ = seen_;
     estimates_.col(estimates_made_) = monitor.estimate();
+    estimate_sd_.col(estimates_made_) = monitor.estimate_sd();
+    by_twin_ = monitor.twin() != nullptr;
     ++estimates_made_;
   }
   ++seen_;
+}
+
+void MonitorRecorder::AddFinal(const DiagnosisMonitor& monitor) noexcept {
+  if (estimates_made_ == 0) return;
+  estimates_.col(estimates_made_ - 1) = monitor.estimate();
+  estimate_sd_.col(estimates_made_ - 1) = monitor.estimate_sd();
 }
 
 MonitorLog MonitorRecorder::Log() const {
@@ -42,7 +51,8 @@ MonitorLog MonitorRecorder::Log() const {
           signals_.leftCols(samples_),
           sample_time_ *
               (index.array() * decimation_ + static_cast<double>(first_estimate_)),
-          estimates_.leftCols(estimates_made_)};
+          estimates_.leftCols(estimates_made_),
+          estimate_sd_.leftCols(by_twin_ ? estimates_made_ : 0)};
 }
 
 }  // namespace mjdiag

@@ -17,6 +17,7 @@ struct MonitorLog {
   Eigen::MatrixXd signals;        ///< z as deviations from rest, nz x samples
   Eigen::VectorXd estimate_time;  ///< since the first tick kept [s]
   Eigen::MatrixXd estimates;      ///< nf x regressed samples, deviations from healthy
+  Eigen::MatrixXd estimate_sd;    ///< of those of a twin; empty without one
 };
 
 class MonitorRecorder {
@@ -28,6 +29,9 @@ class MonitorRecorder {
   /// What the monitor knows now: once after every tick of the monitor. Does not
   /// allocate, lock, throw or do I/O.
   void Add(const DiagnosisMonitor& monitor) noexcept;
+
+  /// At the end of a run: the last estimate, as it is when the monitor has finished.
+  void AddFinal(const DiagnosisMonitor& monitor) noexcept;
 
   /// Ticks kept.
   Eigen::Index samples() const { return samples_; }
@@ -47,6 +51,8 @@ class MonitorRecorder {
   Eigen::VectorXd disturbance_;  // capacity
   Eigen::MatrixXd signals_;      // nz x capacity
   Eigen::MatrixXd estimates_;    // nf x capacity / decimation
+  Eigen::MatrixXd estimate_sd_;  // the same
+  bool by_twin_ = false;
 };
 
 }  // namespace mjdiag

@@ -110,7 +110,8 @@ TimePlot EstimatePlot(const DiagnosisDesign& design, const DiagnosisResult& resu
   VectorXd half_width(sd.size());
   for (Index k = 0; k < sd.size(); ++k) {
     const CalibratedEstimate calibrated =
-        Calibrate(design, row, log.estimates(row, k), sd[k]);
+        result.by_twin ? CalibratedEstimate{log.estimates(row, k), sd[k], false}
+                       : Calibrate(design, row, log.estimates(row, k), sd[k]);
     deviation[k] = calibrated.deviation;
     half_width[k] = TwoSidedNormalQuantile(0.05) * calibrated.sd;
   }
@@ -224,10 +225,12 @@ std::vector<TimePlot> EstimatePlots(const DiagnosisDesign& design,
   std::vector<TimePlot> plots;
   const Index count = log.estimates.cols();
   if (count < kFewestEstimates) return plots;
-  const Bound bound = BoundOf(design, log);
+  const Bound bound = result.by_twin ? Bound{} : BoundOf(design, log);
   for (std::size_t i = 0; i < result.faults.size(); ++i) {
-    plots.push_back(EstimatePlot(design, result, log, static_cast<Index>(i),
-                                 AtEveryEstimate(bound, static_cast<Index>(i), count)));
+    const auto row = static_cast<Index>(i);
+    plots.push_back(EstimatePlot(design, result, log, row,
+                                 result.by_twin ? VectorXd(log.estimate_sd.row(row))
+                                                : AtEveryEstimate(bound, row, count)));
   }
   return plots;
 }

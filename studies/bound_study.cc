@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
@@ -51,6 +52,65 @@ InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
     sensitivities.push_back(OutputResponse(healthy, options.timing, waveform));
   }
   return CramerRaoBound(sensitivities, options.sensor_noise);
+}
+
+VectorXd FaultBoundAt(const Machine& machine, const Excitation& motion,
+                      const VectorXd& deviations) {
+  const FaultFamily family = MakeFaultFamily(machine);
+  const SynthesisOptions options = SynthesisOf(machine);
+  const auto parameters = static_cast<Index>(family.parameters.size());
+  const VectorXd values = deviations.head(parameters).array() + 1.0;
+  Changes faults;
+  for (Index i = 0; i < parameters; ++i) {
+    faults.faults.push_back(
+        {family.parameters[static_cast<std::size_t>(i)], values[i]});
+  }
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  for (std::size_t i = 0; i < family.disturbances.size(); ++i) {
+    quiet.disturbances[family.disturbances[i].name] =
+        deviations[parameters + static_cast<Index>(i)];
+  }
+  MatrixXd inputs =
+      Commands(machine.setup(), SimulateLinear(machine.With(faults), motion, quiet));
+  const auto angle = [&](double frequency) {
+    return (2.0 * std::numbers::pi * frequency * machine.rates().tick() *
+            Eigen::ArrayXd::LinSpaced(inputs.cols(), 0.0,
+                                      static_cast<double>(inputs.cols() - 1)))
+        .eval();
+  };
+  for (std::size_t i = 0; i < family.disturbances.size(); ++i) {
+    const Multisine& source = family.disturbances[i];
+    for (const double frequency : source.frequencies) {
+      inputs += deviations[parameters + static_cast<Index>(i)] * source.amplitude *
+                angle(frequency).sin().matrix().transpose();
+    }
+  }
+  std::vector<MatrixXd> sensitivities =
+      OutputSensitivities(family.PerturbedAbout(values), options.timing, inputs);
+  const MechanicalModel worn = family.model_at(values);
+  for (const Multisine& source : family.disturbances) {
+    for (const double frequency : source.frequencies) {
+      const Eigen::ArrayXd phase = angle(frequency);
+      for (const Eigen::ArrayXd& wave : {phase.sin().eval(), phase.cos().eval()}) {
+        sensitivities.push_back(OutputResponse(
+            worn, options.timing, source.amplitude * wave.matrix().transpose()));
+      }
+    }
+  }
+  const VectorXd all = CramerRaoBound(sensitivities, options.sensor_noise).together;
+  VectorXd bound(deviations.size());
+  bound.head(parameters) = all.head(parameters);
+  Index tone = parameters;
+  for (std::size_t i = 0; i < family.disturbances.size(); ++i) {
+    double information = 0.0;
+    for (std::size_t f = 0; f < family.disturbances[i].frequencies.size(); ++f) {
+      information += 2.0 / all.segment(tone, 2).squaredNorm();
+      tone += 2;
+    }
+    bound[parameters + static_cast<Index>(i)] = 1.0 / std::sqrt(information);
+  }
+  return bound;
 }
 
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault) {

@@ -12,6 +12,13 @@ namespace mjdiag {
 /// disturbances.
 InformationBound FaultBound(const Machine& machine, const Excitation& motion);
 
+/// The same for a machine with faults, all unknown together, and nobody knows the phases
+/// of the tones of a disturbance: that of a magnitude is what all of its tones say.
+/// @param deviations  from healthy, in that order
+/// @return standard deviations
+Eigen::VectorXd FaultBoundAt(const Machine& machine, const Excitation& motion,
+                             const Eigen::VectorXd& deviations);
+
 /// Place of a fault in that order; InputError on an unknown one.
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault);
 

@@ -12,7 +12,7 @@ namespace mjdiag {
 /// `options.runs` runs, largest error as a share of the deviation, standard deviation
 /// claimed and found, how often the 95 % interval held the truth with the binomial 99 %
 /// band of that count, and the multiple of the information bound. Every fault parameter
-/// and disturbance is estimated, refined where it lies (RefineEstimate).
+/// and disturbance is estimated, by the twin of the machine (twin_estimator.h).
 std::vector<StudyTable> EstimationStudy(const Machine& machine,
                                         const StudyOptions& options);
 

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "mjdiag/diagnosis/filters_file.h"
-#include "mjdiag/plugin/design/cross_terms.h"
-#include "mjdiag/plugin/design/fault_family.h"
+#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/plugin/design/robust_design.h"
 #include "mjdiag/signals/error.h"
@@ -66,8 +65,14 @@ PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
   PreparedDiagnosis prepared;
   prepared.design = FiltersOf(machine, source, motion);
   prepared.nominal = source.nominal;
+  if (source.filters.empty()) {
+    prepared.design.linear = source.nominal.linear;
+  } else if (prepared.design.linear) {
+    prepared.nominal.linear = true;
+  }
   prepared.nominal.progress = nullptr;  // belongs to this call
   NominalRuns runs = source.nominal;
+  runs.linear = prepared.nominal.linear;
   if (source.baseline) {
     prepared.motion = motion;
     prepared.baseline = ResidualBaseline(prepared.design, machine, motion, runs);
@@ -81,33 +86,17 @@ PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
 }
 
 Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
-                   const Record& record, EstimateMethod method) {
-  const bool refined = method == EstimateMethod::kRefined;
-  if (refined && prepared.baseline.size() > 0) {
-    throw InputError("refined estimates", "asked for against a baseline",
-                     "one of the two: a baseline belongs to the healthy filters");
-  }
+                   const Record& record) {
   const Index from = HorizonStart(prepared.design, record);
-  const DiagnosisRecording recording =
-      RecordDiagnosis(prepared.design, record, prepared.baseline, from);
-  if (!refined) return Conclude(machine, prepared, recording);
-  const MonitorLog log = recording.recorder.Log();
-  return {Conclude(recording.monitor, log,
-                   RefineFaults(machine, prepared.design, record, from).estimate),
-          log};
+  return ConcludeWithLog(
+      RecordDiagnosis(prepared.design, record, prepared.baseline, from,
+                      MakeTwinEstimator(machine, prepared.nominal.linear)));
 }
 
-Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
-                   const DiagnosisRecording& recording) {
-  const DiagnosisMonitor& monitor = recording.monitor;
+Diagnosis ConcludeWithLog(const DiagnosisRecording& recording) {
   Diagnosis diagnosis;
   diagnosis.log = recording.recorder.Log();
-  diagnosis.result = Conclude(monitor, diagnosis.log);
-  if (prepared.baseline.size() > 0) {
-    RemoveCrossTerms(diagnosis.result, prepared.design, machine,
-                     {prepared.motion, prepared.baseline, monitor.first_regressed(),
-                      prepared.nominal});
-  }
+  diagnosis.result = Conclude(recording.monitor, diagnosis.log);
   return diagnosis;
 }
 
@@ -115,17 +104,14 @@ DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepar
                          const Excitation& motion, const Changes& faults,
                          RunOptions options) {
   DiagnosisRecording recording(prepared.design, motion.samples(), prepared.baseline);
+  if (auto twin = MakeTwinEstimator(machine, prepared.nominal.linear)) {
+    recording.monitor.Follow(std::move(twin));
+  }
   MonitorObserver observer(recording);
   Record record = RunWith(machine.With(faults), motion, observer, std::move(options),
                           prepared.nominal.linear);
-  return {std::move(record), Conclude(machine, prepared, recording)};
-}
-
-RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
-                             const Record& record, Index from) {
-  const FaultFamily family = MakeFaultFamily(machine);
-  return RefineEstimate(design, SynthesisOf(machine), family.model_at,
-                        family.magnitudes, record, from);
+  recording.Finish();
+  return {std::move(record), ConcludeWithLog(recording)};
 }
 
 }  // namespace mjdiag

@@ -28,7 +28,6 @@
 
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/diagnosis/diagnosis_result.h"
-#include "mjdiag/diagnosis/refined_estimate.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
@@ -71,23 +70,15 @@ struct Diagnosis {
   MonitorLog log;
 };
 
-enum class EstimateMethod {
-  kLinear,   ///< by prefilters about the healthy machine: exact for small faults
-  kRefined,  ///< filters made anew about the estimate until it settles (RefineEstimate)
-};
-
 /// The diagnosis of a measured or simulated record, over the horizon that the setup
 /// gives. InputError if a channel is missing, the record has another rate than the
-/// filters or is shorter than the horizon, the motion does not tell the faults apart,
-/// or refined estimates are asked for against a baseline.
+/// filters or is shorter than the horizon, or (without a twin) the motion does not tell
+/// the faults apart.
 Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
-                   const Record& record,
-                   EstimateMethod method = EstimateMethod::kLinear);
+                   const Record& record);
 
-/// What a recording says at the end of its run; against a baseline, without the cross
-/// terms of large faults (cross_terms.h).
-Diagnosis Conclude(const Machine& machine, const PreparedDiagnosis& prepared,
-                   const DiagnosisRecording& recording);
+/// What a recording says at the end of its run.
+Diagnosis ConcludeWithLog(const DiagnosisRecording& recording);
 
 struct DiagnosedRun {
   Record record;
@@ -102,10 +93,5 @@ struct DiagnosedRun {
 DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
                          const Excitation& motion, const Changes& faults = {},
                          RunOptions options = {});
-
-/// RefineEstimate with the models of this machine.
-/// @param from  first sample that is regressed
-RefinedEstimate RefineFaults(const Machine& machine, const DiagnosisDesign& design,
-                             const Record& record, Eigen::Index from = 0);
 
 }  // namespace mjdiag

@@ -102,8 +102,21 @@ std::vector<std::string> FaultFamily::Names() const {
 }
 
 std::vector<PerturbedModels> FaultFamily::Perturbed() const {
-  return PerturbAbout(parameters, Eigen::VectorXd::Ones(magnitudes.size()), magnitudes,
-                      model_at);
+  return PerturbedAbout(Eigen::VectorXd::Ones(magnitudes.size()));
+}
+
+std::vector<PerturbedModels> FaultFamily::PerturbedAbout(
+    const Eigen::VectorXd& values) const {
+  std::vector<PerturbedModels> perturbed;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    Eigen::VectorXd minus = values;
+    Eigen::VectorXd plus = values;
+    minus[i] -= magnitudes[i];
+    plus[i] += magnitudes[i];
+    perturbed.push_back({parameters[static_cast<std::size_t>(i)], magnitudes[i],
+                         model_at(minus), model_at(plus)});
+  }
+  return perturbed;
 }
 
 FaultFamily MakeFaultFamily(const Machine& machine) {

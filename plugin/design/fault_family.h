@@ -4,13 +4,18 @@
 // setup.
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "mjdiag/diagnosis/refined_estimate.h"
+#include "mjdiag/diagnosis/diagnosis_design.h"
+#include "mjdiag/diagnosis/residuals/residual_bank.h"
 #include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
+
+/// The linear model of the machine at these fault parameters (1: healthy).
+using ModelAt = std::function<MechanicalModel(const Eigen::VectorXd& parameters)>;
 
 struct FaultFamily {
   std::vector<std::string> parameters;  ///< in the plant's order; healthy at 1
@@ -27,6 +32,8 @@ struct FaultFamily {
   /// For every parameter the models with it moved by -c and +c from healthy ([AB383],
   /// Eq. 22 and 23).
   std::vector<PerturbedModels> Perturbed() const;
+  /// The same about other values of the parameters.
+  std::vector<PerturbedModels> PerturbedAbout(const Eigen::VectorXd& values) const;
 };
 
 /// InputError if the setup gives a magnitude for a parameter that the plant does not

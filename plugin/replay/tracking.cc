@@ -27,18 +27,6 @@ Eigen::MatrixXd MeasuredBy(const std::vector<Element>& elements,
   return SamplesOf(measured, ChannelsOf(elements));
 }
 
-/// Where dry friction in the joints is the only constraint there are as many unknown
-/// forces as joints that rub, next to uncoupled, and projected Gauss-Seidel finds them
-/// in a few sweeps, closer than Newton's default tolerance and in half of its time.
-void ChooseSolver(mjModel& model) {
-  const bool limited = std::any_of(model.jnt_limited, model.jnt_limited + model.njnt,
-                                   [](mjtByte is) { return is != 0; }) ||
-                       model.ntendon > 0;
-  const bool contacts =
-      model.ngeom > 0 && (model.opt.disableflags & mjDSBL_CONTACT) == 0;
-  if (model.neq == 0 && !limited && !contacts) model.opt.solver = mjSOL_PGS;
-}
-
 /// Holds what was recorded, and keeps what the machine reads.
 class RecordedInputs final : public TickControl {
  public:
@@ -111,6 +99,15 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
 }
 
 }  // namespace
+
+void ChooseSolver(mjModel& model) {
+  const bool limited = std::any_of(model.jnt_limited, model.jnt_limited + model.njnt,
+                                   [](mjtByte is) { return is != 0; }) ||
+                       model.ntendon > 0;
+  const bool contacts =
+      model.ngeom > 0 && (model.opt.disableflags & mjDSBL_CONTACT) == 0;
+  if (model.neq == 0 && !limited && !contacts) model.opt.solver = mjSOL_PGS;
+}
 
 MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   MeasuredRun run;

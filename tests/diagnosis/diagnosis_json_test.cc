@@ -12,7 +12,7 @@ TEST(DiagnosisJson, HasTheFieldsThatOtherProgramsRead) {
   result.setup = "stage";
   result.samples = 100;
   result.first_detection = 0.25;
-  result.faults = {{"damping", 1.25, 0.25, 0.125, {1.0, 1.5}, true, false}};
+  result.faults = {{"damping", 1.25, 0.25, 0.125, {1.0, 1.5}, true}};
   result.disturbance.tones.emplace_back();
   const auto document = nlohmann::json::parse(DiagnosisJson(result));
   EXPECT_EQ(document["schema"], "mjdiag.diagnosis/1");
@@ -26,9 +26,9 @@ TEST(DiagnosisJson, HasTheFieldsThatOtherProgramsRead) {
   for (const char* key : {"min", "max", "threshold_min", "threshold_max"}) {
     EXPECT_TRUE(document["residual"].contains(key)) << key;
   }
-  const nlohmann::json expected = {
-      {"name", "damping"},  {"value", 1.25},    {"deviation", 0.25},  {"sd", 0.125},
-      {"ci95", {1.0, 1.5}}, {"detected", true}, {"cross_term", false}};
+  const nlohmann::json expected = {{"name", "damping"},  {"value", 1.25},
+                                   {"deviation", 0.25},  {"sd", 0.125},
+                                   {"ci95", {1.0, 1.5}}, {"detected", true}};
   EXPECT_EQ(document["faults"][0], expected);
   for (const char* key : {"peaks", "total", "total_threshold"}) {
     EXPECT_TRUE(document["disturbance"].contains(key)) << key;

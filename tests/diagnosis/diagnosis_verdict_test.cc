@@ -44,6 +44,21 @@ TEST(DiagnosisVerdict, LeavesOutFaultsThatTheStrongestDwarfs) {
   EXPECT_EQ(DiagnosisVerdict(result), "Detected: b = 2, c = 1.051.");
 }
 
+TEST(DiagnosisVerdict, LeavesOutNoneThatATwinHasToldApart) {
+  DiagnosisResult result = Found({Fault("a", 0.049, 1e-3), Fault("b", 1.0, 1e-3)});
+  result.by_twin = true;
+  EXPECT_EQ(DiagnosisVerdict(result), "Detected: b = 2, a = 1.049.");
+}
+
+TEST(DiagnosisVerdict, SaysThatNoFaultExplainsTheRun) {
+  DiagnosisResult result = Found({Fault("a", 1.0, 1e-3)});
+  result.by_twin = true;
+  result.misfit = 400.0;
+  EXPECT_EQ(DiagnosisVerdict(result),
+            "Neither the healthy machine nor its faults explain this run: what is left "
+            "has 20.0 times the noise.");
+}
+
 TEST(DiagnosisVerdict, LeavesOutFaultsThatReadAsHealthy) {
   const DiagnosisResult result =
       Found({Fault("eta_y", 4e-7, 1e-9), Fault("zeta_x", 0.2, 1e-3),

@@ -74,20 +74,37 @@ TEST(DiagnoseRun, GivesInsideTheCallbackTheBitsOfTheRecord) {
   EXPECT_TRUE(run.diagnosis.result.detected);
 }
 
-// Prefilters about the healthy machine are off by the square of a fault.
-TEST(Diagnose, RefinesLargeFaultsIfAskedTo) {
+TEST(Diagnose, IsExactForLargeFaults) {
   const Bench bonder;
-  const PreparedDiagnosis prepared = bonder.Prepared();
-  const Record record = bonder.LinearRunWith({"zeta_x", 3.0});
-  ASSERT_EQ(prepared.design.bank.faults[0], "zeta_x");
-  // Error in standard deviations.
-  const auto error = [&](EstimateMethod method) {
-    const Diagnosis diagnosis = Diagnose(bonder.machine, prepared, record, method);
-    const FaultVerdict& fault = diagnosis.result.faults[0];
-    return std::abs(fault.value - 3.0) / fault.sd;
-  };
-  EXPECT_GT(error(EstimateMethod::kLinear), 20.0);
-  EXPECT_LT(error(EstimateMethod::kRefined), 5.0);
+  const Diagnosis diagnosis = Diagnose(bonder.machine, bonder.Prepared(),
+                                       bonder.LinearRunWith({"zeta_x", 3.0}));
+  const FaultVerdict& fault = diagnosis.result.faults[0];
+  ASSERT_EQ(fault.name, "zeta_x");
+  EXPECT_LT(std::abs(fault.value - 3.0), 5.0 * fault.sd);
+  EXPECT_LT(fault.sd, 1e-4);
+  EXPECT_EQ(DiagnosisVerdict(diagnosis.result), "Detected: zeta_x = 3.");
+}
+
+// Dry friction is unknown beside the faults, and nothing is subtracted.
+TEST(Diagnose, NamesTheFaultsOfTheNonlinearMachineAndNothingElse) {
+  const Machine machine = test::Bonder();
+  const PreparedDiagnosis prepared = PrepareDiagnosis(machine);
+  Excitation motion = DefaultMotion(machine.setup());
+  const DiagnosedRun run =
+      DiagnoseRun(machine, prepared, motion,
+                  {{{"zeta_x", 1.001}, {"beta_y", 0.98}, {"eta_z", 0.7}}, {}});
+  const DiagnosisResult& result = run.diagnosis.result;
+  EXPECT_TRUE(result.by_twin);
+  EXPECT_LT(result.misfit, 2.0);
+  for (const FaultVerdict& fault : result.faults) {
+    const double truth = fault.name == "zeta_x"   ? 0.001
+                         : fault.name == "beta_y" ? -0.02
+                         : fault.name == "eta_z"  ? -0.3
+                                                  : 0.0;
+    EXPECT_EQ(fault.detected, truth != 0.0) << fault.name;
+    if (fault.name == "gamma") continue;  // not negative
+    EXPECT_NEAR(fault.deviation, truth, 5.0 * fault.sd) << fault.name;
+  }
 }
 
 TEST(Diagnose, RegressesTheHorizonOnly) {
@@ -140,17 +157,6 @@ TEST(PrepareDiagnosis, AsksForTheMotionOfABaselineAndOfARobustResidual) {
   source = {};
   source.robust = "zeta_x";
   EXPECT_TRUE(NeedsMotion(source));
-}
-
-TEST(Diagnose, RefusesToRefineAgainstABaseline) {
-  Bench bonder;
-  bonder.source.baseline = true;
-  const PreparedDiagnosis prepared = bonder.Prepared();
-  EXPECT_EQ(prepared.baseline.cols(), bonder.motion.samples());
-  EXPECT_THROW(
-      Diagnose(bonder.machine, prepared, bonder.LinearRunWith({"zeta_x", 1.01}),
-               EstimateMethod::kRefined),
-      InputError);
 }
 
 }  // namespace

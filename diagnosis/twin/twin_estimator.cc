@@ -1,0 +1,127 @@
+#include "mjdiag/diagnosis/twin/twin_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mjdiag/diagnosis/twin/naming.h"
+#include "mjdiag/signals/decompositions.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Part of what is known beforehand that data add which say nothing.
+constexpr double kNothing = 1e-6;
+/// Squared correlation of what two parameters do to the readings.
+constexpr double kAlike = 1.0 - 1e-9;
+/// By chance the misfit is not above it: a mean of about a hundred squares.
+constexpr double kExplained = 2.0;
+
+/// Magnitude and variance of a disturbance.
+std::pair<double, double> Magnitude(const TwinFault& fault, const VectorXd& theta,
+                                    const VectorXd& variance) {
+  double weights = 0.0;
+  double squares = 0.0;
+  for (Index i = 0; i < fault.tones; ++i) {
+    const Index at = fault.first + 2 * i;
+    const double spread = variance[at] + variance[at + 1];
+    const double weight = 2.0 / spread;
+    squares += weight * (theta.segment(at, 2).squaredNorm() - spread);
+    weights += weight;
+  }
+  return {std::sqrt(std::max(0.0, squares / weights)), 1.0 / weights};
+}
+
+}  // namespace
+
+TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
+    : faults_(std::move(machine.faults)),
+      estimator_(std::move(machine.twin), std::move(machine.unknowns),
+                 std::move(machine.sensor_noise), machine.sample_time, options) {}
+
+void TwinEstimator::Read(Eigen::Ref<VectorXd> deviation) noexcept {
+  const VectorXd& theta = estimator_.theta();
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const TwinFault& fault = faults_[i];
+    deviation[static_cast<Index>(i)] =
+        fault.tones == 0 ? std::expm1(theta[fault.first])
+                         : Magnitude(fault, theta, estimator_.LastVariance()).first;
+  }
+}
+
+void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
+  const VectorXd& spread = estimator_.Spread();
+  const VectorXd& theta = estimator_.theta();
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const TwinFault& fault = faults_[i];
+    double weights = 0.0;
+    for (Index tone = 0; tone < fault.tones; ++tone) {
+      weights += 2.0 / spread.segment(fault.first + 2 * tone, 2).squaredNorm();
+    }
+    sd[static_cast<Index>(i)] = fault.tones == 0
+                                    ? std::exp(theta[fault.first]) * spread[fault.first]
+                                    : 1.0 / std::sqrt(weights);
+  }
+}
+
+TwinReading TwinEstimator::Read() const {
+  const auto nf = static_cast<Index>(faults_.size());
+  TwinReading reading;
+  reading.deviation = reading.sd = VectorXd::Zero(nf);
+  reading.named.assign(faults_.size(), false);
+  const Index active = estimator_.active();
+  if (active == 0) return reading;  // it has not begun
+  const VectorXd& theta = estimator_.theta();
+  const MatrixXd information = estimator_.information().topLeftCorner(active, active);
+  const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  reading.misfit = estimator_.surprise();
+  // A twin that does not explain what it sees is less sure than it says.
+  const double honest = reading.misfit > kExplained ? reading.misfit : 1.0;
+  const MatrixXd covariance =
+      honest * scale.asDiagonal() *
+      Inverse(scale.asDiagonal() * information * scale.asDiagonal()) *
+      scale.asDiagonal();
+  const VectorXd variance = covariance.diagonal();
+  std::vector<std::vector<Index>> groups;
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const TwinFault& fault = faults_[i];
+    const auto at = static_cast<Index>(i);
+    std::vector<Index> group(
+        static_cast<std::size_t>(std::max<Index>(1, 2 * fault.tones)));
+    std::iota(group.begin(), group.end(), fault.first);
+    groups.push_back(std::move(group));
+    if (fault.tones == 0) {
+      reading.deviation[at] = std::expm1(theta[fault.first]);
+      reading.sd[at] = std::exp(theta[fault.first]) * std::sqrt(variance[fault.first]);
+    } else {
+      const auto [magnitude, spread] = Magnitude(fault, theta, variance);
+      reading.deviation[at] = magnitude;
+      reading.sd[at] = std::sqrt(spread);
+    }
+  }
+  const VectorXd& prior = estimator_.prior();
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const Index at = faults_[i].first;
+    const double own = information(at, at) - prior[at];
+    bool alike = own < kNothing * prior[at];
+    for (std::size_t k = 0; k < faults_.size() && !alike; ++k) {
+      const Index other = faults_[k].first;
+      alike = k != i && faults_[i].tones == 0 && faults_[k].tones == 0 &&
+              std::pow(information(at, other), 2) >
+                  kAlike * own * (information(other, other) - prior[other]);
+    }
+    if (alike && faults_[i].tones == 0) {
+      reading.inseparable.push_back(static_cast<Index>(i));
+    }
+  }
+  if (!groups.empty() && reading.misfit < kLargestMisfit) {
+    reading.named = NameFaults(theta.head(active), covariance, groups, kFalseFault);
+  }
+  return reading;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,78 @@
+#pragma once
+// The faults of a machine from its twin, as a diagnosis reads them: by the names that
+// the plant and the setup give them. A fault parameter is one unknown; a disturbance is
+// the sine and the cosine of each of its tones, whose phases nobody knows, and has the
+// magnitude of their common factor,
+//
+//   gamma^2 = sum_i w_i (s_i^2 + c_i^2 - var s_i - var c_i) / sum_i w_i,
+//   w_i = 2 / (var s_i + var c_i)
+//
+// not below 0, with 1 / sum w_i its variance where it is large against that.
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/twin/prediction_error.h"
+
+namespace mjdiag {
+
+/// Which of a twin's unknowns a fault is.
+struct TwinFault {
+  std::string name;
+  Eigen::Index first = 0;
+  Eigen::Index tones = 0;  ///< 0: the one unknown of a fault parameter
+};
+
+/// A twin with what its unknowns mean.
+struct MachineTwin {
+  std::unique_ptr<Twin> twin;
+  std::vector<Unknown> unknowns;
+  std::vector<TwinFault> faults;
+  Eigen::VectorXd sensor_noise;  ///< sd of a reading, ny, > 0
+  double sample_time = 0.0;      ///< [s]
+};
+
+/// A misfit beyond this is no chance and no small error of the model: the run is not
+/// explained by any faults, and none is named.
+inline constexpr double kLargestMisfit = 10.0;
+
+/// What a twin says of the faults of its machine.
+struct TwinReading {
+  Eigen::VectorXd deviation;  ///< from healthy, nf
+  Eigen::VectorXd sd;       ///< nf, larger where the twin does not explain what it sees
+  std::vector<bool> named;  ///< nf, see NameFaults
+  /// Fault parameters, by place, that act as another one does, or not at all.
+  std::vector<Eigen::Index> inseparable;
+  double misfit = 1.0;  ///< squared innovations over what is expected of them
+};
+
+class TwinEstimator {
+ public:
+  TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options);
+
+  /// One control tick. Does not allocate, lock, throw or do I/O.
+  void Add(std::span<const double> outputs, std::span<const double> inputs) noexcept {
+    estimator_.Add(outputs, inputs);
+  }
+  /// At the end of a run (PredictionErrorEstimator::CatchUp).
+  void CatchUp() noexcept { estimator_.CatchUp(); }
+
+  /// The estimate as it is, deviations from healthy, nf. Does not allocate.
+  void Read(Eigen::Ref<Eigen::VectorXd> deviation) noexcept;
+  /// Its standard deviations, nf. Does not allocate.
+  void ReadSpread(Eigen::Ref<Eigen::VectorXd> sd) noexcept;
+  /// The same with what is known of it.
+  TwinReading Read() const;
+
+  const std::vector<TwinFault>& faults() const { return faults_; }
+  const PredictionErrorEstimator& estimator() const { return estimator_; }
+
+ private:
+  std::vector<TwinFault> faults_;
+  PredictionErrorEstimator estimator_;
+};
+
+}  // namespace mjdiag

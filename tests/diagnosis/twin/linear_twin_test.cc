@@ -1,0 +1,105 @@
+#include "mjdiag/diagnosis/twin/linear_twin.h"
+
+#include <gtest/gtest.h>
+
+#include "diagnosis/twin/uncertain_stage.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kTicks = 1600;
+
+/// Means of the predicted readings over blocks, stacked, for that theta.
+VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
+                   MatrixXd* sensitivities = nullptr) {
+  const MatrixXd inputs = test::Drive(kTicks);
+  const Index blocks = kTicks / test::kBlock;
+  VectorXd means = VectorXd::Zero(2 * blocks);
+  if (sensitivities != nullptr) sensitivities->resize(2 * blocks, theta.size());
+  VectorXd reading(2);
+  const VectorXd none = VectorXd::Zero(2);
+  twin.Start(theta, at_rest);
+  for (Index k = 0; k < kTicks; ++k) {
+    const Index block = k / test::kBlock;
+    twin.Predict(reading);
+    means.segment(2 * block, 2) += reading / static_cast<double>(test::kBlock);
+    twin.Step({inputs.col(k).data(), 2}, none);
+    if ((k + 1) % test::kBlock != 0) continue;
+    const MatrixXd& of_block = twin.EndBlock();
+    if (sensitivities != nullptr) sensitivities->middleRows(2 * block, 2) = of_block;
+  }
+  return means;
+}
+
+LinearTwin Twin() {
+  return {test::UncertainStage(), MatrixXd::Zero(6, 2), test::kBlock};
+}
+
+TEST(LinearTwin, PredictsTheReadingsOfTheMachineThatItsUnknownsSay) {
+  LinearTwin twin = Twin();
+  VectorXd theta = VectorXd::Zero(twin.unknowns());
+  theta[1] = std::log(1.3);
+  const MatrixXd inputs = test::Drive(kTicks);
+  MatrixXd expected = SimulateLti(TickModel(test::Stage({1.0, 1.3, 1.0}),
+                                            test::kTiming.step, test::kTiming.substeps),
+                                  inputs);
+  expected.colwise() += test::UncertainStage().rest;
+  VectorXd reading(2);
+  const VectorXd none = VectorXd::Zero(2);
+  twin.Start(theta, true);
+  for (Index k = 0; k < kTicks; ++k) {
+    twin.Predict(reading);
+    ASSERT_LT((reading - expected.col(k)).norm(), 1e-13) << k;
+    twin.Step({inputs.col(k).data(), 2}, none);
+    if ((k + 1) % test::kBlock == 0) twin.EndBlock();
+  }
+}
+
+TEST(LinearTwin, KnowsHowItsPredictionsChangeWithEveryUnknown) {
+  LinearTwin twin = Twin();
+  VectorXd theta = VectorXd::Zero(twin.unknowns());
+  theta.head(test::kOfTheMachine) << 0.2, -0.1, 0.05, 0.01, -0.02;
+  MatrixXd sensitivities;
+  Predicted(twin, theta, false, &sensitivities);
+  for (Index i = 0; i < theta.size(); ++i) {
+    constexpr double kStep = 1e-5;
+    const VectorXd step = kStep * VectorXd::Unit(theta.size(), i);
+    const VectorXd difference =
+        (Predicted(twin, theta + step, false) - Predicted(twin, theta - step, false)) /
+        (2.0 * kStep);
+    // Forces of springs and dampers are those of the mean of a tick.
+    const double allowed = i < 2 ? 1e-2 : 1e-6;
+    EXPECT_LT((sensitivities.col(i) - difference).norm(), allowed * difference.norm())
+        << test::UncertainStage().unknowns[static_cast<std::size_t>(i)].name;
+  }
+}
+
+TEST(LinearTwin, GoesToWhereAShiftTakesItToFirstOrder) {
+  LinearTwin twin = Twin();
+  const MatrixXd inputs = test::Drive(kTicks);
+  const VectorXd none = VectorXd::Zero(2);
+  const VectorXd theta = VectorXd::Zero(twin.unknowns());
+  VectorXd change = theta;
+  change.head(3) << 1e-4, -1e-4, 1e-4;
+  const auto reading_after = [&](bool shifted) {
+    twin.Start(shifted ? theta : theta + change, true);
+    for (Index k = 0; k < kTicks; ++k) {
+      twin.Step({inputs.col(k).data(), 2}, none);
+      if ((k + 1) % test::kBlock == 0) twin.EndBlock();
+    }
+    if (shifted) twin.Shift(change);
+    VectorXd reading(2);
+    twin.Predict(reading);
+    return reading;
+  };
+  const VectorXd before = Predicted(twin, theta, true).tail(2);
+  const VectorXd wanted = reading_after(false);
+  EXPECT_LT((reading_after(true) - wanted).norm(), 1e-2 * (wanted - before).norm());
+}
+
+}  // namespace
+}  // namespace mjdiag
