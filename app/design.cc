@@ -36,7 +36,7 @@ constexpr double kLostStiffness = 0.01;
 std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
   std::vector<ChangedMachine> changed;
   for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
-    if (parameter.kind != FaultParameterKind::kStiffness) continue;
+    if (parameter.kind != PlantNumberKind::kStiffness) continue;
     changed.push_back(
         {parameter.name + " = " + Short(kLostStiffness),
          machine.With({{{parameter.name, kLostStiffness}}, {}}).linear()});

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mjdiag/signals/decompositions.h"
 
@@ -24,40 +25,58 @@ Index DirectionOf(LeverArms& arms, const VectorXd& direction) {
 }
 
 /// Row by row: the force on a coordinate is minus what the row says.
-void AddRows(LeverArms& arms, Index unknown, const MatrixXd& slope,
-             LeverSignal signal) {
-  for (Index row = 0; row < slope.rows(); ++row) {
-    for (Index i = 0; i < slope.cols(); ++i) {
-      if (slope(row, i) == 0.0) continue;
-      const Index direction = DirectionOf(arms, VectorXd::Unit(slope.rows(), row));
-      arms.levers.push_back({unknown, direction, signal, i, -slope(row, i)});
+void AddRows(LeverArms& arms, const Lever& lever, const MatrixXd& part) {
+  for (Index row = 0; row < part.rows(); ++row) {
+    for (Index i = 0; i < part.cols(); ++i) {
+      if (part(row, i) == 0.0) continue;
+      Lever of_entry = lever;
+      of_entry.direction = DirectionOf(arms, VectorXd::Unit(part.rows(), row));
+      of_entry.index = i;
+      of_entry.coefficient = -part(row, i);
+      arms.levers.push_back(std::move(of_entry));
     }
   }
 }
 
-LeverArms ArmsOf(const UncertainModel& model) {
+LeverArms ArmsOf(const UncertainModel& model, Index first_tone) {
   LeverArms arms;
   arms.directions.resize(model.nominal.M.rows(), 0);
-  Index unknown = 0;
-  for (const ModelSlope& slope : model.slopes) {
-    AddRows(arms, unknown, slope.D, LeverSignal::kVelocity);
-    AddRows(arms, unknown, slope.K, LeverSignal::kPosition);
-    for (Index i = 0; i < slope.Gamma.cols(); ++i) {
-      if (slope.Gamma.col(i).isZero(0.0)) continue;
-      const Index direction = DirectionOf(arms, slope.Gamma.col(i));
-      arms.levers.push_back({unknown, direction, LeverSignal::kInput, i, 1.0});
+  for (std::size_t number = 0; number < model.parts.size(); ++number) {
+    const ModelPart& part = model.parts[number];
+    Lever lever;
+    lever.unknowns = part.factors;
+    lever.number = static_cast<Index>(number);
+    const auto add = [&](LeverSignal signal, const MatrixXd& rows) {
+      lever.signal = signal;
+      AddRows(arms, lever, rows);
+    };
+    add(LeverSignal::kAcceleration, part.M);
+    add(LeverSignal::kVelocity, part.D);
+    add(LeverSignal::kPosition, part.K);
+    add(LeverSignal::kConstant, -part.force);
+    lever.signal = LeverSignal::kInput;
+    lever.coefficient = 1.0;
+    for (Index i = 0; i < part.Gamma.cols(); ++i) {
+      if (part.Gamma.col(i).isZero(0.0)) continue;
+      lever.direction = DirectionOf(arms, part.Gamma.col(i));
+      lever.index = i;
+      arms.levers.push_back(lever);
     }
-    ++unknown;
   }
-  for (const UnknownTone& tone : model.tones) {
-    const auto index = static_cast<Index>(arms.tones.size());
-    // Its own: it changes with the motors.
-    const Index direction = arms.directions.cols();
-    arms.directions.conservativeResize(Eigen::NoChange, direction + 1);
-    arms.directions.col(direction) = model.nominal.Gamma * tone.amplitude;
-    arms.levers.push_back({unknown++, direction, LeverSignal::kSine, index, 1.0});
-    arms.levers.push_back({unknown++, direction, LeverSignal::kCosine, index, 1.0});
-    arms.tones.push_back(tone.frequency);
+  for (std::size_t i = 0; i < model.tones.size(); ++i) {
+    // A direction of its own: it changes with the motors.
+    Lever lever;
+    lever.direction = arms.directions.cols();
+    arms.directions.conservativeResize(Eigen::NoChange, lever.direction + 1);
+    arms.directions.col(lever.direction) =
+        model.nominal.Gamma * model.tones[i].amplitude;
+    lever.index = static_cast<Index>(i);
+    lever.coefficient = 1.0;
+    for (const LeverSignal signal : {LeverSignal::kSine, LeverSignal::kCosine}) {
+      lever.signal = signal;
+      lever.unknowns = {first_tone++};
+      arms.levers.push_back(lever);
+    }
   }
   return arms;
 }
@@ -92,28 +111,30 @@ MatrixXd StartDirections(const MechanicalModel& model, double energy) {
   return directions;
 }
 
-LinearTwin::LinearTwin(const UncertainModel& model, const MatrixXd& gain, Index block)
+LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
+                       Index block)
     : model_(model),
-      L_(gain),
+      gains_(std::move(gains)),
       block_(block),
-      arms_(ArmsOf(model)),
-      start_directions_(model.start) {
+      first_tone_(static_cast<Index>(model.unknowns.size()) - model.start.cols() -
+                  2 * static_cast<Index>(model.tones.size())),
+      tones_(model.tones, model.timing.tick()) {
   const MechanicalModel& nominal = model_.nominal;
   const Index nq = nominal.M.rows();
   const Index ny = nominal.b.cols();
   const Index nu = nominal.Gamma.cols();
   const auto p = static_cast<Index>(model_.unknowns.size());
+  arms_ = ArmsOf(model_, first_tone_);
   const Index directions = arms_.directions.cols();
   C_ = MatrixXd::Zero(ny, 2 * nq);
   C_.leftCols(nq) = nominal.b.transpose();
   mean_ = C_ / static_cast<double>(block_);
   place_ = PlacementOf(nominal);
-  remembered_ = VectorXd::Zero(2 * nq);
-  theta_ = slope_ = VectorXd::Zero(p);
-  M_ = nominal.M;
-  D_ = left_ = M_;
-  K_ = M_;
+  theta_ = VectorXd::Zero(p);
+  values_ = VectorXd::Ones(static_cast<Index>(model_.parts.size()));
+  M_ = D_ = K_ = left_ = nominal.M;
   Gamma_ = nominal.Gamma;
+  f_ = VectorXd::Zero(nq);
   factor_ = Eigen::LLT<MatrixXd>(nq);
   A_ = F_ = power_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_ = MatrixXd::Zero(2 * nq, nu);
@@ -121,42 +142,31 @@ LinearTwin::LinearTwin(const UncertainModel& model, const MatrixXd& gain, Index 
   carried_.assign(static_cast<std::size_t>(block_), MatrixXd::Zero(2 * nq, directions));
   seen_ = MatrixXd::Zero(ny, 2 * nq);
   seen_of_.assign(static_cast<std::size_t>(block_), MatrixXd::Zero(ny, directions));
-  x_ = next_ = VectorXd::Zero(2 * nq);
+  x_ = next_ = constant_ = VectorXd::Zero(2 * nq);
   u_ = VectorXd::Zero(nu);
-  phase_ = VectorXd::Zero(2 * static_cast<Index>(arms_.tones.size()));
-  turn_ = phase_;
-  for (std::size_t i = 0; i < arms_.tones.size(); ++i) {
-    const double angle = 2.0 * std::numbers::pi * arms_.tones[i] * model_.timing.step *
-                         model_.timing.substeps;
-    turn_[2 * static_cast<Index>(i)] = std::sin(angle);
-    turn_[2 * static_cast<Index>(i) + 1] = std::cos(angle);
-  }
   S_ = S_next_ = S_drive_ = MatrixXd::Zero(2 * nq, p);
   seen_drive_ = sensitivity_ = MatrixXd::Zero(ny, p);
-}
-
-double LinearTwin::Value(Index unknown) const {
-  return model_.unknowns[static_cast<std::size_t>(unknown)].factor
-             ? std::exp(theta_[unknown])
-             : theta_[unknown];
 }
 
 void LinearTwin::MakeMaps() noexcept {
   const MechanicalModel& nominal = model_.nominal;
   const Index nq = M_.rows();
+  M_ = nominal.M;
   D_ = nominal.D;
   K_ = nominal.K;
   Gamma_ = nominal.Gamma;
-  for (std::size_t i = 0; i < model_.slopes.size(); ++i) {
-    const ModelSlope& slope = model_.slopes[i];
-    const auto unknown = static_cast<Index>(i);
-    const double moved = Value(unknown) - model_.unknowns[i].nominal;
-    if (slope.D.size() > 0) D_ += moved * slope.D;
-    if (slope.K.size() > 0) K_ += moved * slope.K;
-    if (slope.Gamma.size() > 0) Gamma_ += moved * slope.Gamma;
-  }
-  for (Index i = 0; i < theta_.size(); ++i) {
-    slope_[i] = model_.unknowns[static_cast<std::size_t>(i)].factor ? Value(i) : 1.0;
+  f_.setZero();
+  for (std::size_t i = 0; i < model_.parts.size(); ++i) {
+    const ModelPart& part = model_.parts[i];
+    double sum = 0.0;
+    for (const Index factor : part.factors) sum += theta_[factor];
+    values_[static_cast<Index>(i)] = std::exp(sum);
+    const double moved = std::expm1(sum);
+    if (part.M.size() > 0) M_ += moved * part.M;
+    if (part.D.size() > 0) D_ += moved * part.D;
+    if (part.K.size() > 0) K_ += moved * part.K;
+    if (part.Gamma.size() > 0) Gamma_ += moved * part.Gamma;
+    if (part.force.size() > 0) f_ += moved * part.force;
   }
   // A substep: v' = v + h (M + h D)^-1 (f - K q - D v), q' = q + h v'.
   const double h = model_.timing.step;
@@ -183,14 +193,24 @@ void LinearTwin::MakeMaps() noexcept {
     advance(force_, true);
   }
   B_.noalias() = force_ * Gamma_;
-
-  // Of the tones, with the motors as they are.
+  constant_.noalias() = force_ * f_;
   for (const Lever& lever : arms_.levers) {
     if (lever.signal != LeverSignal::kSine) continue;
     arms_.directions.col(lever.direction).noalias() =
-        Gamma_ * model_.tones[static_cast<std::size_t>(lever.index)].amplitude;
+        Gamma_ * tones_.amplitude(lever.index);
   }
+  LiftSensitivities();
+}
+
+void LinearTwin::UseGain(std::size_t gain) noexcept {
+  if (gain == gain_) return;
+  gain_ = gain;
+  LiftSensitivities();
+}
+
+void LinearTwin::LiftSensitivities() noexcept {
   F_ = A_;
+  F_.noalias() -= gains_[gain_].L * C_;
   carried_.back().noalias() = force_ * arms_.directions;
   power_ = F_;
   seen_ = mean_;
@@ -212,91 +232,81 @@ void LinearTwin::MakeMaps() noexcept {
   }
 }
 
-void LinearTwin::Start(const VectorXd& theta, bool at_rest) noexcept {
+void LinearTwin::Start(const VectorXd& theta) noexcept {
   theta_ = theta;
   in_block_ = 0;
+  active_ = theta_.size() - start_unknowns();
   x_.setZero();
   S_.setZero();
-  const Index k = start_directions_.cols();
-  active_ = theta_.size() - (at_rest ? k : 0);
-  if (!at_rest) {
-    x_ = remembered_;
-    x_.noalias() += start_directions_ * theta_.tail(k);
-    S_.rightCols(k) = start_directions_;
-  }
   S_drive_.setZero();
   seen_drive_.setZero();
-  for (std::size_t i = 0; i < arms_.tones.size(); ++i) {
-    phase_[2 * static_cast<Index>(i)] = 0.0;
-    phase_[2 * static_cast<Index>(i) + 1] = 1.0;
-  }
+  tones_.Start();
   MakeMaps();
 }
 
-void LinearTwin::Place(const VectorXd& reading) noexcept {
-  x_.setZero();
-  x_.head(M_.rows()).noalias() = place_ * reading;
-  x_.head(M_.rows()).noalias() -= place_ * model_.rest;
+void LinearTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
+  Start(theta);
+  active_ = theta_.size();
+  x_ = state;
+  x_.noalias() += model_.start * theta_.tail(start_unknowns());
+  S_.rightCols(start_unknowns()) = model_.start;
 }
 
-void LinearTwin::Remember() noexcept { remembered_ = x_; }
+void LinearTwin::StateAt(const VectorXd& reading, VectorXd& state) noexcept {
+  state.setZero();
+  state.head(M_.rows()).noalias() = place_ * reading;
+  state.head(M_.rows()).noalias() -= place_ * model_.rest;
+}
 
 void LinearTwin::Predict(VectorXd& reading) noexcept {
   reading = model_.rest;
   reading.noalias() += C_ * x_;
 }
 
-void LinearTwin::Step(std::span<const double> inputs,
-                      const VectorXd& innovation) noexcept {
-  const Index nq = M_.rows();
-  u_ = VectorXd::Map(inputs.data(), u_.size());
-  const Index first = theta_.size() - start_directions_.cols() - phase_.size();
-  for (std::size_t i = 0; i < model_.tones.size(); ++i) {
-    const Index at = 2 * static_cast<Index>(i);
-    u_ += (theta_[first + at] * phase_[at] + theta_[first + at + 1] * phase_[at + 1]) *
-          model_.tones[i].amplitude;
-  }
-  next_.noalias() = A_ * x_;
-  next_.noalias() += B_ * u_;
-
+double LinearTwin::Signal(const Lever& lever) const noexcept {
   // The mean of a tick of n steps, of which each takes the position at its start and
   // the velocity at its end.
+  const Index nq = M_.rows();
   const auto steps = static_cast<double>(model_.timing.substeps);
-  const double of_position = 0.5 * (steps - 1.0) / steps;
-  const double of_velocity = 0.5 * (steps + 1.0) / steps;
+  const Index i = lever.index;
+  switch (lever.signal) {
+    case LeverSignal::kAcceleration:
+      return (next_[nq + i] - x_[nq + i]) / model_.timing.tick();
+    case LeverSignal::kVelocity:
+      return x_[nq + i] + 0.5 * (steps + 1.0) / steps * (next_[nq + i] - x_[nq + i]);
+    case LeverSignal::kPosition:
+      return x_[i] + 0.5 * (steps - 1.0) / steps * (next_[i] - x_[i]);
+    case LeverSignal::kConstant:
+      return 1.0;
+    case LeverSignal::kInput:
+      return u_[i];
+    case LeverSignal::kSine:
+      return tones_.sine(i);
+    case LeverSignal::kCosine:
+      return tones_.cosine(i);
+  }
+  return 0.0;
+}
+
+void LinearTwin::Step(std::span<const double> inputs,
+                      const VectorXd& innovation) noexcept {
+  u_ = VectorXd::Map(inputs.data(), u_.size());
+  tones_.AddTo(u_, theta_.segment(first_tone_, 2 * tones_.count()));
+  next_ = constant_;
+  next_.noalias() += A_ * x_;
+  next_.noalias() += B_ * u_;
   const auto at = static_cast<std::size_t>(in_block_);
   for (const Lever& lever : arms_.levers) {
-    double signal = 0.0;
-    switch (lever.signal) {
-      case LeverSignal::kVelocity:
-        signal = x_[nq + lever.index] +
-                 of_velocity * (next_[nq + lever.index] - x_[nq + lever.index]);
-        break;
-      case LeverSignal::kPosition:
-        signal = x_[lever.index] + of_position * (next_[lever.index] - x_[lever.index]);
-        break;
-      case LeverSignal::kInput:
-        signal = u_[lever.index];
-        break;
-      case LeverSignal::kSine:
-        signal = phase_[2 * lever.index];
-        break;
-      case LeverSignal::kCosine:
-        signal = phase_[2 * lever.index + 1];
-        break;
+    const double value = lever.number < 0 ? 1.0 : values_[lever.number];
+    const double force = value * lever.coefficient * Signal(lever);
+    for (const Index unknown : lever.unknowns) {
+      S_drive_.col(unknown) += force * carried_[at].col(lever.direction);
+      seen_drive_.col(unknown) += force * seen_of_[at].col(lever.direction);
     }
-    signal *= lever.coefficient * slope_[lever.unknown];
-    S_drive_.col(lever.unknown) += signal * carried_[at].col(lever.direction);
-    seen_drive_.col(lever.unknown) += signal * seen_of_[at].col(lever.direction);
   }
-  next_.noalias() += L_ * innovation;
+  next_.noalias() += gains_[gain_].L * innovation;
   x_.swap(next_);
-  for (Index i = 0; i < phase_.size(); i += 2) {
-    const double sine = phase_[i];
-    const double cosine = phase_[i + 1];
-    phase_[i] = sine * turn_[i + 1] + cosine * turn_[i];
-    phase_[i + 1] = cosine * turn_[i + 1] - sine * turn_[i];
-  }
+  tones_.Advance();
   ++in_block_;
 }
 

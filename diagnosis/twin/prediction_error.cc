@@ -1,8 +1,10 @@
 #include "mjdiag/diagnosis/twin/prediction_error.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace mjdiag {
 namespace {
@@ -11,8 +13,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Part of a standard deviation that the second order of a change may have.
-constexpr double kSecondOrder = 0.1;
+/// A change by less than that, in standard deviations that an unknown has where all
+/// others are known, needs no other pass.
+constexpr double kMoved = 0.3;
 /// A logarithm moves no farther than this at once.
 constexpr double kLongestStep = 0.5;
 /// Blocks over which surprises are averaged.
@@ -34,75 +37,132 @@ constexpr Index kFirstLook = 256;
 /// Passes without a longer horizon before it is looked at more coarsely: by that much
 /// in variance, and no more than that.
 constexpr int kPatience = 8;
+constexpr int kPatienceAtLast = 3;  // of a twin that has something to go back to
 constexpr double kCoarser = 10.0;
 constexpr double kCoarsest = 1e7;
 /// A machine that this many passes do not explain is another one.
 constexpr int kMostReturns = 150;
 /// At the end of a run, until the estimate is where the twin runs.
 constexpr int kLastPasses = 12;
+/// A machine explained for that long has changed if it is not any more, which as many
+/// passes have to confirm.
+constexpr Index kLongExplained = 1024;
+constexpr Index kSame = 64;  // ticks
+constexpr int kConfirmed = 2;
+/// Ticks between kept states, and how many. A change shows within so many of them.
+constexpr Index kCheckpoint = 128;
+constexpr std::size_t kCheckpoints = 16;
+constexpr Index kUnnoticed = 256;
+/// While the twin is pulled along, a block that is more surprising counts less, in
+/// inverse proportion: a joint came loose a little sooner than the twin's.
+constexpr double kRobust = 4.0;
+constexpr double kMostSurprising = 32.0;
+/// On average over recent blocks, that is none that came loose.
+constexpr double kSurprisingThroughout = 8.0;
+/// Ticks that such a twin looks at before it goes back.
+constexpr Index kPulledLook = 1024;
+constexpr int kPulledPasses = 6;
+/// Blocks between two steps of the walk, and of theta0.
+constexpr Index kWalkEvery = 64;
 
 }  // namespace
 
 PredictionErrorEstimator::PredictionErrorEstimator(
-    std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, VectorXd sensor_noise,
+    std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, const MatrixXd& prior,
     double sample_time, const PredictionErrorOptions& options)
     : twin_(std::move(twin)),
       unknowns_(std::move(unknowns)),
       sample_time_(sample_time),
       options_(options),
-      noise_(sensor_noise.cwiseAbs2() / static_cast<double>(twin_->block())),
       next_look_(kFirstLook),
-      small_(twin_->outputs()) {
+      information_(static_cast<Index>(unknowns_.size()), twin_->outputs()) {
   const auto p = static_cast<Index>(unknowns_.size());
   const Index ny = twin_->outputs();
-  prior_.resize(p);
-  nominal_.resize(p);
+  const auto block = static_cast<double>(twin_->block());
+  nominal_ = walk_ = VectorXd::Zero(p);
+  prior_covariance_ = MatrixXd::Zero(p, p);
   for (Index i = 0; i < p; ++i) {
     const Unknown& unknown = unknowns_[static_cast<std::size_t>(i)];
-    prior_[i] = 1.0 / (unknown.prior_sd * unknown.prior_sd);
     nominal_[i] = unknown.factor ? std::log(unknown.nominal) : unknown.nominal;
+    prior_covariance_(i, i) = unknown.prior_sd * unknown.prior_sd;
+    if (!unknown.wears) continue;
+    walk_[i] = options_.wear * options_.wear * sample_time_ * block *
+               static_cast<double>(kWalkEvery);
   }
+  if (prior.size() > 0) prior_covariance_ = prior;
+  for (const TwinGain& gain : twin_->gains()) {
+    covariances_.emplace_back(gain.covariance / block);
+  }
+  covariance_ = covariances_.front();
+  proven_.assign(covariances_.size(), nominal_);
+  is_proven_.assign(covariances_.size(), false);
   kept_ = MatrixXd::Zero(ny + twin_->inputs(), options_.kept);
-  last_variance_ = prior_.cwiseInverse();
   theta_ = center_ = nominal_;
-  change_ = g_ = scale_ = work_ = spread_of_theta_ = VectorXd::Zero(p);
-  H_ = scaled_ = inverse_ = MatrixXd::Zero(p, p);
-  reading_ = innovation_ = sum_ = corrected_ = VectorXd::Zero(ny);
-  weighted_ = MatrixXd::Zero(ny, p);
-  spread_ = MatrixXd::Zero(p, ny);
-  expected_ = MatrixXd::Zero(ny, ny);
+  variance_ = prior_covariance_.diagonal();
+  work_ = VectorXd::Zero(p);
+  prior_ = inverse_ = MatrixXd::Identity(p, p);
+  reading_ = innovation_ = sum_ = VectorXd::Zero(ny);
+  beginning_ = MatrixXd::Zero(ny, 3 * twin_->block());
+  segment_.state = segment_.settling_state = VectorXd::Zero(twin_->states());
+  earlier_ = segment_;
+  checkpoints_.assign(kCheckpoints, {-1, segment_.state});
+  WidenPrior();
+}
+
+void PredictionErrorEstimator::WidenPrior() noexcept {
+  // What is surely far from nominal is not held there; all else is.
+  const Index started = theta_.size() - twin_->start_unknowns();
+  inverse_ = prior_covariance_;
+  for (Index i = 0; i < active(); ++i) {
+    const double away = std::abs(theta_[i] - nominal_[i]);
+    if (!(away > kSure * std::sqrt(variance_[i]))) continue;
+    const double width = std::min(away, i < started ? kWidest : kWidestStart);
+    inverse_(i, i) = std::max(inverse_(i, i), width * width);
+  }
+  work_ = inverse_.diagonal().cwiseSqrt().cwiseInverse();
+  inverse_ = work_.asDiagonal() * inverse_ * work_.asDiagonal();
+  Eigen::Ref<MatrixXd> in_place = inverse_;
+  const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(in_place);
+  prior_.setIdentity();
+  factor.solveInPlace(prior_);
+  prior_ = work_.asDiagonal() * prior_ * work_.asDiagonal();
 }
 
 void PredictionErrorEstimator::Begin() noexcept {
-  if (!change_.allFinite()) change_.setZero();
-  const double farthest = Farthest(change_);
-  center_ += (farthest > kLongestStep ? kLongestStep / farthest : 1.0) * change_;
+  const VectorXd& change = information_.change();
+  if (active() > 0 && change.allFinite()) {
+    const double farthest = Farthest(change);
+    center_ += (farthest > kLongestStep ? kLongestStep / farthest : 1.0) * change;
+  }
+  const Index started = twin_->start_unknowns();
+  const bool settles = Settles();
+  // Nothing is known beyond the state that a settled twin had at the origin.
+  if (settles || settled_) center_.tail(started).setZero();
+  settled_ = settles;
   theta_ = center_;
-  twin_->Start(theta_, at_rest_);
-  H_ = prior_.asDiagonal();
-  g_ = prior_.cwiseProduct(nominal_ - center_);
-  change_.setZero();
-  recent_surprise_ = 1.0;
+  pull_ = settles && !segment_.state_known ? covariances_.size() - 1 : gain_;
+  twin_->UseGain(pull_);
+  if (settles) {
+    twin_->Start(theta_, segment_.settling_state);
+  } else if (segment_.at_rest) {
+    twin_->Start(theta_);
+  } else {
+    twin_->Start(theta_, segment_.state);
+  }
+  seen_ = settles ? segment_.settling_from : segment_.origin;
+  softer_at_ = seen_ + twin_->gains()[pull_].settling;
+  work_ = nominal_ - center_;
+  information_.Start(theta_.size() - (segment_.at_rest || settles ? started : 0),
+                     prior_, work_);
+  surprise_ = block_surprise_ = 1.0;
   sum_.setZero();
-  unexplained_ = false;
   in_block_ = blocks_ = 0;
-  seen_ = origin_;
 }
 
 void PredictionErrorEstimator::GoBack() noexcept {
   ++returns_;
-  // What is surely far from nominal is not held there; all else is.
-  Spread();
-  for (Index i = 0; i < active_; ++i) {
-    const double sd = unknowns_[static_cast<std::size_t>(i)].prior_sd;
-    const double away = theta_[i] - nominal_[i];
-    const double variance = spread_of_theta_[i] * spread_of_theta_[i];
-    const bool sure = away * away > kSure * kSure * variance;
-    const bool of_start = i >= theta_.size() - twin_->start_unknowns();
-    const double widest = of_start ? kWidestStart : kWidest;
-    const double width = sure ? std::min(std::abs(away), widest) : 0.0;
-    prior_[i] = 1.0 / std::max(sd * sd, width * width);
-  }
+  Variance();
+  WidenPrior();
   Begin();
 }
 
@@ -113,70 +173,89 @@ void PredictionErrorEstimator::Add(std::span<const double> outputs,
   std::copy(inputs.begin(), inputs.end(),
             slot.begin() + static_cast<Index>(outputs.size()));
   ++added_;
-  if (active_ == 0 && !FindStart()) return;
+  if ((active() == 0 || began_elsewhere_) && !FindStart()) return;
   ProcessKept();
   if (seen_ < added_) ProcessKept();
+}
+
+bool PredictionErrorEstimator::StepTwin() noexcept {
+  const auto slot = kept_.col(seen_ % options_.kept);
+  twin_->Predict(reading_);
+  innovation_ = slot.head(reading_.size()) - reading_;
+  twin_->Step({slot.data() + reading_.size(),
+               static_cast<std::size_t>(slot.size() - reading_.size())},
+              innovation_);
+  ++seen_;
+  if (++in_block_ < twin_->block()) return false;
+  in_block_ = 0;
+  return true;
 }
 
 bool PredictionErrorEstimator::FindStart() noexcept {
   if (added_ < twin_->block()) return false;
   if (added_ == twin_->block() && BeganAtRest()) {
-    at_rest_ = true;
-    active_ = theta_.size() - twin_->start_unknowns();
     Begin();
     return true;
   }
-  const auto settled =
-      static_cast<Index>(std::lround(options_.settling / sample_time_));
+  const Index settled = twin_->gains().back().settling;
   const auto looked =
       settled + static_cast<Index>(std::lround(options_.looking / sample_time_));
   if (added_ < looked) return false;
-  if (added_ == looked) {
-    origin_ = QuietestTick(settled, looked);
-    corrected_ = kept_.col(0).head(reading_.size());
-    twin_->Start(theta_, true);
-    twin_->Place(corrected_);
-    seen_ = 0;
-  }
-  // Beside the machine by its gain, until it has forgotten how it began.
-  for (int i = 0; i < kPace && seen_ < origin_; ++i) {
-    const auto slot = kept_.col(seen_);
-    twin_->Predict(reading_);
-    innovation_ = slot.head(reading_.size()) - reading_;
-    twin_->Step({slot.data() + reading_.size(),
-                 static_cast<std::size_t>(slot.size() - reading_.size())},
-                innovation_);
-    if (++seen_ % twin_->block() == 0) twin_->EndBlock();
-  }
-  if (seen_ < origin_) return false;
-  twin_->Remember();
-  at_rest_ = false;
-  active_ = theta_.size();
+  segment_.origin = QuietestTick(settled, looked);
+  segment_.at_rest = segment_.state_known = false;
+  segment_.settling_from = 0;
+  reading_ = kept_.col(0).head(reading_.size());
+  twin_->StateAt(reading_, segment_.settling_state);
+  // Beside the machine by its stiffest gain, until it has forgotten how it began.
+  gain_ = covariances_.size() - 1;
+  began_elsewhere_ = false;
+  next_look_ = segment_.origin + kPulledLook;
   Begin();
   return true;
 }
 
 bool PredictionErrorEstimator::BeganAtRest() noexcept {
-  twin_->Start(theta_, true);
-  twin_->Predict(reading_);
-  corrected_ = reading_;
-  innovation_.setZero();
+  // How far the known commands move it from there, and tones as large as they come.
+  sum_.setZero();
   bool at_rest = true;
-  for (Index k = 0; k < added_; ++k) {
-    const auto slot = kept_.col(k);
-    if (k > 0) twin_->Predict(reading_);
+  const Index ticks = added_;
+  const Index first_tone = FirstTone();
+  const Index tones = (theta_.size() - twin_->start_unknowns() - first_tone) / 2;
+  twin_->UseGain(0);
+  innovation_.setZero();
+  // Predictions of three runs side by side: without tones, sines, cosines.
+  for (int run = 0; run < 3; ++run) {
+    work_ = nominal_;
+    for (Index i = 0; run > 0 && i < tones; ++i) work_[first_tone + 2 * i + run - 1] = 1.0;
+    twin_->Start(work_);
+    for (Index k = 0; k < ticks; ++k) {
+      const auto slot = kept_.col(k);
+      twin_->Predict(reading_);
+      beginning_.col(run * ticks + k) = reading_;
+      twin_->Step({slot.data() + reading_.size(),
+                   static_cast<std::size_t>(slot.size() - reading_.size())},
+                  innovation_);
+    }
+  }
+  for (Index k = 0; k < ticks; ++k) {
     for (Index i = 0; i < reading_.size(); ++i) {
-      const double sd = std::sqrt(noise_[i] * static_cast<double>(twin_->block()));
-      const double moved = std::abs(reading_[i] - corrected_[i]);
-      if (std::abs(slot[i] - reading_[i]) > kAtRest * sd + kUnlike * moved) {
+      const double predicted = beginning_(i, k);
+      const double sd = std::sqrt(twin_->gains().front().covariance(i, i));
+      const double moved = std::abs(predicted - beginning_(i, 0)) +
+                           std::abs(beginning_(i, ticks + k) - predicted) +
+                           std::abs(beginning_(i, 2 * ticks + k) - predicted);
+      if (std::abs(kept_(i, k) - predicted) > kAtRest * sd + kUnlike * moved) {
         at_rest = false;
       }
     }
-    twin_->Step({slot.data() + reading_.size(),
-                 static_cast<std::size_t>(slot.size() - reading_.size())},
-                innovation_);
   }
   return at_rest;
+}
+
+Index PredictionErrorEstimator::FirstTone() const noexcept {
+  Index end = theta_.size() - twin_->start_unknowns();
+  while (end > 0 && !unknowns_[static_cast<std::size_t>(end - 1)].factor) --end;
+  return end;
 }
 
 Index PredictionErrorEstimator::QuietestTick(Index from, Index to) const noexcept {
@@ -185,9 +264,9 @@ Index PredictionErrorEstimator::QuietestTick(Index from, Index to) const noexcep
   double least = std::numeric_limits<double>::infinity();
   for (Index k = quietest; k < to; k += block) {
     double moved = 0.0;
-    for (Index i = 0; i < noise_.size(); ++i) {
+    for (Index i = 0; i < reading_.size(); ++i) {
       const double way = kept_(i, k) - kept_(i, k - block);
-      moved += way * way / noise_[i];
+      moved += way * way / covariances_.front()(i, i);
     }
     if (moved < least) {
       least = moved;
@@ -197,135 +276,221 @@ Index PredictionErrorEstimator::QuietestTick(Index from, Index to) const noexcep
   return quietest;
 }
 
-void PredictionErrorEstimator::CatchUp() noexcept {
-  while (active_ == 0 && seen_ < origin_) FindStart();
-  if (active_ == 0) return;
-  while (seen_ < added_) ProcessKept();
-  for (int i = 0; i < kLastPasses && added_ <= options_.kept; ++i) {
-    if (inflation_ > 1.0) {
-      inflation_ = std::max(1.0, inflation_ / kCoarser);
-    } else if (!WorthGoingBack()) {
-      break;
-    }
-    GoBack();
-    while (seen_ < added_) ProcessKept();
-  }
-}
-
 void PredictionErrorEstimator::ProcessKept() noexcept {
-  const auto slot = kept_.col(seen_ % options_.kept);
-  const auto ny = static_cast<std::size_t>(twin_->outputs());
-  Process({slot.data(), ny},
-          {slot.data() + ny, static_cast<std::size_t>(kept_.rows()) - ny});
-  if (added_ > options_.kept || in_block_ != 0 || returns_ >= kMostReturns) {
-    return;
-  }
-  if (unexplained_) {
-    // The horizon that is explained grows from pass to pass. Where it does not, the
-    // machine is looked at more coarsely first: a course of sticking and slipping that
-    // is told to the last digit can be told in one way only.
-    if (4 * (seen_ - origin_) > 5 * farthest_seen_) {
-      farthest_seen_ = seen_ - origin_;
-      stuck_ = 0;
-    } else if (++stuck_ > kPatience) {
-      farthest_seen_ = 0;
-      stuck_ = 0;
-      if (inflation_ > kCoarsest) return;
-      inflation_ *= kCoarser;
-    }
-    return GoBack();
-  }
-  if (seen_ < added_ || seen_ < next_look_) return;
-  next_look_ = added_ + added_ / 2;
-  if (inflation_ > 1.0) {
-    inflation_ = std::max(1.0, inflation_ / kCoarser);
-    farthest_seen_ = 0;
-    stuck_ = 0;
-    return GoBack();
-  }
-  if (WorthGoingBack()) GoBack();
-}
-
-void PredictionErrorEstimator::Process(std::span<const double> outputs,
-                                       std::span<const double> inputs) noexcept {
-  twin_->Predict(reading_);
-  innovation_ =
-      VectorXd::Map(outputs.data(), static_cast<Index>(outputs.size())) - reading_;
+  const bool ended = StepTwin();
   sum_ += innovation_;
-  innovation_.setZero();
-  twin_->Step(inputs, innovation_);
-  ++seen_;
-  if (++in_block_ < twin_->block()) return;
-  in_block_ = 0;
+  if (!ended) return;
   Regress();
+  if (following()) {
+    Follow();
+  } else if (!exhausted_) {
+    Reconsider();
+  }
+  if (blocks_ > 0 && seen_ % kCheckpoint == 0) {
+    const auto at = static_cast<std::size_t>(seen_ / kCheckpoint) % kCheckpoints;
+    checkpoints_[at].tick = seen_;
+    twin_->ReadState(checkpoints_[at].state);
+  }
 }
 
 void PredictionErrorEstimator::Regress() noexcept {
   const MatrixXd& psi = twin_->EndBlock();
-  const Index ny = sum_.size();
+  if (pull_ > gain_ && seen_ >= softer_at_) {
+    twin_->UseGain(--pull_);
+    softer_at_ = seen_ + twin_->gains()[pull_].settling;
+  }
+  if (seen_ <= segment_.origin) {  // it settles
+    sum_.setZero();
+    if (seen_ == segment_.origin) twin_->ReadState(segment_.state);
+    return;
+  }
+  covariance_ = inflation_ * covariances_[pull_];
   sum_ /= static_cast<double>(twin_->block());
-  ++blocks_;
-  const auto seen = psi.leftCols(active_);
-  auto change = change_.head(active_);
-  // How surprising the block is: its innovations less what the estimate explains, in
-  // units of what noise and the uncertainty of the estimate let expect.
-  corrected_ = sum_;
-  corrected_.noalias() -= seen * change;
-  {
-    auto spread = spread_.topRows(active_);
-    const auto factor = Factorise();
-    spread = scale_.head(active_).asDiagonal() * seen.transpose();
-    factor.solveInPlace(spread);
-    spread = scale_.head(active_).asDiagonal() * spread;
-    expected_.noalias() = seen * spread;
+  block_surprise_ = information_.Surprise(psi, sum_, covariance_);
+  if (gain_ > 0) {
+    covariance_ *= std::max(1.0, block_surprise_ / kRobust);
+    block_surprise_ = std::min(block_surprise_, kMostSurprising);
   }
-  expected_.diagonal() += inflation_ * noise_;
-  small_.compute(expected_);
-  reading_ = corrected_;
-  small_.solveInPlace(reading_);
-  const double surprise = corrected_.dot(reading_) / static_cast<double>(ny);
-  recent_surprise_ += (surprise - recent_surprise_) / kRecent;
-
-  weighted_.leftCols(active_) =
-      (inflation_ * noise_).cwiseInverse().asDiagonal() * seen;
-  H_.topLeftCorner(active_, active_).noalias() +=
-      weighted_.leftCols(active_).transpose() * seen;
-  g_.head(active_).noalias() += weighted_.leftCols(active_).transpose() * sum_;
+  surprise_ += (block_surprise_ - surprise_) / kRecent;
+  information_.Add(psi, sum_, covariance_);
+  theta_ = center_ + information_.change();
   sum_.setZero();
-  {
-    const auto factor = Factorise();
-    auto solution = work_.head(active_);
-    solution = scale_.head(active_).cwiseProduct(g_.head(active_));
-    factor.solveInPlace(solution);
-    change = scale_.head(active_).cwiseProduct(solution);
-    theta_ = center_ + change_;
-  }
-  const double by_chance = std::sqrt(2.0 / static_cast<double>(ny));
-  unexplained_ =
-      !(surprise < 1.0 + 3.0 * kNoChance * by_chance) ||
-      !(recent_surprise_ < 1.0 + kNoChance * by_chance / std::sqrt(kRecent / 2.0));
+  ++blocks_;
 }
 
-Eigen::LLT<Eigen::Ref<MatrixXd>> PredictionErrorEstimator::Factorise() noexcept {
-  // What rounding leaves of a direction that others explain.
-  constexpr double kRidge = 1e-13;
-  auto scale = scale_.head(active_);
-  scale = H_.diagonal().head(active_).cwiseSqrt().cwiseInverse();
-  Eigen::Ref<MatrixXd> scaled = scaled_.topLeftCorner(active_, active_);
-  scaled = scale.asDiagonal() * H_.topLeftCorner(active_, active_) * scale.asDiagonal();
-  scaled.diagonal().array() += kRidge;
-  return Eigen::LLT<Eigen::Ref<MatrixXd>>(scaled);
+bool PredictionErrorEstimator::Surprised() const noexcept {
+  if (gain_ > 0) return !(surprise_ < kSurprisingThroughout);
+  const double by_chance = std::sqrt(2.0 / static_cast<double>(twin_->outputs()));
+  return !(block_surprise_ < 1.0 + 3.0 * kNoChance * by_chance) ||
+         !(surprise_ < 1.0 + kNoChance * by_chance / std::sqrt(kRecent / 2.0));
 }
 
-const VectorXd& PredictionErrorEstimator::Spread() noexcept {
-  auto inverse = inverse_.topLeftCorner(active_, active_);
-  inverse.setIdentity();
-  Factorise().solveInPlace(inverse);
-  for (Index i = 0; i < active_; ++i) {
-    last_variance_[i] = scale_[i] * scale_[i] * inverse(i, i);
-    spread_of_theta_[i] = std::sqrt(last_variance_[i]);
+void PredictionErrorEstimator::Reconsider() noexcept {
+  if (!Pulled() && Surprised()) return Unexplained();
+  if (seen_ < added_ || seen_ < next_look_) return;
+  next_look_ = Pulled() ? added_ + kPulledLook : added_ + added_ / 2;
+  if (Pulled() && WorthGoingBack() && ++pulled_passes_ <= kPulledPasses) {
+    GoBack();
+  } else if (!LookMoreFinely() && WorthGoingBack()) {
+    GoBack();
   }
-  return spread_of_theta_;
+}
+
+void PredictionErrorEstimator::Unexplained() noexcept {
+  const Index horizon = seen_ - segment_.origin;
+  const bool same = std::abs(horizon - segment_.surprised) <= kSame;
+  segment_.same = same ? segment_.same + 1 : 0;
+  segment_.surprised = horizon;
+  if (4 * horizon > 5 * segment_.explained) {
+    segment_.explained = horizon;
+    segment_.stuck = 0;
+  } else {
+    ++segment_.stuck;
+    if (segment_.same >= kConfirmed && TryChange()) return;
+    const int patience = is_proven_.back() ? kPatienceAtLast : kPatience;
+    if (segment_.stuck > patience) return LookMoreCoarsely();
+  }
+  exhausted_ = returns_ >= kMostReturns;
+  if (!exhausted_) GoBack();
+}
+
+void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
+  segment_.explained = segment_.surprised = 0;
+  segment_.stuck = segment_.same = 0;
+  if (segment_.at_rest && inflation_ < kCoarsest) {
+    inflation_ *= kCoarser;
+    return GoBack();
+  }
+  if (segment_.at_rest && added_ < options_.kept) {
+    // It only seemed to be at rest.
+    inflation_ = 1.0;
+    began_elsewhere_ = true;
+    theta_ = center_ = nominal_;
+    information_.Recentre();
+    return;
+  }
+  exhausted_ = gain_ + 1 >= covariances_.size() || returns_ >= kMostReturns;
+  if (exhausted_) return;
+  ++gain_;
+  next_look_ = added_ + kPulledLook;
+  GoBack();
+  if (!is_proven_[gain_]) return;
+  center_ = proven_[gain_];
+  information_.Recentre();
+  Begin();
+}
+
+bool PredictionErrorEstimator::LookMoreFinely() noexcept {
+  if (gain_ == Finest() && inflation_ == 1.0) return false;
+  segment_.explained = segment_.surprised = 0;
+  segment_.stuck = segment_.same = 0;
+  pulled_passes_ = 0;
+  if (inflation_ > 1.0) {
+    inflation_ = std::max(1.0, inflation_ / kCoarser);
+  } else {
+    proven_[gain_] = theta_;
+    is_proven_[gain_] = true;
+    --gain_;
+  }
+  GoBack();
+  return true;
+}
+
+bool PredictionErrorEstimator::TryChange() noexcept {
+  if (!segment_.may_have_changed || gain_ > Finest() || inflation_ > 1.0) return false;
+  if (seen_ - segment_.origin < kLongExplained) return false;
+  const Checkpoint* from = nullptr;
+  for (const Checkpoint& checkpoint : checkpoints_) {
+    if (checkpoint.tick < segment_.origin || checkpoint.tick > seen_ - kUnnoticed ||
+        checkpoint.tick <= added_ - options_.kept) {
+      continue;
+    }
+    if (from == nullptr || checkpoint.tick > from->tick) from = &checkpoint;
+  }
+  if (from == nullptr) return false;
+  earlier_.origin = segment_.origin;
+  earlier_.at_rest = segment_.at_rest;
+  earlier_.state = segment_.state;
+  segment_.origin = from->tick;
+  segment_.settling_from = from->tick;
+  segment_.at_rest = false;
+  segment_.state_known = true;
+  segment_.state = segment_.settling_state = from->state;
+  gain_ = Finest();
+  segment_.explained = segment_.surprised = 0;
+  segment_.stuck = segment_.same = 0;
+  returns_ = 0;
+  std::fill(is_proven_.begin(), is_proven_.end(), false);
+  // The state is that of the twin; what the start says beside it begins at nothing.
+  center_ = theta_;
+  center_.tail(twin_->start_unknowns()).setZero();
+  theta_ = center_;
+  information_.Recentre();
+  WidenPrior();
+  Begin();
+  return true;
+}
+
+std::size_t PredictionErrorEstimator::Finest() const noexcept {
+  const bool known = segment_.at_rest || twin_->start_unknowns() > 0;
+  return known ? 0 : std::min<std::size_t>(1, covariances_.size() - 1);
+}
+
+void PredictionErrorEstimator::Follow() noexcept {
+  if (Surprised()) {
+    // The readings that it keeps begin after the origin, so only a change remains.
+    segment_.may_have_changed = true;
+    exhausted_ = false;
+    if (TryChange()) return;
+  }
+  if (blocks_ % kWalkEvery != 0) return;
+  information_.Walk(walk_);
+  const std::size_t soft = std::min<std::size_t>(1, covariances_.size() - 1);
+  if (gain_ < soft) {
+    gain_ = pull_ = soft;
+    twin_->UseGain(pull_);
+  }
+  center_ += information_.change();
+  theta_ = center_;
+  twin_->Shift(information_.change());
+  information_.Recentre();
+}
+
+void PredictionErrorEstimator::PassesToTheEnd() noexcept {
+  const auto process = [this] {
+    while (seen_ < added_ && !began_elsewhere_) ProcessKept();
+    while (began_elsewhere_ && added_ > 0 && !FindStart()) {
+      if (segment_.at_rest) return;  // too short to find a start in it
+    }
+    while (seen_ < added_) ProcessKept();
+  };
+  process();
+  std::size_t failed = covariances_.size();  // gain
+  for (int i = 0; i < kMostReturns && !following() && !exhausted_; ++i) {
+    const bool worth = WorthGoingBack() && ++pulled_passes_ <= kLastPasses;
+    if (worth) {
+      GoBack();
+    } else if (inflation_ == 1.0 && (gain_ == Finest() || gain_ == failed + 1)) {
+      break;
+    } else {
+      LookMoreFinely();
+    }
+    const std::size_t tried = gain_;
+    process();
+    if (gain_ > tried) {
+      failed = tried;
+      pulled_passes_ = 0;
+    }
+  }
+}
+
+void PredictionErrorEstimator::CatchUp() noexcept {
+  if (active() == 0) {
+    while (added_ > 0 && !FindStart()) {
+      if (segment_.at_rest) return;  // too short to find a start in it
+    }
+  }
+  PassesToTheEnd();
 }
 
 double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {
@@ -339,10 +504,14 @@ double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept
 }
 
 bool PredictionErrorEstimator::WorthGoingBack() const noexcept {
-  const double square = std::max(0.0, change_.dot(g_));
-  const auto p = static_cast<double>(active_);
-  return square > p + 4.0 * std::sqrt(2.0 * p) ||
-         Farthest(change_) * std::sqrt(square) > kSecondOrder;
+  // Of the machine: where it started may be hard to say and does not matter.
+  const Index machine = theta_.size() - twin_->start_unknowns();
+  const VectorXd& change = information_.change();
+  double moved = 0.0;
+  for (Index i = 0; i < machine; ++i) {
+    moved = std::max(moved, change[i] * change[i] * information_.H()(i, i));
+  }
+  return moved > kMoved * kMoved;
 }
 
 }  // namespace mjdiag

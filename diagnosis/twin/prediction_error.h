@@ -1,50 +1,58 @@
 #pragma once
-// The recursive prediction error method [Ljung83] on a twin. Innovations are averaged
-// over blocks, e, with their sensitivities psi = d mean(yp) / d theta about the point
-// theta0 at which the twin runs; a block adds
+// The recursive prediction error method [Ljung83] on a twin: the least squares of
+// information.h on its innovations, averaged over blocks. They are white where the twin
+// is true, which makes the estimate the best there is. Far from the point theta0 at
+// which the twin runs that is not exact, and it goes back:
 //
-//   H += psi^T W psi,   g += psi^T W e,   and   theta = theta0 + H^-1 g
-//
-// is the estimate, H^-1 its covariance: whitened least squares, because the innovations
-// of the true twin are white. W is the inverse variance of a block's mean of the sensor
-// noise. Far from theta0 that is not exact, and the twin goes back:
-//
-// - It keeps the last readings. Where a block is surprising, that is larger than noise
-//   and the uncertainty of the estimate let expect, or the estimate has moved so far that
-//   the second order would be seen, it starts anew at the first of them from the better
-//   theta, and catches up with the machine at twice its pace. H and g are formed again,
-//   about a point that is nearer. That is the method of Gauss and Newton on a horizon
-//   that grows with what is explained; each pass squares the error that is left.
-// - Where the horizon does not grow any more, the noise is taken as larger for a while.
+// - It keeps the last readings. Where a block is surprising, or the estimate has moved
+//   so far that the second order would be seen, it starts anew at the first of them from
+//   the better theta, and catches up with the machine at twice its pace. That is the
+//   method of Gauss and Newton on a horizon that grows with what is explained; each
+//   pass squares the error that is left.
+// - Where the horizon does not grow any more, the machine is looked at more coarsely
+//   for a while: a course of sticking and slipping that is told to the last digit can be
+//   told in one way only. A twin that began at rest takes the noise as larger; one that
+//   did not is pulled along by a stiffer gain, and keeps what it found with that where a
+//   softer one does not succeed.
 // - What the data do not move is held at nominal by its prior; what is surely elsewhere
 //   is not.
+// - A machine that was explained for long and is not any more has changed: it starts
+//   anew in the state that the twin had shortly before.
 //
 // A run that does not begin at rest begins, for the estimator, at a tick at which the
 // machine is quiet, in the state that a twin has there which was pulled towards the
 // readings until then, with that state among the unknowns.
+//
+// When the readings that it keeps do not reach back to the start, it follows: theta0
+// moves with the estimate, the state with it to first order, and what wears walks at
+// random, so that what was long ago is forgotten. Memory is constant, time unbounded.
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 
 namespace mjdiag {
 
 struct PredictionErrorOptions {
-  double forgetting = 0.0;    ///< [s] time constant; 0: none
-  double settling = 0.05;     ///< [s] of a twin that is pulled, at least
-  double looking = 0.25;      ///< [s] after that in which a quiet tick is looked for
+  /// [s] in which a quiet tick is looked for, when a twin that is pulled has settled.
+  double looking = 0.25;
   Eigen::Index kept = 32768;  ///< readings that it can go back to
+  /// Random walk of what wears while it follows [1/sqrt(s)]. A fault that grows by 1 %
+  /// an hour stays within its interval.
+  double wear = 3e-5;
 };
 
 class PredictionErrorEstimator {
  public:
-  /// @param sensor_noise  sd of a reading, ny, > 0
+  /// @param unknowns  of the twin, p
+  /// @param prior     covariance of theta about nominal, p x p; empty: by their
+  ///                  standard deviations
   PredictionErrorEstimator(std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns,
-                           Eigen::VectorXd sensor_noise, double sample_time,
+                           const Eigen::MatrixXd& prior, double sample_time,
                            const PredictionErrorOptions& options);
 
   /// One control tick. Does not allocate, lock, throw or do I/O.
@@ -55,41 +63,78 @@ class PredictionErrorEstimator {
   /// theta now, p.
   const Eigen::VectorXd& theta() const { return theta_; }
   /// H of what it has seen, prior and all, p x p.
-  const Eigen::MatrixXd& information() const { return H_; }
+  const Eigen::MatrixXd& H() const { return information_.H(); }
+  /// Of it, what was there before any data, p x p.
+  const Eigen::MatrixXd& prior() const { return prior_; }
   /// Unknowns that are estimated: all, or all but those of the start.
-  Eigen::Index active() const { return active_; }
-  bool at_rest() const { return at_rest_; }
-  /// The part of H that was there before any data, its diagonal, p.
-  const Eigen::VectorXd& prior() const { return prior_; }
-  /// Standard deviations of theta, p; of the start 0 if it was at rest. Does not
+  Eigen::Index active() const { return information_.active(); }
+  /// Variances of theta, p; of the start meaningless if it was at rest. Does not
   /// allocate.
-  const Eigen::VectorXd& Spread() noexcept;
-  /// Squares of those that Spread has found last; before that, of the priors.
-  const Eigen::VectorXd& LastVariance() const { return last_variance_; }
+  const Eigen::VectorXd& Variance() noexcept { return variance_ = information_.Variance(); }
+  /// Those that Variance has found last; before that, of the prior.
+  const Eigen::VectorXd& LastVariance() const { return variance_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Mean over recent blocks of the squared innovations over what noise and the
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
-  double surprise() const { return inflation_ * recent_surprise_; }
-  double inflation() const { return inflation_; }
-  Eigen::Index horizon() const { return farthest_seen_; }
-  Eigen::Index samples() const { return added_; }
-  Eigen::Index seen() const { return seen_; }
+  double surprise() const { return inflation_ * surprise_; }
+  /// Index of the gain: 0 where the twin is as it is assumed to be.
+  std::size_t gain() const { return gain_; }
+  /// Tick from which the machine has been as it is estimated.
+  Eigen::Index since() const { return segment_.origin; }
   int returns() const { return returns_; }
 
  private:
-  void Begin() noexcept;
-  void Process(std::span<const double> outputs,
-               std::span<const double> inputs) noexcept;
-  void ProcessKept() noexcept;
-  void Regress() noexcept;
-  /// Whether a run has begun: at rest at once, else at a tick at which the machine is
-  /// quiet, where a pulled twin knows its state best.
+  /// A stretch of the run in which the machine does not change.
+  struct Segment {
+    Eigen::Index origin = 0;  ///< tick at which passes start
+    bool at_rest = true;
+    Eigen::VectorXd state;         ///< there, of the twin
+    bool state_known = true;       ///< is that of a twin that was right
+    /// Where a twin that is pulled along begins, to be settled at the origin.
+    Eigen::Index settling_from = 0;
+    Eigen::VectorXd settling_state;
+    Eigen::Index explained = 0;    ///< longest horizon so far
+    Eigen::Index surprised = 0;    ///< horizon of the last pass
+    int stuck = 0;                 ///< passes without a longer one
+    int same = 0;                  ///< passes that ended where the one before did
+    bool may_have_changed = true;  ///< a change has not been tried in vain
+  };
+  struct Checkpoint {
+    Eigen::Index tick = -1;
+    Eigen::VectorXd state;
+  };
+
   bool FindStart() noexcept;
   bool BeganAtRest() noexcept;
   Eigen::Index QuietestTick(Eigen::Index from, Eigen::Index to) const noexcept;
-  /// H scaled to a unit diagonal; overwrites scaled_.
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> Factorise() noexcept;
+  /// One tick of the twin on kept readings. @return whether it ends a block
+  bool StepTwin() noexcept;
+
+  void Begin() noexcept;
   void GoBack() noexcept;
+  void WidenPrior() noexcept;
+  void ProcessKept() noexcept;
+  void Regress() noexcept;
+  void Reconsider() noexcept;
+  void Unexplained() noexcept;
+  /// The softest gain with which it can tell the machine: none if where it started is
+  /// known or among the unknowns, else one that forgets it.
+  std::size_t Finest() const noexcept;
+  bool Pulled() const noexcept { return gain_ > Finest() && !following(); }
+  /// Whether passes begin with the stiffest gain, which forgets how the twin began, and
+  /// go on with softer ones as a Kalman filter would.
+  bool Settles() const noexcept { return gain_ > 0 && !following(); }
+  /// Of the unknowns; those of factors stand before it.
+  Eigen::Index FirstTone() const noexcept;
+  bool Surprised() const noexcept;
+  /// Passes do not get farther: more coarsely.
+  void LookMoreCoarsely() noexcept;
+  /// All so far is explained: more finely, if it is not looked at as finely as can be.
+  bool LookMoreFinely() noexcept;
+  bool TryChange() noexcept;
+  void Follow() noexcept;
+  void PassesToTheEnd() noexcept;
+  bool following() const { return added_ - segment_.origin > options_.kept; }
   double Farthest(const Eigen::VectorXd& change) const noexcept;
   bool WorthGoingBack() const noexcept;
 
@@ -97,38 +142,40 @@ class PredictionErrorEstimator {
   std::vector<Unknown> unknowns_;
   double sample_time_;
   PredictionErrorOptions options_;
-  Eigen::VectorXd noise_;  // variance of a block's mean
-  Eigen::VectorXd prior_;  // 1 / prior_sd^2
   Eigen::VectorXd nominal_;
+  Eigen::MatrixXd prior_covariance_;
+  Eigen::VectorXd walk_;                         // of kWalkEvery blocks
+  std::vector<Eigen::MatrixXd> covariances_;     // of a block's innovation, by gain
 
-  Eigen::MatrixXd kept_;     // ny + nu x kept, a ring
-  Eigen::Index origin_ = 0;  // tick at which passes start
+  Eigen::MatrixXd kept_;  // ny + nu x kept, a ring
   Eigen::Index added_ = 0;
   Eigen::Index seen_ = 0;
   Eigen::Index next_look_;
   int returns_ = 0;
+  bool exhausted_ = false;  // of returns
+  bool began_elsewhere_ = false;  // than at rest, which it seemed to
+  int pulled_passes_ = 0;         // with this gain
+  bool settled_ = false;
+  std::size_t pull_ = 0;        // gain of the twin now, gain_ when it has settled
+  Eigen::Index softer_at_ = 0;  // tick of the next softer one
 
+  Segment segment_, earlier_;
+  std::vector<Checkpoint> checkpoints_;
+  std::size_t gain_ = 0;
+  double inflation_ = 1.0;                // of the variances of the noise
+  std::vector<Eigen::VectorXd> proven_;   // theta that explained all, by gain
+  std::vector<bool> is_proven_;
+  Information information_;
+  Eigen::MatrixXd prior_;
   Eigen::VectorXd center_;  // theta0
   Eigen::VectorXd theta_;
-  Eigen::VectorXd change_;  // theta - theta0
-  Eigen::MatrixXd H_;
-  Eigen::VectorXd g_;
-  bool at_rest_ = true;
-  Eigen::Index active_ = 0;  // unknowns, those of the start if it was not at rest
-  double recent_surprise_ = 1.0;
-  bool unexplained_ = false;
-  Eigen::Index farthest_seen_ = 0;
-  int stuck_ = 0;
-  double inflation_ = 1.0;  // of the variances of the noise
+  Eigen::VectorXd variance_;
+  double block_surprise_ = 1.0;
+  double surprise_ = 1.0;
+  Eigen::Index blocks_ = 0;  // of this pass
   Eigen::Index in_block_ = 0;
-  Eigen::Index blocks_ = 0;
-  Eigen::VectorXd reading_, innovation_, sum_, corrected_;
-  Eigen::MatrixXd weighted_, spread_, expected_;
-  Eigen::LLT<Eigen::MatrixXd> small_;
-  Eigen::VectorXd scale_;
-  Eigen::MatrixXd scaled_, inverse_;
-  Eigen::VectorXd spread_of_theta_, last_variance_;
-  mutable Eigen::VectorXd work_;
+  Eigen::VectorXd reading_, innovation_, sum_, work_;
+  Eigen::MatrixXd inverse_, covariance_, beginning_;
 };
 
 }  // namespace mjdiag

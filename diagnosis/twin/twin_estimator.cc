@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "mjdiag/diagnosis/twin/naming.h"
 #include "mjdiag/signals/decompositions.h"
@@ -21,9 +22,13 @@ constexpr double kAlike = 1.0 - 1e-9;
 /// By chance the misfit is not above it: a mean of about a hundred squares.
 constexpr double kExplained = 2.0;
 
-/// Magnitude and variance of a disturbance.
-std::pair<double, double> Magnitude(const TwinFault& fault, const VectorXd& theta,
-                                    const VectorXd& variance) {
+/// Deviation of a fault from healthy, and its standard deviation.
+std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& theta,
+                                      const VectorXd& variance) {
+  if (fault.tones == 0) {
+    return {std::expm1(theta[fault.first]),
+            std::exp(theta[fault.first]) * std::sqrt(variance[fault.first])};
+  }
   double weights = 0.0;
   double squares = 0.0;
   for (Index i = 0; i < fault.tones; ++i) {
@@ -33,38 +38,28 @@ std::pair<double, double> Magnitude(const TwinFault& fault, const VectorXd& thet
     squares += weight * (theta.segment(at, 2).squaredNorm() - spread);
     weights += weight;
   }
-  return {std::sqrt(std::max(0.0, squares / weights)), 1.0 / weights};
+  return {std::sqrt(std::max(0.0, squares / weights)), 1.0 / std::sqrt(weights)};
 }
 
 }  // namespace
 
 TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
     : faults_(std::move(machine.faults)),
-      estimator_(std::move(machine.twin), std::move(machine.unknowns),
-                 std::move(machine.sensor_noise), machine.sample_time, options) {}
+      estimator_(std::move(machine.twin), std::move(machine.unknowns), machine.prior,
+                 machine.sample_time, options) {}
 
 void TwinEstimator::Read(Eigen::Ref<VectorXd> deviation) noexcept {
-  const VectorXd& theta = estimator_.theta();
   for (std::size_t i = 0; i < faults_.size(); ++i) {
-    const TwinFault& fault = faults_[i];
     deviation[static_cast<Index>(i)] =
-        fault.tones == 0 ? std::expm1(theta[fault.first])
-                         : Magnitude(fault, theta, estimator_.LastVariance()).first;
+        DeviationOf(faults_[i], estimator_.theta(), estimator_.LastVariance()).first;
   }
 }
 
 void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
-  const VectorXd& spread = estimator_.Spread();
-  const VectorXd& theta = estimator_.theta();
+  const VectorXd& variance = estimator_.Variance();
   for (std::size_t i = 0; i < faults_.size(); ++i) {
-    const TwinFault& fault = faults_[i];
-    double weights = 0.0;
-    for (Index tone = 0; tone < fault.tones; ++tone) {
-      weights += 2.0 / spread.segment(fault.first + 2 * tone, 2).squaredNorm();
-    }
-    sd[static_cast<Index>(i)] = fault.tones == 0
-                                    ? std::exp(theta[fault.first]) * spread[fault.first]
-                                    : 1.0 / std::sqrt(weights);
+    sd[static_cast<Index>(i)] =
+        DeviationOf(faults_[i], estimator_.theta(), variance).second;
   }
 }
 
@@ -76,7 +71,7 @@ TwinReading TwinEstimator::Read() const {
   const Index active = estimator_.active();
   if (active == 0) return reading;  // it has not begun
   const VectorXd& theta = estimator_.theta();
-  const MatrixXd information = estimator_.information().topLeftCorner(active, active);
+  const MatrixXd information = estimator_.H().topLeftCorner(active, active);
   const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   reading.misfit = estimator_.surprise();
   // A twin that does not explain what it sees is less sure than it says.
@@ -94,16 +89,10 @@ TwinReading TwinEstimator::Read() const {
         static_cast<std::size_t>(std::max<Index>(1, 2 * fault.tones)));
     std::iota(group.begin(), group.end(), fault.first);
     groups.push_back(std::move(group));
-    if (fault.tones == 0) {
-      reading.deviation[at] = std::expm1(theta[fault.first]);
-      reading.sd[at] = std::exp(theta[fault.first]) * std::sqrt(variance[fault.first]);
-    } else {
-      const auto [magnitude, spread] = Magnitude(fault, theta, variance);
-      reading.deviation[at] = magnitude;
-      reading.sd[at] = std::sqrt(spread);
-    }
+    std::tie(reading.deviation[at], reading.sd[at]) =
+        DeviationOf(fault, theta, variance);
   }
-  const VectorXd& prior = estimator_.prior();
+  const VectorXd prior = estimator_.prior().diagonal();
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     const Index at = faults_[i].first;
     const double own = information(at, at) - prior[at];

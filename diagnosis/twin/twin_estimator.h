@@ -31,8 +31,8 @@ struct MachineTwin {
   std::unique_ptr<Twin> twin;
   std::vector<Unknown> unknowns;
   std::vector<TwinFault> faults;
-  Eigen::VectorXd sensor_noise;  ///< sd of a reading, ny, > 0
-  double sample_time = 0.0;      ///< [s]
+  Eigen::MatrixXd prior;     ///< see PredictionErrorEstimator
+  double sample_time = 0.0;  ///< [s]
 };
 
 /// A misfit beyond this is no chance and no small error of the model: the run is not

@@ -1,12 +1,13 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
-#include "mjdiag/plugin/design/fault_family.h"
-#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/plant_twin.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -18,12 +19,11 @@ using Eigen::VectorXd;
 
 /// Ticks of a block at 8 kHz; what varies faster than it is seen by its mean.
 constexpr Index kBlock = 8;
-/// Of the twin that is pulled beside a machine that does not begin at rest.
-constexpr double kSettlingBandwidth = 100.0;  // Hz
-/// How far a factor may be from 1, in its logarithm, before it is known to be.
-constexpr double kFactorSpread = 0.1;
-constexpr double kToneSpread = 0.1;
-/// The linear twin answers to its start as it does to nothing else: exactly linearly.
+/// Bandwidths of the gains with which a twin is pulled along, in parts of the control
+/// rate: from 1 Hz at 8 kHz, to follow, to 100 Hz, to begin with.
+constexpr std::array<double, 5> kBandwidths = {1.25e-4, 4e-4, 1.25e-3, 4e-3, 1.25e-2};
+/// A linear machine answers to where it started exactly linearly. One with friction
+/// that sticks does not: to the first order it is not told.
 constexpr double kStartEnergy = 1.0;  // J
 
 /// Noise and the steps of a coarse reading.
@@ -36,89 +36,80 @@ VectorXd ReadingNoise(const Channels& channels) {
   return sd;
 }
 
-/// Without what rounding leaves of entries that do not change.
-MatrixXd SlopeOf(const MatrixXd& moved, const MatrixXd& base, double by) {
-  constexpr double kRounding = 1e-12;
-  const double least = kRounding * base.cwiseAbs().maxCoeff();
-  MatrixXd slope = moved - base;
-  slope = (slope.array().abs() > least).select(slope / by, 0.0);
-  return slope;
+TwinGain GainOf(const Machine& machine, const VectorXd& noise, double bandwidth) {
+  // Periods of its bandwidth: what a stiffer one has left is small.
+  constexpr double kSettling = 2.0;
+  const Observer observer = DesignObserver(machine.linear(), machine.rates().step(),
+                                           machine.rates().substeps, noise, bandwidth);
+  const auto settling =
+      static_cast<Index>(kSettling * machine.rates().control / bandwidth);
+  return {observer.L, observer.innovation_covariance, settling};
+}
+
+std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
+                              double force_noise) {
+  std::vector<TwinGain> gains;
+  if (force_noise > 0.0) {
+    gains.push_back(GainOf(machine, noise, force_noise));
+  } else {
+    gains.push_back(
+        {MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
+         noise.cwiseAbs2().asDiagonal(), 0});
+  }
+  for (const double part : kBandwidths) {
+    const double bandwidth = part * machine.rates().control;
+    gains.push_back(GainOf(machine, noise, std::max(bandwidth, force_noise)));
+  }
+  // The stiffest knows nothing of where the machine is.
+  constexpr double kForgotten = 1e-6;
+  const StateSpace tick =
+      TickModel(machine.linear(), machine.rates().step(), machine.rates().substeps);
+  const double radius = SpectralRadius(tick.A - gains.back().L * tick.C);
+  gains.back().settling =
+      static_cast<Index>(std::ceil(std::log(kForgotten) / std::log(radius)));
+  return gains;
 }
 
 /// Fault parameters are the first unknowns.
-std::vector<TwinFault> FaultsOf(const Machine& machine, Index first_tone) {
+std::vector<TwinFault> FaultsOf(const Machine& machine,
+                                const UncertainMachine& uncertain) {
   std::vector<TwinFault> faults;
-  for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
-    faults.push_back({parameter.name, static_cast<Index>(faults.size()), 0});
+  for (Index i = 0; i < uncertain.faults; ++i) {
+    faults.push_back({uncertain.unknowns[static_cast<std::size_t>(i)].name, i, 0});
   }
+  if (uncertain.tones.empty()) return faults;
+  Index first = uncertain.first_tone();
   for (const MultisineSetup& source : machine.setup().disturbances) {
     const auto tones = static_cast<Index>(source.frequencies.size());
-    faults.push_back({source.name, first_tone, tones});
-    first_tone += 2 * tones;
+    faults.push_back({source.name, first, tones});
+    first += 2 * tones;
   }
   return faults;
 }
 
 }  // namespace
 
-UncertainModel MakeUncertainModel(const Machine& machine) {
-  const FaultFamily family = MakeFaultFamily(machine);
-  UncertainModel model;
-  model.nominal = machine.linear();
-  model.timing = {machine.rates().step(), machine.rates().substeps};
-  model.rest = SensorReadings(machine.channels(), machine.plant(), machine.rest());
-  const auto count = static_cast<Index>(family.parameters.size());
-  const MechanicalModel base = family.model_at(VectorXd::Ones(count));
-  for (Index i = 0; i < count; ++i) {
-    VectorXd values = VectorXd::Ones(count);
-    values[i] = 0.5;
-    const MechanicalModel moved = family.model_at(values);
-    model.slopes.push_back({SlopeOf(moved.D, base.D, -0.5),
-                            SlopeOf(moved.K, base.K, -0.5),
-                            SlopeOf(moved.Gamma, base.Gamma, -0.5)});
-    model.unknowns.push_back(
-        {family.parameters[static_cast<std::size_t>(i)], 1.0, kFactorSpread, true});
-  }
-  for (const Multisine& source : family.disturbances) {
-    for (const double frequency : source.frequencies) {
-      model.tones.push_back({frequency, source.amplitude});
-      model.unknowns.push_back({source.name + " sine", 0.0, kToneSpread, false});
-      model.unknowns.push_back({source.name + " cosine", 0.0, kToneSpread, false});
-    }
-  }
-  model.start = StartDirections(model.nominal, kStartEnergy);
-  for (Index i = 0; i < model.start.cols(); ++i) {
-    model.unknowns.push_back({"start " + std::to_string(i + 1), 0.0, 1.0, false});
-  }
-  return model;
-}
-
-MachineTwin MakeTwin(const Machine& machine, bool linear) {
-  MachineTwin twin;
-  twin.sensor_noise = ReadingNoise(machine.channels());
-  if (!(twin.sensor_noise.minCoeff() > 0.0)) {
+MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions options,
+                     double force_noise) {
+  const VectorXd noise = ReadingNoise(machine.channels());
+  if (!(noise.minCoeff() > 0.0)) {
     throw InputError("twin", "a sensor without noise", "a noise on every sensor");
   }
+  options.friction = !linear;
+  options.start_energy = linear ? kStartEnergy : 0.0;
+  UncertainMachine uncertain = MakeUncertainMachine(machine, options);
+  MachineTwin twin;
   twin.sample_time = machine.rates().tick();
-  const MatrixXd gain =
-      DesignObserver(machine.linear(), machine.rates().step(), machine.rates().substeps,
-                     twin.sensor_noise,
-                     std::min(kSettlingBandwidth, 0.02 * machine.rates().control))
-          .L;
+  twin.unknowns = uncertain.unknowns;
+  twin.faults = FaultsOf(machine, uncertain);
+  std::vector<TwinGain> gains = GainsOf(machine, noise, force_noise);
   if (linear) {
-    const UncertainModel model = MakeUncertainModel(machine);
-    const auto parameters = static_cast<Index>(model.slopes.size());
-    twin.unknowns = model.unknowns;
-    twin.faults = FaultsOf(machine, parameters);
-    twin.twin = std::make_unique<LinearTwin>(model, gain, kBlock);
-    return twin;
+    twin.twin = std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
+                                             std::move(gains), kBlock);
+  } else {
+    twin.twin = std::make_unique<PlantTwin>(machine, std::move(uncertain),
+                                            std::move(gains), kBlock);
   }
-  UncertainPlant plant = MakeUncertainPlant(machine);
-  const auto parameters = static_cast<Index>(plant.faults.size());
-  twin.unknowns = plant.unknowns;
-  twin.faults =
-      FaultsOf(machine, parameters + static_cast<Index>(plant.rubbing.size()));
-  twin.twin = std::make_unique<PlantTwin>(machine, std::move(plant), gain, kBlock);
   return twin;
 }
 

@@ -18,7 +18,7 @@ class FaultParameterEffect final : public Effect {
  public:
   explicit FaultParameterEffect(FaultParameter declared)
       : Effect({.name = declared.name,
-                .site = declared.kind == FaultParameterKind::kGear ? SiteKind::kActuator
+                .site = declared.kind == PlantNumberKind::kGear ? SiteKind::kActuator
                                                                    : SiteKind::kJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
@@ -56,7 +56,7 @@ class FaultParameterEffect final : public Effect {
 std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const {
   const std::string name = SiteName(map.plant());
   const int first = declared_.elements.front();
-  if (declared_.kind != FaultParameterKind::kGear) {
+  if (declared_.kind != PlantNumberKind::kGear) {
     return {{name, map.plant().jnt_dofadr[first], -1}};
   }
   const std::string motor = ElementName(map.plant(), mjOBJ_ACTUATOR, first);
@@ -67,7 +67,7 @@ std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const
 }
 
 std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
-  if (declared_.kind == FaultParameterKind::kGear) {
+  if (declared_.kind == PlantNumberKind::kGear) {
     return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
   }
   const auto joints = static_cast<Index>(declared_.elements.size());
@@ -78,7 +78,7 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
     const int dof = at.plant.jnt_dofadr[joint];
     const int address = at.plant.jnt_qposadr[joint];
     entry(dof, i) = 1.0;
-    if (declared_.kind == FaultParameterKind::kDamping) {
+    if (declared_.kind == PlantNumberKind::kDamping) {
       signals.col(i) = -at.plant.dof_damping[dof] * at.motion.velocity.row(dof);
     } else {
       const double rest = at.plant.qpos_spring[address] - at.plant.qpos0[address];
@@ -95,26 +95,27 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
 const Effect* FaultParameterEffect::Twin() const {
   if (declared_.elements.size() != 1) return nullptr;
   switch (declared_.kind) {
-    case FaultParameterKind::kDamping:
+    case PlantNumberKind::kDamping:
       return &ViscousFriction();
-    case FaultParameterKind::kStiffness:
+    case PlantNumberKind::kStiffness:
       return &StructuralStiffness();
-    case FaultParameterKind::kGear:
+    case PlantNumberKind::kGear:
       return &MotorConstant();
+    default:
+      return nullptr;  // no fault parameter is of another kind
   }
-  return nullptr;
 }
 
 // Damping is added in N s/m, everything else scaled.
 EffectValues FaultParameterEffect::ToTwin(const mjModel& plant,
                                           const EffectValues& values) const {
-  if (declared_.kind != FaultParameterKind::kDamping) return values;
+  if (declared_.kind != PlantNumberKind::kDamping) return values;
   return ValuesOf({(values[0] - 1.0) * Damping(plant)});
 }
 
 std::optional<EffectValues> FaultParameterEffect::FromTwin(
     const mjModel& plant, const EffectValues& twin) const {
-  if (declared_.kind != FaultParameterKind::kDamping) return twin;
+  if (declared_.kind != PlantNumberKind::kDamping) return twin;
   if (Damping(plant) == 0.0) return std::nullopt;
   return ValuesOf({1.0 + twin[0] / Damping(plant)});
 }

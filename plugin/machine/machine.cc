@@ -33,6 +33,12 @@ ModelPtr LoadPlant(const Setup& setup) {
   return model;
 }
 
+void ScaleNumbers(mjModel& model,
+                  const std::vector<std::pair<PlantNumber, double>>& factors) {
+  for (const auto& [number, factor] : factors) Scale(model, number, factor);
+  DeriveConstants(model);
+}
+
 Setup WithNoiseOf(Setup setup, const std::vector<PlacedEffect>& effects) {
   setup.channels = WithNoiseOf(std::move(setup.channels), effects);
   return setup;
@@ -89,6 +95,15 @@ Machine Machine::With(const Changes& changes) const {
   auto& [faults, effects] = changed.changes_;
   faults.insert(faults.end(), changes.faults.begin(), changes.faults.end());
   effects.insert(effects.end(), changes.effects.begin(), changes.effects.end());
+  return changed;
+}
+
+Machine Machine::WithNumbers(
+    const std::vector<std::pair<PlantNumber, double>>& factors) const {
+  Machine changed = *this;
+  ModelPtr model = CopyModel(*plant_);
+  ScaleNumbers(*model, factors);
+  changed.Adopt(std::move(model));
   return changed;
 }
 

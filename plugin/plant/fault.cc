@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::string_view kPrefix = "fault.";
 
-FaultParameterKind ParseKind(const std::string& where, const std::string& word) {
-  if (word == "damping") return FaultParameterKind::kDamping;
-  if (word == "stiffness") return FaultParameterKind::kStiffness;
-  if (word == "gear") return FaultParameterKind::kGear;
+PlantNumberKind ParseKind(const std::string& where, const std::string& word) {
+  if (word == "damping") return PlantNumberKind::kDamping;
+  if (word == "stiffness") return PlantNumberKind::kStiffness;
+  if (word == "gear") return PlantNumberKind::kGear;
   throw InputError(where, "unknown kind of fault parameter \"" + word + "\"",
                    R"("damping" or "stiffness" and joints, or "gear" and actuators)");
 }
@@ -29,7 +29,7 @@ FaultParameter ParseFaultParameter(const mjModel& model, const std::string& text
   FaultParameter parameter{
       text_name.substr(kPrefix.size()), ParseKind(where, word), {}};
   const mjtObj target =
-      parameter.kind == FaultParameterKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
+      parameter.kind == PlantNumberKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
   while (words >> word) {
     try {
       parameter.elements.push_back(FindElement(model, target, word));
@@ -54,28 +54,6 @@ FaultParameter FindFaultParameter(const mjModel& model, const std::string& name)
                    known.empty() ? "no fault" : "one of " + known);
 }
 
-void Scale(mjModel& model, FaultParameterKind kind, int element, double factor) {
-  switch (kind) {
-    case FaultParameterKind::kDamping: {
-      // A ball joint has three degrees of freedom, a free joint six.
-      const int first = model.jnt_dofadr[element];
-      const int last = element + 1 < model.njnt ? model.jnt_dofadr[element + 1]
-                                                : static_cast<int>(model.nv);
-      mju_scl(model.dof_damping + first, model.dof_damping + first, factor,
-              last - first);
-      return;
-    }
-    case FaultParameterKind::kStiffness:
-      model.jnt_stiffness[element] *= factor;
-      return;
-    case FaultParameterKind::kGear: {
-      mjtNum* gear = RowOf(model.actuator_gear, 6, element);
-      mju_scl(gear, gear, factor, 6);
-      return;
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<FaultParameter> FaultParameters(const mjModel& model) {
@@ -97,7 +75,7 @@ void ApplyFault(mjModel& model, const Fault& fault) {
                      "a finite number of at least 0");
   }
   for (const int element : parameter.elements) {
-    Scale(model, parameter.kind, element, fault.value);
+    Scale(model, {parameter.kind, element}, fault.value);
   }
 }
 

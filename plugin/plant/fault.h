@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-namespace mjdiag {
+#include "mjdiag/plugin/plant/plant_number.h"
 
-enum class FaultParameterKind { kDamping, kStiffness, kGear };
+namespace mjdiag {
 
 struct FaultParameter {
   std::string name;  ///< without "fault."
-  FaultParameterKind kind = FaultParameterKind::kDamping;
+  PlantNumberKind kind = PlantNumberKind::kDamping;
   std::vector<int> elements;  ///< joint ids, or actuator ids for kGear
 };
 

@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
@@ -104,10 +105,6 @@ ModelPtr WithoutJointSprings(const mjModel& model) {
   return copy;
 }
 
-MatrixXd JointStiffness(const mjModel& model) {
-  return Eigen::Map<const VectorXd>(model.jnt_stiffness, model.njnt).asDiagonal();
-}
-
 MatrixXd JointDamping(const mjModel& model) {
   return Eigen::Map<const VectorXd>(model.dof_damping, model.nv).asDiagonal();
 }
@@ -205,7 +202,7 @@ VectorXd StaticEquilibrium(const mjModel& model) {
   VectorXd position = VectorXd::Map(model.qpos0, model.nq);
   SmoothDynamics dynamics(model, position);
   const VectorXd mass = dynamics.Mass().diagonal();
-  const MatrixXd springs = JointStiffness(model);
+  const MatrixXd springs(JointStiffness(model).asDiagonal());
   const auto force_at = [&](const VectorXd& at) {
     VectorXd::Map(dynamics.data().qpos, at.size()) = at;
     return dynamics.Force();
@@ -243,7 +240,8 @@ MechanicalModel Linearize(const mjModel& model, const Channels& channels,
   result.outputs = ChannelsOf(channels.sensors);
   result.M = SmoothDynamics(model, rest).Mass();
   result.D = JointDamping(model) + OtherDamping(model, rest);
-  result.K = JointStiffness(model) + GeometricStiffness(model, rest);
+  result.K = GeometricStiffness(model, rest);
+  result.K += JointStiffness(model).asDiagonal();
   result.Gamma = InputMatrix(model, channels, rest);
   result.b = OutputMatrix(model, channels, rest);
   return result;

@@ -9,15 +9,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-VectorXd StiffnessOf(const mjModel& plant) {
+VectorXd JointStiffness(const mjModel& plant) {
   VectorXd stiffness(plant.nv);
   for (Index j = 0; j < plant.nv; ++j) {
     stiffness[j] = plant.jnt_stiffness[plant.dof_jntid[j]];
   }
   return stiffness;
 }
+
+namespace {
 
 VectorXd DampingOf(const mjModel& plant) {
   return Eigen::Map<const VectorXd>(plant.dof_damping, plant.nv);
@@ -30,7 +30,7 @@ TickTangent NoTime(Index nv) {
 }  // namespace
 
 TangentRecorder::TangentRecorder(const mjModel& plant, const MechanicalModel& model)
-    : stiffness_(model.K - MatrixXd(StiffnessOf(plant).asDiagonal())),
+    : stiffness_(model.K - MatrixXd(JointStiffness(plant).asDiagonal())),
       damping_(model.D - MatrixXd(DampingOf(plant).asDiagonal())),
       mass_(plant.nv, plant.nv),
       tick_(NoTime(plant.nv)) {}
@@ -50,7 +50,7 @@ const TangentRecorder::Map& TangentRecorder::MapOf(const mjModel& plant,
   if (!is_new) return entry->second;
   const double h = plant.opt.timestep;
   const MatrixXd D = damping_ + MatrixXd(DampingOf(plant).asDiagonal());
-  const MatrixXd K = stiffness_ + MatrixXd(StiffnessOf(plant).asDiagonal());
+  const MatrixXd K = stiffness_ + MatrixXd(JointStiffness(plant).asDiagonal());
   MatrixXd inertia = mass_;
   MatrixXd against = D;
   for (const auto& [joint, friction] : held) {

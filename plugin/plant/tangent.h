@@ -29,6 +29,9 @@ struct TickTangent {
   Eigen::MatrixXd B;  ///< 2 nv x nv
 };
 
+/// Spring of the joint of every degree of freedom, nv.
+Eigen::VectorXd JointStiffness(const mjModel& plant);
+
 class TangentRecorder {
  public:
   /// @param plant  the nominal one, which `model` is the linear model of

@@ -88,6 +88,7 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
     throw NumericalError("observer: not stable, largest pole " +
                          std::to_string(radius));
   }
+  observer.innovation_covariance = noise_sd.asDiagonal() * S * noise_sd.asDiagonal();
   observer.innovation_sd = InnovationSd(observer.tick, observer.L, noise_sd);
   return observer;
 }

@@ -32,6 +32,8 @@ struct Observer {
   Eigen::VectorXd noise_sd;  ///< r of every sensor [unit]
   /// Standard deviation of e if sensor noise is all there is, ny.
   Eigen::VectorXd innovation_sd;
+  /// C P C^T + R, of e if there is that force noise, too, ny x ny.
+  Eigen::MatrixXd innovation_covariance;
 };
 
 /// @param noise_sd   r, ny, all > 0

@@ -2,74 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "mjdiag/plugin/machine/stepper.h"
-#include "mjdiag/plugin/plant/linearize.h"
-#include "mjdiag/plugin/plant/scenery.h"
-#include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/plugin/replay/tracking.h"
 
 namespace mjdiag {
-namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFactorSpread = 0.1;
-constexpr double kStartEnergy = 1e-7;  // J
-
-VectorXd SpringsOf(const mjModel& plant) {
-  VectorXd stiffness(plant.nv);
-  for (int j = 0; j < plant.nv; ++j) {
-    stiffness[j] = plant.jnt_stiffness[plant.dof_jntid[j]];
-  }
-  return stiffness;
-}
-
-}  // namespace
-
-UncertainPlant MakeUncertainPlant(const Machine& machine) {
-  UncertainPlant uncertain;
-  const mjModel& plant = machine.plant();
-  uncertain.faults = FaultParameters(plant);
-  for (const FaultParameter& fault : uncertain.faults) {
-    uncertain.unknowns.push_back({fault.name, 1.0, kFactorSpread, true});
-  }
-  for (int dof = 0; dof < plant.nv; ++dof) {
-    if (plant.dof_frictionloss[dof] <= 0.0) continue;
-    uncertain.rubbing.push_back(dof);
-    uncertain.unknowns.push_back(
-        {"friction@" + ElementName(plant, mjOBJ_JOINT, plant.dof_jntid[dof]), 1.0,
-         kFactorSpread, true});
-  }
-  for (const MultisineSetup& source : machine.setup().disturbances) {
-    VectorXd amplitude =
-        VectorXd::Zero(static_cast<Index>(machine.channels().actuators.size()));
-    for (const auto& [channel, value] : source.amplitude) {
-      amplitude[machine.channels().ActuatorIndex(channel)] = value;
-    }
-    for (const double frequency : source.frequencies) {
-      uncertain.tones.push_back({frequency, amplitude});
-      uncertain.unknowns.push_back({source.name + " sine", 0.0, 0.1, false});
-      uncertain.unknowns.push_back({source.name + " cosine", 0.0, 0.1, false});
-    }
-  }
-  uncertain.start = StartDirections(machine.linear(), kStartEnergy);
-  for (Index i = 0; i < uncertain.start.cols(); ++i) {
-    uncertain.unknowns.push_back({"start " + std::to_string(i + 1), 0.0, 1.0, false});
-  }
-  return uncertain;
-}
-
-PlantTwin::PlantTwin(const Machine& machine, UncertainPlant uncertain,
-                     const MatrixXd& gain, Index block)
+PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
+                     std::vector<TwinGain> gains, Index block)
     : machine_(machine),
       uncertain_(std::move(uncertain)),
-      L_(gain),
+      gains_(std::move(gains)),
       block_(block),
-      effects_(machine.channels(), machine.plant(), machine.effects()) {
+      effects_(machine.channels(), machine.plant(), machine.effects()),
+      first_tone_(uncertain_.first_tone()),
+      tones_(uncertain_.tones, machine.rates().tick()) {
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
   data_ = std::move(plant.data);
@@ -82,77 +35,57 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainPlant uncertain,
   const auto p = static_cast<Index>(uncertain_.unknowns.size());
   C_ = linear.b.transpose();
   Gamma_ = linear.Gamma;
-  M_ = linear.M;
+  M_ = M_now_ = linear.M;
   K_ = linear.K;
   D_ = linear.D;
-  K_rest_ = K_ - MatrixXd(SpringsOf(*model_).asDiagonal());
+  K_rest_ = K_ - MatrixXd(JointStiffness(*model_).asDiagonal());
   D_rest_ = D_ - MatrixXd(VectorXd::Map(model_->dof_damping, nv).asDiagonal());
-  for (std::size_t i = 0; i < uncertain_.faults.size(); ++i) {
-    const FaultParameter& fault = uncertain_.faults[i];
-    const auto unknown = static_cast<Index>(i);
-    for (const int element : fault.elements) {
-      if (fault.kind == FaultParameterKind::kGear) {
+  for (const UncertainNumber& known : uncertain_.numbers) {
+    Number number{known.number, known.factors, 0, {}, 1.0};
+    const int element = known.number.element;
+    switch (known.number.kind) {
+      case PlantNumberKind::kMass:
+      case PlantNumberKind::kInertia:
+        number.inertia = PartOf(machine, known.number);
+        heavy_ = true;
+        break;
+      case PlantNumberKind::kGear: {
         const auto& addresses = machine.actuator_addresses();
         const auto at = std::find(addresses.begin(), addresses.end(), element);
-        if (at != addresses.end()) gears_.push_back({unknown, at - addresses.begin()});
-        continue;
+        if (at == addresses.end()) continue;  // nothing drives it
+        number.at = static_cast<int>(at - addresses.begin());
+        break;
       }
-      const int dof = model_->jnt_dofadr[element];
-      if (fault.kind == FaultParameterKind::kDamping) {
-        dampers_.push_back({unknown, dof, -model_->dof_damping[dof]});
-      } else {
-        springs_.push_back({unknown, dof, -model_->jnt_stiffness[element]});
-      }
+      default:
+        number.at = model_->jnt_dofadr[element];
     }
+    numbers_.push_back(std::move(number));
   }
-  start_directions_ = uncertain_.start;
   place_ = PlacementOf(linear);
-  remembered_ = state_ = VectorXd::Zero(2 * nv);
-  theta_ = slope_ = VectorXd::Zero(p);
+  state_ = VectorXd::Zero(2 * nv);
+  before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
+  theta_ = VectorXd::Zero(p);
   for (Map& map : maps_) map.Q = map.V = map.G = MatrixXd::Zero(nv, nv);
   inertia_ = identity_ = work_ = MatrixXd::Identity(nv, nv);
   factor_ = Eigen::LLT<MatrixXd>(nv);
   stick_r_.assign(static_cast<std::size_t>(nv), 0.0);
   stick_rb_ = stick_r_;
   u_ = tone_ = VectorXd::Zero(nu);
-  phase_ = VectorXd::Zero(2 * static_cast<Index>(uncertain_.tones.size()));
-  turn_ = phase_;
-  for (std::size_t i = 0; i < uncertain_.tones.size(); ++i) {
-    const double angle =
-        2.0 * std::numbers::pi * uncertain_.tones[i].frequency * machine.rates().tick();
-    turn_[2 * static_cast<Index>(i)] = std::sin(angle);
-    turn_[2 * static_cast<Index>(i) + 1] = std::cos(angle);
-  }
   outputs_.resize(static_cast<std::size_t>(ny));
   S_ = MatrixXd::Zero(2 * nv, p);
   drive_ = drive_work_ = force_ = MatrixXd::Zero(nv, p);
-  sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
+  read_ = sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
+  UseGain(0);
 }
 
 void PlantTwin::SetParameters() noexcept {
-  for (Index i = 0; i < theta_.size(); ++i) {
-    const bool factor = uncertain_.unknowns[static_cast<std::size_t>(i)].factor;
-    slope_[i] = factor ? std::exp(theta_[i]) : 1.0;
-  }
-  for (const Pull& damper : dampers_) {
-    model_->dof_damping[damper.dof] =
-        slope_[damper.unknown] * machine_.plant().dof_damping[damper.dof];
-  }
-  for (const Pull& spring : springs_) {
-    const int joint = model_->dof_jntid[spring.dof];
-    model_->jnt_stiffness[joint] =
-        slope_[spring.unknown] * machine_.plant().jnt_stiffness[joint];
-  }
-  for (const Gear& gear : gears_) {
-    const int actuator =
-        machine_.actuator_addresses()[static_cast<std::size_t>(gear.input)];
-    mju_scl(model_->actuator_gear + 6 * actuator,
-            machine_.plant().actuator_gear + 6 * actuator, slope_[gear.unknown], 6);
-  }
-  auto unknown = static_cast<Index>(uncertain_.faults.size());
-  for (const int dof : uncertain_.rubbing) {
-    model_->dof_frictionloss[dof] =
-        slope_[unknown++] * machine_.plant().dof_frictionloss[dof];
+  M_now_ = M_;
+  for (Number& number : numbers_) {
+    double sum = 0.0;
+    for (const Index factor : number.factors) sum += theta_[factor];
+    number.value = std::exp(sum);
+    SetNumber(*model_, machine_.plant(), number.number, number.value);
+    if (number.inertia.M.size() > 0) M_now_ += std::expm1(sum) * number.inertia.M;
   }
   for (Map& map : maps_) map.known = false;
 }
@@ -174,7 +107,7 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
     K_(j, j) += model_->jnt_stiffness[model_->dof_jntid[j]];
   }
   // G = h (M + h D)^-1 M W^-1
-  inertia_ = M_;
+  inertia_ = M_now_;
   for (Index j = 0; j < nv; ++j) {
     if ((sticking >> j & 1) != 0)
       inertia_(j, j) += stick_r_[static_cast<std::size_t>(j)];
@@ -182,8 +115,8 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
   factor_.compute(inertia_);
   work_ = identity_;
   factor_.solveInPlace(work_);
-  map.G.noalias() = M_ * work_;
-  inertia_ = M_ + h * D_;
+  map.G.noalias() = M_now_ * work_;
+  inertia_ = M_now_ + h * D_;
   factor_.compute(inertia_);
   factor_.solveInPlace(map.G);
   map.G *= h;
@@ -196,48 +129,50 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
   return map;
 }
 
-void PlantTwin::Start(const VectorXd& theta, bool at_rest) noexcept {
+void PlantTwin::Start(const VectorXd& theta) noexcept {
   theta_ = theta;
   time_ = 0.0;
-  in_block_ = 0;
+  active_ = theta_.size() - start_unknowns();
   SetParameters();
   if (const std::vector<PlacedEffect> effects = machine_.effects(); !effects.empty()) {
     effects_ = ActiveEffects(machine_.channels(), *model_, effects);
   }
+  // What MuJoCo derives from masses, in data that are reset anyway.
+  if (heavy_) mj_setConst(model_.get(), data_.get());
   mj_resetData(model_.get(), data_.get());
   VectorXd::Map(data_->qpos, start_.size()) = start_;
   S_.setZero();
   sum_.setZero();
-  const Index nv = model_->nv;
-  const Index k = start_directions_.cols();
-  active_ = theta_.size() - (at_rest ? k : 0);
-  if (!at_rest) {
-    state_ = remembered_;
-    state_.noalias() += start_directions_ * theta_.tail(k);
-    VectorXd::Map(data_->qpos, nv) += state_.head(nv);
-    VectorXd::Map(data_->qvel, nv) = state_.tail(nv);
-    S_.rightCols(k) = start_directions_;
-  }
-  for (std::size_t i = 0; i < uncertain_.tones.size(); ++i) {
-    phase_[2 * static_cast<Index>(i)] = 0.0;
-    phase_[2 * static_cast<Index>(i) + 1] = 1.0;
-  }
+  tones_.Start();
 }
 
-void PlantTwin::Place(const VectorXd& reading) noexcept {
-  mj_step1(model_.get(), data_.get());
+void PlantTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
+  Start(theta);
+  active_ = theta_.size();
+  const Index nv = model_->nv;
+  state_ = state;
+  state_.noalias() += uncertain_.start * theta_.tail(start_unknowns());
+  VectorXd::Map(data_->qpos, nv) += state_.head(nv);
+  VectorXd::Map(data_->qvel, nv) = state_.tail(nv);
+  S_.rightCols(start_unknowns()) = uncertain_.start;
+}
+
+void PlantTwin::StateAt(const VectorXd& reading, VectorXd& state) noexcept {
+  VectorXd::Map(data_->qpos, start_.size()) = start_;
   VectorXd::Map(data_->qvel, model_->nv).setZero();
+  mj_step1(model_.get(), data_.get());
+  state.setZero();
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const double rest = data_->sensordata[machine_.sensor_addresses()[i]];
     const auto at = static_cast<Index>(i);
-    VectorXd::Map(data_->qpos, model_->nv) += (reading[at] - rest) * place_.col(at);
+    state.head(model_->nv) += (reading[at] - rest) * place_.col(at);
   }
 }
 
-void PlantTwin::Remember() noexcept {
+void PlantTwin::ReadState(VectorXd& state) const noexcept {
   const Index nv = model_->nv;
-  remembered_.head(nv) = VectorXd::Map(data_->qpos, nv) - start_;
-  remembered_.tail(nv) = VectorXd::Map(data_->qvel, nv);
+  state.head(nv) = VectorXd::Map(data_->qpos, nv) - start_;
+  state.tail(nv) = VectorXd::Map(data_->qvel, nv);
 }
 
 void PlantTwin::Predict(VectorXd& reading) noexcept {
@@ -249,65 +184,93 @@ void PlantTwin::Predict(VectorXd& reading) noexcept {
   reading = VectorXd::Map(outputs_.data(), reading.size());
 }
 
+void PlantTwin::AddForce(MatrixXd& forces, const Number& number, Index dof,
+                         double force) const noexcept {
+  for (const Index factor : number.factors) forces(dof, factor) += force;
+}
+
+void PlantTwin::AddInertial(const Number& number) noexcept {
+  for (const Index factor : number.factors) {
+    force_.col(factor) += number.value * inertial_;
+  }
+}
+
+void PlantTwin::AddTickForces() noexcept {
+  drive_.setZero();
+  const Index first = first_tone_;
+  for (Index i = 0; i < tones_.count(); ++i) {
+    tone_ = tones_.amplitude(i);
+    for (const Number& number : numbers_) {
+      if (number.number.kind == PlantNumberKind::kGear) tone_[number.at] *= number.value;
+    }
+    auto sine = drive_.col(first + 2 * i);
+    auto cosine = drive_.col(first + 2 * i + 1);
+    cosine.noalias() = Gamma_ * tone_;
+    sine = tones_.sine(i) * cosine;
+    cosine *= tones_.cosine(i);
+  }
+  for (const Number& number : numbers_) {
+    if (number.number.kind != PlantNumberKind::kGear) continue;
+    for (const Index factor : number.factors) {
+      drive_.col(factor) += number.value * u_[number.at] * Gamma_.col(number.at);
+    }
+  }
+}
+
+void PlantTwin::AddStepForces() noexcept {
+  force_ = drive_;
+  const Index nv = model_->nv;
+  for (const Number& number : numbers_) {
+    if (number.number.kind == PlantNumberKind::kStiffness) {
+      const int address = model_->jnt_qposadr[number.number.element];
+      AddForce(force_, number, number.at,
+               -model_->jnt_stiffness[number.number.element] *
+                   (data_->qpos[address] - model_->qpos_spring[address]));
+    }
+    const ModelPart& part = number.inertia;
+    if (part.K.size() + part.force.size() == 0) continue;
+    inertial_.setZero();
+    if (part.force.size() > 0) inertial_ = part.force;
+    if (part.K.size() > 0) {
+      state_.head(nv) = VectorXd::Map(data_->qpos, nv) - start_;
+      inertial_.noalias() -= part.K * state_.head(nv);
+    }
+    AddInertial(number);
+  }
+}
+
 void PlantTwin::Step(std::span<const double> inputs,
                      const VectorXd& innovation) noexcept {
-  sum_.leftCols(active_).noalias() += C_ * S_.topRows(model_->nv).leftCols(active_);
+  const Index nv = model_->nv;
+  read_.leftCols(active_).noalias() = C_ * S_.topRows(nv).leftCols(active_);
+  sum_.leftCols(active_) += read_.leftCols(active_);
   u_ = VectorXd::Map(inputs.data(), u_.size());
-  const Index first = theta_.size() - start_directions_.cols() - phase_.size();
-  for (std::size_t i = 0; i < uncertain_.tones.size(); ++i) {
-    const Index at = 2 * static_cast<Index>(i);
-    u_ += (theta_[first + at] * phase_[at] + theta_[first + at + 1] * phase_[at + 1]) *
-          uncertain_.tones[i].amplitude;
-  }
-  // What does not change within the tick.
-  drive_.setZero();
-  for (const Gear& gear : gears_) {
-    drive_.col(gear.unknown) +=
-        slope_[gear.unknown] * u_[gear.input] * Gamma_.col(gear.input);
-  }
-  for (std::size_t i = 0; i < uncertain_.tones.size(); ++i) {
-    const Index at = 2 * static_cast<Index>(i);
-    tone_ = uncertain_.tones[i].amplitude;
-    for (const Gear& gear : gears_) tone_[gear.input] *= slope_[gear.unknown];
-    drive_.col(first + at + 1).noalias() = Gamma_ * tone_;
-    drive_.col(first + at) = phase_[at] * drive_.col(first + at + 1);
-    drive_.col(first + at + 1) *= phase_[at + 1];
-  }
+  tones_.AddTo(u_, theta_.segment(first_tone_, 2 * tones_.count()));
+  AddTickForces();
   for (int substep = 0; substep < machine_.rates().substeps; ++substep) {
     if (substep > 0) mj_step1(model_.get(), data_.get());
     for (Index i = 0; i < u_.size(); ++i) {
       data_->ctrl[machine_.actuator_addresses()[static_cast<std::size_t>(i)]] = u_[i];
     }
     effects_.Act(*model_, *data_);
-    force_ = drive_;
-    for (const Pull& spring : springs_) {
-      const int joint = model_->dof_jntid[spring.dof];
-      const int address = model_->jnt_qposadr[joint];
-      force_(spring.dof, spring.unknown) +=
-          slope_[spring.unknown] * spring.coefficient *
-          (data_->qpos[address] - model_->qpos_spring[address]);
-    }
+    AddStepForces();
+    before_ = VectorXd::Map(data_->qvel, nv);
     mj_step2(model_.get(), data_.get());
     Substep();
   }
-  for (Index i = 0; i < phase_.size(); i += 2) {
-    const double sine = phase_[i];
-    const double cosine = phase_[i + 1];
-    phase_[i] = sine * turn_[i + 1] + cosine * turn_[i];
-    phase_[i + 1] = cosine * turn_[i + 1] - sine * turn_[i];
+  tones_.Advance();
+  if (pulled_) {
+    const MatrixXd& L = gains_[gain_].L;
+    state_.noalias() = L * innovation;
+    VectorXd::Map(data_->qpos, nv) += state_.head(nv);
+    VectorXd::Map(data_->qvel, nv) += state_.tail(nv);
+    S_.leftCols(active_).noalias() -= L * read_.leftCols(active_);
   }
-  state_.noalias() = L_ * innovation;
-  VectorXd::Map(data_->qpos, model_->nv) += state_.head(model_->nv);
-  VectorXd::Map(data_->qvel, model_->nv) += state_.tail(model_->nv);
   time_ += machine_.rates().tick();
-  ++in_block_;
 }
 
 void PlantTwin::Substep() noexcept {
-  for (const Pull& damper : dampers_) {
-    force_(damper.dof, damper.unknown) +=
-        slope_[damper.unknown] * damper.coefficient * data_->qvel[damper.dof];
-  }
+  const Index nv = model_->nv;
   std::uint64_t sticking = 0;
   for (int row = 0; row < data_->nefc; ++row) {
     if (data_->efc_type[row] != mjCNSTR_FRICTION_DOF) continue;
@@ -319,20 +282,28 @@ void PlantTwin::Substep() noexcept {
           data_->efc_D[row] * data_->efc_KBIP[4 * row + 1];
       continue;
     }
-    const auto at =
-        std::find(uncertain_.rubbing.begin(), uncertain_.rubbing.end(), dof);
-    if (at == uncertain_.rubbing.end()) continue;
-    const Index unknown = static_cast<Index>(uncertain_.faults.size()) +
-                          (at - uncertain_.rubbing.begin());
-    force_(dof, unknown) += data_->efc_force[row];  // slope * nominal, with its sign
+    for (const Number& number : numbers_) {
+      if (number.number.kind != PlantNumberKind::kFriction || number.at != dof) continue;
+      AddForce(force_, number, dof, data_->efc_force[row]);
+    }
+  }
+  acceleration_ =
+      (VectorXd::Map(data_->qvel, nv) - before_) / model_->opt.timestep;
+  for (const Number& number : numbers_) {
+    if (number.number.kind == PlantNumberKind::kDamping) {
+      AddForce(force_, number, number.at,
+               -model_->dof_damping[number.at] * data_->qvel[number.at]);
+    }
+    if (number.inertia.M.size() == 0) continue;
+    inertial_.noalias() = -number.inertia.M * acceleration_;
+    AddInertial(number);
   }
   const Map& map = MapOf(sticking);
-  const Index nv = model_->nv;
   // S_v' = Q S_q + V S_v + G f
   auto next = drive_work_.leftCols(active_);
   next.noalias() = map.Q * S_.topRows(nv).leftCols(active_);
   next.noalias() += map.V * S_.bottomRows(nv).leftCols(active_);
-  const Index forced = theta_.size() - start_directions_.cols();
+  const Index forced = theta_.size() - start_unknowns();
   next.leftCols(forced).noalias() += map.G * force_.leftCols(forced);
   S_.bottomRows(nv).leftCols(active_) = next;
   S_.topRows(nv).leftCols(active_) += model_->opt.timestep * next;
@@ -341,7 +312,6 @@ void PlantTwin::Substep() noexcept {
 const MatrixXd& PlantTwin::EndBlock() noexcept {
   sensitivity_ = sum_ / static_cast<double>(block_);
   sum_.setZero();
-  in_block_ = 0;
   return sensitivity_;
 }
 

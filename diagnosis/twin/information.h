@@ -1,0 +1,65 @@
+#pragma once
+// Whitened least squares, block by block, about a point theta0: a block with innovation
+// e and sensitivity psi = d mean(yp) / d theta adds
+//
+//   H += psi^T W psi,   g += psi^T W e,   and   theta = theta0 + H^-1 g
+//
+// is the estimate, H^-1 its covariance, W the inverse covariance of e. It begins with
+// what is known beforehand, H = P0^-1, g = P0^-1 (nominal - theta0).
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace mjdiag {
+
+class Information {
+ public:
+  /// @param p   unknowns
+  /// @param ny  readings
+  Information(Eigen::Index p, Eigen::Index ny);
+
+  // Nothing below allocates, locks or throws.
+
+  /// Anew, with the first `active` unknowns.
+  /// @param prior  P0^-1, p x p
+  /// @param away   nominal - theta0, p
+  void Start(Eigen::Index active, const Eigen::MatrixXd& prior,
+             const Eigen::VectorXd& away) noexcept;
+
+  /// How surprising a block would be: the mean square of its innovation less what the
+  /// estimate explains, in units of what noise and the uncertainty of the estimate let
+  /// expect. 1 on average where the model is true.
+  /// @param covariance  of e, ny x ny
+  double Surprise(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e,
+                  const Eigen::MatrixXd& covariance) noexcept;
+  void Add(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e,
+           const Eigen::MatrixXd& covariance) noexcept;
+
+  /// theta - theta0, p.
+  const Eigen::VectorXd& change() const { return change_; }
+  /// Squared distance of the estimate from theta0, in standard deviations.
+  double SquaredChange() const;
+  Eigen::Index active() const { return active_; }
+  const Eigen::MatrixXd& H() const { return H_; }
+  /// Variances of the estimate, p.
+  const Eigen::VectorXd& Variance() noexcept;
+
+  /// theta0 becomes theta.
+  void Recentre() noexcept;
+  /// The unknowns have walked: their covariance grows by that, p.
+  void Walk(const Eigen::VectorXd& variance) noexcept;
+
+ private:
+  void Factorise() noexcept;
+  void Solve() noexcept;
+
+  Eigen::Index active_ = 0;
+  Eigen::MatrixXd H_;
+  Eigen::VectorXd g_, change_, variance_;
+  // Work space. The factor is that of H scaled to a unit diagonal, at its last change.
+  Eigen::VectorXd scale_, solution_, corrected_, whitened_;
+  Eigen::MatrixXd factor_, inverse_, spread_, weighted_, expected_;
+  Eigen::LLT<Eigen::MatrixXd> small_;
+};
+
+}  // namespace mjdiag

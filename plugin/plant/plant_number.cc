@@ -1,0 +1,157 @@
+#include "mjdiag/plugin/plant/plant_number.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr std::string_view kDeclaration = "known";
+
+struct KindOfNumber {
+  std::string_view name;
+  mjtObj element;
+  double spread;
+};
+
+/// In the order of PlantNumberKind.
+constexpr std::array<KindOfNumber, 6> kKinds = {{{"mass", mjOBJ_BODY, 0.01},
+                                                 {"inertia", mjOBJ_BODY, 0.03},
+                                                 {"stiffness", mjOBJ_JOINT, 0.05},
+                                                 {"damping", mjOBJ_JOINT, 0.2},
+                                                 {"friction", mjOBJ_JOINT, 0.2},
+                                                 {"gear", mjOBJ_ACTUATOR, 0.01}}};
+
+const KindOfNumber& Of(PlantNumberKind kind) {
+  return kKinds[static_cast<std::size_t>(kind)];
+}
+
+/// Degrees of freedom of a joint: three of a ball joint, six of a free one.
+std::span<mjtNum> DofsOf(const mjModel& model, int joint, mjtNum* of_dof) {
+  const int first = model.jnt_dofadr[joint];
+  const int last = joint + 1 < model.njnt ? model.jnt_dofadr[joint + 1]
+                                          : static_cast<int>(model.nv);
+  return {of_dof + first, static_cast<std::size_t>(last - first)};
+}
+
+/// Where the number stands in the model.
+std::span<mjtNum> NumbersOf(const mjModel& model, const PlantNumber& number) {
+  const int element = number.element;
+  switch (number.kind) {
+    case PlantNumberKind::kMass:
+      return {model.body_mass + element, 1};
+    case PlantNumberKind::kInertia:
+      return {RowOf(model.body_inertia, 3, element), 3};
+    case PlantNumberKind::kStiffness:
+      return {model.jnt_stiffness + element, 1};
+    case PlantNumberKind::kDamping:
+      return DofsOf(model, element, model.dof_damping);
+    case PlantNumberKind::kFriction:
+      return DofsOf(model, element, model.dof_frictionloss);
+    case PlantNumberKind::kGear:
+      return {RowOf(model.actuator_gear, 6, element), 6};
+  }
+  return {};
+}
+
+/// Bodies that hang on a joint, their own or one further up.
+bool Moves(const mjModel& model, int body) {
+  return model.body_weldid[body] != 0;
+}
+
+/// -1: not declared.
+double Declared(const mjModel& model, const std::string& name) {
+  const int id = mj_name2id(&model, mjOBJ_NUMERIC, name.c_str());
+  if (id < 0) return -1.0;
+  const double spread = model.numeric_data[model.numeric_adr[id]];
+  if (model.numeric_size[id] != 1 || !std::isfinite(spread) || spread < 0.0) {
+    throw InputError("custom numeric " + name, "is " + std::to_string(spread),
+                     "one relative standard deviation >= 0");
+  }
+  return spread;
+}
+
+}  // namespace
+
+std::string PlantNumberName(const mjModel& model, const PlantNumber& number) {
+  const KindOfNumber& kind = Of(number.kind);
+  return std::string(kind.name) + "@" +
+         ElementName(model, kind.element, number.element);
+}
+
+PlantNumber FindPlantNumber(const mjModel& model, const std::string& name) {
+  const auto at = name.find('@');
+  const std::string word = name.substr(0, at);
+  const auto kind =
+      std::find_if(kKinds.begin(), kKinds.end(),
+                   [&](const KindOfNumber& known) { return known.name == word; });
+  if (kind == kKinds.end() || at == std::string::npos) {
+    throw InputError("plant number '" + name + "'", "is of no known kind",
+                     "mass@ or inertia@ a body, stiffness@, damping@ or friction@ a "
+                     "joint, gear@ an actuator");
+  }
+  return {static_cast<PlantNumberKind>(kind - kKinds.begin()),
+          FindElement(model, kind->element, name.substr(at + 1))};
+}
+
+std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
+  std::vector<PlantNumber> numbers;
+  const auto add = [&](PlantNumberKind kind, int count) {
+    for (int element = 0; element < count; ++element) {
+      const PlantNumber number{kind, element};
+      const bool of_body = Of(kind).element == mjOBJ_BODY;
+      if (of_body && !Moves(model, element)) continue;
+      const auto values = NumbersOf(model, number);
+      if (std::any_of(values.begin(), values.end(),
+                      [](double value) { return value != 0.0; })) {
+        numbers.push_back(number);
+      }
+    }
+  };
+  add(PlantNumberKind::kMass, model.nbody);
+  add(PlantNumberKind::kInertia, model.nbody);
+  add(PlantNumberKind::kStiffness, model.njnt);
+  add(PlantNumberKind::kDamping, model.njnt);
+  add(PlantNumberKind::kFriction, model.njnt);
+  add(PlantNumberKind::kGear, model.nu);
+  return numbers;
+}
+
+double UsualSpread(PlantNumberKind kind) { return Of(kind).spread; }
+
+double SpreadOf(const mjModel& model, const PlantNumber& number) {
+  const std::string name(kDeclaration);
+  const double own = Declared(model, name + "." + PlantNumberName(model, number));
+  if (own >= 0.0) return own;
+  const double of_all = Declared(model, name);
+  return of_all >= 0.0 ? of_all : UsualSpread(number.kind);
+}
+
+bool IsExact(const mjModel& model) {
+  return Declared(model, std::string(kDeclaration)) == 0.0;
+}
+
+void Scale(mjModel& model, const PlantNumber& number, double factor) {
+  for (mjtNum& value : NumbersOf(model, number)) value *= factor;
+}
+
+void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
+               double factor) {
+  const auto from = NumbersOf(nominal, number);
+  const auto to = NumbersOf(model, number);
+  std::transform(from.begin(), from.end(), to.begin(),
+                 [&](double value) { return factor * value; });
+}
+
+void DeriveConstants(mjModel& model) {
+  const DataPtr data = MakeData(model);
+  mj_setConst(&model, data.get());
+}
+
+}  // namespace mjdiag

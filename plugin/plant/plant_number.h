@@ -1,0 +1,56 @@
+#pragma once
+// The numbers of a plant that nobody knows exactly, and how well they are known. A
+// number is what an element of the MJCF is made of, by kind:
+//
+//   mass@<body>, inertia@<body>              of it and what it weighs
+//   stiffness@<joint>, damping@<joint>, friction@<joint>
+//   gear@<actuator>                          force of a unit of its control
+//
+// A plant says how well one is known by a relative standard deviation of its own,
+//   <custom><numeric name="known.stiffness@X" data="0.02"/></custom>
+// or of all that have none, `known` (0: a plant that is what it says, as a simulated
+// one). Without either it is known as its kind usually is (UsualSpread).
+
+#include <mujoco/mujoco.h>
+
+#include <string>
+#include <vector>
+
+namespace mjdiag {
+
+enum class PlantNumberKind { kMass, kInertia, kStiffness, kDamping, kFriction, kGear };
+
+struct PlantNumber {
+  PlantNumberKind kind = PlantNumberKind::kMass;
+  int element = 0;  ///< id of the body, joint or actuator
+
+  bool operator==(const PlantNumber&) const = default;
+};
+
+/// "stiffness@X".
+std::string PlantNumberName(const mjModel& model, const PlantNumber& number);
+/// Of that name. InputError on an unknown kind or element.
+PlantNumber FindPlantNumber(const mjModel& model, const std::string& name);
+
+/// All that are not 0, of bodies that move.
+std::vector<PlantNumber> PlantNumbers(const mjModel& model);
+
+/// Relative standard deviation with which such a number is known without measuring it:
+/// masses by weighing 1 %, inertias from drawings 3 %, mounts and springs 5 %, damping
+/// and dry friction 20 %, motor constants from data sheets 1 %.
+double UsualSpread(PlantNumberKind kind);
+/// As the plant declares it, else UsualSpread. InputError on a declaration that names
+/// nothing or is not a number >= 0.
+double SpreadOf(const mjModel& model, const PlantNumber& number);
+/// Whether the plant says of itself that it is what it says (`known` 0).
+bool IsExact(const mjModel& model);
+
+/// Multiplies it. Masses and inertias ask for mj_setConst afterwards.
+void Scale(mjModel& model, const PlantNumber& number, double factor);
+/// Makes it `factor` times what it is in `nominal`.
+void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
+               double factor);
+/// After masses were changed: what MuJoCo derives from them.
+void DeriveConstants(mjModel& model);
+
+}  // namespace mjdiag

@@ -1,0 +1,55 @@
+#pragma once
+// What is not known of a machine, for its twin: which of its numbers unknown factors
+// multiply, the tones on its commands, and where it starts.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "mjdiag/diagnosis/twin/linear_twin.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/plant/plant_number.h"
+
+namespace mjdiag {
+
+/// A number of the plant with the unknowns whose product it is multiplied by.
+struct UncertainNumber {
+  PlantNumber number;
+  std::vector<Eigen::Index> factors;
+};
+
+/// Unknowns in this order: fault parameters, numbers of the plant that are not known
+/// exactly, two of every tone, those of the start.
+struct UncertainMachine {
+  std::vector<Unknown> unknowns;
+  std::vector<UncertainNumber> numbers;
+  std::vector<UnknownTone> tones;
+  Eigen::MatrixXd start;  ///< see UncertainModel
+  Eigen::Index faults = 0;
+  Eigen::Index known = 0;  ///< numbers of the plant, behind the faults
+
+  Eigen::Index first_tone() const { return faults + known; }
+};
+
+struct UncertaintyOptions {
+  bool faults = true;  ///< the machine may be faulty: else it is healthy
+  /// Numbers that the plant says are exact are taken as known as their kind usually is.
+  bool doubt = false;
+  bool friction = true;       ///< dry friction is among what acts
+  /// [J], see StartDirections; 0: where a run starts is not among the unknowns.
+  double start_energy = 1.0;
+};
+
+/// Dry friction is not known exactly on any plant that does not say so of its own
+/// joint: it changes with the hour.
+UncertainMachine MakeUncertainMachine(const Machine& machine,
+                                      const UncertaintyOptions& options);
+
+/// Its linear plant.
+UncertainModel MakeUncertainModel(const Machine& machine,
+                                  const UncertainMachine& uncertain);
+
+/// What a number of the plant adds to M, D, K and Gamma and to the forces at rest.
+ModelPart PartOf(const Machine& machine, const PlantNumber& number);
+
+}  // namespace mjdiag
