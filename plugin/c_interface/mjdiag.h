@@ -173,12 +173,13 @@ MJDIAG_API int mjdiag_monitor_estimates(const mjdiag_monitor* monitor, double* v
                                         double* sd, int faults);
 
 /* Which faults it names now, 1 or 0 for each: by a criterion on all of them together.
- * Allocates, and takes about a tick. */
+ * Allocates. */
 MJDIAG_API int mjdiag_monitor_named(const mjdiag_monitor* monitor, int* named,
                                     int faults);
 
 /* Ends the run: the verdict in one sentence, as `mjdiag simulate --diagnose` prints it,
- * valid till the monitor is restarted or closed. */
+ * valid till the monitor is restarted or closed. Fails for a run longer than the room, too
+ * short for its spectrum, or with a motion that does not tell the faults apart. */
 MJDIAG_API const char* mjdiag_monitor_conclude(mjdiag_monitor* monitor);
 
 /* Writes diagnosis.json of a run that is concluded. */

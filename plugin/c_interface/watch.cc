@@ -48,10 +48,11 @@ Watch::Watch(const char* setup, const char* filters, bool linear, Eigen::Index r
 }
 
 void Watch::Restart() {
+  // Made before the old one goes: where that fails, all is as it was.
   if (machine_) {
     recording_.emplace(BeginDiagnosis(*machine_, prepared_, room_));
   } else {
-    recording_.emplace(prepared_.design, room_);
+    recording_.emplace(DiagnosisRecording(prepared_.design, room_));
   }
   source_ = nullptr;
   ended_ = nullptr;

@@ -188,15 +188,16 @@ TEST_F(CMonitor, KnowsSinceWhenTheResidualIsOutsideItsLimits) {
 }
 
 TEST_F(CMonitor, BeginsAnewWhenItIsRestarted) {
-  mjdiag_monitor* monitor = Linear();
-  Watch(monitor, Plant(1.1), 2500);
-  ASSERT_NE(mjdiag_monitor_conclude(monitor), nullptr) << mjdiag_last_error();
-  const json first = Written(monitor);
-  ASSERT_EQ(mjdiag_monitor_restart(monitor), 0);
-  EXPECT_EQ(Reading(monitor).ticks, 0);
-  Watch(monitor, Plant(1.1), 2500);
-  ASSERT_NE(mjdiag_monitor_conclude(monitor), nullptr) << mjdiag_last_error();
-  EXPECT_EQ(Written(monitor), first);
+  std::vector<json> written;
+  for (const double zeta_x : {1.1, 1.3, 1.1}) {
+    mjdiag_monitor* monitor = Linear();
+    EXPECT_EQ(Reading(monitor).ticks, 0);
+    Watch(monitor, Plant(zeta_x), 2500);
+    ASSERT_NE(mjdiag_monitor_conclude(monitor), nullptr) << mjdiag_last_error();
+    written.push_back(Written(monitor));
+  }
+  EXPECT_NE(written[1], written[0]);
+  EXPECT_EQ(written[2], written[0]);
 }
 
 TEST_F(CMonitor, HearsOnceATick) {
@@ -345,6 +346,9 @@ TEST_F(CMonitor, RefusesNullPointers) {
     EXPECT_TRUE(refusals[i]()) << i;
     EXPECT_NE(LastError(), "") << i;
   }
+  ASSERT_EQ(mjdiag_monitor_listen(monitor, plant.model), 0);
+  EXPECT_NE(mjdiag_monitor_hear(monitor, plant.model, nullptr), 0);
+  EXPECT_NE(mjdiag_monitor_hear(monitor, nullptr, plant.data), 0);
   mjdiag_monitor_close(nullptr);
   mjdiag_detach(nullptr);
   EXPECT_EQ(mjdiag_monitor_estimates(monitor, values, nullptr, kFaults), 0);
