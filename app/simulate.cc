@@ -11,7 +11,6 @@
 #include "app/output.h"
 #include "app/subject.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
-#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
@@ -74,10 +73,7 @@ void Simulate(const SimulateOptions& options) {
     DiagnosisSource source = options.source;
     source.nominal.linear = options.motion.linear;
     prepared = Prepare(subject.nominal, source, excitation);
-    recording.emplace(prepared->design, excitation.samples(), prepared->baseline);
-    if (auto twin = MakeTwinEstimator(subject.nominal, prepared->nominal.linear)) {
-      recording->monitor.Follow(std::move(twin));
-    }
+    recording.emplace(BeginDiagnosis(subject.nominal, *prepared, excitation.samples()));
     observer.emplace(*recording);
     subject.options.observer = &*observer;
   }

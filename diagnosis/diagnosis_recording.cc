@@ -46,10 +46,8 @@ void Run(DiagnosisRecording& recording, const Record& record) {
 }
 
 DiagnosisRecording RecordDiagnosis(const DiagnosisDesign& design, const Record& record,
-                                   const Eigen::MatrixXd& baseline, Index from,
-                                   std::unique_ptr<TwinEstimator> twin) {
+                                   const Eigen::MatrixXd& baseline, Index from) {
   DiagnosisRecording recording(design, record.samples(), baseline);
-  if (twin) recording.monitor.Follow(std::move(twin));
   recording.monitor.RegressFrom(from);
   Run(recording, record);
   return recording;

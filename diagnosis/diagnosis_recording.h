@@ -42,10 +42,8 @@ void Run(DiagnosisRecording& recording, const Record& record);
 /// The recording of a whole record.
 /// @param baseline  see DiagnosisMonitor
 /// @param from      first sample that is regressed
-/// @param twin      of the machine, or null
 DiagnosisRecording RecordDiagnosis(const DiagnosisDesign& design, const Record& record,
                                    const Eigen::MatrixXd& baseline = {},
-                                   Eigen::Index from = 0,
-                                   std::unique_ptr<TwinEstimator> twin = nullptr);
+                                   Eigen::Index from = 0);
 
 }  // namespace mjdiag

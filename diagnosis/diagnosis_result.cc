@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/diagnosis/twin/naming.h"
@@ -105,6 +106,19 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
   const double spread =
       0.5 * (limits.max - limits.min) / TwoSidedNormalQuantile(kOutsideLimits);
   return {deviation - middle, std::hypot(sd, spread), limits.Holds(deviation)};
+}
+
+std::vector<FaultVerdict> JudgeFaults(const DiagnosisMonitor& monitor) {
+  const DiagnosisDesign& design = monitor.design();
+  if (monitor.twin() != nullptr) return Judge(design, monitor.twin()->Read());
+  if (monitor.estimator().Inseparable().empty()) {
+    return Judge(design, monitor.estimator().Estimate());
+  }
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const Index count = design.faults();
+  return Judge(design,
+               FaultEstimate{Eigen::VectorXd::Zero(count),
+                             Eigen::MatrixXd::Constant(count, count, kUnknown)});
 }
 
 DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log) {

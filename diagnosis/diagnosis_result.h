@@ -49,6 +49,10 @@ struct CalibratedEstimate {
 CalibratedEstimate Calibrate(const DiagnosisDesign& design, Eigen::Index fault,
                              double deviation, double sd);
 
+/// Every fault as the monitor sees it now, at any tick. Without a twin none is detected
+/// before the motion has told all of them apart.
+std::vector<FaultVerdict> JudgeFaults(const DiagnosisMonitor& monitor);
+
 /// From a monitor at the end of its run, finished (DiagnosisMonitor::Finish).
 /// @param log  what a recorder kept of the whole run
 /// InputError names the faults that the motion does not tell apart.

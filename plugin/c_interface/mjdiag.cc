@@ -1,104 +1,115 @@
 #include "mjdiag.h"
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <utility>
 
+#include "controlled_machine.h"
+#include "guard.h"
+#include "handle.h"
+#include "host_callback.h"
 #include "mjdiag/plugin/plant/time_step.h"
-#include "mjdiag/plugin/runtime/instance.h"
-#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
-
-struct mjdiag_instance {
-  const mjModel* model;
-  mjData* data;
-  std::unique_ptr<mjdiag::Instance> instance;
-};
 
 namespace {
 
-thread_local std::string last_error;
+using mjdiag::ControlledMachine;
+using mjdiag::NotNull;
+using mjdiag::Text;
+using mjdiag::Try;
+using Instances = mjdiag::Handles<mjdiag_instance>;
 
-// Nothing may be thrown into a C program.
-template <typename Work>
-bool Guard(const Work& work) noexcept {
-  try {
-    work();
-    last_error.clear();
-    return true;
-  } catch (const std::exception& error) {
-    last_error = error.what();
-  } catch (...) {
-    last_error = "unknown error";
-  }
-  return false;
+template <typename Handle>
+auto& OpenedInstance(Handle* handle) {
+  return mjdiag::Opened(handle, "an attached instance");
 }
 
-const char* Text(const char* text) {
-  if (text != nullptr) return text;
-  throw mjdiag::InputError("mjdiag", "a null pointer", "a text");
+void PutAtRest(const mjdiag::Machine& machine, const mjModel& model, mjData& data) {
+  const Eigen::VectorXd& start = machine.rest();
+  mj_resetData(&model, &data);
+  std::copy(start.begin(), start.end(), data.qpos);
 }
 
 }  // namespace
 
 const char* mjdiag_version(void) { return MJDIAG_VERSION; }
 
-const char* mjdiag_last_error(void) { return last_error.c_str(); }
+const char* mjdiag_last_error(void) { return mjdiag::LastError().c_str(); }
 
 int mjdiag_prepare(mjModel* model, const char* setup) {
-  return Guard([&] {
+  return Try([&] {
+    NotNull(model, "a model");
     mjdiag::PreparePlant(mjdiag::ReadSetup(Text(setup)).physics, *model);
-  })
-             ? 0
-             : 1;
+  });
 }
 
 int mjdiag_set_fault(mjModel* model, const char* parameter, double value) {
-  return Guard([&] { mjdiag::ApplyFault(*model, {Text(parameter), value}); }) ? 0 : 1;
+  return Try([&] {
+    mjdiag::ApplyFault(*NotNull(model, "a model"), {Text(parameter), value});
+  });
+}
+
+int mjdiag_rest(const mjModel* model, mjData* data, const char* setup) {
+  return Try([&] {
+    NotNull(model, "a model");
+    NotNull(data, "data of the model");
+    PutAtRest(mjdiag::Machine(mjdiag::ReadSetup(Text(setup)), *model), *model, *data);
+  });
 }
 
 mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* setup,
                                const char* trajectory, uint64_t seed) {
-  auto made = std::make_unique<mjdiag_instance>(mjdiag_instance{model, data, nullptr});
-  const bool good = Guard([&] {
+  mjdiag_instance* attached = nullptr;
+  mjdiag::Guard([&] {
+    NotNull(model, "a model");
+    NotNull(data, "data of the model");
+    if (Instances::Any(
+            [=](const ControlledMachine& other) { return other.data == data; })) {
+      throw mjdiag::InputError("data", "an instance is attached to it",
+                               "data without, or mjdiag_detach first");
+    }
     mjdiag::Setup parts = mjdiag::ReadSetup(Text(setup));
     mjdiag::CheckTimeStep(parts, *model);
     const mjdiag::Machine machine(std::move(parts), *model);
     const mjdiag::Trajectories& known = machine.setup().trajectories;
     const mjdiag::Excitation excitation = mjdiag::FollowTrajectory(
         machine.setup(), known.Find(trajectory ? trajectory : known.fallback));
+    auto made = std::make_unique<ControlledMachine>(
+        ControlledMachine{model, data, machine.setup(), {}, nullptr});
     mjdiag::RunOptions options;
     options.seed = seed;
+    options.observer = &made->relay;
     made->instance = std::make_unique<mjdiag::Instance>(machine, excitation, options);
-    const Eigen::VectorXd& start = machine.rest();
-    mj_resetData(model, data);
-    std::copy(start.begin(), start.end(), data->qpos);
+    PutAtRest(machine, *model, *data);
+    mjdiag::KeepHostCallbackOut();
     mjdiag::Attach(*model, *data, *made->instance);
+    attached = Instances::Open(std::move(made));
   });
-  return good ? made.release() : nullptr;
+  return attached;
 }
 
 int64_t mjdiag_ticks(const mjdiag_instance* instance) {
-  return instance->instance->loop().ticks_done();
+  int64_t ticks = -1;
+  mjdiag::Guard(
+      [&] { ticks = OpenedInstance(instance).instance->loop().ticks_done(); });
+  return ticks;
 }
 
 int mjdiag_write_record(const mjdiag_instance* instance, const char* file) {
-  return Guard([&] {
-    const std::filesystem::path path(file);
-    mjdiag::WriteRecord(path, instance->instance->ToRecord(*instance->model),
+  return Try([&] {
+    const ControlledMachine& machine = OpenedInstance(instance);
+    const std::filesystem::path path(Text(file));
+    mjdiag::WriteRecord(path, machine.instance->ToRecord(*machine.model),
                         path.extension() == ".mat" ? mjdiag::RecordFormat::kMat5
                                                    : mjdiag::RecordFormat::kCsv);
-  })
-             ? 0
-             : 1;
+  });
 }
 
 void mjdiag_detach(mjdiag_instance* instance) {
   if (instance == nullptr) return;
-  mjdiag::Detach(*instance->model, *instance->data);
-  instance->instance->Release(*instance->data);
-  delete instance;
+  if (const auto machine = Instances::Close(*instance)) {
+    mjdiag::Detach(*machine->model, *machine->data);
+    machine->instance->Release(*machine->data);
+  }
 }

@@ -14,20 +14,6 @@ namespace {
 
 using Eigen::Index;
 
-void RequireSameMachine(const std::string& file, const DiagnosisDesign& design,
-                        const Setup& setup) {
-  if (design.outputs != ChannelsOf(setup.channels.sensors) ||
-      design.inputs != ChannelsOf(setup.channels.actuators)) {
-    throw InputError(file, "its channels are not those of '" + setup.name + "'",
-                     "filters designed for this setup");
-  }
-  if (std::abs(design.sample_time() * setup.rates.control - 1.0) > 1e-9) {
-    throw InputError(
-        file, "made for a tick of " + FormatQuantity(design.sample_time(), "s"),
-        "the control tick of the setup, " + FormatQuantity(setup.rates.tick(), "s"));
-  }
-}
-
 DiagnosisDesign FiltersOf(const Machine& machine, const DiagnosisSource& source,
                           const Excitation& motion) {
   if (!source.filters.empty()) {
@@ -59,6 +45,20 @@ bool NeedsMotion(const DiagnosisSource& source) {
   return source.baseline || !source.robust.empty();
 }
 
+void RequireSameMachine(const std::string& what, const DiagnosisDesign& design,
+                        const Setup& setup) {
+  if (design.outputs != ChannelsOf(setup.channels.sensors) ||
+      design.inputs != ChannelsOf(setup.channels.actuators)) {
+    throw InputError(what, "its channels are not those of '" + setup.name + "'",
+                     "filters designed for this setup");
+  }
+  if (std::abs(design.sample_time() * setup.rates.control - 1.0) > 1e-9) {
+    throw InputError(
+        what, "made for a tick of " + FormatQuantity(design.sample_time(), "s"),
+        "the control tick of the setup, " + FormatQuantity(setup.rates.tick(), "s"));
+  }
+}
+
 PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
                                    const DiagnosisSource& source,
                                    const Excitation& motion) {
@@ -85,12 +85,22 @@ PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
   return prepared;
 }
 
+DiagnosisRecording BeginDiagnosis(const Machine& machine,
+                                  const PreparedDiagnosis& prepared, Index capacity) {
+  DiagnosisRecording recording(prepared.design, capacity, prepared.baseline);
+  if (auto twin = MakeTwinEstimator(machine, prepared.nominal.linear)) {
+    recording.monitor.Follow(std::move(twin));
+  }
+  return recording;
+}
+
 Diagnosis Diagnose(const Machine& machine, const PreparedDiagnosis& prepared,
                    const Record& record) {
   const Index from = HorizonStart(prepared.design, record);
-  return ConcludeWithLog(
-      RecordDiagnosis(prepared.design, record, prepared.baseline, from,
-                      MakeTwinEstimator(machine, prepared.nominal.linear)));
+  DiagnosisRecording recording = BeginDiagnosis(machine, prepared, record.samples());
+  recording.monitor.RegressFrom(from);
+  Run(recording, record);
+  return ConcludeWithLog(recording);
 }
 
 Diagnosis ConcludeWithLog(const DiagnosisRecording& recording) {
@@ -103,10 +113,7 @@ Diagnosis ConcludeWithLog(const DiagnosisRecording& recording) {
 DiagnosedRun DiagnoseRun(const Machine& machine, const PreparedDiagnosis& prepared,
                          const Excitation& motion, const Changes& faults,
                          RunOptions options) {
-  DiagnosisRecording recording(prepared.design, motion.samples(), prepared.baseline);
-  if (auto twin = MakeTwinEstimator(machine, prepared.nominal.linear)) {
-    recording.monitor.Follow(std::move(twin));
-  }
+  DiagnosisRecording recording = BeginDiagnosis(machine, prepared, motion.samples());
   MonitorObserver observer(recording);
   Record record = RunWith(machine.With(faults), motion, observer, std::move(options),
                           prepared.nominal.linear);

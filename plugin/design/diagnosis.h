@@ -64,6 +64,17 @@ PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
                                    const DiagnosisSource& source = {},
                                    const Excitation& motion = {});
 
+/// InputError that begins with `what` if filters were made for other channels or
+/// another control tick than those of the setup.
+void RequireSameMachine(const std::string& what, const DiagnosisDesign& design,
+                        const Setup& setup);
+
+/// A diagnosis before its first tick: the monitor with its twin, and a recorder with
+/// room for that many ticks.
+DiagnosisRecording BeginDiagnosis(const Machine& machine,
+                                  const PreparedDiagnosis& prepared,
+                                  Eigen::Index capacity);
+
 /// The answer, and the run that it was drawn from as pages show it.
 struct Diagnosis {
   DiagnosisResult result;

@@ -1,11 +1,13 @@
 #include "mjdiag/diagnosis/monitor.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "diagnosis/test_design.h"
 #include "mjdiag/diagnosis/diagnosis_recording.h"
+#include "mjdiag/diagnosis/diagnosis_result.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 
@@ -245,6 +247,24 @@ TEST(DiagnosisMonitor, EstimatesFaultsAndDisturbanceWithinTheirErrors) {
     EXPECT_LT(sd[i], 0.1 * std::abs(expected)) << design.FaultNames()[i];
   }
   EXPECT_TRUE(monitor.estimate().isApprox(estimate.value, 1e-9));
+}
+
+TEST(DiagnosisMonitor, NamesItsFaultsAtAnyTick) {
+  const MatrixXd signals = test::Measured(
+      test::Motion(test::Stage({.damping = 1.01}), test::Drive(kSamples)), 8);
+  DiagnosisMonitor monitor(Design());
+  const std::vector<std::string> names = Design().FaultNames();
+  const auto named = [&] {
+    std::vector<std::string> all;
+    for (const FaultVerdict& fault : JudgeFaults(monitor)) {
+      if (fault.detected) all.push_back(fault.name);
+    }
+    return all;
+  };
+  EXPECT_EQ(JudgeFaults(monitor).size(), names.size());
+  EXPECT_THAT(named(), testing::IsEmpty());
+  for (Index k = 0; k < kSamples; ++k) AddTick(monitor, signals.col(k));
+  EXPECT_THAT(named(), testing::ElementsAre("damping"));
 }
 
 TEST(DiagnosisMonitor, RegressesFromTheSampleThatItIsTold) {

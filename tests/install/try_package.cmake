@@ -33,6 +33,7 @@ expect("zeta_x")
 run(${work}/programs/example_signals)
 expect("100 samples in m")
 run(${work}/programs/example_c)
+expect("^Detected: zeta_x = 1.2.\n$")
 
 build(${SOURCE}/diagnosis_only diagnosis_only)
 run(${prefix}/bin/mjdiag design --setup mjcf/ab383 --linear --out .)
