@@ -205,7 +205,8 @@ void Linearize(const LinearizeOptions& options) {
   const Machine& machine = subject.machine;
   if (!machine.changes().effects.empty() || !subject.options.disturbances.empty() ||
       !subject.options.late_faults.empty()) {
-    throw InputError("linearize", "effects, disturbances and late faults are not linear",
+    throw InputError("linearize",
+                     "effects, disturbances and late faults are not linear",
                      "fault parameters of the plant only");
   }
   const MechanicalModel& extracted = machine.linear();

@@ -29,12 +29,13 @@ nlohmann::json ToleranceJson(const Reconfiguration& reconfiguration,
   }
   nlohmann::json faults = nlohmann::json::array();
   for (const Tolerated& fault : Summarise(reconfiguration, setup)) {
-    faults.push_back({{"name", fault.fault},
-                      {"action", fault.action},
-                      {"value", fault.value},
-                      {"since", fault.since},
-                      {"acting", fault.acting},
-                      {"until", fault.acting ? nlohmann::json() : nlohmann::json(fault.until)}});
+    faults.push_back(
+        {{"name", fault.fault},
+         {"action", fault.action},
+         {"value", fault.value},
+         {"since", fault.since},
+         {"acting", fault.acting},
+         {"until", fault.acting ? nlohmann::json() : nlohmann::json(fault.until)}});
   }
   return {{"time_constant", plan.options.time_constant},
           {"sigmas", plan.options.sigmas},

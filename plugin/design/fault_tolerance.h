@@ -51,11 +51,11 @@ TolerancePlan PlanTolerance(const Machine& machine,
 /// What was done about a fault, for people.
 struct Tolerated {
   std::string fault;
-  std::string action;     ///< "drive gain of x", "feedforward", "tones cancelled"
-  double value = 0.0;     ///< of the fault that is acted on at the end
-  double since = 0.0;     ///< [s]
-  bool acting = false;    ///< or it has been let go
-  double until = 0.0;     ///< [s], if so
+  std::string action;   ///< "drive gain of x", "feedforward", "tones cancelled"
+  double value = 0.0;   ///< of the fault that is acted on at the end
+  double since = 0.0;   ///< [s]
+  bool acting = false;  ///< or it has been let go
+  double until = 0.0;   ///< [s], if so
 };
 
 /// What a monitor with a twin knows, at a tick at which its standard deviations are those

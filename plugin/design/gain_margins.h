@@ -22,11 +22,11 @@ struct FaultRange {
 };
 
 struct GainMargins {
-  Eigen::VectorXd least;         ///< of every axis, times its loop gain
+  Eigen::VectorXd least;  ///< of every axis, times its loop gain
   Eigen::VectorXd most;
-  double healthy_radius = 0.0;   ///< largest modulus of an eigenvalue, no fault
-  double largest_radius = 0.0;   ///< within the margins and the range, on the grid
-  double time_constant = 0.0;    ///< of the slowest mode, no fault [s]
+  double healthy_radius = 0.0;  ///< largest modulus of an eigenvalue, no fault
+  double largest_radius = 0.0;  ///< within the margins and the range, on the grid
+  double time_constant = 0.0;   ///< of the slowest mode, no fault [s]
 };
 
 /// Largest modulus of an eigenvalue of the closed loop.

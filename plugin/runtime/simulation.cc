@@ -126,9 +126,9 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
   const auto nq = static_cast<Eigen::Index>(joint_names.size());
   const Eigen::Index ticks = excitation.samples();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * nq);
-  x.head(nq) = StartPosition(machine.channels(), machine.plant(), plant.rest,
-                             excitation.start) -
-               plant.rest;
+  x.head(nq) =
+      StartPosition(machine.channels(), machine.plant(), plant.rest, excitation.start) -
+      plant.rest;
   Eigen::VectorXd next(2 * nq);
   Eigen::VectorXd y(plant.rest_reading.size());
   Eigen::VectorXd u = Eigen::VectorXd::Zero(plant.tick.inputs());
@@ -150,10 +150,10 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
     next.noalias() += plant.tick.B * u;
     x.swap(next);
     if (Eigen::Index worst = 0; !(x.cwiseAbs().maxCoeff(&worst) < mjMAXVAL)) {
-      throw NumericalError("simulation: linear plant diverged at " +
-                           std::to_string(static_cast<double>(tick) * machine.rates().tick()) +
-                           " s in joint '" +
-                           joint_names[static_cast<std::size_t>(worst % nq)] + "'");
+      throw NumericalError(
+          "simulation: linear plant diverged at " +
+          std::to_string(static_cast<double>(tick) * machine.rates().tick()) +
+          " s in joint '" + joint_names[static_cast<std::size_t>(worst % nq)] + "'");
     }
     ReportProgress(options, tick, ticks);
   }

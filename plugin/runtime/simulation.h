@@ -75,7 +75,7 @@ struct RunOptions {
   double noise_scale = 1.0;  ///< times every sensor's noise; 0: none
   std::uint64_t seed = 1;
   bool log_joints = false;
-  TickObserver* observer = nullptr;               ///< not owned
+  TickObserver* observer = nullptr;  ///< not owned
   /// Corrects what the controllers command; somebody, for example the observer, tells it
   /// every tick what it knows of the faults. Not owned.
   Reconfiguration* reconfiguration = nullptr;

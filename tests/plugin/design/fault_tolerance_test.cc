@@ -85,7 +85,9 @@ std::vector<Tolerated> Tolerance::summary_;
 
 TEST_F(Tolerance, BringsTheTrackingErrorBackOnBothPlants) {
   const std::vector<std::vector<Fault>> cases = {
-      {{"eta_x", 0.7}}, {{"zeta_x", 2.0}}, {{"gamma", 1.0}},
+      {{"eta_x", 0.7}},
+      {{"zeta_x", 2.0}},
+      {{"gamma", 1.0}},
       {{"eta_x", 0.7}, {"zeta_x", 2.0}, {"gamma", 1.0}}};
   for (const bool linear : {true, false}) {
     const Record healthy = Run({}, linear);
@@ -150,8 +152,9 @@ TEST_F(Tolerance, CancelsTonesWhosePhasesTheTwinFinds) {
   ASSERT_EQ(summary_.size(), 1u);
   EXPECT_EQ(summary_[0].action, "tones cancelled");
   const double left = (run.At("y").samples - healthy.At("y").samples).tail(800).norm();
-  const double all =
-      (Run(options, true, 1.0).At("y").samples - healthy.At("y").samples).tail(800).norm();
+  const double all = (Run(options, true, 1.0).At("y").samples - healthy.At("y").samples)
+                         .tail(800)
+                         .norm();
   EXPECT_LT(left, 0.01 * all);
 }
 
