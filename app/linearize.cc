@@ -203,8 +203,10 @@ Answer ComparePublished(const Machine& machine, nlohmann::json& document) {
 void Linearize(const LinearizeOptions& options) {
   const Subject subject = LoadSubject(options.machine);
   const Machine& machine = subject.machine;
-  if (!machine.changes().effects.empty() || !subject.options.disturbances.empty()) {
-    throw InputError("linearize", "effects and disturbances are not linear",
+  if (!machine.changes().effects.empty() || !subject.options.disturbances.empty() ||
+      !subject.options.late_faults.empty()) {
+    throw InputError("linearize",
+                     "effects, disturbances and late faults are not linear",
                      "fault parameters of the plant only");
   }
   const MechanicalModel& extracted = machine.linear();

@@ -75,6 +75,7 @@ std::vector<TitledRecord> SimulateRuns(const Subject& subject,
   faulty.log_joints = true;
   RunOptions healthy = faulty;
   healthy.disturbances.clear();
+  healthy.late_faults.clear();
   std::vector<TitledRecord> runs;
   runs.push_back({"healthy", Run(subject.nominal, motion, excitation, healthy,
                                  "simulating the healthy")});

@@ -10,7 +10,9 @@
 #include "app/format.h"
 #include "app/output.h"
 #include "app/subject.h"
+#include "app/tolerance_output.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
+#include "mjdiag/plugin/design/fault_tolerance.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
@@ -25,6 +27,7 @@ struct SimulateOptions {
   std::string format = "csv";
   bool log_joints = false;
   bool diagnose = false;
+  bool tolerate = false;
   DiagnosisSource source;
 };
 
@@ -69,13 +72,21 @@ void Simulate(const SimulateOptions& options) {
   std::optional<PreparedDiagnosis> prepared;
   std::optional<DiagnosisRecording> recording;
   std::optional<MonitorObserver> observer;
-  if (options.diagnose) {
+  std::optional<TolerancePlan> plan;
+  std::optional<FaultTolerance> tolerance;
+  if (options.diagnose || options.tolerate) {
     DiagnosisSource source = options.source;
     source.nominal.linear = options.motion.linear;
     prepared = Prepare(subject.nominal, source, excitation);
     recording.emplace(BeginDiagnosis(subject.nominal, *prepared, excitation.samples()));
     observer.emplace(*recording);
     subject.options.observer = &*observer;
+  }
+  if (options.tolerate) {
+    plan = PlanTolerance(subject.nominal, subject.options.mode);
+    tolerance.emplace(*plan, recording->monitor, *observer);
+    subject.options.observer = &*tolerance;
+    subject.options.reconfiguration = &tolerance->reconfiguration();
   }
   const auto start = std::chrono::steady_clock::now();
   const Record record =
@@ -103,7 +114,12 @@ void Simulate(const SimulateOptions& options) {
     text += "\nrecord: " + file.string() + "\n";
   }
   std::function<NamedPage()> page;
-  if (options.diagnose) {
+  if (tolerance) {
+    document["tolerance"] =
+        ToleranceJson(tolerance->reconfiguration(), *plan, subject.setup());
+    text += "\n" + DescribeTolerance(tolerance->reconfiguration(), subject.setup());
+  }
+  if (recording) {
     recording->Finish();
     const Diagnosis diagnosis = ConcludeWithLog(*recording);
     document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
@@ -135,6 +151,8 @@ void AddSimulate(CLI::App& app) {
                     "Also record the position of every joint");
   command->add_flag("--diagnose", options->diagnose,
                     "Run the diagnosis inside the control callback");
+  command->add_flag("--tolerate", options->tolerate,
+                    "Let what it finds act on the controllers while the machine runs");
   AddDiagnosisOptions(*command, options->source);
   command->callback([options] { Simulate(*options); });
 }

@@ -17,6 +17,7 @@
 #include "mjdiag/studies/disturbance_study.h"
 #include "mjdiag/studies/estimation_study.h"
 #include "mjdiag/studies/hidden_table.h"
+#include "mjdiag/studies/tolerance_study.h"
 
 namespace mjdiag::app {
 namespace {
@@ -54,6 +55,7 @@ const std::map<std::string, Study>& Studies() {
       {"estimation", EstimationStudy},
       {"disturbance", DisturbanceStudy},
       {"bound", BoundStudy},
+      {"tolerance", ToleranceStudy},
       {"hidden", HiddenEffects<1>},
       {"hidden_none", HiddenEffects<0>},
       {"hidden_two", HiddenEffects<2>}};

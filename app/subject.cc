@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "app/format.h"
 #include "app/progress.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag::app {
 namespace {
@@ -15,21 +18,43 @@ namespace {
 constexpr double kLongestRun = 1e4;  // s
 constexpr double kMostNoise = 1e9;
 
-Fault ParseFault(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  Fault fault{text.substr(0, equals), 0.0};
-  const char* begin = text.data() + (equals == text.npos ? text.size() : equals + 1);
+std::optional<double> ParseNumber(std::string_view text) {
+  double number = 0.0;
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(begin, end, fault.value);
-  if (error != std::errc() || stop != end) {
-    throw InputError("--fault '" + text + "'", "no number", "<name>=<value>");
-  }
-  return fault;
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
 }
 
-bool IsDisturbance(const Setup& setup, const std::string& name) {
-  return std::any_of(setup.disturbances.begin(), setup.disturbances.end(),
-                     [&](const MultisineSetup& d) { return d.name == name; });
+/// <name>=<value>, or <name>=<value>@<time>.
+LateFault ParseFault(const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const std::string_view rest =
+      std::string_view(text).substr(std::min(equals + 1, text.size()));
+  const std::size_t at = std::min(rest.find('@'), rest.size());
+  const auto value = ParseNumber(rest.substr(0, at));
+  const auto time = at == rest.size() ? 0.0 : ParseNumber(rest.substr(at + 1));
+  if (!value || !time) {
+    throw InputError("--fault '" + text + "'", "no number",
+                     "<name>=<value> or <name>=<value>@<seconds>");
+  }
+  return {{text.substr(0, equals), *value}, *time};
+}
+
+void AddLateFault(const LateFault& late, Subject& subject) {
+  const auto& [fault, time] = late;
+  if (!(time >= 0.0) || time > kLongestRun) {
+    throw InputError("--fault " + fault.name, "appears at no time of a run",
+                     "0 to " + Short(kLongestRun) + " s");
+  }
+  for (const LateFault& other : subject.options.late_faults) {
+    if (other.fault.name == fault.name && other.time == time) {
+      throw InputError("--fault " + fault.name, "given twice", "one value a time");
+    }
+  }
+  // Complains of names and values that there are not.
+  if (!IsDisturbance(subject.setup(), fault.name)) subject.nominal.With({{fault}, {}});
+  subject.options.late_faults.push_back(late);
 }
 
 void AddFault(const Fault& fault, Subject& subject) {
@@ -39,14 +64,24 @@ void AddFault(const Fault& fault, Subject& subject) {
                   [&](const Fault& f) { return f.name == fault.name; })) {
     throw InputError("--fault " + fault.name, "given twice", "one value");
   }
-  if (!std::isfinite(fault.value)) {
-    throw InputError("--fault " + fault.name, "not a finite number", "a finite one");
-  }
   if (IsDisturbance(subject.setup(), fault.name)) {
     subject.options.disturbances[fault.name] = fault.value;
     return;
   }
   subject.machine = subject.machine.With({{fault}, {}});
+}
+
+void AddFault(const std::string& text, Subject& subject) {
+  const LateFault fault = ParseFault(text);
+  if (!std::isfinite(fault.fault.value)) {
+    throw InputError("--fault " + fault.fault.name, "not a finite number",
+                     "a finite one");
+  }
+  if (text.find('@') == text.npos) {
+    AddFault(fault.fault, subject);
+  } else {
+    AddLateFault(fault, subject);
+  }
 }
 
 }  // namespace
@@ -73,7 +108,7 @@ void AddMachineOptions(CLI::App& command, MachineOptions& options) {
   command.add_option(
       "--fault", options.faults,
       "Set a fault parameter of the plant or a disturbance of the setup, for "
-      "example zeta_x=1.05");
+      "example zeta_x=1.05; from a time of the run on [s]: zeta_x=1.05@0.5");
   command.add_option("--effect", options.effects,
                      "Add physics that the plant lacks, for example "
                      "coulomb_friction@load:force=20");
@@ -105,7 +140,7 @@ Subject LoadSubject(const MachineOptions& options) {
   if (options.no_friction) setup.physics.static_friction = false;
   const Machine nominal(std::move(setup));
   Subject subject{nominal, nominal, {}};
-  for (const std::string& text : options.faults) AddFault(ParseFault(text), subject);
+  for (const std::string& text : options.faults) AddFault(text, subject);
   for (const PlacedEffect& effect : nominal.effects()) {
     CheckEffect(nominal.plant(), effect);
   }
@@ -166,6 +201,10 @@ std::string Describe(const Subject& subject) {
   for (const auto& [name, magnitude] : subject.options.disturbances) {
     append(name + " = " + Short(magnitude));
   }
+  for (const auto& [fault, time] : subject.options.late_faults) {
+    append(fault.name + " = " + Short(fault.value) + " from " +
+           FormatQuantity(time, "s") + " on");
+  }
   for (const PlacedEffect& effect : effects) {
     append(effect.name() + " at " + effect.site);
   }
@@ -179,6 +218,9 @@ nlohmann::json ToJson(const Subject& subject) {
   }
   for (const auto& [name, magnitude] : subject.options.disturbances) {
     faults.push_back({{"name", name}, {"value", magnitude}});
+  }
+  for (const auto& [fault, time] : subject.options.late_faults) {
+    faults.push_back({{"name", fault.name}, {"value", fault.value}, {"since", time}});
   }
   nlohmann::json effects = nlohmann::json::array();
   for (const PlacedEffect& effect : subject.machine.changes().effects) {

@@ -34,11 +34,12 @@ struct MotionOptions {
 struct Subject {
   Machine nominal;
   Machine machine;     ///< with the faults and effects of the options
-  RunOptions options;  ///< with their disturbances
+  RunOptions options;  ///< with their disturbances and late faults
 
   const Setup& setup() const { return nominal.setup(); }
   bool healthy() const {
-    return machine.changes() == Changes{} && options.disturbances.empty();
+    return machine.changes() == Changes{} && options.disturbances.empty() &&
+           options.late_faults.empty();
   }
 };
 

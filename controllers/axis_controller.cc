@@ -56,20 +56,23 @@ class FeedforwardFeedback final : public AxisController {
                 double disturbance) noexcept override {
     double command = disturbance;
     if (mode_ != ControlMode::kFeedback) {
-      command += feedforward_.snap * reference.snap +
-                 feedforward_.acceleration * reference.acceleration +
-                 feedforward_.velocity * reference.velocity;
+      command += gain_ * (feedforward_.snap * reference.snap +
+                          feedforward_.acceleration * reference.acceleration +
+                          feedforward_.velocity * reference.velocity);
     }
     if (mode_ != ControlMode::kFeedforward) {
-      command += feedback_.Update(reference.position - measured);
+      command += feedback_.Update(gain_ * (reference.position - measured));
     }
     return command;
   }
+
+  void SetGain(double gain) noexcept override { gain_ = gain; }
 
  private:
   FeedforwardGains feedforward_;
   Compensator feedback_;
   ControlMode mode_;
+  double gain_ = 1.0;
 };
 
 class NestedLoopController final : public AxisController {
@@ -88,18 +91,22 @@ class NestedLoopController final : public AxisController {
     const double velocity = (mean - previous_mean_) * rate_;
     previous_ = measured;
     previous_mean_ = mean;
-    const double command =
-        gains_.position_gain * gains_.velocity_gain * (reference.position - measured) -
-        gains_.velocity_gain * velocity + disturbance;
+    const double command = gain_ * (gains_.position_gain * gains_.velocity_gain *
+                                        (reference.position - measured) -
+                                    gains_.velocity_gain * velocity) +
+                           disturbance;
     if (gains_.saturation == 0.0) return command;
     return std::clamp(command, -gains_.saturation, gains_.saturation);
   }
+
+  void SetGain(double gain) noexcept override { gain_ = gain; }
 
  private:
   NestedLoops gains_;
   double rate_;                 ///< [Hz]
   double previous_ = 0.0;       ///< q(k-1)
   double previous_mean_ = 0.0;  ///< qf(k-1)
+  double gain_ = 1.0;
 };
 
 }  // namespace

@@ -24,6 +24,11 @@ class AxisController {
   /// @return the command to the drive (for example A or V)
   virtual double Update(const ReferenceSample& reference, double measured,
                         double disturbance) noexcept = 0;
+  /// From the next tick on for a drive with 1/gain of its force: feedforward and errors
+  /// are multiplied by it, before whatever the feedback remembers. An integrator holds
+  /// its load through a change of the gain, and the command does not jump; with a gain
+  /// that stays it is the same controller as one whose command is multiplied.
+  virtual void SetGain(double gain) noexcept = 0;
 };
 
 /// u = k_s snap + k_a acceleration + k_v velocity, [AB383], Eq. 35.

@@ -1,18 +1,8 @@
 #include "mjdiag/studies/machine_study.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mjdiag {
-namespace {
-
-bool IsDisturbance(const Setup& setup, const std::string& name) {
-  return std::any_of(setup.disturbances.begin(), setup.disturbances.end(),
-                     [&](const MultisineSetup& source) { return source.name == name; });
-}
-
-}  // namespace
-
 FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
                          std::uint64_t seed) {
   RunOptions options;

@@ -150,6 +150,7 @@ void PredictionErrorEstimator::Begin() noexcept {
     twin_->Start(theta_, segment_.state);
   }
   seen_ = settles ? segment_.settling_from : segment_.origin;
+  phase_origin_ = seen_;
   softer_at_ = seen_ + twin_->gains()[pull_].settling;
   work_ = nominal_ - center_;
   information_.Start(theta_.size() - (segment_.at_rest || settles ? started : 0),

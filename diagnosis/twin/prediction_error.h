@@ -77,8 +77,10 @@ class PredictionErrorEstimator {
   /// Mean over recent blocks of the squared innovations over what noise and the
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
   double surprise() const { return inflation_ * surprise_; }
-  /// Index of the gain: 0 where the twin is as it is assumed to be.
-  std::size_t gain() const { return gain_; }
+  /// Whether it looks at the machine as finely as it can.
+  bool fine() const { return inflation_ == 1.0 && !Pulled(); }
+  /// Tick at which the phases of its tones begin.
+  Eigen::Index phase_origin() const { return phase_origin_; }
   /// Tick from which the machine has been as it is estimated.
   Eigen::Index since() const { return segment_.origin; }
   int returns() const { return returns_; }
@@ -158,6 +160,7 @@ class PredictionErrorEstimator {
   bool settled_ = false;
   std::size_t pull_ = 0;        // gain of the twin now, gain_ when it has settled
   Eigen::Index softer_at_ = 0;  // tick of the next softer one
+  Eigen::Index phase_origin_ = 0;
 
   Segment segment_, earlier_;
   std::vector<Checkpoint> checkpoints_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -25,13 +26,13 @@ constexpr double kExplained = 2.0;
 /// Deviation of a fault from healthy, and its standard deviation.
 std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& theta,
                                       const VectorXd& variance) {
-  if (fault.tones == 0) {
+  if (fault.frequencies.empty()) {
     return {std::expm1(theta[fault.first]),
             std::exp(theta[fault.first]) * std::sqrt(variance[fault.first])};
   }
   double weights = 0.0;
   double squares = 0.0;
-  for (Index i = 0; i < fault.tones; ++i) {
+  for (Index i = 0; i < fault.tones(); ++i) {
     const Index at = fault.first + 2 * i;
     const double spread = variance[at] + variance[at + 1];
     const double weight = 2.0 / spread;
@@ -45,6 +46,7 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
 
 TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
     : faults_(std::move(machine.faults)),
+      sample_time_(machine.sample_time),
       estimator_(std::move(machine.twin), std::move(machine.unknowns), machine.prior,
                  machine.sample_time, options) {}
 
@@ -60,6 +62,20 @@ void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     sd[static_cast<Index>(i)] =
         DeviationOf(faults_[i], estimator_.theta(), variance).second;
+  }
+}
+
+void TwinEstimator::ReadTones(const TwinFault& fault,
+                              Eigen::Ref<VectorXd> parts) const noexcept {
+  const double since =
+      static_cast<double>(estimator_.phase_origin()) * sample_time_;
+  for (Index i = 0; i < fault.tones(); ++i) {
+    const double angle =
+        2.0 * std::numbers::pi * fault.frequencies[static_cast<std::size_t>(i)] * since;
+    const double sine = estimator_.theta()[fault.first + 2 * i];
+    const double cosine = estimator_.theta()[fault.first + 2 * i + 1];
+    parts[2 * i] = sine * std::cos(angle) + cosine * std::sin(angle);
+    parts[2 * i + 1] = cosine * std::cos(angle) - sine * std::sin(angle);
   }
 }
 
@@ -86,7 +102,7 @@ TwinReading TwinEstimator::Read() const {
     const TwinFault& fault = faults_[i];
     const auto at = static_cast<Index>(i);
     std::vector<Index> group(
-        static_cast<std::size_t>(std::max<Index>(1, 2 * fault.tones)));
+        static_cast<std::size_t>(std::max<Index>(1, 2 * fault.tones())));
     std::iota(group.begin(), group.end(), fault.first);
     groups.push_back(std::move(group));
     std::tie(reading.deviation[at], reading.sd[at]) =
@@ -99,11 +115,11 @@ TwinReading TwinEstimator::Read() const {
     bool alike = own < kNothing * prior[at];
     for (std::size_t k = 0; k < faults_.size() && !alike; ++k) {
       const Index other = faults_[k].first;
-      alike = k != i && faults_[i].tones == 0 && faults_[k].tones == 0 &&
+      alike = k != i && faults_[i].frequencies.empty() && faults_[k].frequencies.empty() &&
               std::pow(information(at, other), 2) >
                   kAlike * own * (information(other, other) - prior[other]);
     }
-    if (alike && faults_[i].tones == 0) {
+    if (alike && faults_[i].frequencies.empty()) {
       reading.inseparable.push_back(static_cast<Index>(i));
     }
   }

@@ -23,7 +23,10 @@ namespace mjdiag {
 struct TwinFault {
   std::string name;
   Eigen::Index first = 0;
-  Eigen::Index tones = 0;  ///< 0: the one unknown of a fault parameter
+  /// Of its tones [Hz]; empty: the one unknown of a fault parameter.
+  std::vector<double> frequencies;
+
+  Eigen::Index tones() const { return static_cast<Eigen::Index>(frequencies.size()); }
 };
 
 /// A twin with what its unknowns mean.
@@ -64,6 +67,9 @@ class TwinEstimator {
   void Read(Eigen::Ref<Eigen::VectorXd> deviation) noexcept;
   /// Its standard deviations, nf. Does not allocate.
   void ReadSpread(Eigen::Ref<Eigen::VectorXd> sd) noexcept;
+  /// Sine and cosine of every tone of a disturbance, from the first sample on, 2 tones.
+  /// Does not allocate.
+  void ReadTones(const TwinFault& fault, Eigen::Ref<Eigen::VectorXd> parts) const noexcept;
   /// The same with what is known of it.
   TwinReading Read() const;
 
@@ -72,6 +78,7 @@ class TwinEstimator {
 
  private:
   std::vector<TwinFault> faults_;
+  double sample_time_;
   PredictionErrorEstimator estimator_;
 };
 

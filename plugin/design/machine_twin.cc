@@ -75,14 +75,13 @@ std::vector<TwinFault> FaultsOf(const Machine& machine,
                                 const UncertainMachine& uncertain) {
   std::vector<TwinFault> faults;
   for (Index i = 0; i < uncertain.faults; ++i) {
-    faults.push_back({uncertain.unknowns[static_cast<std::size_t>(i)].name, i, 0});
+    faults.push_back({uncertain.unknowns[static_cast<std::size_t>(i)].name, i, {}});
   }
   if (uncertain.tones.empty()) return faults;
   Index first = uncertain.first_tone();
   for (const MultisineSetup& source : machine.setup().disturbances) {
-    const auto tones = static_cast<Index>(source.frequencies.size());
-    faults.push_back({source.name, first, tones});
-    first += 2 * tones;
+    faults.push_back({source.name, first, source.frequencies});
+    first += 2 * faults.back().tones();
   }
   return faults;
 }

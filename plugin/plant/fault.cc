@@ -1,5 +1,6 @@
 #include "mjdiag/plugin/plant/fault.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string_view>
@@ -77,6 +78,12 @@ void ApplyFault(mjModel& model, const Fault& fault) {
   for (const int element : parameter.elements) {
     Scale(model, {parameter.kind, element}, fault.value);
   }
+}
+
+void CopyFaults(const mjModel& from, mjModel& to) noexcept {
+  std::copy_n(from.dof_damping, from.nv, to.dof_damping);
+  std::copy_n(from.jnt_stiffness, from.njnt, to.jnt_stiffness);
+  std::copy_n(from.actuator_gear, 6 * from.nu, to.actuator_gear);
 }
 
 }  // namespace mjdiag

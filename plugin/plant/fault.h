@@ -37,4 +37,8 @@ std::vector<FaultParameter> FaultParameters(const mjModel& model);
 /// kept as it is in qpos_spring, so the equilibrium moves as it would on the machine.
 void ApplyFault(mjModel& model, const Fault& fault);
 
+/// Gives a model that runs the values that another of the same plant has of everything
+/// that fault parameters scale. Does not allocate.
+void CopyFaults(const mjModel& from, mjModel& to) noexcept;
+
 }  // namespace mjdiag

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/machine/stepper.h"
@@ -9,6 +11,7 @@
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/runtime/instance.h"
+#include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -42,6 +45,19 @@ void ReportProgress(const RunOptions& options, Eigen::Index tick, Eigen::Index t
   }
 }
 
+/// The exact map of a tick, about the rest.
+struct LinearPlant {
+  StateSpace tick;
+  Eigen::VectorXd rest;          // nq
+  Eigen::VectorXd rest_reading;  // ny
+};
+
+LinearPlant LinearPlantOf(const Machine& machine) {
+  const Rates& rates = machine.rates();
+  return {TickModel(machine.linear(), rates.step(), rates.substeps), machine.rest(),
+          SensorReadings(machine.channels(), machine.plant(), machine.rest())};
+}
+
 void CheckNotEmpty(const Excitation& excitation) {
   if (excitation.samples() == 0) {
     throw InputError("excitation", "no samples", "at least one control tick");
@@ -62,6 +78,8 @@ void CheckMode(const Control& control, ControlMode mode) {
 Record Simulate(const Machine& machine, const Excitation& excitation,
                 const RunOptions& options) {
   CheckNotEmpty(excitation);
+  const std::vector<MachineStage> stages = StagesOf(machine, options.late_faults);
+  auto stage = stages.begin();
   const StartedPlant plant = StartPlant(machine, excitation.start);
   const mjModel& model = *plant.model;
   mjData& data = *plant.data;
@@ -69,6 +87,9 @@ Record Simulate(const Machine& machine, const Excitation& excitation,
   Attach(model, data, instance);
   const Eigen::Index ticks = excitation.samples();
   for (Eigen::Index tick = 0; tick < ticks; ++tick) {
+    for (; stage != stages.end() && stage->tick <= tick; ++stage) {
+      CopyFaults(stage->machine.plant(), *plant.model);
+    }
     for (int substep = 0; substep < machine.rates().substeps; ++substep) {
       mj_step(&model, &data);
     }
@@ -98,37 +119,41 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
                      "the plant carries effects, which are not linear",
                      "a plant without, or the nonlinear plant");
   }
-  const MechanicalModel& linear = machine.linear();
-  const Rates& rates = machine.rates();
-  const StateSpace tick_model = TickModel(linear, rates.step(), rates.substeps);
-  const Eigen::VectorXd& rest = machine.rest();
-  const Eigen::VectorXd rest_reading =
-      SensorReadings(machine.channels(), machine.plant(), rest);
-
-  const Eigen::Index nq = linear.M.rows();
+  const std::vector<MachineStage> stages = StagesOf(machine, options.late_faults);
+  auto stage = stages.begin();
+  LinearPlant plant = LinearPlantOf(machine);
+  const std::vector<std::string>& joint_names = machine.linear().coordinates;
+  const auto nq = static_cast<Eigen::Index>(joint_names.size());
   const Eigen::Index ticks = excitation.samples();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * nq);
   x.head(nq) =
-      StartPosition(machine.channels(), machine.plant(), rest, excitation.start) - rest;
+      StartPosition(machine.channels(), machine.plant(), plant.rest, excitation.start) -
+      plant.rest;
   Eigen::VectorXd next(2 * nq);
-  Eigen::VectorXd y(rest_reading.size());
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(tick_model.inputs());
+  Eigen::VectorXd y(plant.rest_reading.size());
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(plant.tick.inputs());
   Eigen::MatrixXd joints(options.log_joints ? nq : 0, ticks);
 
   TickLoop loop(machine.setup(), excitation, options);
   for (Eigen::Index tick = 0; tick < ticks; ++tick) {
-    y.noalias() = tick_model.C * x;
-    y += rest_reading;
-    if (options.log_joints) joints.col(tick) = rest + x.head(nq);
+    for (; stage != stages.end() && stage->tick <= tick; ++stage) {
+      LinearPlant worn = LinearPlantOf(stage->machine);
+      x.head(nq) += plant.rest - worn.rest;
+      plant = std::move(worn);
+    }
+    y.noalias() = plant.tick.C * x;
+    y += plant.rest_reading;
+    if (options.log_joints) joints.col(tick) = plant.rest + x.head(nq);
     loop.Tick({y.data(), static_cast<std::size_t>(y.size())},
               {u.data(), static_cast<std::size_t>(u.size())});
-    next.noalias() = tick_model.A * x;
-    next.noalias() += tick_model.B * u;
+    next.noalias() = plant.tick.A * x;
+    next.noalias() += plant.tick.B * u;
     x.swap(next);
     if (Eigen::Index worst = 0; !(x.cwiseAbs().maxCoeff(&worst) < mjMAXVAL)) {
-      throw NumericalError("simulation: linear plant diverged at " +
-                           std::to_string(static_cast<double>(tick) * rates.tick()) +
-                           " s in joint '" + linear.coordinates[worst % nq] + "'");
+      throw NumericalError(
+          "simulation: linear plant diverged at " +
+          std::to_string(static_cast<double>(tick) * machine.rates().tick()) +
+          " s in joint '" + joint_names[static_cast<std::size_t>(worst % nq)] + "'");
     }
     ReportProgress(options, tick, ticks);
   }

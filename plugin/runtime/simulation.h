@@ -14,8 +14,10 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mjdiag/controllers/axis_controller.h"
+#include "mjdiag/controllers/reconfiguration.h"
 #include "mjdiag/controllers/reference.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
@@ -58,14 +60,25 @@ class TickObserver {
                       std::span<const double> inputs) noexcept = 0;
 };
 
+/// A fault parameter or a disturbance that has another value from a time on; the tick
+/// nearest to it is the first of it. What it had before may come back the same way.
+struct LateFault {
+  Fault fault;
+  double time = 0.0;  ///< [s] since the start of the run
+};
+
 struct RunOptions {
   ControlMode mode = ControlMode::kBoth;
   /// Multisine disturbance -> magnitude (gamma of Eq. 7); left out: 0.
   std::map<std::string, double> disturbances;
+  std::vector<LateFault> late_faults;
   double noise_scale = 1.0;  ///< times every sensor's noise; 0: none
   std::uint64_t seed = 1;
   bool log_joints = false;
-  TickObserver* observer = nullptr;               ///< not owned
+  TickObserver* observer = nullptr;  ///< not owned
+  /// Corrects what the controllers command; somebody, for example the observer, tells it
+  /// every tick what it knows of the faults. Not owned.
+  Reconfiguration* reconfiguration = nullptr;
   std::function<void(double fraction)> progress;  ///< called now and then from the run
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -38,6 +39,7 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
       noise_scale_(options.noise_scale),
       generator_(options.seed),
       observer_(options.observer),
+      reconfiguration_(options.reconfiguration),
       reading_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sensors_.size()))),
       command_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators_.size()))),
       readings_(reading_.size(), excitation.samples()),
@@ -50,6 +52,12 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
     AddAxes(setup, excitation, options.mode);
   }
   AddSines(setup, options);
+  references_.resize(axes_.size());
+  if (reconfiguration_ != nullptr && reconfiguration_->axes().size() != axes_.size()) {
+    throw InputError("reconfiguration",
+                     std::to_string(reconfiguration_->axes().size()) + " axes",
+                     std::to_string(axes_.size()) + ", those of the run");
+  }
 }
 
 void TickLoop::AddAxes(const Setup& setup, const Excitation& excitation,
@@ -76,18 +84,37 @@ void TickLoop::AddAxes(const Setup& setup, const Excitation& excitation,
 
 void TickLoop::AddSines(const Setup& setup, const RunOptions& options) {
   for (const auto& [name, magnitude] : options.disturbances) {
-    const auto source =
-        std::find_if(setup.disturbances.begin(), setup.disturbances.end(),
-                     [&n = name](const auto& d) { return d.name == n; });
-    if (source == setup.disturbances.end()) {
-      throw InputError("disturbance", "'" + name + "' is not one of the setup",
-                       "a name under [disturbances]");
-    }
-    for (const auto& [channel, amplitude] : source->amplitude) {
-      for (const double frequency : source->frequencies) {
-        sines_.push_back({setup.channels.ActuatorIndex(channel), magnitude * amplitude,
-                          2.0 * std::numbers::pi * frequency});
-      }
+    AddSines(setup, {{name, magnitude}, 0.0});
+  }
+  std::vector<LateFault> late;
+  for (const LateFault& fault : options.late_faults) {
+    if (IsDisturbance(setup, fault.fault.name)) late.push_back(fault);
+  }
+  std::stable_sort(late.begin(), late.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
+  for (const LateFault& fault : late) AddSines(setup, fault);
+}
+
+void TickLoop::AddSines(const Setup& setup, const LateFault& disturbance) {
+  const auto& [name, magnitude] = disturbance.fault;
+  const auto source = std::find_if(setup.disturbances.begin(), setup.disturbances.end(),
+                                   [&n = name](const auto& d) { return d.name == n; });
+  if (source == setup.disturbances.end()) {
+    throw InputError("disturbance", "'" + name + "' is not one of the setup",
+                     "a name under [disturbances]");
+  }
+  const Eigen::Index from = TickOf(disturbance, sample_time_);
+  const auto which = source - setup.disturbances.begin();
+  for (Sine& earlier : sines_) {
+    if (earlier.source == which) earlier.until = std::min(earlier.until, from);
+  }
+  for (const auto& [channel, amplitude] : source->amplitude) {
+    for (const double frequency : source->frequencies) {
+      sines_.push_back({.source = which,
+                        .actuator = setup.channels.ActuatorIndex(channel),
+                        .amplitude = magnitude * amplitude,
+                        .angular_frequency = 2.0 * std::numbers::pi * frequency,
+                        .from = from});
     }
   }
 }
@@ -100,6 +127,14 @@ void TickLoop::ReadSensors(std::span<const double> outputs) noexcept {
   }
 }
 
+std::span<const AxisCorrection> TickLoop::Correct(Eigen::Index k) noexcept {
+  if (reconfiguration_ == nullptr) return {};
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    references_[i] = reference_.axes[i].At(k);
+  }
+  return reconfiguration_->Correct(references_);
+}
+
 void TickLoop::Command(Eigen::Index k) noexcept {
   command_.setZero();
   for (std::size_t i = 0; i < feedthrough_.size(); ++i) {
@@ -107,9 +142,14 @@ void TickLoop::Command(Eigen::Index k) noexcept {
       command_[static_cast<Eigen::Index>(i)] = feedthrough_[i]->samples[k];
     }
   }
+  const std::span<const AxisCorrection> corrections = Correct(k);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
-    const double known = axis.disturbance ? axis.disturbance->samples[k] : 0.0;
+    double known = axis.disturbance ? axis.disturbance->samples[k] : 0.0;
+    if (!corrections.empty()) {
+      axis.controller->SetGain(corrections[i].gain);
+      known += corrections[i].addition;
+    }
     command_[axis.actuator] +=
         axis.drive_gain *
         axis.controller->Update(reference_.axes[i].At(k), reading_[axis.sensor], known);
@@ -137,6 +177,7 @@ void TickLoop::Tick(std::span<const double> outputs,
   std::copy(command_.begin(), command_.end(), inputs.begin());
   const double time = static_cast<double>(tick_) * sample_time_;
   for (const Sine& sine : sines_) {
+    if (tick_ < sine.from || tick_ >= sine.until) continue;
     inputs[static_cast<std::size_t>(sine.actuator)] +=
         sine.amplitude * std::sin(sine.angular_frequency * time);
   }

@@ -4,6 +4,7 @@
 // Everything is allocated in the constructor.
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <random>
 #include <span>
@@ -41,15 +42,21 @@ class TickLoop : public TickControl {
     const Channel* disturbance = nullptr;  // in inputs_
   };
   struct Sine {
+    std::ptrdiff_t source = 0;  // disturbance of the setup
     Eigen::Index actuator = 0;
     double amplitude = 0.0;
     double angular_frequency = 0.0;
+    Eigen::Index from = 0;
+    Eigen::Index until = std::numeric_limits<Eigen::Index>::max();
   };
 
   void AddAxes(const Setup& setup, const Excitation& excitation, ControlMode mode);
   void AddSines(const Setup& setup, const RunOptions& options);
+  void AddSines(const Setup& setup, const LateFault& disturbance);
   void ReadSensors(std::span<const double> outputs) noexcept;
   void Command(Eigen::Index k) noexcept;
+  /// What the reconfiguration adds to the command of every axis; its gains are set.
+  std::span<const AxisCorrection> Correct(Eigen::Index k) noexcept;
 
   std::vector<SensorSetup> sensors_;
   std::vector<ActuatorSetup> actuators_;
@@ -63,6 +70,8 @@ class TickLoop : public TickControl {
   std::mt19937_64 generator_;
   std::normal_distribution<double> normal_;
   TickObserver* observer_;
+  Reconfiguration* reconfiguration_;
+  std::vector<ReferenceSample> references_;  // this tick
   Eigen::Index tick_ = 0;
   Eigen::VectorXd reading_;   // this tick, with noise
   Eigen::VectorXd command_;   // this tick, without unknown disturbances

@@ -1,5 +1,6 @@
 #include "mjdiag/plugin/setup/setup.h"
 
+#include <algorithm>
 #include <set>
 
 #include "mjdiag/plugin/setup/setup_reader.h"
@@ -48,6 +49,11 @@ const Trajectory& Trajectories::Find(std::string_view name) const {
 
 const FaultSizes& Setup::Study(std::string_view study) const {
   return FindNamed(name, studies, &FaultSizes::name, study, "[studies] table");
+}
+
+bool IsDisturbance(const Setup& setup, std::string_view name) {
+  return std::any_of(setup.disturbances.begin(), setup.disturbances.end(),
+                     [&](const MultisineSetup& d) { return d.name == name; });
 }
 
 Setup ReadSetup(const std::filesystem::path& where,

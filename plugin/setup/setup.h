@@ -153,6 +153,9 @@ struct Setup {
   const FaultSizes& Study(std::string_view study) const;
 };
 
+/// Whether that is a disturbance of the setup, and no fault parameter of the plant.
+bool IsDisturbance(const Setup& setup, std::string_view name);
+
 /// Reads `<where>/setup.toml`, or `where` itself if it is a file. `overrides` are
 /// `key.path=value` in TOML syntax and replace values of the file. InputError names
 /// file, line and key: malformed TOML, unknown or missing key, wrong type, value out of

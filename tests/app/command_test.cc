@@ -57,6 +57,31 @@ TEST(Command, SimulateGivesTheSameBytesForTheSameSeed) {
   EXPECT_NE(first, record("c", 8));
 }
 
+TEST(Command, LetsAFaultAppearInTheCourseOfARun) {
+  const std::string run = "simulate --setup mjcf/ab383 --linear --duration 0.1 --json ";
+  const auto error = [&](const std::string& faults) {
+    const CommandResult result = RunCommand(run + faults);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto document = nlohmann::json::parse(result.out);
+    return document["tracking_error_max"]["x"].get<double>();
+  };
+  const double healthy = error("");
+  EXPECT_EQ(error("--fault eta_x=0.7@0.099"), healthy);
+  EXPECT_GT(error("--fault eta_x=0.7@0.02"), 5.0 * healthy);
+  EXPECT_LT(error("--fault eta_x=0.7@0.02 --fault eta_x=1@0.03"),
+            error("--fault eta_x=0.7@0.02"));
+}
+
+TEST(Command, RefusesAFaultAtNoTime) {
+  for (const char* fault :
+       {"eta_x=0.7@", "eta_x=0.7@-1", "eta_x=0.7@nan", "eta_x=@1"}) {
+    EXPECT_EQ(
+        RunCommand("simulate --setup mjcf/ab383 --fault " + std::string(fault)).status,
+        2)
+        << fault;
+  }
+}
+
 TEST(Command, LinearizeAgreesWithTheAnalyticModelAndThePrint) {
   const json document = JsonOf("linearize --setup mjcf/ab383 --compare --published");
   EXPECT_EQ(document["coordinates"].size(), 10u);

@@ -282,6 +282,28 @@ TEST_F(Diagnosis, RefusesHalfAFileOfFilters) {
   }
 }
 
+TEST(Tolerate, SaysWhatWasCorrectedAndSinceWhen) {
+  const std::string run =
+      "simulate --setup mjcf/ab383 --linear --fault eta_x=0.7 --duration 0.3 "
+      "--tolerate";
+  const CommandResult text = RunCommand(run);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("drive gain of x"), std::string::npos) << text.out;
+  const auto document = nlohmann::json::parse(RunCommand(run + " --json").out);
+  const auto& faults = document["tolerance"]["faults"];
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0]["name"], "eta_x");
+  EXPECT_NEAR(faults[0]["value"].get<double>(), 0.7, 1e-3);
+  EXPECT_LT(faults[0]["since"].get<double>(), 0.2);
+  EXPECT_TRUE(faults[0]["until"].is_null());
+}
+
+TEST(Tolerate, NeedsATwin) {
+  const CommandResult quiet = RunCommand("simulate --setup mjcf/emps --tolerate");
+  EXPECT_EQ(quiet.status, 2);
+  EXPECT_NE(quiet.err.find("the diagnosis has no twin"), std::string::npos);
+}
+
 TEST(Study, PrintsTheBoundAndWhatEstimatorsMakeOfIt) {
   const json document = JsonOf("study --setup mjcf/ab383 --preset bound");
   EXPECT_EQ(document["schema"], "mjdiag.study/1");

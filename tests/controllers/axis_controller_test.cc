@@ -190,6 +190,37 @@ TEST(NestedLoops, RefuseValuesThatMakeNoSense) {
   EXPECT_THROW(MakeNestedLoops({std::nan(""), 1.0, 1.0}, kMillisecond), InputError);
 }
 
+TEST(AxisController, WithAGainIsTheOneWhoseCommandIsMultiplied) {
+  const auto made = [](bool nested) {
+    return nested
+               ? MakeNestedLoops(kEmps, kMillisecond)
+               : MakeFeedforwardFeedback(kFeedforward, kFeedback, ControlMode::kBoth);
+  };
+  for (const bool nested : {false, true}) {
+    const auto plain = made(nested);
+    const auto gained = made(nested);
+    gained->SetGain(1.25);
+    for (const double sample : Noise(100)) {
+      const ReferenceSample reference{.position = 2e-6 * sample, .velocity = 0.01};
+      const double command = plain->Update(reference, 1e-6 * sample, 0.0);
+      EXPECT_NEAR(gained->Update(reference, 1e-6 * sample, 0.5), 1.25 * command + 0.5,
+                  1e-9);
+    }
+  }
+}
+
+// What an integrator has gathered is the load, whatever the drive.
+TEST(FeedforwardFeedback, HoldsItsLoadThroughAChangeOfTheGain) {
+  const auto controller = MakeFeedforwardFeedback({}, kFeedback, ControlMode::kBoth);
+  double load = 0.0;
+  for (int k = 0; k < 300; ++k) {
+    load = controller->Update({.position = k < 100 ? 1e-6 : 0.0}, 0.0, 0.0);
+  }
+  ASSERT_NE(load, 0.0);
+  controller->SetGain(1.4);
+  EXPECT_NEAR(controller->Update({}, 0.0, 0.0), load, 1e-9 * std::abs(load));
+}
+
 TEST(AxisController, AllocatesNothingWhileItRuns) {
   const auto both =
       MakeFeedforwardFeedback(kFeedforward, kFeedback, ControlMode::kBoth);

@@ -22,7 +22,11 @@ VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
   if (sensitivities != nullptr) sensitivities->resize(2 * blocks, theta.size());
   VectorXd reading(2);
   const VectorXd none = VectorXd::Zero(2);
-  twin.Start(theta, at_rest);
+  if (at_rest) {
+    twin.Start(theta);
+  } else {
+    twin.Start(theta, VectorXd::Zero(twin.states()));
+  }
   for (Index k = 0; k < kTicks; ++k) {
     const Index block = k / test::kBlock;
     twin.Predict(reading);
@@ -36,7 +40,9 @@ VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
 }
 
 LinearTwin Twin() {
-  return {test::UncertainStage(), MatrixXd::Zero(6, 2), test::kBlock};
+  return {test::UncertainStage(),
+          {{MatrixXd::Zero(6, 2), MatrixXd::Identity(2, 2), 0}},
+          test::kBlock};
 }
 
 TEST(LinearTwin, PredictsTheReadingsOfTheMachineThatItsUnknownsSay) {
@@ -50,7 +56,7 @@ TEST(LinearTwin, PredictsTheReadingsOfTheMachineThatItsUnknownsSay) {
   expected.colwise() += test::UncertainStage().rest;
   VectorXd reading(2);
   const VectorXd none = VectorXd::Zero(2);
-  twin.Start(theta, true);
+  twin.Start(theta);
   for (Index k = 0; k < kTicks; ++k) {
     twin.Predict(reading);
     ASSERT_LT((reading - expected.col(k)).norm(), 1e-13) << k;
@@ -86,7 +92,7 @@ TEST(LinearTwin, GoesToWhereAShiftTakesItToFirstOrder) {
   VectorXd change = theta;
   change.head(3) << 1e-4, -1e-4, 1e-4;
   const auto reading_after = [&](bool shifted) {
-    twin.Start(shifted ? theta : theta + change, true);
+    twin.Start(shifted ? theta : theta + change);
     for (Index k = 0; k < kTicks; ++k) {
       twin.Step({inputs.col(k).data(), 2}, none);
       if ((k + 1) % test::kBlock == 0) twin.EndBlock();

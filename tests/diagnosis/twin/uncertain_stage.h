@@ -26,16 +26,21 @@ inline UncertainModel UncertainStage() {
   model.rest = Eigen::Vector2d(0.1, -0.2);
   for (int i = 0; i < 3; ++i) {
     const MechanicalModel moved = Stage(Moved(Eigen::Vector3d::Unit(i)));
-    model.slopes.push_back({moved.D - model.nominal.D, moved.K - model.nominal.K,
-                            moved.Gamma - model.nominal.Gamma});
-    model.unknowns.push_back({kFaults[static_cast<std::size_t>(i)], 1.0, 0.1, true});
+    model.parts.push_back({{},
+                           moved.D - model.nominal.D,
+                           moved.K - model.nominal.K,
+                           moved.Gamma - model.nominal.Gamma,
+                           {},
+                           {i}});
+    model.unknowns.push_back(
+        {kFaults[static_cast<std::size_t>(i)], 1.0, 0.1, true, true});
   }
   model.tones.push_back({kTone, kToneAmplitude});
-  model.unknowns.push_back({"sine", 0.0, 0.1, false});
-  model.unknowns.push_back({"cosine", 0.0, 0.1, false});
+  model.unknowns.push_back({"sine", 0.0, 0.1, false, true});
+  model.unknowns.push_back({"cosine", 0.0, 0.1, false, true});
   model.start = StartDirections(model.nominal, 1.0);
   for (Eigen::Index i = 0; i < model.start.cols(); ++i) {
-    model.unknowns.push_back({"start " + std::to_string(i), 0.0, 1.0, false});
+    model.unknowns.push_back({"start " + std::to_string(i), 0.0, 1.0, false, false});
   }
   return model;
 }
@@ -74,13 +79,17 @@ inline TwinEstimator StageEstimator(const PredictionErrorOptions& options = {}) 
   gain.topRows(3) = 1.4 * omega * kTiming.tick() * PlacementOf(model.nominal);
   gain.bottomRows(3) = omega * omega * kTiming.tick() * PlacementOf(model.nominal);
   MachineTwin twin;
-  twin.twin = std::make_unique<LinearTwin>(model, gain, kBlock);
+  const Eigen::MatrixXd noise = kNoise * kNoise * Eigen::MatrixXd::Identity(2, 2);
+  twin.twin = std::make_unique<LinearTwin>(
+      model,
+      std::vector<TwinGain>{{Eigen::MatrixXd::Zero(6, 2), noise, 0},
+                            {gain, 1.2 * noise, 400}},
+      kBlock);
   twin.unknowns = model.unknowns;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    twin.faults.push_back({kFaults[static_cast<std::size_t>(i)], i, 0});
+    twin.faults.push_back({kFaults[static_cast<std::size_t>(i)], i, {}});
   }
-  twin.faults.push_back({"tone", 3, 1});
-  twin.sensor_noise = Eigen::Vector2d::Constant(kNoise);
+  twin.faults.push_back({"tone", 3, {kTone}});
   twin.sample_time = kTiming.tick();
   return {std::move(twin), options};
 }

@@ -36,7 +36,7 @@ class PlantTwinOfTheBonder : public testing::Test {
     if (sensitivities != nullptr) sensitivities->resize(3 * blocks, theta.size());
     VectorXd reading(3);
     const VectorXd none = VectorXd::Zero(3);
-    twin_.Start(theta, true);
+    twin_.Start(theta);
     for (Index k = 0; k < blocks * kBlock; ++k) {
       twin_.Predict(reading);
       means.segment(3 * (k / kBlock), 3) += reading / static_cast<double>(kBlock);
@@ -51,8 +51,12 @@ class PlantTwinOfTheBonder : public testing::Test {
   }
 
   const Machine machine_ = test::Bonder();
-  const UncertainPlant plant_ = MakeUncertainPlant(machine_);
-  PlantTwin twin_{machine_, plant_, MatrixXd::Zero(20, 3), kBlock};
+  const UncertainMachine plant_ = MakeUncertainMachine(machine_, {});
+  PlantTwin twin_{
+      machine_,
+      plant_,
+      {{MatrixXd::Zero(20, 3), MatrixXd::Identity(3, 3), 0}},
+      kBlock};
   MatrixXd outputs_;
   MatrixXd inputs_;
 };

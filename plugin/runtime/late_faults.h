@@ -1,0 +1,30 @@
+#pragma once
+// A machine in whose run faults appear, change and go: the machines that it is, one
+// after the other.
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+
+namespace mjdiag {
+
+/// What the machine is from a tick on.
+struct MachineStage {
+  Eigen::Index tick = 0;
+  Machine machine;
+};
+
+/// In the order of time, without that at the start; disturbances are left out. A value
+/// is that of the fault parameter, whatever it was before. InputError on an unknown
+/// name, on a time or value that is not finite and >= 0, and on a change from 0, which
+/// is no factor.
+std::vector<MachineStage> StagesOf(const Machine& machine,
+                                   std::span<const LateFault> faults);
+
+/// The first tick of a late fault.
+Eigen::Index TickOf(const LateFault& fault, double sample_time);
+
+}  // namespace mjdiag
