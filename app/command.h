@@ -9,6 +9,7 @@ void AddSimulate(CLI::App& app);
 void AddLinearize(CLI::App& app);
 void AddDesign(CLI::App& app);
 void AddDiagnose(CLI::App& app);
+void AddCalibrate(CLI::App& app);
 void AddCompare(CLI::App& app);
 void AddDiscover(CLI::App& app);
 void AddRender(CLI::App& app);

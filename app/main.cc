@@ -62,6 +62,7 @@ int Main(int argc, char** argv) {
   AddLinearize(app);
   AddDesign(app);
   AddDiagnose(app);
+  AddCalibrate(app);
   AddCompare(app);
   AddDiscover(app);
   AddRender(app);

@@ -34,12 +34,8 @@ constexpr double kSure = 5.0;
 /// Ticks a tick while it looks for the start.
 constexpr int kPace = 3;
 constexpr Index kFirstLook = 256;
-/// Passes without a longer horizon before it is looked at more coarsely: by that much
-/// in variance, and no more than that.
-constexpr int kPatience = 8;
-constexpr int kPatienceAtLast = 3;  // of a twin that has something to go back to
-constexpr double kCoarser = 10.0;
-constexpr double kCoarsest = 1e7;
+/// Passes without a longer horizon before it is looked at more coarsely.
+constexpr int kPatience = 3;
 /// A machine that this many passes do not explain is another one.
 constexpr int kMostReturns = 150;
 /// At the end of a run, until the estimate is where the twin runs.
@@ -142,10 +138,10 @@ void PredictionErrorEstimator::Begin() noexcept {
   theta_ = center_;
   pull_ = settles && !segment_.state_known ? covariances_.size() - 1 : gain_;
   twin_->UseGain(pull_);
-  if (settles) {
-    twin_->Start(theta_, segment_.settling_state);
-  } else if (segment_.at_rest) {
+  if (segment_.at_rest) {
     twin_->Start(theta_);
+  } else if (settles) {
+    twin_->Start(theta_, segment_.settling_state);
   } else {
     twin_->Start(theta_, segment_.state);
   }
@@ -174,7 +170,7 @@ void PredictionErrorEstimator::Add(std::span<const double> outputs,
   std::copy(inputs.begin(), inputs.end(),
             slot.begin() + static_cast<Index>(outputs.size()));
   ++added_;
-  if ((active() == 0 || began_elsewhere_) && !FindStart()) return;
+  if (active() == 0 && !FindStart()) return;
   ProcessKept();
   if (seen_ < added_) ProcessKept();
 }
@@ -209,7 +205,6 @@ bool PredictionErrorEstimator::FindStart() noexcept {
   twin_->StateAt(reading_, segment_.settling_state);
   // Beside the machine by its stiffest gain, until it has forgotten how it began.
   gain_ = covariances_.size() - 1;
-  began_elsewhere_ = false;
   next_look_ = segment_.origin + kPulledLook;
   Begin();
   return true;
@@ -305,7 +300,7 @@ void PredictionErrorEstimator::Regress() noexcept {
     if (seen_ == segment_.origin) twin_->ReadState(segment_.state);
     return;
   }
-  covariance_ = inflation_ * covariances_[pull_];
+  covariance_ = covariances_[pull_];
   sum_ /= static_cast<double>(twin_->block());
   block_surprise_ = information_.Surprise(psi, sum_, covariance_);
   if (gain_ > 0) {
@@ -348,8 +343,7 @@ void PredictionErrorEstimator::Unexplained() noexcept {
   } else {
     ++segment_.stuck;
     if (segment_.same >= kConfirmed && TryChange()) return;
-    const int patience = is_proven_.back() ? kPatienceAtLast : kPatience;
-    if (segment_.stuck > patience) return LookMoreCoarsely();
+    if (segment_.stuck > kPatience) return LookMoreCoarsely();
   }
   exhausted_ = returns_ >= kMostReturns;
   if (!exhausted_) GoBack();
@@ -358,47 +352,32 @@ void PredictionErrorEstimator::Unexplained() noexcept {
 void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
   segment_.explained = segment_.surprised = 0;
   segment_.stuck = segment_.same = 0;
-  if (segment_.at_rest && inflation_ < kCoarsest) {
-    inflation_ *= kCoarser;
-    return GoBack();
-  }
-  if (segment_.at_rest && added_ < options_.kept) {
-    // It only seemed to be at rest.
-    inflation_ = 1.0;
-    began_elsewhere_ = true;
-    theta_ = center_ = nominal_;
-    information_.Recentre();
-    return;
-  }
-  exhausted_ = gain_ + 1 >= covariances_.size() || returns_ >= kMostReturns;
+  const std::size_t stiffest = covariances_.size() - 1;
+  exhausted_ = gain_ == stiffest || returns_ >= kMostReturns;
   if (exhausted_) return;
-  ++gain_;
-  next_look_ = added_ + kPulledLook;
-  GoBack();
-  if (!is_proven_[gain_]) return;
-  center_ = proven_[gain_];
+  gain_ = is_proven_[gain_ + 1] ? gain_ + 1 : stiffest;
+  pulled_passes_ = 0;
+  next_look_ = is_proven_[gain_] ? added_ + added_ / 2 : added_ + kPulledLook;
+  center_ = is_proven_[gain_] ? proven_[gain_] : nominal_;
+  theta_ = center_;
   information_.Recentre();
-  Begin();
+  GoBack();
 }
 
 bool PredictionErrorEstimator::LookMoreFinely() noexcept {
-  if (gain_ == Finest() && inflation_ == 1.0) return false;
+  if (gain_ == Finest()) return false;
   segment_.explained = segment_.surprised = 0;
   segment_.stuck = segment_.same = 0;
   pulled_passes_ = 0;
-  if (inflation_ > 1.0) {
-    inflation_ = std::max(1.0, inflation_ / kCoarser);
-  } else {
-    proven_[gain_] = theta_;
-    is_proven_[gain_] = true;
-    --gain_;
-  }
+  proven_[gain_] = theta_;
+  is_proven_[gain_] = true;
+  --gain_;
   GoBack();
   return true;
 }
 
 bool PredictionErrorEstimator::TryChange() noexcept {
-  if (!segment_.may_have_changed || gain_ > Finest() || inflation_ > 1.0) return false;
+  if (!segment_.may_have_changed || gain_ > Finest()) return false;
   if (seen_ - segment_.origin < kLongExplained) return false;
   const Checkpoint* from = nullptr;
   for (const Checkpoint& checkpoint : checkpoints_) {
@@ -458,26 +437,19 @@ void PredictionErrorEstimator::Follow() noexcept {
 }
 
 void PredictionErrorEstimator::PassesToTheEnd() noexcept {
-  const auto process = [this] {
-    while (seen_ < added_ && !began_elsewhere_) ProcessKept();
-    while (began_elsewhere_ && added_ > 0 && !FindStart()) {
-      if (segment_.at_rest) return;  // too short to find a start in it
-    }
-    while (seen_ < added_) ProcessKept();
-  };
-  process();
+  while (seen_ < added_) ProcessKept();
   std::size_t failed = covariances_.size();  // gain
   for (int i = 0; i < kMostReturns && !following() && !exhausted_; ++i) {
     const bool worth = WorthGoingBack() && ++pulled_passes_ <= kLastPasses;
     if (worth) {
       GoBack();
-    } else if (inflation_ == 1.0 && (gain_ == Finest() || gain_ == failed + 1)) {
+    } else if (gain_ == Finest() || gain_ == failed + 1) {
       break;
     } else {
       LookMoreFinely();
     }
     const std::size_t tried = gain_;
-    process();
+    while (seen_ < added_) ProcessKept();
     if (gain_ > tried) {
       failed = tried;
       pulled_passes_ = 0;

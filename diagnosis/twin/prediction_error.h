@@ -9,11 +9,11 @@
 //   the better theta, and catches up with the machine at twice its pace. That is the
 //   method of Gauss and Newton on a horizon that grows with what is explained; each
 //   pass squares the error that is left.
-// - Where the horizon does not grow any more, the machine is looked at more coarsely
-//   for a while: a course of sticking and slipping that is told to the last digit can be
-//   told in one way only. A twin that began at rest takes the noise as larger; one that
-//   did not is pulled along by a stiffer gain, and keeps what it found with that where a
-//   softer one does not succeed.
+// - Where the horizon does not grow any more, the machine is looked at more coarsely: a
+//   course of sticking and slipping that is told to the last digit can be told in one
+//   way only. The twin is pulled along by its stiffest gain, which makes predictions
+//   short and nearly linear, then by softer ones, each from the theta before; where one
+//   does not succeed, what was found with the one before is kept.
 // - What the data do not move is held at nominal by its prior; what is surely elsewhere
 //   is not.
 // - A machine that was explained for long and is not any more has changed: it starts
@@ -76,9 +76,9 @@ class PredictionErrorEstimator {
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Mean over recent blocks of the squared innovations over what noise and the
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
-  double surprise() const { return inflation_ * surprise_; }
+  double surprise() const { return surprise_; }
   /// Whether it looks at the machine as finely as it can.
-  bool fine() const { return inflation_ == 1.0 && !Pulled(); }
+  bool fine() const { return !Pulled(); }
   /// Tick at which the phases of its tones begin.
   Eigen::Index phase_origin() const { return phase_origin_; }
   /// Tick from which the machine has been as it is estimated.
@@ -155,7 +155,6 @@ class PredictionErrorEstimator {
   Eigen::Index next_look_;
   int returns_ = 0;
   bool exhausted_ = false;  // of returns
-  bool began_elsewhere_ = false;  // than at rest, which it seemed to
   int pulled_passes_ = 0;         // with this gain
   bool settled_ = false;
   std::size_t pull_ = 0;        // gain of the twin now, gain_ when it has settled
@@ -165,7 +164,6 @@ class PredictionErrorEstimator {
   Segment segment_, earlier_;
   std::vector<Checkpoint> checkpoints_;
   std::size_t gain_ = 0;
-  double inflation_ = 1.0;                // of the variances of the noise
   std::vector<Eigen::VectorXd> proven_;   // theta that explained all, by gain
   std::vector<bool> is_proven_;
   Information information_;

@@ -62,6 +62,14 @@ void RequireSameMachine(const std::string& what, const DiagnosisDesign& design,
 PreparedDiagnosis PrepareDiagnosis(const Machine& machine,
                                    const DiagnosisSource& source,
                                    const Excitation& motion) {
+  if (source.filters.empty() && !NeedsMotion(source) && machine.setup().calibration) {
+    // Limits that hold for the healthy runs stand beside what was learned from them.
+    DiagnosisSource beside = source;
+    beside.filters = machine.setup().folder / kCalibratedFilters;
+    if (std::filesystem::exists(beside.filters)) {
+      return PrepareDiagnosis(machine, beside, motion);
+    }
+  }
   PreparedDiagnosis prepared;
   prepared.design = FiltersOf(machine, source, motion);
   prepared.nominal = source.nominal;

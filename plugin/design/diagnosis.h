@@ -46,6 +46,10 @@ struct DiagnosisSource {
   NominalRuns nominal;  ///< the healthy runs: on which plant, how many
 };
 
+/// Beside the setup of a calibrated machine: its filters, with limits that hold for the
+/// runs that it was calibrated on.
+inline constexpr const char* kCalibratedFilters = "filters.json";
+
 /// Whether that source asks for the motion that is going to be diagnosed.
 bool NeedsMotion(const DiagnosisSource& source);
 

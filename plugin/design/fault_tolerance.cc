@@ -84,7 +84,7 @@ FaultRemedy RemedyOf(const Machine& machine, const FaultFamily& family,
                      const GainMargins& margins, const FaultRange& range) {
   FaultRemedy remedy;
   remedy.fault = parameter.name;
-  if (parameter.kind == FaultParameterKind::kGear) {
+  if (parameter.kind == PlantNumberKind::kGear) {
     remedy.drives = DrivesOf(machine, parameter);
     double least = 1.0;
     double most = 1.0;
@@ -96,7 +96,7 @@ FaultRemedy RemedyOf(const Machine& machine, const FaultFamily& family,
     remedy.most = most - 1.0;
     return remedy;
   }
-  const bool damper = parameter.kind == FaultParameterKind::kDamping;
+  const bool damper = parameter.kind == PlantNumberKind::kDamping;
   remedy.least = (damper ? range.least_damping : range.least_stiffness) - 1.0;
   remedy.most = (damper ? range.most_damping : range.most_stiffness) - 1.0;
   if (mode == ControlMode::kFeedback) return remedy;

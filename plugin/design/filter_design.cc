@@ -158,6 +158,30 @@ NominalLog RunNominal(const DiagnosisDesign& design, const Machine& machine,
           recording.recorder.Residuals()};
 }
 
+/// One of the plants that the calibration does not tell apart.
+Machine DrawnPlant(const Machine& machine, std::uint64_t seed) {
+  const auto& calibration = machine.setup().calibration;
+  if (!calibration || calibration->numbers.empty()) return machine;
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> drawn;
+  VectorXd normal(static_cast<Index>(calibration->numbers.size()));
+  for (double& value : normal) value = drawn(generator);
+  const VectorXd sd = calibration->covariance.diagonal().cwiseSqrt();
+  const MatrixXd correlation = sd.cwiseInverse().asDiagonal() *
+                               calibration->covariance *
+                               sd.cwiseInverse().asDiagonal();
+  const VectorXd moved =
+      sd.cwiseProduct(Eigen::LLT<MatrixXd>(correlation).matrixL() * normal);
+  std::vector<std::pair<PlantNumber, double>> factors;
+  for (Index i = 0; i < moved.size(); ++i) {
+    factors.emplace_back(
+        FindPlantNumber(machine.plant(),
+                        calibration->numbers[static_cast<std::size_t>(i)]),
+        std::exp(moved[i]));
+  }
+  return machine.WithNumbers(factors);
+}
+
 /// Runs of one motion that differ in their noise.
 std::vector<NominalLog> RunMany(const DiagnosisDesign& design, const Machine& machine,
                                 const Excitation& excitation, const MatrixXd& baseline,
@@ -316,6 +340,28 @@ DiagnosisLimits CalibrateLimits(const DiagnosisDesign& design, const Machine& ma
                                 const NominalRuns& options) {
   return LimitsOf(design, RunMany(design, machine, excitation, baseline, options), {},
                   options.linear);
+}
+
+DiagnosisLimits LimitsOfRecords(const DiagnosisDesign& design, const Machine& machine,
+                                const std::vector<Record>& records,
+                                const NominalRuns& options) {
+  std::vector<NominalLog> logs(static_cast<std::size_t>(options.runs));
+  ParallelFor(
+      options.runs,
+      [&](int i) {
+        const auto seed = options.seed + static_cast<std::uint64_t>(i);
+        const Record& of = records[static_cast<std::size_t>(i) % records.size()];
+        logs[static_cast<std::size_t>(i)] =
+            RunNominal(design, DrawnPlant(machine, seed), Replay(machine.setup(), of), {},
+                       seed, options.linear);
+      },
+      options.progress);
+  for (const Record& record : records) {
+    const DiagnosisRecording measured = RecordDiagnosis(design, record);
+    logs.push_back({measured.recorder.Log(), measured.monitor.estimate(),
+                    measured.recorder.Residuals()});
+  }
+  return LimitsOf(design, logs, {}, options.linear);
 }
 
 MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& machine,

@@ -62,4 +62,10 @@ Eigen::MatrixXd ResidualBaseline(const DiagnosisDesign& design, const Machine& m
                                  const Excitation& excitation,
                                  const NominalRuns& options);
 
+/// Limits that hold for measured healthy records and for simulated runs of the same
+/// motions on plants that are drawn from what the calibration of the machine knows.
+DiagnosisLimits LimitsOfRecords(const DiagnosisDesign& design, const Machine& machine,
+                                const std::vector<Record>& records,
+                                const NominalRuns& options);
+
 }  // namespace mjdiag

@@ -66,8 +66,8 @@ std::vector<StateSpace> WornTicks(const Machine& machine, const FaultFamily& fam
   std::vector<Index> dampers;
   Index place = 0;
   for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
-    if (parameter.kind == FaultParameterKind::kStiffness) springs.push_back(place);
-    if (parameter.kind == FaultParameterKind::kDamping) dampers.push_back(place);
+    if (parameter.kind == PlantNumberKind::kStiffness) springs.push_back(place);
+    if (parameter.kind == PlantNumberKind::kDamping) dampers.push_back(place);
     ++place;
   }
   const std::vector<double> stiffness =

@@ -88,8 +88,7 @@ std::vector<TwinFault> FaultsOf(const Machine& machine,
 
 }  // namespace
 
-MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions options,
-                     double force_noise) {
+MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions options) {
   const VectorXd noise = ReadingNoise(machine.channels());
   if (!(noise.minCoeff() > 0.0)) {
     throw InputError("twin", "a sensor without noise", "a noise on every sensor");
@@ -101,6 +100,9 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
   twin.sample_time = machine.rates().tick();
   twin.unknowns = uncertain.unknowns;
   twin.faults = FaultsOf(machine, uncertain);
+  twin.prior = uncertain.prior;
+  const auto& calibration = machine.setup().calibration;
+  const double force_noise = calibration ? calibration->force_noise : 0.0;
   std::vector<TwinGain> gains = GainsOf(machine, noise, force_noise);
   if (linear) {
     twin.twin = std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),

@@ -13,9 +13,9 @@ namespace mjdiag {
 
 /// InputError on a machine whose sensors have no noise: it says how sure the twin is of
 /// what it sees.
-/// @param force_noise  that is assumed, see Observer: a bandwidth [Hz]; 0: none
+/// The force noise that it assumes is that of the machine's calibration.
 MachineTwin MakeTwin(const Machine& machine, bool linear,
-                     UncertaintyOptions options = {}, double force_noise = 0.0);
+                     UncertaintyOptions options = {});
 
 /// An estimator with that twin; null where there is nothing to estimate or a sensor has
 /// no noise.

@@ -26,17 +26,44 @@ struct Machine::Derived {
 
 namespace {
 
-ModelPtr LoadPlant(const Setup& setup) {
-  ModelPtr model = LoadModel(setup.plant);
-  CheckTimeStep(setup, *model);
-  PreparePlant(setup.physics, *model);
-  return model;
-}
-
 void ScaleNumbers(mjModel& model,
                   const std::vector<std::pair<PlantNumber, double>>& factors) {
   for (const auto& [number, factor] : factors) Scale(model, number, factor);
   DeriveConstants(model);
+}
+
+void ApplyCalibration(const Setup& setup, mjModel& model) {
+  const Calibration& calibration = *setup.calibration;
+  if (calibration.sensor_noise.size() !=
+      static_cast<Eigen::Index>(setup.channels.sensors.size())) {
+    throw InputError("calibration of '" + setup.name + "'",
+                     "it is of " + std::to_string(calibration.sensor_noise.size()) +
+                         " sensors",
+                     "one of this setup");
+  }
+  std::vector<std::pair<PlantNumber, double>> factors;
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    factors.emplace_back(FindPlantNumber(model, calibration.numbers[i]),
+                         calibration.factors[static_cast<Eigen::Index>(i)]);
+  }
+  ScaleNumbers(model, factors);
+}
+
+ModelPtr LoadPlant(const Setup& setup) {
+  ModelPtr model = LoadModel(setup.plant);
+  CheckTimeStep(setup, *model);
+  PreparePlant(setup.physics, *model);
+  if (setup.calibration) ApplyCalibration(setup, *model);
+  return model;
+}
+
+/// Noise as it was measured.
+Setup WithNoiseOf(Setup setup, const Calibration& calibration) {
+  for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
+    setup.channels.sensors[i].noise_sd =
+        calibration.sensor_noise[static_cast<Eigen::Index>(i)];
+  }
+  return setup;
 }
 
 Setup WithNoiseOf(Setup setup, const std::vector<PlacedEffect>& effects) {
@@ -49,6 +76,7 @@ Setup WithNoiseOf(Setup setup, const std::vector<PlacedEffect>& effects) {
 Machine::Machine(Setup setup) {
   ModelPtr model = LoadPlant(setup);
   FaultParameters(*model);  // complains of those that are malformed
+  if (setup.calibration) setup = WithNoiseOf(setup, *setup.calibration);
   setup_ = std::make_shared<Setup>(WithNoiseOf(std::move(setup), EffectsOf(*model)));
   Adopt(std::move(model));
 }

@@ -16,7 +16,20 @@ using Eigen::VectorXd;
 /// the parts of a tone.
 constexpr double kFaultSpread = 0.1;
 
+/// Place of that number in the calibration; -1: it is not in it.
+Index InCalibration(const Machine& machine, const PlantNumber& number) {
+  const auto& calibration = machine.setup().calibration;
+  if (!calibration) return -1;
+  const auto& names = calibration->numbers;
+  const auto found =
+      std::find(names.begin(), names.end(), PlantNumberName(machine.plant(), number));
+  return found == names.end() ? -1 : found - names.begin();
+}
+
 double Spread(const Machine& machine, const PlantNumber& number, bool doubt) {
+  if (const Index at = InCalibration(machine, number); at >= 0 && !doubt) {
+    return std::sqrt(machine.setup().calibration->covariance(at, at));
+  }
   const double declared = SpreadOf(machine.plant(), number);
   const bool friction = number.kind == PlantNumberKind::kFriction;
   return declared > 0.0 || !(doubt || friction) ? declared : UsualSpread(number.kind);
@@ -81,6 +94,34 @@ void AddTones(const Machine& machine, UncertainMachine& uncertain) {
   }
 }
 
+/// Numbers that were calibrated together are known together.
+MatrixXd PriorOf(const Machine& machine, const UncertainMachine& uncertain,
+                 bool doubt) {
+  const auto p = static_cast<Index>(uncertain.unknowns.size());
+  MatrixXd prior = MatrixXd::Zero(p, p);
+  for (Index i = 0; i < p; ++i) {
+    prior(i, i) = std::pow(uncertain.unknowns[static_cast<std::size_t>(i)].prior_sd, 2);
+  }
+  const auto& calibration = machine.setup().calibration;
+  if (!calibration || doubt) return prior;
+  std::vector<Index> places;
+  for (Index i = uncertain.faults; i < uncertain.first_tone(); ++i) {
+    const std::string& name = uncertain.unknowns[static_cast<std::size_t>(i)].name;
+    const auto& names = calibration->numbers;
+    const auto found = std::find(names.begin(), names.end(), name);
+    places.push_back(found == names.end() ? -1 : found - names.begin());
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (places[i] < 0 || places[k] < 0) continue;
+      prior(uncertain.faults + static_cast<Index>(i),
+            uncertain.faults + static_cast<Index>(k)) =
+          calibration->covariance(places[i], places[k]);
+    }
+  }
+  return prior;
+}
+
 /// Without what rounding leaves of entries that do not change; empty if none does.
 MatrixXd Changed(const MatrixXd& moved, const MatrixXd& base, double by) {
   constexpr double kRounding = 1e-12;
@@ -106,6 +147,7 @@ UncertainMachine MakeUncertainMachine(const Machine& machine,
     uncertain.unknowns.push_back(
         {"start " + std::to_string(i + 1), 0.0, 1.0, false, false});
   }
+  uncertain.prior = PriorOf(machine, uncertain, options.doubt);
   return uncertain;
 }
 

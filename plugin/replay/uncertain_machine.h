@@ -25,6 +25,8 @@ struct UncertainMachine {
   std::vector<UncertainNumber> numbers;
   std::vector<UnknownTone> tones;
   Eigen::MatrixXd start;  ///< see UncertainModel
+  /// Covariance of all of them beforehand.
+  Eigen::MatrixXd prior;
   Eigen::Index faults = 0;
   Eigen::Index known = 0;  ///< numbers of the plant, behind the faults
 
@@ -40,6 +42,7 @@ struct UncertaintyOptions {
   double start_energy = 1.0;
 };
 
+/// What a calibration says of the plant takes the place of what the plant says of itself.
 /// Dry friction is not known exactly on any plant that does not say so of its own
 /// joint: it changes with the hour.
 UncertainMachine MakeUncertainMachine(const Machine& machine,

@@ -14,6 +14,7 @@
 #include "mjdiag/controllers/axis_controller.h"
 #include "mjdiag/controllers/trajectory.h"
 #include "mjdiag/diagnosis/diagnosis_options.h"
+#include "mjdiag/plugin/setup/calibration_file.h"
 #include "mjdiag/signals/record_file.h"
 
 namespace mjdiag {
@@ -139,6 +140,8 @@ struct Setup {
   std::filesystem::path plant;                     ///< MJCF file
   std::optional<std::filesystem::path> analytic;   ///< linear chain, see linear_chain.h
   std::optional<std::filesystem::path> published;  ///< printed parity relation
+  /// What healthy runs have said about it (calibration_file.h).
+  std::optional<Calibration> calibration;
   Rates rates;
   Physics physics;
   Channels channels;

@@ -49,6 +49,9 @@ void ReadHead(const TomlTable& root, Setup& setup) {
   setup.plant = ExistingFile(root, "plant", setup.folder);
   setup.analytic = OptionalFile(root, "analytic", setup.folder);
   setup.published = OptionalFile(root, "published", setup.folder);
+  if (const auto file = OptionalFile(root, "calibration", setup.folder)) {
+    setup.calibration = ReadCalibration(*file);
+  }
 }
 
 void ReadRates(const TomlTable& root, Setup& setup) {

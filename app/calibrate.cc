@@ -1,0 +1,174 @@
+// mjdiag calibrate: how well a machine is known, from measured healthy runs.
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+#include "app/format.h"
+#include "app/output.h"
+#include "app/progress.h"
+#include "app/subject.h"
+#include "mjdiag/diagnosis/filters_file.h"
+#include "mjdiag/plugin/design/calibrate.h"
+#include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
+
+namespace mjdiag::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCalibrationFile = "calibration.json";
+
+struct CalibrateCommand {
+  MachineOptions machine;
+  OutputOptions output;
+  std::vector<std::string> records;
+  CalibrateOptions calibration;
+  NominalRuns runs;
+};
+
+/// The setup's text with the key that names the calibration, before its first table.
+std::string WithCalibration(const std::string& setup) {
+  const std::string key = "calibration";
+  std::string text;
+  bool placed = false;
+  std::istringstream lines(setup);
+  for (std::string line; std::getline(lines, line);) {
+    if (!placed && line.starts_with(key) &&
+        line.find_first_not_of(" \t=", key.size()) != line.npos &&
+        line[line.find_first_not_of(" \t", key.size())] == '=') {
+      continue;  // of an earlier one
+    }
+    if (!placed && line.starts_with("[")) {
+      text += key + " = \"" + kCalibrationFile + "\"\n\n";
+      placed = true;
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+/// Everything that stands beside the setup, so that the folder is one by itself.
+void CopySetup(const fs::path& setup, const fs::path& folder) {
+  const fs::path file = fs::is_directory(setup) ? setup / "setup.toml" : setup;
+  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
+    throw InputError("--out", "is the folder of the setup itself", "another folder");
+  }
+  MakeOutputFolder(folder);
+  for (const fs::directory_entry& entry : fs::directory_iterator(
+           file.parent_path().empty() ? fs::path(".") : file.parent_path())) {
+    const fs::path name = entry.path().filename();
+    if (!entry.is_regular_file() || name == file.filename()) continue;
+    fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
+  }
+  WriteTextFile(folder / "setup.toml", WithCalibration(ReadTextFile(file)));
+}
+
+std::string CalibrationText(const CalibrateCommand& command, const CalibrationReport& report) {
+  const Calibration& calibration = report.calibration;
+  Table numbers({"number", "times", "sd [%]", "was known to [%]"});
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    numbers.Add({calibration.numbers[i], Short(calibration.factors[at]),
+                 Short(100.0 * std::sqrt(calibration.covariance(at, at))),
+                 Short(100.0 * report.prior_sd[at])});
+  }
+  std::string text = numbers.ToString() + "\nforce noise: ";
+  text += calibration.force_noise > 0.0
+              ? "the twin is pulled along with " + Short(calibration.force_noise) + " Hz"
+              : std::string("none");
+  text += "\nsensor noise:";
+  for (const double noise : calibration.sensor_noise) text += " " + Short(noise);
+  text += "\n";
+  for (std::size_t i = 0; i < report.records.size(); ++i) {
+    const CalibratedRecord& record = report.records[i];
+    text += command.records[i] + ": misfit " + Short(record.misfit) +
+            (record.misfit > 2.0 ? ", which this plant does not explain" : "") + "\n";
+  }
+  if (!report.records.front().doubts.empty()) {
+    text += "Far from what was known, as on a machine that was not healthy:";
+    for (const std::string& name : report.records.front().doubts) text += " " + name;
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::json CalibrationDocument(const CalibrateCommand& command, const CalibrationReport& report) {
+  const Calibration& calibration = report.calibration;
+  nlohmann::json document = {{"schema", "mjdiag.calibration_report/1"},
+                             {"command", CommandLine()},
+                             {"force_noise", calibration.force_noise},
+                             {"numbers", nlohmann::json::array()},
+                             {"records", nlohmann::json::array()},
+                             {"doubts", report.records.front().doubts}};
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    document["numbers"].push_back(
+        {{"name", calibration.numbers[i]},
+         {"factor", calibration.factors[at]},
+         {"sd", std::sqrt(calibration.covariance(at, at))},
+         {"prior_sd", report.prior_sd[at]}});
+  }
+  for (std::size_t i = 0; i < report.records.size(); ++i) {
+    document["records"].push_back(
+        {{"file", fs::path(command.records[i]).filename().string()},
+         {"misfit", report.records[i].misfit}});
+  }
+  return document;
+}
+
+void RunCalibration(CalibrateCommand& command) {
+  if (!command.machine.overrides.empty() || !command.machine.faults.empty() ||
+      !command.machine.effects.empty()) {
+    throw InputError("--set, --fault, --effect",
+                     "the calibrated setup would not have them",
+                     "the setup and its plant as they are");
+  }
+  Setup setup = ReadSetup(command.machine.setup);
+  setup.calibration.reset();
+  const Machine machine(setup);
+  std::vector<Record> records;
+  for (const std::string& file : command.records) {
+    records.push_back(ReadRecord(file, setup.record));
+  }
+  PrepareOutput(command.output);
+  CalibrationReport report;
+  {
+    ProgressBar bar("calibrating");
+    command.calibration.linear = command.runs.linear;
+    command.calibration.progress = [&bar](double part) { bar.Show(part); };
+    report = Calibrate(machine, records, command.calibration);
+  }
+  setup.calibration = report.calibration;
+  const Machine calibrated(setup);
+  ProgressBar bar("healthy runs");
+  command.runs.progress = [&bar](double part) { bar.Show(part); };
+  const DiagnosisDesign design = CalibratedFilters(calibrated, records, command.runs);
+  const fs::path folder = command.output.folder;
+  CopySetup(command.machine.setup, folder);
+  WriteCalibration(folder / kCalibrationFile, report.calibration);
+  WriteFilters(folder / kCalibratedFilters, design);
+  Publish(command.output, "calibration_report", CalibrationDocument(command, report),
+          CalibrationText(command, report));
+}
+
+}  // namespace
+
+void AddCalibrate(CLI::App& app) {
+  auto options = std::make_shared<CalibrateCommand>();
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Learn from measured healthy runs how well a machine is known");
+  AddMachineOptions(*command, options->machine);
+  AddOutputOptions(*command, options->output, true);
+  command
+      ->add_option("--record", options->records,
+                   "Record of a healthy run; may be given more than once")
+      ->required();
+  command->add_flag("--linear", options->runs.linear, "Take the plant as linear");
+  command->callback([options] { RunCalibration(*options); });
+}
+
+}  // namespace mjdiag::app

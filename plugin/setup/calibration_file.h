@@ -1,0 +1,30 @@
+#pragma once
+// What measured healthy runs have said about a machine (mjdiag calibrate): the numbers
+// of its plant as they are, how sure that is, and the noise that it has.
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mjdiag {
+
+struct Calibration {
+  std::vector<std::string> numbers;  ///< "mass@stage", see plant_number.h
+  Eigen::VectorXd factors;           ///< of what the plant says
+  Eigen::MatrixXd covariance;        ///< of their logarithms
+  Eigen::VectorXd sensor_noise;      ///< sd of a reading, of each sensor [unit]
+  /// What the model does not know, as a force noise: the bandwidth with which the twin
+  /// is pulled along [Hz] (observer.h); 0: nothing.
+  double force_noise = 0.0;
+  int records = 0;  ///< that it was learned from
+
+  bool operator==(const Calibration&) const = default;
+};
+
+/// InputError names what is missing or malformed.
+Calibration ReadCalibration(const std::filesystem::path& file);
+void WriteCalibration(const std::filesystem::path& file,
+                      const Calibration& calibration);
+
+}  // namespace mjdiag
