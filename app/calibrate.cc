@@ -1,5 +1,7 @@
 // mjdiag calibrate: how well a machine is known, from measured healthy runs.
 
+#include "mjdiag/plugin/design/calibrate.h"
+
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,7 +12,6 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/diagnosis/filters_file.h"
-#include "mjdiag/plugin/design/calibrate.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -67,7 +68,8 @@ void CopySetup(const fs::path& setup, const fs::path& folder) {
   WriteTextFile(folder / "setup.toml", WithCalibration(ReadTextFile(file)));
 }
 
-std::string CalibrationText(const CalibrateCommand& command, const CalibrationReport& report) {
+std::string CalibrationText(const CalibrateCommand& command,
+                            const CalibrationReport& report) {
   const Calibration& calibration = report.calibration;
   Table numbers({"number", "times", "sd [%]", "was known to [%]"});
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
@@ -77,9 +79,9 @@ std::string CalibrationText(const CalibrateCommand& command, const CalibrationRe
                  Short(100.0 * report.prior_sd[at])});
   }
   std::string text = numbers.ToString() + "\nforce noise: ";
-  text += calibration.force_noise > 0.0
-              ? "the twin is pulled along with " + Short(calibration.force_noise) + " Hz"
-              : std::string("none");
+  text += calibration.force_noise > 0.0 ? "the twin is pulled along with " +
+                                              Short(calibration.force_noise) + " Hz"
+                                        : std::string("none");
   text += "\nsensor noise:";
   for (const double noise : calibration.sensor_noise) text += " " + Short(noise);
   text += "\n";
@@ -96,7 +98,8 @@ std::string CalibrationText(const CalibrateCommand& command, const CalibrationRe
   return text;
 }
 
-nlohmann::json CalibrationDocument(const CalibrateCommand& command, const CalibrationReport& report) {
+nlohmann::json CalibrationDocument(const CalibrateCommand& command,
+                                   const CalibrationReport& report) {
   const Calibration& calibration = report.calibration;
   nlohmann::json document = {{"schema", "mjdiag.calibration_report/1"},
                              {"command", CommandLine()},
@@ -106,11 +109,10 @@ nlohmann::json CalibrationDocument(const CalibrateCommand& command, const Calibr
                              {"doubts", report.records.front().doubts}};
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    document["numbers"].push_back(
-        {{"name", calibration.numbers[i]},
-         {"factor", calibration.factors[at]},
-         {"sd", std::sqrt(calibration.covariance(at, at))},
-         {"prior_sd", report.prior_sd[at]}});
+    document["numbers"].push_back({{"name", calibration.numbers[i]},
+                                   {"factor", calibration.factors[at]},
+                                   {"sd", std::sqrt(calibration.covariance(at, at))},
+                                   {"prior_sd", report.prior_sd[at]}});
   }
   for (std::size_t i = 0; i < report.records.size(); ++i) {
     document["records"].push_back(

@@ -44,11 +44,13 @@ constexpr int kLastPasses = 12;
 /// passes have to confirm.
 constexpr Index kLongExplained = 1024;
 constexpr Index kSame = 64;  // ticks
-constexpr int kConfirmed = 2;
+constexpr int kConfirmed = 1;
 /// Ticks between kept states, and how many. A change shows within so many of them.
 constexpr Index kCheckpoint = 128;
 constexpr std::size_t kCheckpoints = 16;
 constexpr Index kUnnoticed = 256;
+/// Blocks before the surprise in which the change was there already.
+constexpr Index kNoticed = 2;
 /// While the twin is pulled along, a block that is more surprising counts less, in
 /// inverse proportion: a joint came loose a little sooner than the twin's.
 constexpr double kRobust = 4.0;
@@ -100,7 +102,6 @@ PredictionErrorEstimator::PredictionErrorEstimator(
   reading_ = innovation_ = sum_ = VectorXd::Zero(ny);
   beginning_ = MatrixXd::Zero(ny, 3 * twin_->block());
   segment_.state = segment_.settling_state = VectorXd::Zero(twin_->states());
-  earlier_ = segment_;
   checkpoints_.assign(kCheckpoints, {-1, segment_.state});
   WidenPrior();
 }
@@ -136,7 +137,7 @@ void PredictionErrorEstimator::Begin() noexcept {
   if (settles || settled_) center_.tail(started).setZero();
   settled_ = settles;
   theta_ = center_;
-  pull_ = settles && !segment_.state_known ? covariances_.size() - 1 : gain_;
+  pull_ = settles && !segment_.at_rest ? covariances_.size() - 1 : gain_;
   twin_->UseGain(pull_);
   if (segment_.at_rest) {
     twin_->Start(theta_);
@@ -199,7 +200,7 @@ bool PredictionErrorEstimator::FindStart() noexcept {
       settled + static_cast<Index>(std::lround(options_.looking / sample_time_));
   if (added_ < looked) return false;
   segment_.origin = QuietestTick(settled, looked);
-  segment_.at_rest = segment_.state_known = false;
+  segment_.at_rest = false;
   segment_.settling_from = 0;
   reading_ = kept_.col(0).head(reading_.size());
   twin_->StateAt(reading_, segment_.settling_state);
@@ -222,7 +223,8 @@ bool PredictionErrorEstimator::BeganAtRest() noexcept {
   // Predictions of three runs side by side: without tones, sines, cosines.
   for (int run = 0; run < 3; ++run) {
     work_ = nominal_;
-    for (Index i = 0; run > 0 && i < tones; ++i) work_[first_tone + 2 * i + run - 1] = 1.0;
+    for (Index i = 0; run > 0 && i < tones; ++i)
+      work_[first_tone + 2 * i + run - 1] = 1.0;
     twin_->Start(work_);
     for (Index k = 0; k < ticks; ++k) {
       const auto slot = kept_.col(k);
@@ -324,7 +326,7 @@ bool PredictionErrorEstimator::Surprised() const noexcept {
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (!Pulled() && Surprised()) return Unexplained();
   if (seen_ < added_ || seen_ < next_look_) return;
-  next_look_ = Pulled() ? added_ + kPulledLook : added_ + added_ / 2;
+  next_look_ = Pulled() ? added_ : added_ + added_ / 2;
   if (Pulled() && WorthGoingBack() && ++pulled_passes_ <= kPulledPasses) {
     GoBack();
   } else if (!LookMoreFinely() && WorthGoingBack()) {
@@ -333,6 +335,8 @@ void PredictionErrorEstimator::Reconsider() noexcept {
 }
 
 void PredictionErrorEstimator::Unexplained() noexcept {
+  // Beside a machine that it had nothing to learn of any more.
+  if (seen_ == added_ && !WorthGoingBack() && TryChange()) return;
   const Index horizon = seen_ - segment_.origin;
   const bool same = std::abs(horizon - segment_.surprised) <= kSame;
   segment_.same = same ? segment_.same + 1 : 0;
@@ -377,8 +381,7 @@ bool PredictionErrorEstimator::LookMoreFinely() noexcept {
 }
 
 bool PredictionErrorEstimator::TryChange() noexcept {
-  if (!segment_.may_have_changed || gain_ > Finest()) return false;
-  if (seen_ - segment_.origin < kLongExplained) return false;
+  if (Pulled() || seen_ - segment_.origin < kLongExplained) return false;
   const Checkpoint* from = nullptr;
   for (const Checkpoint& checkpoint : checkpoints_) {
     if (checkpoint.tick < segment_.origin || checkpoint.tick > seen_ - kUnnoticed ||
@@ -388,23 +391,18 @@ bool PredictionErrorEstimator::TryChange() noexcept {
     if (from == nullptr || checkpoint.tick > from->tick) from = &checkpoint;
   }
   if (from == nullptr) return false;
-  earlier_.origin = segment_.origin;
-  earlier_.at_rest = segment_.at_rest;
-  earlier_.state = segment_.state;
-  segment_.origin = from->tick;
-  segment_.settling_from = from->tick;
   segment_.at_rest = false;
-  segment_.state_known = true;
-  segment_.state = segment_.settling_state = from->state;
-  gain_ = Finest();
+  segment_.settling_from = from->tick;
+  segment_.settling_state = from->state;
+  segment_.state = from->state;
+  segment_.origin = seen_ - kNoticed * twin_->block();
   segment_.explained = segment_.surprised = 0;
   segment_.stuck = segment_.same = 0;
-  returns_ = 0;
+  returns_ = pulled_passes_ = 0;
   std::fill(is_proven_.begin(), is_proven_.end(), false);
-  // The state is that of the twin; what the start says beside it begins at nothing.
+  gain_ = covariances_.size() - 1;
+  next_look_ = segment_.origin + kPulledLook;
   center_ = theta_;
-  center_.tail(twin_->start_unknowns()).setZero();
-  theta_ = center_;
   information_.Recentre();
   WidenPrior();
   Begin();
@@ -419,7 +417,6 @@ std::size_t PredictionErrorEstimator::Finest() const noexcept {
 void PredictionErrorEstimator::Follow() noexcept {
   if (Surprised()) {
     // The readings that it keeps begin after the origin, so only a change remains.
-    segment_.may_have_changed = true;
     exhausted_ = false;
     if (TryChange()) return;
   }

@@ -17,7 +17,7 @@
 // - What the data do not move is held at nominal by its prior; what is surely elsewhere
 //   is not.
 // - A machine that was explained for long and is not any more has changed: it starts
-//   anew in the state that the twin had shortly before.
+//   anew at that tick, pulled along from the state that the twin had shortly before.
 //
 // A run that does not begin at rest begins, for the estimator, at a tick at which the
 // machine is quiet, in the state that a twin has there which was pulled towards the
@@ -70,15 +70,17 @@ class PredictionErrorEstimator {
   Eigen::Index active() const { return information_.active(); }
   /// Variances of theta, p; of the start meaningless if it was at rest. Does not
   /// allocate.
-  const Eigen::VectorXd& Variance() noexcept { return variance_ = information_.Variance(); }
+  const Eigen::VectorXd& Variance() noexcept {
+    return variance_ = information_.Variance();
+  }
   /// Those that Variance has found last; before that, of the prior.
   const Eigen::VectorXd& LastVariance() const { return variance_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Mean over recent blocks of the squared innovations over what noise and the
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
   double surprise() const { return surprise_; }
-  /// Whether it looks at the machine as finely as it can.
-  bool fine() const { return !Pulled(); }
+  /// Whether it is beside the machine, and not catching up with it.
+  bool current() const { return active() > 0 && seen_ == added_; }
   /// Tick at which the phases of its tones begin.
   Eigen::Index phase_origin() const { return phase_origin_; }
   /// Tick from which the machine has been as it is estimated.
@@ -90,16 +92,14 @@ class PredictionErrorEstimator {
   struct Segment {
     Eigen::Index origin = 0;  ///< tick at which passes start
     bool at_rest = true;
-    Eigen::VectorXd state;         ///< there, of the twin
-    bool state_known = true;       ///< is that of a twin that was right
+    Eigen::VectorXd state;  ///< there, of the twin
     /// Where a twin that is pulled along begins, to be settled at the origin.
     Eigen::Index settling_from = 0;
     Eigen::VectorXd settling_state;
-    Eigen::Index explained = 0;    ///< longest horizon so far
-    Eigen::Index surprised = 0;    ///< horizon of the last pass
-    int stuck = 0;                 ///< passes without a longer one
-    int same = 0;                  ///< passes that ended where the one before did
-    bool may_have_changed = true;  ///< a change has not been tried in vain
+    Eigen::Index explained = 0;  ///< longest horizon so far
+    Eigen::Index surprised = 0;  ///< horizon of the last pass
+    int stuck = 0;               ///< passes without a longer one
+    int same = 0;                ///< passes that ended where the one before did
   };
   struct Checkpoint {
     Eigen::Index tick = -1;
@@ -146,8 +146,8 @@ class PredictionErrorEstimator {
   PredictionErrorOptions options_;
   Eigen::VectorXd nominal_;
   Eigen::MatrixXd prior_covariance_;
-  Eigen::VectorXd walk_;                         // of kWalkEvery blocks
-  std::vector<Eigen::MatrixXd> covariances_;     // of a block's innovation, by gain
+  Eigen::VectorXd walk_;                      // of kWalkEvery blocks
+  std::vector<Eigen::MatrixXd> covariances_;  // of a block's innovation, by gain
 
   Eigen::MatrixXd kept_;  // ny + nu x kept, a ring
   Eigen::Index added_ = 0;
@@ -155,16 +155,16 @@ class PredictionErrorEstimator {
   Eigen::Index next_look_;
   int returns_ = 0;
   bool exhausted_ = false;  // of returns
-  int pulled_passes_ = 0;         // with this gain
+  int pulled_passes_ = 0;   // with this gain
   bool settled_ = false;
   std::size_t pull_ = 0;        // gain of the twin now, gain_ when it has settled
   Eigen::Index softer_at_ = 0;  // tick of the next softer one
   Eigen::Index phase_origin_ = 0;
 
-  Segment segment_, earlier_;
+  Segment segment_;
   std::vector<Checkpoint> checkpoints_;
   std::size_t gain_ = 0;
-  std::vector<Eigen::VectorXd> proven_;   // theta that explained all, by gain
+  std::vector<Eigen::VectorXd> proven_;  // theta that explained all, by gain
   std::vector<bool> is_proven_;
   Information information_;
   Eigen::MatrixXd prior_;

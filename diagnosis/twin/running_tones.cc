@@ -30,8 +30,7 @@ void RunningTones::Start() noexcept {
 void RunningTones::AddTo(VectorXd& inputs,
                          const Eigen::Ref<const VectorXd>& parts) const noexcept {
   for (Index i = 0; i < count(); ++i) {
-    inputs +=
-        (parts[2 * i] * sine_[i] + parts[2 * i + 1] * cosine_[i]) * amplitude(i);
+    inputs += (parts[2 * i] * sine_[i] + parts[2 * i + 1] * cosine_[i]) * amplitude(i);
   }
 }
 

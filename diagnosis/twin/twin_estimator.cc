@@ -67,8 +67,7 @@ void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
 
 void TwinEstimator::ReadTones(const TwinFault& fault,
                               Eigen::Ref<VectorXd> parts) const noexcept {
-  const double since =
-      static_cast<double>(estimator_.phase_origin()) * sample_time_;
+  const double since = static_cast<double>(estimator_.phase_origin()) * sample_time_;
   for (Index i = 0; i < fault.tones(); ++i) {
     const double angle =
         2.0 * std::numbers::pi * fault.frequencies[static_cast<std::size_t>(i)] * since;
@@ -115,7 +114,8 @@ TwinReading TwinEstimator::Read() const {
     bool alike = own < kNothing * prior[at];
     for (std::size_t k = 0; k < faults_.size() && !alike; ++k) {
       const Index other = faults_[k].first;
-      alike = k != i && faults_[i].frequencies.empty() && faults_[k].frequencies.empty() &&
+      alike = k != i && faults_[i].frequencies.empty() &&
+              faults_[k].frequencies.empty() &&
               std::pow(information(at, other), 2) >
                   kAlike * own * (information(other, other) - prior[other]);
     }

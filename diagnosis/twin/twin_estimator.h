@@ -69,7 +69,8 @@ class TwinEstimator {
   void ReadSpread(Eigen::Ref<Eigen::VectorXd> sd) noexcept;
   /// Sine and cosine of every tone of a disturbance, from the first sample on, 2 tones.
   /// Does not allocate.
-  void ReadTones(const TwinFault& fault, Eigen::Ref<Eigen::VectorXd> parts) const noexcept;
+  void ReadTones(const TwinFault& fault,
+                 Eigen::Ref<Eigen::VectorXd> parts) const noexcept;
   /// The same with what is known of it.
   TwinReading Read() const;
 

@@ -32,10 +32,9 @@ struct Samples {
 
 Samples SamplesOf(const Machine& machine, const Record& record) {
   if (std::abs(record.sample_time() / machine.rates().tick() - 1.0) > 1e-6) {
-    throw InputError("record", "sampled every " + std::to_string(record.sample_time()) +
-                                   " s",
-                     "the control tick, " + std::to_string(machine.rates().tick()) +
-                         " s");
+    throw InputError(
+        "record", "sampled every " + std::to_string(record.sample_time()) + " s",
+        "the control tick, " + std::to_string(machine.rates().tick()) + " s");
   }
   return {mjdiag::SamplesOf(record, ChannelsOf(machine.channels().sensors)),
           mjdiag::SamplesOf(record, ChannelsOf(machine.channels().actuators))};
@@ -115,8 +114,8 @@ void AddRun(Twin& twin, const VectorXd& theta, const Samples& run, MatrixXd& H,
   const Index started = twin.start_unknowns();
   VectorXd all = VectorXd::Zero(p);
   all.head(n) = theta;
-  const MatrixXd weight = Inverse(twin.gains().front().covariance) *
-                          static_cast<double>(twin.block());
+  const MatrixXd weight =
+      Inverse(twin.gains().front().covariance) * static_cast<double>(twin.block());
   MatrixXd of_all = MatrixXd::Zero(p, p);
   of_all.bottomRightCorner(started, started).setIdentity();
   VectorXd gradient = VectorXd::Zero(p);
@@ -139,9 +138,9 @@ void AddRun(Twin& twin, const VectorXd& theta, const Samples& run, MatrixXd& H,
     gradient += psi.transpose() * weight * sum;
     sum.setZero();
   }
-  const MatrixXd by_start =
-      Solve(of_all.bottomRightCorner(started, started), of_all.bottomLeftCorner(started, n))
-          .transpose();
+  const MatrixXd by_start = Solve(of_all.bottomRightCorner(started, started),
+                                  of_all.bottomLeftCorner(started, n))
+                                .transpose();
   H += of_all.topLeftCorner(n, n) - by_start * of_all.bottomLeftCorner(started, n);
   g += gradient.head(n) - by_start * gradient.tail(started);
 }
@@ -161,8 +160,8 @@ Learned Learn(const Machine& machine, const std::vector<Samples>& runs,
   for (const Samples& run : runs) {
     MachineTwin twin =
         MakeTwin(machine, options.linear, {.faults = false, .doubt = true});
-    const Index n = static_cast<Index>(twin.unknowns.size()) -
-                    twin.twin->start_unknowns();
+    const Index n =
+        static_cast<Index>(twin.unknowns.size()) - twin.twin->start_unknowns();
     if (learned.theta.size() == 0) {
       learned.theta = VectorXd::Zero(n);
       learned.covariance = twin.prior.topLeftCorner(n, n);
@@ -188,16 +187,17 @@ Learned Learn(const Machine& machine, const std::vector<Samples>& runs,
     if (active > 0) {
       const MatrixXd H = estimator.H().topLeftCorner(active, active);
       const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-      const MatrixXd covariance =
-          scale.asDiagonal() *
-          Inverse(scale.asDiagonal() * H * scale.asDiagonal()) * scale.asDiagonal();
+      const MatrixXd covariance = scale.asDiagonal() *
+                                  Inverse(scale.asDiagonal() * H * scale.asDiagonal()) *
+                                  scale.asDiagonal();
       learned.covariance = covariance.topLeftCorner(n, n);
       learned.theta = estimator.theta().head(n);
     }
     learned.misfits.push_back(estimator.surprise());
     VectorXd theta = estimator.theta();
     theta.tail(inner.start_unknowns()).setZero();
-    learned.noise += InnovationNoise(inner, theta, run) / static_cast<double>(runs.size());
+    learned.noise +=
+        InnovationNoise(inner, theta, run) / static_cast<double>(runs.size());
     done += share / static_cast<double>(runs.size());
     if (options.progress) options.progress(done);
   }

@@ -176,9 +176,9 @@ void ReadEstimates(const DiagnosisMonitor& monitor,
   if (twin == nullptr || twin->estimator().active() == 0) return;
   const PredictionErrorEstimator& estimator = twin->estimator();
   const double misfit = estimator.surprise();
-  // A run that no faults explain tells of none (TwinEstimator::Read), and where the twin
-  // looks at it more coarsely than it could it does not trust itself.
-  if (!(misfit < kLargestMisfit) || !estimator.fine()) {
+  // A run that no faults explain tells of none (TwinEstimator::Read), and a twin that is
+  // catching up with its machine does not know yet.
+  if (!(misfit < kLargestMisfit) || !estimator.current()) {
     estimates.sd.setConstant(kNone);
     return;
   }

@@ -168,8 +168,7 @@ Machine DrawnPlant(const Machine& machine, std::uint64_t seed) {
   for (double& value : normal) value = drawn(generator);
   const VectorXd sd = calibration->covariance.diagonal().cwiseSqrt();
   const MatrixXd correlation = sd.cwiseInverse().asDiagonal() *
-                               calibration->covariance *
-                               sd.cwiseInverse().asDiagonal();
+                               calibration->covariance * sd.cwiseInverse().asDiagonal();
   const VectorXd moved =
       sd.cwiseProduct(Eigen::LLT<MatrixXd>(correlation).matrixL() * normal);
   std::vector<std::pair<PlantNumber, double>> factors;
@@ -352,8 +351,8 @@ DiagnosisLimits LimitsOfRecords(const DiagnosisDesign& design, const Machine& ma
         const auto seed = options.seed + static_cast<std::uint64_t>(i);
         const Record& of = records[static_cast<std::size_t>(i) % records.size()];
         logs[static_cast<std::size_t>(i)] =
-            RunNominal(design, DrawnPlant(machine, seed), Replay(machine.setup(), of), {},
-                       seed, options.linear);
+            RunNominal(design, DrawnPlant(machine, seed), Replay(machine.setup(), of),
+                       {}, seed, options.linear);
       },
       options.progress);
   for (const Record& record : records) {

@@ -52,9 +52,8 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
   if (force_noise > 0.0) {
     gains.push_back(GainOf(machine, noise, force_noise));
   } else {
-    gains.push_back(
-        {MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
-         noise.cwiseAbs2().asDiagonal(), 0});
+    gains.push_back({MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
+                     noise.cwiseAbs2().asDiagonal(), 0});
   }
   for (const double part : kBandwidths) {
     const double bandwidth = part * machine.rates().control;

@@ -19,7 +19,7 @@ class FaultParameterEffect final : public Effect {
   explicit FaultParameterEffect(FaultParameter declared)
       : Effect({.name = declared.name,
                 .site = declared.kind == PlantNumberKind::kGear ? SiteKind::kActuator
-                                                                   : SiteKind::kJoint,
+                                                                : SiteKind::kJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {{"value", Role::kFactor, "1", 0.0, kMost}},

@@ -36,10 +36,10 @@ void ApplyCalibration(const Setup& setup, mjModel& model) {
   const Calibration& calibration = *setup.calibration;
   if (calibration.sensor_noise.size() !=
       static_cast<Eigen::Index>(setup.channels.sensors.size())) {
-    throw InputError("calibration of '" + setup.name + "'",
-                     "it is of " + std::to_string(calibration.sensor_noise.size()) +
-                         " sensors",
-                     "one of this setup");
+    throw InputError(
+        "calibration of '" + setup.name + "'",
+        "it is of " + std::to_string(calibration.sensor_noise.size()) + " sensors",
+        "one of this setup");
   }
   std::vector<std::pair<PlantNumber, double>> factors;
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {

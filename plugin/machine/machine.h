@@ -58,8 +58,7 @@ class Machine {
   /// a fault parameter, effect, site or value that the plant does not allow.
   Machine With(const Changes& changes) const;
   /// With numbers of the plant that many times what they are.
-  Machine WithNumbers(
-      const std::vector<std::pair<PlantNumber, double>>& factors) const;
+  Machine WithNumbers(const std::vector<std::pair<PlantNumber, double>>& factors) const;
   /// The same physics in that many steps a control tick.
   Machine WithSubsteps(int substeps) const;
   /// The same plant under another setup that names the same channels.

@@ -35,8 +35,8 @@ const KindOfNumber& Of(PlantNumberKind kind) {
 /// Degrees of freedom of a joint: three of a ball joint, six of a free one.
 std::span<mjtNum> DofsOf(const mjModel& model, int joint, mjtNum* of_dof) {
   const int first = model.jnt_dofadr[joint];
-  const int last = joint + 1 < model.njnt ? model.jnt_dofadr[joint + 1]
-                                          : static_cast<int>(model.nv);
+  const int last =
+      joint + 1 < model.njnt ? model.jnt_dofadr[joint + 1] : static_cast<int>(model.nv);
   return {of_dof + first, static_cast<std::size_t>(last - first)};
 }
 
@@ -61,9 +61,7 @@ std::span<mjtNum> NumbersOf(const mjModel& model, const PlantNumber& number) {
 }
 
 /// Bodies that hang on a joint, their own or one further up.
-bool Moves(const mjModel& model, int body) {
-  return model.body_weldid[body] != 0;
-}
+bool Moves(const mjModel& model, int body) { return model.body_weldid[body] != 0; }
 
 /// -1: not declared.
 double Declared(const mjModel& model, const std::string& name) {

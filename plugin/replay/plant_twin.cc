@@ -201,7 +201,8 @@ void PlantTwin::AddTickForces() noexcept {
   for (Index i = 0; i < tones_.count(); ++i) {
     tone_ = tones_.amplitude(i);
     for (const Number& number : numbers_) {
-      if (number.number.kind == PlantNumberKind::kGear) tone_[number.at] *= number.value;
+      if (number.number.kind == PlantNumberKind::kGear)
+        tone_[number.at] *= number.value;
     }
     auto sine = drive_.col(first + 2 * i);
     auto cosine = drive_.col(first + 2 * i + 1);
@@ -283,12 +284,12 @@ void PlantTwin::Substep() noexcept {
       continue;
     }
     for (const Number& number : numbers_) {
-      if (number.number.kind != PlantNumberKind::kFriction || number.at != dof) continue;
+      if (number.number.kind != PlantNumberKind::kFriction || number.at != dof)
+        continue;
       AddForce(force_, number, dof, data_->efc_force[row]);
     }
   }
-  acceleration_ =
-      (VectorXd::Map(data_->qvel, nv) - before_) / model_->opt.timestep;
+  acceleration_ = (VectorXd::Map(data_->qvel, nv) - before_) / model_->opt.timestep;
   for (const Number& number : numbers_) {
     if (number.number.kind == PlantNumberKind::kDamping) {
       AddForce(force_, number, number.at,

@@ -105,9 +105,9 @@ class PlantTwin final : public Twin {
   std::vector<Number> numbers_;
   bool heavy_ = false;  // masses are among them
 
-  Eigen::MatrixXd place_;     // of coordinates by readings, nq x ny
-  Eigen::Index active_ = 0;   // columns of S that are in use
-  Eigen::Index first_tone_;   // of the unknowns
+  Eigen::MatrixXd place_;    // of coordinates by readings, nq x ny
+  Eigen::Index active_ = 0;  // columns of S that are in use
+  Eigen::Index first_tone_;  // of the unknowns
   Eigen::VectorXd theta_;
   std::array<Map, 16> maps_;
   std::size_t next_map_ = 0;

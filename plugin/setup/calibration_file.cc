@@ -32,7 +32,8 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
   Calibration calibration;
   try {
     const json document = json::parse(ReadTextFile(file));
-    Require(document.at("schema") == kCalibrationSchema, file, "is of another schema", kCalibrationSchema);
+    Require(document.at("schema") == kCalibrationSchema, file, "is of another schema",
+            kCalibrationSchema);
     for (const json& number : document.at("numbers")) {
       calibration.numbers.push_back(number.at("name"));
       calibration.factors.conservativeResize(calibration.factors.size() + 1);
@@ -66,19 +67,19 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
 
 void WriteCalibration(const std::filesystem::path& file,
                       const Calibration& calibration) {
-  json document = {{"schema", kCalibrationSchema},
-                   {"records", calibration.records},
-                   {"force_noise", calibration.force_noise},
-                   {"sensor_noise", std::vector<double>(calibration.sensor_noise.begin(),
-                                                        calibration.sensor_noise.end())},
-                   {"numbers", json::array()},
-                   {"covariance", json::array()}};
+  json document = {
+      {"schema", kCalibrationSchema},
+      {"records", calibration.records},
+      {"force_noise", calibration.force_noise},
+      {"sensor_noise", std::vector<double>(calibration.sensor_noise.begin(),
+                                           calibration.sensor_noise.end())},
+      {"numbers", json::array()},
+      {"covariance", json::array()}};
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Index>(i);
-    document["numbers"].push_back(
-        {{"name", calibration.numbers[i]},
-         {"factor", calibration.factors[at]},
-         {"sd", std::sqrt(calibration.covariance(at, at))}});
+    document["numbers"].push_back({{"name", calibration.numbers[i]},
+                                   {"factor", calibration.factors[at]},
+                                   {"sd", std::sqrt(calibration.covariance(at, at))}});
     const VectorXd row = calibration.covariance.row(at).transpose();
     document["covariance"].push_back(std::vector<double>(row.begin(), row.end()));
   }

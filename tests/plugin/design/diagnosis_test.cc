@@ -107,6 +107,41 @@ TEST(Diagnose, NamesTheFaultsOfTheNonlinearMachineAndNothingElse) {
   }
 }
 
+TEST(Diagnose, NamesAFaultThatAppearsInTheCourseOfARun) {
+  const Machine machine = test::Bonder();
+  DiagnosisSource source;
+  source.nominal.linear = true;
+  source.nominal.runs = 3;
+  RunOptions options;
+  options.late_faults = {{{"eta_x", 0.7}, 0.83}};
+  const Record record =
+      SimulateLinear(machine, DefaultMotion(machine.setup()), options);
+  const Diagnosis diagnosis =
+      Diagnose(machine, PrepareDiagnosis(machine, source), record);
+  EXPECT_LT(diagnosis.result.misfit, 2.0);
+  for (const FaultVerdict& fault : diagnosis.result.faults) {
+    EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
+    if (fault.name != "eta_x") continue;
+    EXPECT_NEAR(fault.value, 0.7, 5.0 * fault.sd);
+  }
+}
+
+// A quarter of a second into the motion nothing is at rest.
+TEST(Diagnose, NamesAFaultOfTheNonlinearMachineInMidMotion) {
+  const Machine machine = test::Bonder();
+  const PreparedDiagnosis prepared = PrepareDiagnosis(machine);
+  const Record whole = Simulate(machine.With({{{"eta_x", 0.999}}, {}}),
+                                DefaultMotion(machine.setup()), {});
+  const Record record = whole.Slice(2001, whole.samples() - 2001);
+  const DiagnosisResult result = Diagnose(machine, prepared, record).result;
+  EXPECT_LT(result.misfit, 2.0);
+  for (const FaultVerdict& fault : result.faults) {
+    EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
+    if (fault.name != "eta_x") continue;
+    EXPECT_NEAR(fault.value, 0.999, 5.0 * fault.sd);
+  }
+}
+
 TEST(Diagnose, RegressesTheHorizonOnly) {
   const Record record = Bench().LinearRunWith({"zeta_x", 1.01});
   const Bench bonder({"diagnosis.estimation.horizon=0.1"});

@@ -53,10 +53,7 @@ class PlantTwinOfTheBonder : public testing::Test {
   const Machine machine_ = test::Bonder();
   const UncertainMachine plant_ = MakeUncertainMachine(machine_, {});
   PlantTwin twin_{
-      machine_,
-      plant_,
-      {{MatrixXd::Zero(20, 3), MatrixXd::Identity(3, 3), 0}},
-      kBlock};
+      machine_, plant_, {{MatrixXd::Zero(20, 3), MatrixXd::Identity(3, 3), 0}}, kBlock};
   MatrixXd outputs_;
   MatrixXd inputs_;
 };

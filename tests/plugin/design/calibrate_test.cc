@@ -1,0 +1,74 @@
+#include "mjdiag/plugin/design/calibrate.h"
+
+#include <gtest/gtest.h>
+
+#include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "support/bonder.h"
+
+namespace mjdiag {
+namespace {
+
+/// A bonder of which three numbers are not what its plant says.
+class CalibrateTheBonder : public testing::Test {
+ protected:
+  CalibrateTheBonder() {
+    const auto number = [this](const char* name) {
+      return FindPlantNumber(nominal_.plant(), name);
+    };
+    real_ = nominal_.WithNumbers({{number("damping@Y"), 1.2},
+                                  {number("mass@y_stage"), 0.99},
+                                  {number("stiffness@u4"), 1.05}});
+  }
+
+  Record Healthy(std::uint64_t seed) const {
+    RunOptions options;
+    options.seed = seed;
+    return SimulateLinear(real_, DefaultMotion(nominal_.setup()), options);
+  }
+
+  const Machine nominal_ = test::Bonder();
+  Machine real_ = nominal_;
+};
+
+TEST_F(CalibrateTheBonder, LearnsItsNumbersAndItsNoise) {
+  const CalibrationReport report =
+      Calibrate(nominal_, {Healthy(1), Healthy(2)}, {.linear = true, .progress = {}});
+  const Calibration& learned = report.calibration;
+  const std::map<std::string, double> truth = {
+      {"damping@Y", 1.2}, {"mass@y_stage", 0.99}, {"stiffness@u4", 1.05}};
+  for (std::size_t i = 0; i < learned.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const auto moved = truth.find(learned.numbers[i]);
+    const double expected = moved == truth.end() ? 1.0 : moved->second;
+    // 29 numbers within 5 standard deviations: by chance outside with 2e-5.
+    EXPECT_LT(std::abs(std::log(learned.factors[at] / expected)),
+              5.0 * std::sqrt(learned.covariance(at, at)))
+        << learned.numbers[i];
+  }
+  EXPECT_EQ(learned.force_noise, 0.0);
+  for (const double noise : learned.sensor_noise) EXPECT_NEAR(noise, 20e-9, 1e-9);
+  for (const CalibratedRecord& record : report.records) EXPECT_LT(record.misfit, 2.0);
+}
+
+TEST_F(CalibrateTheBonder, NamesAFaultOfTheCalibratedMachine) {
+  mjdiag::Setup setup = nominal_.setup();
+  setup.calibration = Calibrate(nominal_, {Healthy(1), Healthy(2), Healthy(3)},
+                                {.linear = true, .progress = {}})
+                          .calibration;
+  const Machine calibrated(setup);
+  PreparedDiagnosis prepared;
+  prepared.design = DesignFilters(calibrated);
+  prepared.nominal.linear = true;
+  RunOptions options;
+  options.seed = 9;
+  const Record worn = SimulateLinear(real_.With({{{"zeta_x", 1.01}}, {}}),
+                                     DefaultMotion(setup), options);
+  const DiagnosisResult result = Diagnose(calibrated, prepared, worn).result;
+  EXPECT_LT(result.misfit, 2.0);
+  EXPECT_TRUE(result.faults[0].detected);
+  EXPECT_NEAR(result.faults[0].value, 1.01, 5.0 * result.faults[0].sd);
+}
+
+}  // namespace
+}  // namespace mjdiag
