@@ -326,7 +326,7 @@ bool PredictionErrorEstimator::Surprised() const noexcept {
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (!Pulled() && Surprised()) return Unexplained();
   if (seen_ < added_ || seen_ < next_look_) return;
-  next_look_ = Pulled() ? added_ : added_ + added_ / 2;
+  next_look_ = Pulled() ? added_ + kPulledLook : added_ + added_ / 2;
   if (Pulled() && WorthGoingBack() && ++pulled_passes_ <= kPulledPasses) {
     GoBack();
   } else if (!LookMoreFinely() && WorthGoingBack()) {

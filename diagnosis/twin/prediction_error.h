@@ -79,8 +79,9 @@ class PredictionErrorEstimator {
   /// Mean over recent blocks of the squared innovations over what noise and the
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
   double surprise() const { return surprise_; }
-  /// Whether it is beside the machine, and not catching up with it.
-  bool current() const { return active() > 0 && seen_ == added_; }
+  /// Whether its estimate is one to act on: it looks as finely as it can, or more
+  /// coarsely at all that there is.
+  bool current() const { return active() > 0 && (!Pulled() || seen_ == added_); }
   /// Tick at which the phases of its tones begin.
   Eigen::Index phase_origin() const { return phase_origin_; }
   /// Tick from which the machine has been as it is estimated.

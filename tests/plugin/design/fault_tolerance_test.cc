@@ -137,7 +137,8 @@ TEST_F(Tolerance, ActsOnWhatTheTwinFinds) {
   ASSERT_EQ(summary_.size(), 2u);
   EXPECT_EQ(summary_[0].fault, "zeta_x");
   EXPECT_EQ(summary_[0].action, "feedforward");
-  EXPECT_NEAR(summary_[0].value, 2.0, 1e-3);
+  // As it was when it became certain: while the twin catches up, nothing is changed.
+  EXPECT_NEAR(summary_[0].value, 2.0, 2e-2);
   EXPECT_NEAR(summary_[1].value, 0.7, 1e-3);
   EXPECT_LT(summary_[1].since, 0.1);
   EXPECT_LT(Rms(run, "x", 0.75), 1.1 * Rms(Run({}, true, 1.0), "x", 0.75));

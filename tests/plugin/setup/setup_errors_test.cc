@@ -75,7 +75,7 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
       {"by = { s = 0.02 }", "by = { s = 0.02 }, to = 1", 54,
        "trajectories.slow.moves[0].to: unknown key; expected one of at, by"},
       {"[compare.forces]", "[comparison]\n[compare.forces]", 66,
-       "comparison: unknown key; expected one of actuators, analytic, axes, compare, "
+       "comparison: unknown key; expected one of actuators, analytic, axes, calibration, compare, "
        "default_trajectory, diagnosis, disturbances, name, physics, plant, published, "
        "rates, record, schema, sensors, studies, trajectories"},
       // missing keys and wrong types
