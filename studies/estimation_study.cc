@@ -5,41 +5,15 @@
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/fault_family.h"
-#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/bound_study.h"
+#include "mjdiag/studies/twin_listening.h"
 
 namespace mjdiag {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Deviations that are there, in the order of the faults.
-VectorXd Truth(const Setup& setup, const std::vector<std::string>& names,
-               const FaultSizes& sizes) {
-  VectorXd truth = VectorXd::Zero(static_cast<Index>(names.size()));
-  for (const auto& [name, value] : sizes.values) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) continue;  // WithFaults says so
-    truth[found - names.begin()] = value - HealthyValue(setup, name);
-  }
-  return truth;
-}
-
-/// What a twin says that has listened to the whole record.
-TwinReading Listen(const Machine& machine, const Record& record) {
-  const std::unique_ptr<TwinEstimator> twin = MakeTwinEstimator(machine, true);
-  const MatrixXd y = SamplesOf(record, ChannelsOf(machine.channels().sensors));
-  const MatrixXd u = SamplesOf(record, ChannelsOf(machine.channels().actuators));
-  for (Index k = 0; k < y.cols(); ++k) {
-    twin->Add({y.col(k).data(), static_cast<std::size_t>(y.rows())},
-              {u.col(k).data(), static_cast<std::size_t>(u.rows())});
-  }
-  twin->CatchUp();
-  return twin->Read();
-}
 
 StudyTable Repeat(const Machine& machine, const FaultSizes& sizes,
                   const StudyOptions& options) {
@@ -54,12 +28,12 @@ StudyTable Repeat(const Machine& machine, const FaultSizes& sizes,
         const Record record = RunLinear(
             motion,
             WithFaults(machine, faults, options.seed + static_cast<std::uint64_t>(i)));
-        readings[static_cast<std::size_t>(i)] = Listen(machine, record);
+        readings[static_cast<std::size_t>(i)] = Listen(machine, record, true);
       },
       options.progress);
 
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
-  const VectorXd truth = Truth(machine.setup(), names, sizes);
+  const VectorXd truth = DeviationsOf(machine.setup(), names, faults);
   const VectorXd bound = FaultBoundAt(machine, motion, truth);
   const auto band = BinomialInterval(options.runs, 0.95, 0.99);
   StudyTable table{
