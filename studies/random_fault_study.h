@@ -10,9 +10,10 @@
 namespace mjdiag {
 
 /// A fault nearer to healthy than this many standard deviations of its information bound
-/// (run_bound.h) need not be named, and may be: nobody could tell it from noise with the
-/// confidence that naming asks for (4.4 of a parameter, 5.9 of three tones), and fail
-/// less than once in twenty.
+/// (run_bound.h, all faults unknown) need not be named, and may be: naming asks for 4.4
+/// of them of a parameter and 5.9 of a disturbance of three tones, which an estimate at
+/// the bound reaches from here on in at least nineteen of twenty runs, for a disturbance
+/// in three of four.
 inline constexpr double kNameable = 6.0;
 
 /// What became of a draw.
