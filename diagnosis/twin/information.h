@@ -12,6 +12,9 @@
 
 namespace mjdiag {
 
+/// H^-1, of unknowns of any units.
+Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& H);
+
 class Information {
  public:
   /// @param p   unknowns

@@ -113,24 +113,22 @@ MatrixXd StartDirections(const MechanicalModel& model, double energy) {
 
 LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
                        Index block)
-    : model_(model),
-      gains_(std::move(gains)),
-      block_(block),
-      first_tone_(static_cast<Index>(model.unknowns.size()) - model.start.cols() -
-                  2 * static_cast<Index>(model.tones.size())),
-      tones_(model.tones, model.timing.tick()) {
+    : Twin({model.nominal.b.cols(), model.nominal.Gamma.cols(),
+            2 * model.nominal.M.rows(), static_cast<Index>(model.unknowns.size()),
+            model.start.cols(), block},
+           std::move(gains), model.tones, model.timing.tick()),
+      model_(model) {
   const MechanicalModel& nominal = model_.nominal;
   const Index nq = nominal.M.rows();
   const Index ny = nominal.b.cols();
   const Index nu = nominal.Gamma.cols();
   const auto p = static_cast<Index>(model_.unknowns.size());
-  arms_ = ArmsOf(model_, first_tone_);
+  arms_ = ArmsOf(model_, first_tone());
   const Index directions = arms_.directions.cols();
   C_ = MatrixXd::Zero(ny, 2 * nq);
   C_.leftCols(nq) = nominal.b.transpose();
-  mean_ = C_ / static_cast<double>(block_);
+  mean_ = C_ / static_cast<double>(block);
   place_ = PlacementOf(nominal);
-  theta_ = VectorXd::Zero(p);
   values_ = VectorXd::Ones(static_cast<Index>(model_.parts.size()));
   M_ = D_ = K_ = left_ = nominal.M;
   Gamma_ = nominal.Gamma;
@@ -139,11 +137,11 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   A_ = F_ = power_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_ = MatrixXd::Zero(2 * nq, nu);
   force_ = MatrixXd::Zero(2 * nq, nq);
-  carried_.assign(static_cast<std::size_t>(block_), MatrixXd::Zero(2 * nq, directions));
+  carried_.assign(static_cast<std::size_t>(block),
+                  MatrixXd::Zero(2 * nq, directions));
   seen_ = MatrixXd::Zero(ny, 2 * nq);
-  seen_of_.assign(static_cast<std::size_t>(block_), MatrixXd::Zero(ny, directions));
+  seen_of_.assign(static_cast<std::size_t>(block), MatrixXd::Zero(ny, directions));
   x_ = next_ = constant_ = VectorXd::Zero(2 * nq);
-  u_ = VectorXd::Zero(nu);
   S_ = S_next_ = S_drive_ = MatrixXd::Zero(2 * nq, p);
   seen_drive_ = sensitivity_ = MatrixXd::Zero(ny, p);
 }
@@ -158,8 +156,7 @@ void LinearTwin::MakeMaps() noexcept {
   f_.setZero();
   for (std::size_t i = 0; i < model_.parts.size(); ++i) {
     const ModelPart& part = model_.parts[i];
-    double sum = 0.0;
-    for (const Index factor : part.factors) sum += theta_[factor];
+    const double sum = Logarithm(part.factors);
     values_[static_cast<Index>(i)] = std::exp(sum);
     const double moved = std::expm1(sum);
     if (part.M.size() > 0) M_ += moved * part.M;
@@ -210,22 +207,22 @@ void LinearTwin::UseGain(std::size_t gain) noexcept {
 
 void LinearTwin::LiftSensitivities() noexcept {
   F_ = A_;
-  F_.noalias() -= gains_[gain_].L * C_;
+  F_.noalias() -= gain().L * C_;
   carried_.back().noalias() = force_ * arms_.directions;
   power_ = F_;
   seen_ = mean_;
-  for (Index j = block_ - 2; j >= 0; --j) {
+  for (Index j = block() - 2; j >= 0; --j) {
     const auto at = static_cast<std::size_t>(j);
     carried_[at].noalias() = F_ * carried_[at + 1];
   }
   // seen_of_[j] = (1/d) sum_(i>j) C F^(i-1-j) B E: what is carried from the end of j.
   seen_of_.back().setZero();
-  for (Index j = block_ - 2; j >= 0; --j) {
+  for (Index j = block() - 2; j >= 0; --j) {
     const auto at = static_cast<std::size_t>(j);
     seen_of_[at] = seen_of_[at + 1];
     seen_of_[at].noalias() += mean_ * carried_[at + 1];
   }
-  for (Index j = 1; j < block_; ++j) {
+  for (Index j = 1; j < block(); ++j) {
     seen_.noalias() += mean_ * power_;
     scratch_.noalias() = F_ * power_;
     power_.swap(scratch_);
@@ -233,23 +230,25 @@ void LinearTwin::LiftSensitivities() noexcept {
 }
 
 void LinearTwin::Start(const VectorXd& theta) noexcept {
-  theta_ = theta;
+  Begin(theta, true);
+  Reset();
+}
+
+void LinearTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
+  Begin(theta, false);
+  Reset();
+  x_ = state;
+  x_.noalias() += model_.start * theta_.tail(start_unknowns());
+  S_.rightCols(start_unknowns()) = model_.start;
+}
+
+void LinearTwin::Reset() noexcept {
   in_block_ = 0;
-  active_ = theta_.size() - start_unknowns();
   x_.setZero();
   S_.setZero();
   S_drive_.setZero();
   seen_drive_.setZero();
-  tones_.Start();
   MakeMaps();
-}
-
-void LinearTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
-  Start(theta);
-  active_ = theta_.size();
-  x_ = state;
-  x_.noalias() += model_.start * theta_.tail(start_unknowns());
-  S_.rightCols(start_unknowns()) = model_.start;
 }
 
 void LinearTwin::StateAt(const VectorXd& reading, VectorXd& state) noexcept {
@@ -290,8 +289,7 @@ double LinearTwin::Signal(const Lever& lever) const noexcept {
 
 void LinearTwin::Step(std::span<const double> inputs,
                       const VectorXd& innovation) noexcept {
-  u_ = VectorXd::Map(inputs.data(), u_.size());
-  tones_.AddTo(u_, theta_.segment(first_tone_, 2 * tones_.count()));
+  Command(inputs);
   next_ = constant_;
   next_.noalias() += A_ * x_;
   next_.noalias() += B_ * u_;
@@ -304,7 +302,7 @@ void LinearTwin::Step(std::span<const double> inputs,
       seen_drive_.col(unknown) += force * seen_of_[at].col(lever.direction);
     }
   }
-  next_.noalias() += gains_[gain_].L * innovation;
+  next_.noalias() += gain().L * innovation;
   x_.swap(next_);
   tones_.Advance();
   ++in_block_;
@@ -312,9 +310,9 @@ void LinearTwin::Step(std::span<const double> inputs,
 
 const MatrixXd& LinearTwin::EndBlock() noexcept {
   sensitivity_ = seen_drive_;
-  sensitivity_.leftCols(active_).noalias() += seen_ * S_.leftCols(active_);
+  sensitivity_.leftCols(acting()).noalias() += seen_ * S_.leftCols(acting());
   S_next_ = S_drive_;
-  S_next_.leftCols(active_).noalias() += power_ * S_.leftCols(active_);
+  S_next_.leftCols(acting()).noalias() += power_ * S_.leftCols(acting());
   S_.swap(S_next_);
   S_drive_.setZero();
   seen_drive_.setZero();

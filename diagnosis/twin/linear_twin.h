@@ -22,7 +22,6 @@
 #include "mjdiag/diagnosis/model/delta_form.h"
 #include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/diagnosis/twin/lever.h"
-#include "mjdiag/diagnosis/twin/running_tones.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 
 namespace mjdiag {
@@ -66,14 +65,6 @@ class LinearTwin final : public Twin {
   LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
              Eigen::Index block);
 
-  Eigen::Index outputs() const override { return C_.rows(); }
-  Eigen::Index inputs() const override { return u_.size(); }
-  Eigen::Index states() const override { return x_.size(); }
-  Eigen::Index unknowns() const override { return theta_.size(); }
-  Eigen::Index start_unknowns() const override { return model_.start.cols(); }
-  Eigen::Index block() const override { return block_; }
-  const std::vector<TwinGain>& gains() const override { return gains_; }
-
   void UseGain(std::size_t gain) noexcept override;
   void Start(const Eigen::VectorXd& theta) noexcept override;
   void Start(const Eigen::VectorXd& theta,
@@ -88,21 +79,16 @@ class LinearTwin final : public Twin {
   void Shift(const Eigen::VectorXd& change) noexcept override;
 
  private:
+  void Reset() noexcept;
   void MakeMaps() noexcept;
   void LiftSensitivities() noexcept;
   double Signal(const Lever& lever) const noexcept;
 
   UncertainModel model_;
-  std::vector<TwinGain> gains_;
-  std::size_t gain_ = 0;
-  Eigen::Index block_;
   Eigen::MatrixXd C_;     // ny x 2 nq
   Eigen::MatrixXd mean_;  // C / d
   LeverArms arms_;
-  Eigen::MatrixXd place_;    // of coordinates by readings, nq x ny
-  Eigen::Index first_tone_;  // of the unknowns
-  Eigen::Index active_ = 0;  // columns of S that are in use
-  Eigen::VectorXd theta_;
+  Eigen::MatrixXd place_;   // of coordinates by readings, nq x ny
   Eigen::VectorXd values_;  // of the numbers
 
   // Maps at theta_.
@@ -120,8 +106,7 @@ class LinearTwin final : public Twin {
 
   // The run.
   Eigen::Index in_block_ = 0;
-  Eigen::VectorXd x_, next_, u_;
-  RunningTones tones_;
+  Eigen::VectorXd x_, next_;
   Eigen::MatrixXd S_, S_next_, S_drive_;
   Eigen::MatrixXd seen_drive_, sensitivity_;
 };

@@ -22,10 +22,6 @@ constexpr double kLongestStep = 0.5;
 constexpr double kRecent = 32.0;
 /// A surprise this many standard deviations beyond what is expected is no chance.
 constexpr double kNoChance = 8.0;
-/// A reading within this many standard deviations of that at rest is one.
-constexpr double kAtRest = 6.0;
-/// Part of a first movement by which a faulty machine may differ.
-constexpr double kUnlike = 1.0;
 /// No prior becomes wider than this.
 constexpr double kWidest = 0.7;
 constexpr double kWidestStart = 1e3;
@@ -72,7 +68,9 @@ PredictionErrorEstimator::PredictionErrorEstimator(
       unknowns_(std::move(unknowns)),
       sample_time_(sample_time),
       options_(options),
+      kept_(twin_->outputs(), twin_->inputs(), options.kept),
       next_look_(kFirstLook),
+      run_start_(twin_->outputs(), twin_->block()),
       information_(static_cast<Index>(unknowns_.size()), twin_->outputs()) {
   const auto p = static_cast<Index>(unknowns_.size());
   const Index ny = twin_->outputs();
@@ -94,13 +92,11 @@ PredictionErrorEstimator::PredictionErrorEstimator(
   covariance_ = covariances_.front();
   proven_.assign(covariances_.size(), nominal_);
   is_proven_.assign(covariances_.size(), false);
-  kept_ = MatrixXd::Zero(ny + twin_->inputs(), options_.kept);
   theta_ = center_ = nominal_;
   variance_ = prior_covariance_.diagonal();
   work_ = VectorXd::Zero(p);
   prior_ = inverse_ = MatrixXd::Identity(p, p);
   reading_ = innovation_ = sum_ = VectorXd::Zero(ny);
-  beginning_ = MatrixXd::Zero(ny, 3 * twin_->block());
   segment_.state = segment_.settling_state = VectorXd::Zero(twin_->states());
   checkpoints_.assign(kCheckpoints, {-1, segment_.state});
   WidenPrior();
@@ -166,23 +162,16 @@ void PredictionErrorEstimator::GoBack() noexcept {
 
 void PredictionErrorEstimator::Add(std::span<const double> outputs,
                                    std::span<const double> inputs) noexcept {
-  auto slot = kept_.col(added_ % options_.kept);
-  std::copy(outputs.begin(), outputs.end(), slot.begin());
-  std::copy(inputs.begin(), inputs.end(),
-            slot.begin() + static_cast<Index>(outputs.size()));
-  ++added_;
+  kept_.Add(outputs, inputs);
   if (active() == 0 && !FindStart()) return;
   ProcessKept();
-  if (seen_ < added_) ProcessKept();
+  if (seen_ < kept_.added()) ProcessKept();
 }
 
 bool PredictionErrorEstimator::StepTwin() noexcept {
-  const auto slot = kept_.col(seen_ % options_.kept);
   twin_->Predict(reading_);
-  innovation_ = slot.head(reading_.size()) - reading_;
-  twin_->Step({slot.data() + reading_.size(),
-               static_cast<std::size_t>(slot.size() - reading_.size())},
-              innovation_);
+  innovation_ = kept_.outputs(seen_) - reading_;
+  twin_->Step(kept_.inputs(seen_), innovation_);
   ++seen_;
   if (++in_block_ < twin_->block()) return false;
   in_block_ = 0;
@@ -190,19 +179,23 @@ bool PredictionErrorEstimator::StepTwin() noexcept {
 }
 
 bool PredictionErrorEstimator::FindStart() noexcept {
-  if (added_ < twin_->block()) return false;
-  if (added_ == twin_->block() && BeganAtRest()) {
-    Begin();
-    return true;
+  if (kept_.added() < twin_->block()) return false;
+  if (kept_.added() == twin_->block()) {
+    work_ = nominal_;
+    if (run_start_.BeganAtRest(*twin_, kept_, work_, FirstTone())) {
+      Begin();
+      return true;
+    }
   }
   const Index settled = twin_->gains().back().settling;
   const auto looked =
       settled + static_cast<Index>(std::lround(options_.looking / sample_time_));
-  if (added_ < looked) return false;
-  segment_.origin = QuietestTick(settled, looked);
+  if (kept_.added() < looked) return false;
+  segment_.origin =
+      QuietestTick(kept_, settled, looked, twin_->block(), covariances_.front());
   segment_.at_rest = false;
   segment_.settling_from = 0;
-  reading_ = kept_.col(0).head(reading_.size());
+  reading_ = kept_.outputs(0);
   twin_->StateAt(reading_, segment_.settling_state);
   // Beside the machine by its stiffest gain, until it has forgotten how it began.
   gain_ = covariances_.size() - 1;
@@ -211,67 +204,10 @@ bool PredictionErrorEstimator::FindStart() noexcept {
   return true;
 }
 
-bool PredictionErrorEstimator::BeganAtRest() noexcept {
-  // How far the known commands move it from there, and tones as large as they come.
-  sum_.setZero();
-  bool at_rest = true;
-  const Index ticks = added_;
-  const Index first_tone = FirstTone();
-  const Index tones = (theta_.size() - twin_->start_unknowns() - first_tone) / 2;
-  twin_->UseGain(0);
-  innovation_.setZero();
-  // Predictions of three runs side by side: without tones, sines, cosines.
-  for (int run = 0; run < 3; ++run) {
-    work_ = nominal_;
-    for (Index i = 0; run > 0 && i < tones; ++i)
-      work_[first_tone + 2 * i + run - 1] = 1.0;
-    twin_->Start(work_);
-    for (Index k = 0; k < ticks; ++k) {
-      const auto slot = kept_.col(k);
-      twin_->Predict(reading_);
-      beginning_.col(run * ticks + k) = reading_;
-      twin_->Step({slot.data() + reading_.size(),
-                   static_cast<std::size_t>(slot.size() - reading_.size())},
-                  innovation_);
-    }
-  }
-  for (Index k = 0; k < ticks; ++k) {
-    for (Index i = 0; i < reading_.size(); ++i) {
-      const double predicted = beginning_(i, k);
-      const double sd = std::sqrt(twin_->gains().front().covariance(i, i));
-      const double moved = std::abs(predicted - beginning_(i, 0)) +
-                           std::abs(beginning_(i, ticks + k) - predicted) +
-                           std::abs(beginning_(i, 2 * ticks + k) - predicted);
-      if (std::abs(kept_(i, k) - predicted) > kAtRest * sd + kUnlike * moved) {
-        at_rest = false;
-      }
-    }
-  }
-  return at_rest;
-}
-
 Index PredictionErrorEstimator::FirstTone() const noexcept {
   Index end = theta_.size() - twin_->start_unknowns();
   while (end > 0 && !unknowns_[static_cast<std::size_t>(end - 1)].factor) --end;
   return end;
-}
-
-Index PredictionErrorEstimator::QuietestTick(Index from, Index to) const noexcept {
-  const Index block = twin_->block();
-  Index quietest = from - from % block;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index k = quietest; k < to; k += block) {
-    double moved = 0.0;
-    for (Index i = 0; i < reading_.size(); ++i) {
-      const double way = kept_(i, k) - kept_(i, k - block);
-      moved += way * way / covariances_.front()(i, i);
-    }
-    if (moved < least) {
-      least = moved;
-      quietest = k;
-    }
-  }
-  return quietest;
 }
 
 void PredictionErrorEstimator::ProcessKept() noexcept {
@@ -325,8 +261,9 @@ bool PredictionErrorEstimator::Surprised() const noexcept {
 
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (!Pulled() && Surprised()) return Unexplained();
-  if (seen_ < added_ || seen_ < next_look_) return;
-  next_look_ = Pulled() ? added_ + kPulledLook : added_ + added_ / 2;
+  if (seen_ < kept_.added() || seen_ < next_look_) return;
+  next_look_ =
+      Pulled() ? kept_.added() + kPulledLook : kept_.added() + kept_.added() / 2;
   if (Pulled() && WorthGoingBack() && ++pulled_passes_ <= kPulledPasses) {
     GoBack();
   } else if (!LookMoreFinely() && WorthGoingBack()) {
@@ -336,7 +273,7 @@ void PredictionErrorEstimator::Reconsider() noexcept {
 
 void PredictionErrorEstimator::Unexplained() noexcept {
   // Beside a machine that it had nothing to learn of any more.
-  if (seen_ == added_ && !WorthGoingBack() && TryChange()) return;
+  if (seen_ == kept_.added() && !WorthGoingBack() && TryChange()) return;
   const Index horizon = seen_ - segment_.origin;
   const bool same = std::abs(horizon - segment_.surprised) <= kSame;
   segment_.same = same ? segment_.same + 1 : 0;
@@ -361,7 +298,8 @@ void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
   if (exhausted_) return;
   gain_ = is_proven_[gain_ + 1] ? gain_ + 1 : stiffest;
   pulled_passes_ = 0;
-  next_look_ = is_proven_[gain_] ? added_ + added_ / 2 : added_ + kPulledLook;
+  next_look_ = is_proven_[gain_] ? kept_.added() + kept_.added() / 2
+                                 : kept_.added() + kPulledLook;
   center_ = is_proven_[gain_] ? proven_[gain_] : nominal_;
   theta_ = center_;
   information_.Recentre();
@@ -385,7 +323,7 @@ bool PredictionErrorEstimator::TryChange() noexcept {
   const Checkpoint* from = nullptr;
   for (const Checkpoint& checkpoint : checkpoints_) {
     if (checkpoint.tick < segment_.origin || checkpoint.tick > seen_ - kUnnoticed ||
-        checkpoint.tick <= added_ - options_.kept) {
+        checkpoint.tick <= kept_.first()) {
       continue;
     }
     if (from == nullptr || checkpoint.tick > from->tick) from = &checkpoint;
@@ -434,7 +372,7 @@ void PredictionErrorEstimator::Follow() noexcept {
 }
 
 void PredictionErrorEstimator::PassesToTheEnd() noexcept {
-  while (seen_ < added_) ProcessKept();
+  while (seen_ < kept_.added()) ProcessKept();
   std::size_t failed = covariances_.size();  // gain
   for (int i = 0; i < kMostReturns && !following() && !exhausted_; ++i) {
     const bool worth = WorthGoingBack() && ++pulled_passes_ <= kLastPasses;
@@ -446,7 +384,7 @@ void PredictionErrorEstimator::PassesToTheEnd() noexcept {
       LookMoreFinely();
     }
     const std::size_t tried = gain_;
-    while (seen_ < added_) ProcessKept();
+    while (seen_ < kept_.added()) ProcessKept();
     if (gain_ > tried) {
       failed = tried;
       pulled_passes_ = 0;
@@ -456,7 +394,7 @@ void PredictionErrorEstimator::PassesToTheEnd() noexcept {
 
 void PredictionErrorEstimator::CatchUp() noexcept {
   if (active() == 0) {
-    while (added_ > 0 && !FindStart()) {
+    while (kept_.added() > 0 && !FindStart()) {
       if (segment_.at_rest) return;  // too short to find a start in it
     }
   }

@@ -33,6 +33,8 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/twin/information.h"
+#include "mjdiag/diagnosis/twin/kept_readings.h"
+#include "mjdiag/diagnosis/twin/run_start.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 
 namespace mjdiag {
@@ -81,7 +83,7 @@ class PredictionErrorEstimator {
   double surprise() const { return surprise_; }
   /// Whether its estimate is one to act on: it looks as finely as it can, or more
   /// coarsely at all that there is.
-  bool current() const { return active() > 0 && (!Pulled() || seen_ == added_); }
+  bool current() const { return active() > 0 && (!Pulled() || seen_ == kept_.added()); }
   /// Tick at which the phases of its tones begin.
   Eigen::Index phase_origin() const { return phase_origin_; }
   /// Tick from which the machine has been as it is estimated.
@@ -108,8 +110,6 @@ class PredictionErrorEstimator {
   };
 
   bool FindStart() noexcept;
-  bool BeganAtRest() noexcept;
-  Eigen::Index QuietestTick(Eigen::Index from, Eigen::Index to) const noexcept;
   /// One tick of the twin on kept readings. @return whether it ends a block
   bool StepTwin() noexcept;
 
@@ -137,7 +137,7 @@ class PredictionErrorEstimator {
   bool TryChange() noexcept;
   void Follow() noexcept;
   void PassesToTheEnd() noexcept;
-  bool following() const { return added_ - segment_.origin > options_.kept; }
+  bool following() const { return kept_.added() - segment_.origin > options_.kept; }
   double Farthest(const Eigen::VectorXd& change) const noexcept;
   bool WorthGoingBack() const noexcept;
 
@@ -150,8 +150,7 @@ class PredictionErrorEstimator {
   Eigen::VectorXd walk_;                      // of kWalkEvery blocks
   std::vector<Eigen::MatrixXd> covariances_;  // of a block's innovation, by gain
 
-  Eigen::MatrixXd kept_;  // ny + nu x kept, a ring
-  Eigen::Index added_ = 0;
+  KeptReadings kept_;
   Eigen::Index seen_ = 0;
   Eigen::Index next_look_;
   int returns_ = 0;
@@ -167,6 +166,7 @@ class PredictionErrorEstimator {
   std::size_t gain_ = 0;
   std::vector<Eigen::VectorXd> proven_;  // theta that explained all, by gain
   std::vector<bool> is_proven_;
+  RunStart run_start_;
   Information information_;
   Eigen::MatrixXd prior_;
   Eigen::VectorXd center_;  // theta0
@@ -177,7 +177,7 @@ class PredictionErrorEstimator {
   Eigen::Index blocks_ = 0;  // of this pass
   Eigen::Index in_block_ = 0;
   Eigen::VectorXd reading_, innovation_, sum_, work_;
-  Eigen::MatrixXd inverse_, covariance_, beginning_;
+  Eigen::MatrixXd inverse_, covariance_;
 };
 
 }  // namespace mjdiag

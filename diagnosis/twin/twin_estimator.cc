@@ -87,14 +87,10 @@ TwinReading TwinEstimator::Read() const {
   if (active == 0) return reading;  // it has not begun
   const VectorXd& theta = estimator_.theta();
   const MatrixXd information = estimator_.H().topLeftCorner(active, active);
-  const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   reading.misfit = estimator_.surprise();
   // A twin that does not explain what it sees is less sure than it says.
   const double honest = reading.misfit > kExplained ? reading.misfit : 1.0;
-  const MatrixXd covariance =
-      honest * scale.asDiagonal() *
-      Inverse(scale.asDiagonal() * information * scale.asDiagonal()) *
-      scale.asDiagonal();
+  const MatrixXd covariance = honest * CovarianceOf(information);
   const VectorXd variance = covariance.diagonal();
   std::vector<std::vector<Index>> groups;
   for (std::size_t i = 0; i < faults_.size(); ++i) {

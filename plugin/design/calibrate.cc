@@ -1,7 +1,6 @@
 #include "mjdiag/plugin/design/calibrate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -17,9 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Force noises that are tried, in parts of the control rate (machine_twin.cc).
-constexpr std::array<double, 6> kForceNoise = {0.0,     1.25e-4, 4e-4,
-                                               1.25e-3, 4e-3,    1.25e-2};
 /// By chance the misfit, a mean of about a hundred squares, is not above it.
 constexpr double kExplainedBy = 1.7;
 /// A number is not that far from where it was known to be, in standard deviations.
@@ -186,11 +182,7 @@ Learned Learn(const Machine& machine, const std::vector<Samples>& runs,
     const Index active = estimator.active();
     if (active > 0) {
       const MatrixXd H = estimator.H().topLeftCorner(active, active);
-      const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-      const MatrixXd covariance = scale.asDiagonal() *
-                                  Inverse(scale.asDiagonal() * H * scale.asDiagonal()) *
-                                  scale.asDiagonal();
-      learned.covariance = covariance.topLeftCorner(n, n);
+      learned.covariance = CovarianceOf(H).topLeftCorner(n, n);
       learned.theta = estimator.theta().head(n);
     }
     learned.misfits.push_back(estimator.surprise());
@@ -227,9 +219,7 @@ void Refine(const Machine& machine, const std::vector<Samples>& runs,
     MatrixXd H = known;
     VectorXd g = -known * learned.theta;
     for (const Samples& run : runs) AddRun(*twin.twin, VectorXd::Zero(n), run, H, g);
-    const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-    const MatrixXd inverse = Inverse(scale.asDiagonal() * H * scale.asDiagonal());
-    learned.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
+    learned.covariance = CovarianceOf(H);
     learned.theta += learned.covariance * g;
   }
 }
@@ -263,12 +253,16 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   double done = 0.0;
   Learned learned;
   double force_noise = 0.0;
-  for (const double part : kForceNoise) {
-    force_noise = part * machine.rates().control;
+  std::vector<double> force_noises = {0.0};
+  for (const double part : kTwinBandwidths) {
+    force_noises.push_back(part * machine.rates().control);
+  }
+  for (const double tried : force_noises) {
+    force_noise = tried;
     // Noise first as it is given, then as it was seen.
     for (int pass = 0; pass < 2; ++pass) {
       learned = Learn(WithForceNoise(machine, noise, force_noise), runs, options, done,
-                      0.5 / static_cast<double>(kForceNoise.size()));
+                      0.5 / static_cast<double>(force_noises.size()));
       const bool as_seen =
           ((learned.noise - noise).cwiseAbs().array() < 0.05 * noise.array()).all();
       if (as_seen) break;
@@ -289,17 +283,16 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   calibration.force_noise = force_noise;
   calibration.records = static_cast<int>(records.size());
   report.prior_sd.resize(learned.theta.size());
-  std::vector<std::string> doubts;
   for (Index i = 0; i < learned.theta.size(); ++i) {
     const Unknown& unknown = learned.unknowns[static_cast<std::size_t>(i)];
     calibration.numbers.push_back(unknown.name);
     report.prior_sd[i] = unknown.prior_sd;
     if (std::abs(learned.theta[i]) > kDoubtful * unknown.prior_sd) {
-      doubts.push_back(unknown.name);
+      report.doubts.push_back(unknown.name);
     }
   }
   for (const double misfit : learned.misfits) {
-    report.records.push_back({misfit, doubts});
+    report.records.push_back({misfit});
   }
   return report;
 }

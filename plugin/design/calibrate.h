@@ -27,15 +27,15 @@ namespace mjdiag {
 
 struct CalibratedRecord {
   double misfit = 1.0;  ///< of the twin with that calibration
-  /// A number that is far from what was known of it: no healthy run of this machine, or
-  /// a plant that is not this machine's.
-  std::vector<std::string> doubts;
 };
 
 struct CalibrationReport {
   Calibration calibration;
   Eigen::VectorXd prior_sd;  ///< of the logarithms of the numbers, before any record
   std::vector<CalibratedRecord> records;
+  /// Numbers that are far from what was known of them: no healthy runs of this machine,
+  /// or a plant that is not this machine's.
+  std::vector<std::string> doubts;
 };
 
 struct CalibrateOptions {

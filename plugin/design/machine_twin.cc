@@ -1,7 +1,6 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,9 +18,6 @@ using Eigen::VectorXd;
 
 /// Ticks of a block at 8 kHz; what varies faster than it is seen by its mean.
 constexpr Index kBlock = 8;
-/// Bandwidths of the gains with which a twin is pulled along, in parts of the control
-/// rate: from 1 Hz at 8 kHz, to follow, to 100 Hz, to begin with.
-constexpr std::array<double, 5> kBandwidths = {1.25e-4, 4e-4, 1.25e-3, 4e-3, 1.25e-2};
 /// A linear machine answers to where it started exactly linearly. One with friction
 /// that sticks does not: to the first order it is not told.
 constexpr double kStartEnergy = 1.0;  // J
@@ -55,7 +51,7 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
     gains.push_back({MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
                      noise.cwiseAbs2().asDiagonal(), 0});
   }
-  for (const double part : kBandwidths) {
+  for (const double part : kTwinBandwidths) {
     const double bandwidth = part * machine.rates().control;
     gains.push_back(GainOf(machine, noise, std::max(bandwidth, force_noise)));
   }

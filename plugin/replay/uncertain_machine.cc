@@ -35,19 +35,23 @@ double Spread(const Machine& machine, const PlantNumber& number, bool doubt) {
   return declared > 0.0 || !(doubt || friction) ? declared : UsualSpread(number.kind);
 }
 
-UncertainNumber& NumberOf(UncertainMachine& uncertain, const PlantNumber& number) {
+UncertainNumber& NumberOf(const Machine& machine, const PlantNumber& number,
+                          UncertainMachine& uncertain) {
   const auto found = std::find_if(
       uncertain.numbers.begin(), uncertain.numbers.end(),
       [&](const UncertainNumber& known) { return known.number == number; });
   if (found != uncertain.numbers.end()) return *found;
-  return uncertain.numbers.emplace_back(UncertainNumber{number, {}});
+  UncertainNumber& added = uncertain.numbers.emplace_back(UncertainNumber{number, {}});
+  if (number.kind != PlantNumberKind::kFriction) added.part = PartOf(machine, number);
+  return added;
 }
 
 void AddFaults(const Machine& machine, UncertainMachine& uncertain) {
   for (const FaultParameter& fault : FaultParameters(machine.plant())) {
     const auto unknown = static_cast<Index>(uncertain.unknowns.size());
     for (const int element : fault.elements) {
-      NumberOf(uncertain, {fault.kind, element}).factors.push_back(unknown);
+      NumberOf(machine, {fault.kind, element}, uncertain)
+          .part.factors.push_back(unknown);
     }
     uncertain.unknowns.push_back({fault.name, 1.0, kFaultSpread, true, true});
   }
@@ -68,9 +72,14 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
     const bool friction = number.kind == PlantNumberKind::kFriction;
     if (friction && !options.friction) continue;
     const double spread = Spread(machine, number, options.doubt);
-    if (!(spread > 0.0) || (!friction && !Acts(PartOf(machine, number)))) continue;
+    if (!(spread > 0.0)) continue;
+    UncertainNumber& uncertain_number = NumberOf(machine, number, uncertain);
+    if (!friction && !Acts(uncertain_number.part)) {
+      if (uncertain_number.part.factors.empty()) uncertain.numbers.pop_back();
+      continue;
+    }
     const auto unknown = static_cast<Index>(uncertain.unknowns.size());
-    NumberOf(uncertain, number).factors.push_back(unknown);
+    uncertain_number.part.factors.push_back(unknown);
     uncertain.unknowns.push_back(
         {PlantNumberName(plant, number), 1.0, spread, true, friction});
     ++uncertain.known;
@@ -78,12 +87,8 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
 }
 
 void AddTones(const Machine& machine, UncertainMachine& uncertain) {
-  const Channels& channels = machine.channels();
   for (const MultisineSetup& source : machine.setup().disturbances) {
-    VectorXd amplitude = VectorXd::Zero(static_cast<Index>(channels.actuators.size()));
-    for (const auto& [channel, value] : source.amplitude) {
-      amplitude[channels.ActuatorIndex(channel)] = value;
-    }
+    const VectorXd amplitude = machine.channels().AmplitudeOf(source);
     for (const double frequency : source.frequencies) {
       uncertain.tones.push_back({frequency, amplitude});
       for (const char* part : {" sine", " cosine"}) {
@@ -179,9 +184,7 @@ UncertainModel MakeUncertainModel(const Machine& machine,
   model.rest = SensorReadings(machine.channels(), machine.plant(), machine.rest());
   for (const UncertainNumber& number : uncertain.numbers) {
     if (number.number.kind == PlantNumberKind::kFriction) continue;
-    ModelPart part = PartOf(machine, number.number);
-    part.factors = number.factors;
-    model.parts.push_back(std::move(part));
+    model.parts.push_back(number.part);
   }
   model.unknowns = uncertain.unknowns;
   model.tones = uncertain.tones;

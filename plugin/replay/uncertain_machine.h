@@ -15,7 +15,7 @@ namespace mjdiag {
 /// A number of the plant with the unknowns whose product it is multiplied by.
 struct UncertainNumber {
   PlantNumber number;
-  std::vector<Eigen::Index> factors;
+  ModelPart part;  ///< of its linear plant, its factors among it; of dry friction: none
 };
 
 /// Unknowns in this order: fault parameters, numbers of the plant that are not known
@@ -48,7 +48,7 @@ struct UncertaintyOptions {
 UncertainMachine MakeUncertainMachine(const Machine& machine,
                                       const UncertaintyOptions& options);
 
-/// Its linear plant.
+/// Its linear plant: without dry friction.
 UncertainModel MakeUncertainModel(const Machine& machine,
                                   const UncertainMachine& uncertain);
 
