@@ -56,7 +56,7 @@ std::string CalibrationText(const CalibrateCommand& command,
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     numbers.Add({calibration.numbers[i], Short(calibration.factors[at]),
-                 Short(100.0 * std::sqrt(calibration.covariance(at, at))),
+                 Short(100.0 * calibration.Sd()[at]),
                  Short(100.0 * report.prior_sd[at])});
   }
   std::string text = numbers.ToString() + "\nforce noise: ";
@@ -91,7 +91,7 @@ nlohmann::json CalibrationDocument(const CalibrateCommand& command,
     const auto at = static_cast<Eigen::Index>(i);
     document["numbers"].push_back({{"name", calibration.numbers[i]},
                                    {"factor", calibration.factors[at]},
-                                   {"sd", std::sqrt(calibration.covariance(at, at))},
+                                   {"sd", calibration.Sd()[at]},
                                    {"prior_sd", report.prior_sd[at]}});
   }
   for (std::size_t i = 0; i < report.records.size(); ++i) {

@@ -1,7 +1,7 @@
 #include "mjdiag/diagnosis/twin/run_start.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace mjdiag {
 namespace {
@@ -17,13 +17,15 @@ constexpr double kUnlike = 1.0;
 
 }  // namespace
 
-RunStart::RunStart(Index outputs, Index ticks)
+RunStart::RunStart(Index outputs, Index ticks, Index unknowns)
     : reading_(VectorXd::Zero(outputs)),
-      none_(VectorXd::Zero(outputs)),
-      predicted_(MatrixXd::Zero(outputs, 3 * ticks)) {}
+      none_(reading_),
+      spread_(reading_),
+      predicted_(MatrixXd::Zero(outputs, 3 * ticks)),
+      weighted_(MatrixXd::Zero(unknowns, outputs)) {}
 
 bool RunStart::BeganAtRest(Twin& twin, const KeptReadings& kept, VectorXd& theta,
-                           Index first_tone) noexcept {
+                           Index first_tone, const MatrixXd& prior) noexcept {
   const Index ticks = predicted_.cols() / 3;
   const Index tones = (theta.size() - twin.start_unknowns() - first_tone) / 2;
   twin.UseGain(0);
@@ -39,39 +41,30 @@ bool RunStart::BeganAtRest(Twin& twin, const KeptReadings& kept, VectorXd& theta
       predicted_.col(run * ticks + k) = reading_;
       twin.Step(kept.inputs(k), none_);
     }
+    const MatrixXd& psi = twin.EndBlock();
+    if (run > 0) continue;
+    weighted_.noalias() = prior * psi.transpose();
+    for (Index i = 0; i < spread_.size(); ++i) {
+      spread_[i] = std::sqrt(psi.row(i).dot(weighted_.col(i)));
+    }
   }
-  for (Index k = 0; k < ticks; ++k) {
-    for (Index i = 0; i < reading_.size(); ++i) {
+  for (Index i = 0; i < reading_.size(); ++i) {
+    const double sd = std::sqrt(twin.gains().front().covariance(i, i));
+    // Where it rests is where the first reading says.
+    const double first = kept.outputs(0)[i] - predicted_(i, 0);
+    const double away = std::clamp(first, -kAtRest * spread_[i], kAtRest * spread_[i]);
+    for (Index k = 0; k < ticks; ++k) {
       const double predicted = predicted_(i, k);
-      const double sd = std::sqrt(twin.gains().front().covariance(i, i));
       const double moved = std::abs(predicted - predicted_(i, 0)) +
                            std::abs(predicted_(i, ticks + k) - predicted) +
                            std::abs(predicted_(i, 2 * ticks + k) - predicted);
-      if (std::abs(kept.outputs(k)[i] - predicted) > kAtRest * sd + kUnlike * moved) {
+      if (std::abs(kept.outputs(k)[i] - predicted - away) >
+          kAtRest * std::hypot(sd, sd) + kUnlike * moved) {
         return false;
       }
     }
   }
   return true;
-}
-
-Index QuietestTick(const KeptReadings& kept, Index from, Index to, Index block,
-                   const MatrixXd& covariance) noexcept {
-  Index quietest = from - from % block;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index k = quietest; k < to; k += block) {
-    const auto now = kept.outputs(k);
-    const auto before = kept.outputs(k - block);
-    double moved = 0.0;
-    for (Index i = 0; i < now.size(); ++i) {
-      moved += (now[i] - before[i]) * (now[i] - before[i]) / covariance(i, i);
-    }
-    if (moved < least) {
-      least = moved;
-      quietest = k;
-    }
-  }
-  return quietest;
 }
 
 }  // namespace mjdiag

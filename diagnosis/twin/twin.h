@@ -41,6 +41,10 @@ struct TwinShape {
   /// Of the state at the start of the run, in standard deviations of it.
   Eigen::Index start_unknowns = 0;
   Eigen::Index block = 1;  ///< ticks
+  /// How many times faster than a factor what it does to the readings may change: a
+  /// resonance gets out of step in as many of its periods as its stiffness changes by
+  /// parts, a joint that sticks comes loose at another tick at once.
+  double curvature = 1.0;
 };
 
 class Twin {
@@ -53,6 +57,11 @@ class Twin {
   Eigen::Index unknowns() const { return shape_.unknowns; }
   Eigen::Index start_unknowns() const { return shape_.start_unknowns; }
   Eigen::Index block() const { return shape_.block; }
+  double curvature() const { return shape_.curvature; }
+  /// The first of those of tones.
+  Eigen::Index first_tone() const {
+    return unknowns() - start_unknowns() - 2 * tones_.count();
+  }
   /// From that of the force noise that is assumed to ever stiffer ones; at least one.
   const std::vector<TwinGain>& gains() const { return gains_; }
 
@@ -91,9 +100,6 @@ class Twin {
        std::vector<UnknownTone> tones, double sample_time);
 
   const TwinGain& gain() const { return gains_[gain_]; }
-  Eigen::Index first_tone() const {
-    return unknowns() - start_unknowns() - 2 * tones_.count();
-  }
   /// Unknowns of theta that act: all, or all but those of the start.
   Eigen::Index acting() const { return acting_; }
   /// Logarithm of a product of factors.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/diagnosis/twin/twin_in_coordinates.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/plant_twin.h"
 #include "mjdiag/signals/decompositions.h"
@@ -66,14 +67,14 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
 }
 
 /// Fault parameters are the first unknowns.
+/// @param first  of the unknowns of tones
 std::vector<TwinFault> FaultsOf(const Machine& machine,
-                                const UncertainMachine& uncertain) {
+                                const UncertainMachine& uncertain, Index first) {
   std::vector<TwinFault> faults;
   for (Index i = 0; i < uncertain.faults; ++i) {
     faults.push_back({uncertain.unknowns[static_cast<std::size_t>(i)].name, i, {}});
   }
   if (uncertain.tones.empty()) return faults;
-  Index first = uncertain.first_tone();
   for (const MultisineSetup& source : machine.setup().disturbances) {
     faults.push_back({source.name, first, source.frequencies});
     first += 2 * faults.back().tones();
@@ -90,12 +91,9 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
   }
   options.friction = !linear;
   options.start_energy = linear ? kStartEnergy : 0.0;
-  UncertainMachine uncertain = MakeUncertainMachine(machine, options);
+  const UncertainMachine uncertain = MakeUncertainMachine(machine, options);
   MachineTwin twin;
   twin.sample_time = machine.rates().tick();
-  twin.unknowns = uncertain.unknowns;
-  twin.faults = FaultsOf(machine, uncertain);
-  twin.prior = uncertain.prior;
   const auto& calibration = machine.setup().calibration;
   const double force_noise = calibration ? calibration->force_noise : 0.0;
   std::vector<TwinGain> gains = GainsOf(machine, noise, force_noise);
@@ -103,9 +101,18 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
     twin.twin = std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
                                              std::move(gains), kBlock);
   } else {
-    twin.twin = std::make_unique<PlantTwin>(machine, std::move(uncertain),
-                                            std::move(gains), kBlock);
+    twin.twin =
+        std::make_unique<PlantTwin>(machine, uncertain, std::move(gains), kBlock);
   }
+  if (calibration && !options.doubt) {
+    const KnownTogether known = AsCalibrated(machine, uncertain);
+    twin.twin = std::make_unique<TwinInCoordinates>(std::move(twin.twin), known.T,
+                                                    uncertain.tones);
+    twin.unknowns = known.unknowns;
+  } else {
+    twin.unknowns = uncertain.unknowns;
+  }
+  twin.faults = FaultsOf(machine, uncertain, twin.twin->first_tone());
   return twin;
 }
 

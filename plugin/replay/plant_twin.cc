@@ -14,16 +14,30 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// Any change may be one too many for a joint that sticks.
+constexpr double kCurvature = 1e6;
+
+std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
+  std::vector<ModelPart> parts;
+  for (const UncertainNumber& number : uncertain.numbers) parts.push_back(number.part);
+  return parts;
+}
+
+}  // namespace
+
 PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
                      std::vector<TwinGain> gains, Index block)
     : Twin(
           {machine.linear().b.cols(), machine.linear().Gamma.cols(),
            2 * machine.linear().M.rows(), static_cast<Index>(uncertain.unknowns.size()),
-           uncertain.start.cols(), block},
+           uncertain.start.cols(), block, kCurvature},
           std::move(gains), uncertain.tones, machine.rates().tick()),
       machine_(machine),
       uncertain_(std::move(uncertain)),
-      effects_(machine.channels(), machine.plant(), machine.effects()) {
+      effects_(machine.channels(), machine.plant(), machine.effects()),
+      moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()) {
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
   data_ = std::move(plant.data);
@@ -145,6 +159,9 @@ void PlantTwin::Reset() noexcept {
 void PlantTwin::Start(const VectorXd& theta) noexcept {
   Begin(theta, true);
   Reset();
+  moved_rest_.Find(theta_);
+  VectorXd::Map(data_->qpos, model_->nv) += moved_rest_.position();
+  S_.topRows(model_->nv) = moved_rest_.sensitivity();
 }
 
 void PlantTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {

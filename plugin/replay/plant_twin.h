@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "mjdiag/diagnosis/twin/moved_rest.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/machine/machine.h"
@@ -86,6 +87,7 @@ class PlantTwin final : public Twin {
   ModelPtr model_;
   DataPtr data_;
   ActiveEffects effects_;
+  MovedRest moved_rest_;
   Eigen::VectorXd start_;  // qpos
   Eigen::VectorXd state_;  // work space
   Eigen::MatrixXd C_, Gamma_, M_, K_, D_;

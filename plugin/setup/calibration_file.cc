@@ -34,12 +34,12 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
       calibration.factors[calibration.factors.size() - 1] = number.at("factor");
     }
     const auto n = static_cast<Index>(calibration.numbers.size());
-    calibration.covariance = MatrixOf(document.at("covariance"));
-    Require(calibration.covariance.rows() == n, file,
-            "its covariance is of another size", "a row for each of the numbers");
-    Require(calibration.covariance.cols() == n && calibration.covariance.allFinite() &&
-                (calibration.covariance.diagonal().array() > 0.0).all(),
-            file, "a row of its covariance is none", "finite numbers, variances > 0");
+    calibration.root = MatrixOf(document.at("root"));
+    Require(calibration.root.rows() == n && calibration.root.cols() == n, file,
+            "its root is of another size",
+            "a row and a column for each of the numbers");
+    Require(calibration.root.allFinite(), file, "a row of its root is none",
+            "finite numbers");
     calibration.sensor_noise = VectorOf(document.at("sensor_noise"));
     calibration.force_noise = document.at("force_noise");
     calibration.records = document.at("records");
@@ -62,12 +62,13 @@ void WriteCalibration(const std::filesystem::path& file,
                    {"force_noise", calibration.force_noise},
                    {"sensor_noise", VectorJson(calibration.sensor_noise)},
                    {"numbers", json::array()},
-                   {"covariance", MatrixJson(calibration.covariance)}};
+                   {"root", MatrixJson(calibration.root)}};
+  const Eigen::VectorXd sd = calibration.Sd();
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Index>(i);
     document["numbers"].push_back({{"name", calibration.numbers[i]},
                                    {"factor", calibration.factors[at]},
-                                   {"sd", std::sqrt(calibration.covariance(at, at))}});
+                                   {"sd", sd[at]}});
   }
   WriteTextFile(file, document.dump(1) + "\n");
 }
