@@ -22,28 +22,33 @@ std::string Short(double value) {
   return text.data();
 }
 
+void Widen(const std::vector<std::string>& cells, std::vector<std::size_t>& widths) {
+  widths.resize(std::max(widths.size(), cells.size()));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    widths[i] = std::max(widths[i], Width(cells[i]));
+  }
+}
+
+std::string Line(const std::vector<std::string>& cells,
+                 const std::vector<std::size_t>& widths) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string pad(widths[i] - Width(cells[i]), ' ');
+    line += (i == 0 ? "" : "  ") + (i == 0 ? cells[i] + pad : pad + cells[i]);
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
 Table::Table(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
 
 void Table::Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
 
 std::string Table::ToString() const {
   std::vector<std::size_t> widths;
-  for (const auto& row : rows_) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], Width(row[i]));
-    }
-  }
+  for (const auto& row : rows_) Widen(row, widths);
   std::string text;
-  for (const auto& row : rows_) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string pad(widths[i] - Width(row[i]), ' ');
-      line += (i == 0 ? "" : "  ") + (i == 0 ? row[i] + pad : pad + row[i]);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
+  for (const auto& row : rows_) text += Line(row, widths);
   return text;
 }
 

@@ -24,8 +24,11 @@ ProgressBar::ProgressBar(std::string label)
       start_(Clock::now()),
       last_(start_) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { Wipe(); }
+
+void ProgressBar::Wipe() {
   if (drawn_) std::fputs("\r\033[K", stderr);
+  drawn_ = false;
 }
 
 void ProgressBar::Show(double fraction) {

@@ -14,6 +14,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   void Show(double fraction);
+  /// Clears the line for what is to be printed.
+  void Wipe();
   /// Says what is being done now, cut to 40 characters.
   void Show(const std::string& label, double fraction);
 

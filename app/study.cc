@@ -1,22 +1,22 @@
 // mjdiag study: sweeps and Monte-Carlo studies with their tables.
 
-#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
 
 #include "app/command.h"
-#include "app/format.h"
 #include "app/output.h"
-#include "app/progress.h"
+#include "app/study_log.h"
 #include "app/subject.h"
 #include "mjdiag/report/study_page.h"
+#include "mjdiag/signals/error.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
 #include "mjdiag/studies/disturbance_study.h"
 #include "mjdiag/studies/estimation_study.h"
 #include "mjdiag/studies/hidden_table.h"
+#include "mjdiag/studies/random_fault_study.h"
 #include "mjdiag/studies/tolerance_study.h"
 
 namespace mjdiag::app {
@@ -28,10 +28,13 @@ struct StudyCommand {
   std::string preset;
   int runs = 200;
   std::uint64_t seed = 1;
+  bool linear = false;
 };
 
-using Study =
-    std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)>;
+struct Study {
+  std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)> run;
+  bool either_plant = false;  ///< linear or not, as one wants it
+};
 
 template <int causes>
 std::vector<StudyTable> HiddenEffects(const Machine& machine,
@@ -39,58 +42,23 @@ std::vector<StudyTable> HiddenEffects(const Machine& machine,
   return HiddenStudy(machine, causes, options);
 }
 
+/// Table 5 subtracts the baseline of the motion, Table 3 does not.
+template <bool baseline>
+std::vector<StudyTable> Nonlinear(const Machine& machine, const StudyOptions& options) {
+  return NonlinearDetectionStudy(machine, baseline ? "table5" : "table3", baseline,
+                                 options);
+}
+
 /// Preset -> study, and what it is for.
 const std::map<std::string, Study>& Studies() {
   static const std::map<std::string, Study> studies{
-      {"table2", LinearDetectionStudy},
-      {"table3",
-       [](const Machine& machine, const StudyOptions& options) {
-         return NonlinearDetectionStudy(machine, "table3", false, options);
-       }},
-      {"table4", ClassificationStudy},
-      {"table5",
-       [](const Machine& machine, const StudyOptions& options) {
-         return NonlinearDetectionStudy(machine, "table5", true, options);
-       }},
-      {"estimation", EstimationStudy},
-      {"disturbance", DisturbanceStudy},
-      {"bound", BoundStudy},
-      {"tolerance", ToleranceStudy},
-      {"hidden", HiddenEffects<1>},
-      {"hidden_none", HiddenEffects<0>},
-      {"hidden_two", HiddenEffects<2>}};
+      {"table2", {LinearDetectionStudy}},  {"table3", {Nonlinear<false>}},
+      {"table4", {ClassificationStudy}},   {"table5", {Nonlinear<true>}},
+      {"estimation", {EstimationStudy}},   {"random-faults", {RandomFaultStudy, true}},
+      {"disturbance", {DisturbanceStudy}}, {"bound", {BoundStudy}},
+      {"tolerance", {ToleranceStudy}},     {"hidden", {HiddenEffects<1>}},
+      {"hidden_none", {HiddenEffects<0>}}, {"hidden_two", {HiddenEffects<2>}}};
   return studies;
-}
-
-nlohmann::json ToJson(const Cell& cell) {
-  if (!cell.is_number) return cell.text;
-  return std::isfinite(cell.number) ? nlohmann::json(cell.number) : nlohmann::json();
-}
-
-nlohmann::json ToJson(const StudyTable& table) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const auto& cells : table.rows) {
-    nlohmann::json row = nlohmann::json::array();
-    for (const Cell& cell : cells) row.push_back(ToJson(cell));
-    rows.push_back(row);
-  }
-  return {{"title", table.title},
-          {"columns", table.columns},
-          {"rows", rows},
-          {"notes", table.notes}};
-}
-
-std::string ToText(const StudyTable& table) {
-  Table text(table.columns);
-  for (const auto& cells : table.rows) {
-    std::vector<std::string> row;
-    row.reserve(cells.size());
-    for (const Cell& cell : cells) row.push_back(cell.text);
-    text.Add(row);
-  }
-  std::string result = table.title + "\n\n" + text.ToString();
-  for (const std::string& note : table.notes) result += "\n" + note;
-  return result + (table.notes.empty() ? "\n" : "\n\n");
 }
 
 NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
@@ -101,28 +69,29 @@ NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
 }
 
 void RunStudy(const StudyCommand& command) {
+  const Study& study = Studies().at(command.preset);
+  if (command.linear && !study.either_plant) {
+    throw InputError("--linear", command.preset + " has its own plant", "none");
+  }
   const Machine machine = LoadSubject(command.machine).nominal;
   PrepareOutput(command.output);
-  StudyOptions options{command.runs, command.seed, {}};
-  nlohmann::json document{{"schema", "mjdiag.study/1"},
-                          {"setup", machine.setup().name},
-                          {"preset", command.preset},
-                          {"runs", command.runs},
-                          {"seed", command.seed},
-                          {"command", CommandLine()},
-                          {"tables", nlohmann::json::array()}};
-  std::string text;
-  std::vector<StudyTable> tables;
-  {
-    ProgressBar bar("study " + command.preset);
-    options.progress = [&bar](double fraction) { bar.Show(fraction); };
-    tables = Studies().at(command.preset)(machine, options);
-  }
-  for (const StudyTable& table : tables) {
-    document["tables"].push_back(ToJson(table));
-    text += ToText(table);
-  }
-  Publish(command.output, "study", document, text,
+  StudyLog log(command.output,
+               {{"schema", "mjdiag.study/1"},
+                {"setup", machine.setup().name},
+                {"preset", command.preset},
+                {"runs", command.runs},
+                {"seed", command.seed},
+                {"linear", command.linear},
+                {"command", CommandLine()}},
+               "study " + command.preset);
+  StudyOptions options;
+  options.runs = command.runs;
+  options.seed = command.seed;
+  options.linear = command.linear;
+  options.progress = [&log](double fraction) { log.Progress(fraction); };
+  options.row = [&log](const StudyTable& table) { log.Show(table); };
+  const std::vector<StudyTable> tables = study.run(machine, options);
+  Publish(command.output, "study", log.Document(tables, true), log.RestOf(tables),
           [&] { return StudyPageOf(command, machine.setup().name, tables); });
 }
 
@@ -142,6 +111,8 @@ void AddStudy(CLI::App& app) {
   command->add_option("--runs", options->runs, "Monte-Carlo runs")
       ->check(CLI::Range(2, 1000000));
   command->add_option("--seed", options->seed, "Seed of the first run");
+  command->add_flag("--linear", options->linear,
+                    "The linear plant, where a study has either");
   command->callback([options] { RunStudy(*options); });
 }
 

@@ -29,88 +29,117 @@ VectorXd EstimatorSd(const Machine& machine, const Record& record, int residuals
   return monitor.estimator().Estimate().covariance.diagonal().cwiseSqrt();
 }
 
+enum class Wave { kSine, kCosine };
+
+/// What the readings of a machine with faults answer to, in a run without noise whose
+/// commands are known.
+class Responses {
+ public:
+  /// @param deviations  of fault parameters, then of disturbances
+  Responses(const Machine& machine, const Excitation& motion,
+            const VectorXd& deviations)
+      : family_(MakeFaultFamily(machine)), synthesis_(SynthesisOf(machine)) {
+    const auto parameters = static_cast<Index>(family_.parameters.size());
+    values_ = deviations.head(parameters).array() + 1.0;
+    worn_ = family_.model_at(values_);
+    Changes faults;
+    for (Index i = 0; i < parameters; ++i) {
+      faults.faults.push_back(
+          {family_.parameters[static_cast<std::size_t>(i)], values_[i]});
+    }
+    RunOptions quiet;
+    quiet.noise_scale = 0.0;
+    Index at = parameters;
+    for (const Multisine& source : family_.disturbances) {
+      quiet.disturbances[source.name] = deviations[at++];
+    }
+    inputs_ =
+        Commands(machine.setup(), SimulateLinear(machine.With(faults), motion, quiet));
+    tick_ = machine.rates().tick();
+    at = parameters;
+    for (const Multisine& source : family_.disturbances) {
+      for (const double frequency : source.frequencies) {
+        inputs_ += deviations[at] * Tone(source, frequency, Wave::kSine);
+      }
+      ++at;
+    }
+  }
+
+  const std::vector<Multisine>& disturbances() const { return family_.disturbances; }
+  const VectorXd& sensor_noise() const { return synthesis_.sensor_noise; }
+
+  std::vector<MatrixXd> OfParameters() const {
+    return OutputSensitivities(family_.PerturbedAbout(values_), synthesis_.timing,
+                               inputs_);
+  }
+  /// To one tone of a disturbance at a magnitude of 1.
+  MatrixXd OfTone(const Multisine& source, double frequency, Wave wave) const {
+    return OutputResponse(worn_, synthesis_.timing, Tone(source, frequency, wave));
+  }
+
+ private:
+  MatrixXd Tone(const Multisine& source, double frequency, Wave wave) const {
+    const auto last = static_cast<double>(inputs_.cols() - 1);
+    const Eigen::ArrayXd angle = 2.0 * std::numbers::pi * frequency * tick_ *
+                                 Eigen::ArrayXd::LinSpaced(inputs_.cols(), 0.0, last);
+    const double lead = wave == Wave::kSine ? 0.0 : 0.5 * std::numbers::pi;
+    return source.amplitude * (angle + lead).sin().matrix().transpose();
+  }
+
+  FaultFamily family_;
+  SynthesisOptions synthesis_;
+  VectorXd values_;
+  MechanicalModel worn_;
+  MatrixXd inputs_;  // with what disturbs them
+  double tick_ = 0.0;
+};
+
 }  // namespace
 
 InformationBound FaultBound(const Machine& machine, const Excitation& motion) {
-  const MechanicalModel& healthy = machine.linear();
-  const FaultFamily family = MakeFaultFamily(machine);
-  const SynthesisOptions options = SynthesisOf(machine);
-  RunOptions quiet;
-  quiet.noise_scale = 0.0;
-  const MatrixXd commands =
-      Commands(machine.setup(), SimulateLinear(machine, motion, quiet));
-  std::vector<MatrixXd> sensitivities =
-      OutputSensitivities(family.Perturbed(), options.timing, commands);
-  const std::vector<Multisine>& sources = family.disturbances;
-  MatrixXd waveforms(commands.rows(), static_cast<Index>(sources.size()));
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    MatrixXd waveform(commands.rows(), commands.cols());
-    for (Index k = 0; k < commands.cols(); ++k) {
-      Waveforms(sources, static_cast<double>(k) * machine.rates().tick(), waveforms);
-      waveform.col(k) = waveforms.col(static_cast<Index>(i));
+  const auto count = static_cast<Index>(MakeFaultFamily(machine).Names().size());
+  const Responses responses(machine, motion, VectorXd::Zero(count));
+  std::vector<MatrixXd> sensitivities = responses.OfParameters();
+  for (const Multisine& source : responses.disturbances()) {
+    MatrixXd sum = responses.OfTone(source, source.frequencies.front(), Wave::kSine);
+    for (std::size_t i = 1; i < source.frequencies.size(); ++i) {
+      sum += responses.OfTone(source, source.frequencies[i], Wave::kSine);
     }
-    sensitivities.push_back(OutputResponse(healthy, options.timing, waveform));
+    sensitivities.push_back(std::move(sum));
   }
-  return CramerRaoBound(sensitivities, options.sensor_noise);
+  return CramerRaoBound(sensitivities, responses.sensor_noise());
 }
 
 VectorXd FaultBoundAt(const Machine& machine, const Excitation& motion,
                       const VectorXd& deviations) {
-  const FaultFamily family = MakeFaultFamily(machine);
-  const SynthesisOptions options = SynthesisOf(machine);
-  const auto parameters = static_cast<Index>(family.parameters.size());
-  const VectorXd values = deviations.head(parameters).array() + 1.0;
-  Changes faults;
-  for (Index i = 0; i < parameters; ++i) {
-    faults.faults.push_back(
-        {family.parameters[static_cast<std::size_t>(i)], values[i]});
-  }
-  RunOptions quiet;
-  quiet.noise_scale = 0.0;
-  for (std::size_t i = 0; i < family.disturbances.size(); ++i) {
-    quiet.disturbances[family.disturbances[i].name] =
-        deviations[parameters + static_cast<Index>(i)];
-  }
-  MatrixXd inputs =
-      Commands(machine.setup(), SimulateLinear(machine.With(faults), motion, quiet));
-  const auto angle = [&](double frequency) {
-    return (2.0 * std::numbers::pi * frequency * machine.rates().tick() *
-            Eigen::ArrayXd::LinSpaced(inputs.cols(), 0.0,
-                                      static_cast<double>(inputs.cols() - 1)))
-        .eval();
-  };
-  for (std::size_t i = 0; i < family.disturbances.size(); ++i) {
-    const Multisine& source = family.disturbances[i];
+  const Responses responses(machine, motion, deviations);
+  std::vector<MatrixXd> sensitivities = responses.OfParameters();
+  const auto parameters = static_cast<Index>(sensitivities.size());
+  for (const Multisine& source : responses.disturbances()) {
     for (const double frequency : source.frequencies) {
-      inputs += deviations[parameters + static_cast<Index>(i)] * source.amplitude *
-                angle(frequency).sin().matrix().transpose();
+      sensitivities.push_back(responses.OfTone(source, frequency, Wave::kSine));
+      sensitivities.push_back(responses.OfTone(source, frequency, Wave::kCosine));
     }
   }
-  std::vector<MatrixXd> sensitivities =
-      OutputSensitivities(family.PerturbedAbout(values), options.timing, inputs);
-  const MechanicalModel worn = family.model_at(values);
-  for (const Multisine& source : family.disturbances) {
-    for (const double frequency : source.frequencies) {
-      const Eigen::ArrayXd phase = angle(frequency);
-      for (const Eigen::ArrayXd& wave : {phase.sin().eval(), phase.cos().eval()}) {
-        sensitivities.push_back(OutputResponse(
-            worn, options.timing, source.amplitude * wave.matrix().transpose()));
-      }
-    }
-  }
-  const VectorXd all = CramerRaoBound(sensitivities, options.sensor_noise).together;
+  const VectorXd all = CramerRaoBound(sensitivities, responses.sensor_noise()).together;
   VectorXd bound(deviations.size());
   bound.head(parameters) = all.head(parameters);
-  Index tone = parameters;
-  for (std::size_t i = 0; i < family.disturbances.size(); ++i) {
-    double information = 0.0;
-    for (std::size_t f = 0; f < family.disturbances[i].frequencies.size(); ++f) {
-      information += 2.0 / all.segment(tone, 2).squaredNorm();
-      tone += 2;
-    }
-    bound[parameters + static_cast<Index>(i)] = 1.0 / std::sqrt(information);
+  Index first = parameters;
+  Index at = parameters;
+  for (const Multisine& source : responses.disturbances()) {
+    const auto parts = static_cast<Index>(2 * source.frequencies.size());
+    bound[at++] = MagnitudeBound(all.segment(first, parts));
+    first += parts;
   }
   return bound;
+}
+
+double MagnitudeBound(const VectorXd& parts) {
+  double information = 0.0;
+  for (Index i = 0; i < parts.size(); i += 2) {
+    information += 2.0 / parts.segment(i, 2).squaredNorm();
+  }
+  return 1.0 / std::sqrt(information);
 }
 
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault) {

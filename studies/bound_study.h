@@ -19,6 +19,10 @@ InformationBound FaultBound(const Machine& machine, const Excitation& motion);
 Eigen::VectorXd FaultBoundAt(const Machine& machine, const Excitation& motion,
                              const Eigen::VectorXd& deviations);
 
+/// That of the magnitude that all tones of a disturbance have in common, from those of
+/// the sine and the cosine of each.
+double MagnitudeBound(const Eigen::VectorXd& parts);
+
 /// Place of a fault in that order; InputError on an unknown one.
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault);
 

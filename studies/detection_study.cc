@@ -1,247 +1,240 @@
 #include "mjdiag/studies/detection_study.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/bound_study.h"
+#include "mjdiag/studies/detector.h"
+#include "mjdiag/studies/run_bound.h"
+#include "mjdiag/studies/seen_size.h"
 
 namespace mjdiag {
 namespace {
 
-constexpr double kResolution = 1.02;
-constexpr int kHealthyRuns = 20;
-constexpr double kCoarseResolution = 1.15;  // a nonlinear run takes longer
+using Eigen::Index;
+using Eigen::VectorXd;
 
-std::optional<double> PublishedSize(const FaultSizes& sizes, const std::string& fault) {
+constexpr int kSeeds = 40;
+constexpr double kResolution = 1.1;
+constexpr double kCoarseResolution = 1.2;  // a nonlinear run takes longer
+/// Seeds of healthy runs are others than those of faulty ones.
+constexpr std::uint64_t kHealthySeeds = 10000;
+/// A fault of so many standard deviations of its bound is about to be seen.
+constexpr double kAboutSeen = 6.0;
+
+/// What is looked for, and by whom.
+struct Plan {
+  const Machine& machine;
+  Excitation motion;
+  bool linear;
+  std::string study;  ///< [studies.<study>]: sizes of the thesis
+  SeedsOfASize seeds;
+  std::vector<Detector> detectors;
+  VectorXd bound;  ///< of the healthy machine, standard deviations
+
+  Record Run(const std::vector<SizedFault>& faults, std::uint64_t seed) const {
+    const FaultyMachine faulty = WithFaults(machine, faults, seed);
+    return linear ? RunLinear(motion, faulty) : RunNonlinear(motion, faulty);
+  }
+};
+
+std::optional<double> PublishedDeviation(const Machine& machine,
+                                         const FaultSizes& sizes,
+                                         const std::string& fault) {
   for (const auto& [name, value] : sizes.values) {
-    if (name == fault) return value;
+    if (name == fault) return value - HealthyValue(machine.setup(), fault);
   }
   return std::nullopt;
 }
 
-Cell SizeCell(const std::optional<double>& deviation, double healthy) {
-  return deviation ? Cell(healthy + *deviation) : Cell("not seen");
-}
-
-/// A deviation as people write it: +0.5 %.
-Cell DeviationCell(const std::optional<double>& deviation) {
-  if (!deviation) return "not seen";
-  Cell cell(*deviation);
-  cell.text = (*deviation > 0.0 ? "+" : "") + Cell(100.0 * *deviation).text + " %";
+/// A deviation as people write it: +0.5 %; of a disturbance its magnitude.
+Cell DeviationCell(const Setup& setup, const std::string& fault, double deviation) {
+  Cell cell(deviation);
+  if (IsDisturbance(setup, fault)) return cell;
+  cell.text = (deviation > 0.0 ? "+" : "") + Cell(100.0 * deviation).text + " %";
   return cell;
 }
 
-Cell Seen(bool seen) { return seen ? "yes" : "no"; }
+Cell PerCent(int count, int of) { return 100.0 * count / of; }
 
-/// Progress of a part of a study within the whole.
-std::function<void(double)> Stage(const StudyOptions& options, double from, double to) {
-  if (!options.progress) return {};
-  return [&options, from, to](double fraction) {
-    options.progress(from + (to - from) * fraction);
-  };
+StudyTable EmptySizes(const Plan& plan, const std::string& title) {
+  return {
+      title,
+      {"fault", "seen by", "thesis", "seen there [%]", "95 % see", "seen there [%]",
+       "at half of it [%]", "times better than the thesis", "over the bound"},
+      {},
+      {"Seen by " + std::to_string(plan.seeds.count) +
+           " seeds a size; a size that 95 % see is accurate to " +
+           Cell(100.0 * ((plan.linear ? kResolution : kCoarseResolution) - 1.0)).text +
+           " %. The twin sees a fault that it names, and no other beside it.",
+       "The bound is the standard deviation that no estimate can be better than, all "
+       "faults" +
+           std::string(plan.linear ? "" : ", dry friction") +
+           " and phases of disturbances unknown."}};
 }
 
-struct LinearResult {
-  Detection published;
-  std::optional<double> by_residual;
-  std::optional<double> by_spectrum;
-  std::optional<double> by_estimate;
-};
+/// How one detector sees one fault.
+std::vector<Cell> RowOf(const Plan& plan, const Detector& detector,
+                        const std::string& fault, double largest) {
+  const Setup& setup = plan.machine.setup();
+  const double healthy = HealthyValue(setup, fault);
+  const SeesFault sees = [&](double deviation, std::uint64_t seed) {
+    return detector.sees(plan.Run({{fault, healthy + deviation}}, seed), fault);
+  };
+  const auto published =
+      PublishedDeviation(plan.machine, plan.machine.setup().Study(plan.study), fault);
+  const double sd = plan.bound[BoundIndex(plan.machine, fault)];
+  std::optional<double> guess;
+  if (detector.at_bound) guess = std::copysign(kAboutSeen * sd, largest);
+  const auto seen = SurelySeenSize(
+      largest, guess, plan.linear ? kResolution : kCoarseResolution, plan.seeds, sees);
+  const int seeds = plan.seeds.count;
+  std::vector<Cell> row{
+      fault, detector.name,
+      published ? DeviationCell(setup, fault, *published) : Cell("undetectable"),
+      published ? PerCent(CountSeen(*published, plan.seeds, sees), seeds) : Cell("-")};
+  if (!seen) {
+    row.insert(row.end(), {"nothing", "-", "-", "-", "-"});
+    return row;
+  }
+  row.insert(row.end(), {DeviationCell(setup, fault, *seen),
+                         PerCent(CountSeen(*seen, plan.seeds, sees), seeds),
+                         PerCent(CountSeen(0.5 * *seen, plan.seeds, sees), seeds),
+                         published ? Cell(*published / *seen) : Cell("seen now"),
+                         Cell(std::abs(*seen) / sd)});
+  return row;
+}
+
+StudyTable FalseAlarms(const Plan& plan, const StudyOptions& options) {
+  std::vector<std::atomic<int>> alarms(plan.detectors.size());
+  ParallelFor(
+      options.runs,
+      [&](int i) {
+        const Record record =
+            plan.Run({}, options.seed + kHealthySeeds + static_cast<std::uint64_t>(i));
+        for (std::size_t k = 0; k < alarms.size(); ++k) {
+          if (plan.detectors[k].alarms(record)) ++alarms[k];
+        }
+      },
+      options.progress);
+  GrowingTable table(
+      {"False alarms in " + std::to_string(options.runs) + " healthy runs, " +
+           (plan.linear ? "" : "non") + "linear plant",
+       {"by", "alarms", "[%]", "95 % interval [%]"},
+       {},
+       {}},
+      options.row);
+  for (std::size_t k = 0; k < alarms.size(); ++k) {
+    const int count = alarms[k];
+    const auto [low, high] = ProbabilityInterval(options.runs, count, 0.95);
+    table.Add({plan.detectors[k].name, static_cast<double>(count),
+               PerCent(count, options.runs),
+               Cell(100.0 * low).text + " to " + Cell(100.0 * high).text});
+  }
+  return table.table();
+}
+
+/// Sizes, then false alarms.
+std::vector<StudyTable> Detect(const Plan& plan, const std::string& title,
+                               const StudyOptions& options) {
+  const auto& largest = plan.machine.setup().Study("largest").values;
+  GrowingTable sizes(EmptySizes(plan, title), options.row);
+  const auto parts = static_cast<double>(largest.size() + 1);
+  double done = 0.0;
+  for (const auto& [fault, value] : largest) {
+    for (const Detector& detector : plan.detectors) {
+      if (detector.meant_for && !detector.meant_for(fault)) continue;
+      sizes.Add(RowOf(plan, detector, fault,
+                      value - HealthyValue(plan.machine.setup(), fault)));
+    }
+    done += 1.0 / parts;
+    if (options.progress) options.progress(done);
+  }
+  StudyOptions last = options;
+  last.progress = [&](double fraction) {
+    if (options.progress) options.progress(done + fraction / parts);
+  };
+  return {sizes.table(), FalseAlarms(plan, last)};
+}
+
+Plan PlanFor(const Machine& machine, const std::string& study, bool linear,
+             const StudyOptions& options) {
+  Plan plan{machine, DefaultMotion(machine.setup()), linear, study, {}, {}, {}};
+  plan.seeds = {std::min(kSeeds, options.runs), options.seed};
+  const auto faults = static_cast<Index>(MakeFaultFamily(machine).Names().size());
+  plan.bound =
+      RunBound(machine, VectorXd::Zero(faults), plan.Run({}, options.seed), 0, linear);
+  return plan;
+}
+
+/// When the residual leaves its limits at the sizes of the thesis.
+StudyTable Delays(const Plan& plan, const PreparedDiagnosis& detector,
+                  const StudyOptions& options) {
+  StudyTable table{
+      "Delay of the residual at the sizes of the thesis",
+      {"fault", "thesis", "at time [s]"},
+      {},
+      {"The faults are there from the start: most of it is the wait for the "
+       "first move of that axis."}};
+  for (const auto& [fault, value] : plan.machine.setup().Study(plan.study).values) {
+    const Detection seen =
+        Look(detector, plan.Run({{fault, value}}, options.seed), fault);
+    table.rows.push_back(
+        {fault, value, seen.residual ? Cell(*seen.residual) : Cell("-")});
+  }
+  return table;
+}
 
 }  // namespace
 
 std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
                                              const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
-  const PreparedDiagnosis detector = LinearDiagnosis(machine);
-
-  const auto look = [&](const std::string& fault, double deviation,
-                        std::uint64_t seed) {
-    const double healthy = HealthyValue(machine.setup(), fault);
-    const std::vector<SizedFault> faults{{fault, healthy + deviation}};
-    const Record record = RunLinear(motion, WithFaults(machine, faults, seed));
-    return Look(detector, record, fault);
-  };
-
-  const auto& largest = machine.setup().Study("largest").values;
-  const FaultSizes& published = machine.setup().Study("table2");
-  std::vector<LinearResult> results(largest.size());
-  ParallelFor(
-      static_cast<int>(largest.size()),
-      [&](int i) {
-        // Lambdas below capture both, which Clang 14 does not let structured bindings be.
-        const std::string& fault = largest[static_cast<std::size_t>(i)].first;
-        const double value = largest[static_cast<std::size_t>(i)].second;
-        const double healthy = HealthyValue(machine.setup(), fault);
-        LinearResult& result = results[static_cast<std::size_t>(i)];
-        if (const auto size = PublishedSize(published, fault)) {
-          result.published = look(fault, *size - healthy, options.seed);
-        }
-        const auto smallest = [&](const std::function<bool(const Detection&)>& seen) {
-          return SmallestDeviation(value - healthy, kResolution, [&](double deviation) {
-            return seen(look(fault, deviation, options.seed));
-          });
-        };
-        result.by_residual =
-            smallest([](const Detection& d) { return d.residual.has_value(); });
-        result.by_estimate = smallest([](const Detection& d) { return d.estimate; });
-        if (healthy == 0.0) {
-          result.by_spectrum = smallest([](const Detection& d) { return d.spectrum; });
-        }
-      },
-      Stage(options, 0.0, 0.5));
-
-  const InformationBound bound = FaultBound(machine, motion);
-  StudyTable table{
-      "Smallest detectable faults, linear plant",
-      {"fault", "published", "seen at that size", "at time [s]", "smallest by residual",
-       "deviation", "smallest by estimate", "by spectrum", "bound (sd)"},
-      {},
-      {}};
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const std::string& fault = largest[i].first;
-    const double healthy = HealthyValue(machine.setup(), fault);
-    const auto size = PublishedSize(published, fault);
-    const LinearResult& result = results[i];
-    const bool any = result.published.residual || result.published.spectrum;
-    table.rows.push_back(
-        {fault, size ? Cell(*size) : Cell("undetectable"), size ? Seen(any) : Cell("-"),
-         result.published.residual ? Cell(*result.published.residual) : Cell("-"),
-         SizeCell(result.by_residual, healthy), DeviationCell(result.by_residual),
-         DeviationCell(result.by_estimate),
-         healthy == 0.0 ? SizeCell(result.by_spectrum, 0.0) : Cell("-"),
-         Cell(bound.together[static_cast<Eigen::Index>(BoundIndex(machine, fault))])});
-  }
-  table.notes = {
-      "The faults are there from the start: the time is the delay of detection, most "
-      "of which is the wait for the first move of that axis."};
-
-  std::vector<Detection> healthy_runs(static_cast<std::size_t>(options.runs));
-  std::vector<int> estimates(static_cast<std::size_t>(options.runs));
-  ParallelFor(
-      options.runs,
-      [&](int i) {
-        const Record record = RunLinear(
-            motion, WithFaults(machine, {},
-                               options.seed + 10000 + static_cast<std::uint64_t>(i)));
-        const DiagnosisResult result =
-            Conclude(RecordDiagnosis(detector.design, record));
-        auto& run = healthy_runs[static_cast<std::size_t>(i)];
-        run.residual = result.first_detection;
-        run.spectrum = result.disturbance.disturbed;
-        estimates[static_cast<std::size_t>(i)] = static_cast<int>(
-            std::count_if(result.faults.begin(), result.faults.end(),
-                          [](const FaultVerdict& fault) { return fault.detected; }));
-      },
-      Stage(options, 0.5, 1.0));
-  const auto count = [&](auto&& predicate) {
-    return static_cast<double>(
-        std::count_if(healthy_runs.begin(), healthy_runs.end(), predicate));
-  };
-  StudyTable alarms{
-      "False alarms in healthy runs",
-      {"runs", "by residual", "by spectrum", "by estimates"},
-      {{Cell(static_cast<double>(options.runs)),
-        Cell(count([](const Detection& d) { return d.residual.has_value(); })),
-        Cell(count([](const Detection& d) { return d.spectrum; })),
-        Cell(static_cast<double>(
-            std::count_if(estimates.begin(), estimates.end(),
-                          [](int detected) { return detected > 0; })))}},
-      {}};
-  return {table, alarms};
+  Plan plan = PlanFor(machine, "table2", true, options);
+  const PreparedDiagnosis prepared = LinearDiagnosis(machine);
+  plan.detectors = {ByResidual("residual", prepared),
+                    BySpectrum(machine.setup(), prepared), ByEstimate(prepared),
+                    ByTwin(machine, true)};
+  std::vector<StudyTable> tables =
+      Detect(plan, "Smallest detectable faults, linear plant", options);
+  tables.push_back(Delays(plan, prepared, options));
+  return tables;
 }
 
 std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
+  Plan plan = PlanFor(machine, study, false, options);
   DiagnosisSource source;
   source.baseline = baseline;
   source.nominal.runs = 8;
-  const PreparedDiagnosis common = PrepareDiagnosis(machine, source, motion);
-
-  const auto& largest = machine.setup().Study("largest").values;
-  const FaultSizes& published = machine.setup().Study(study);
-  StudyTable table{
-      baseline ? "Smallest detectable faults, nonlinear plant, baseline "
-                 "subtracted"
-               : "Smallest detectable faults, nonlinear plant",
-      {"fault", "published", "seen by residual", "by robust residual", "by estimate",
-       "smallest by residual", "by robust residual", "by estimate"},
-      {},
-      {}};
-  StudyTable alarms{"False alarms in " + std::to_string(kHealthyRuns) +
-                        " healthy runs of the nonlinear plant",
-                    {"fault", "by residual", "by robust residual", "by estimate"},
-                    {},
-                    {}};
-  std::vector<Record> healthy_runs(kHealthyRuns);
-  ParallelFor(kHealthyRuns, [&](int i) {
-    healthy_runs[static_cast<std::size_t>(i)] = RunNonlinear(
-        motion,
-        WithFaults(machine, {}, options.seed + 20000 + static_cast<std::uint64_t>(i)));
-  });
-  for (std::size_t i = 0; i < largest.size(); ++i) {
-    const auto& [fault, value] = largest[i];
-    const double healthy = HealthyValue(machine.setup(), fault);
+  const PreparedDiagnosis common = PrepareDiagnosis(machine, source, plan.motion);
+  plan.detectors = {ByResidual("residual", common), BySpectrum(machine.setup(), common),
+                    ByEstimate(common)};
+  for (const auto& [fault, value] : machine.setup().Study("largest").values) {
     source.robust = fault;
-    const PreparedDiagnosis robust = PrepareDiagnosis(machine, source, motion);
-    const auto record_at = [&, &name = fault](double deviation) {
-      return RunNonlinear(
-          motion, WithFaults(machine, {{name, healthy + deviation}}, options.seed));
+    plan.detectors.push_back(ByResidual(
+        "robust residual of " + fault, PrepareDiagnosis(machine, source, plan.motion)));
+    plan.detectors.back().meant_for = [meant = fault](const std::string& other) {
+      return other == meant;
     };
-    // Three ways to see it; an estimate may come from either residual.
-    enum Way { kResidual, kRobust, kEstimate, kWays };
-    const auto sees = [&, &name = fault](Way way, const Record& record) {
-      switch (way) {
-        case kResidual: {
-          const Detection seen = Look(common, record, name);
-          return seen.residual.has_value() || (healthy == 0.0 && seen.spectrum);
-        }
-        case kRobust:
-          return Look(robust, record, name).residual.has_value();
-        default:
-          return Look(common, record, name).estimate ||
-                 Look(robust, record, name).estimate;
-      }
-    };
-    const auto size = PublishedSize(published, fault);
-    std::vector<Cell> row{fault, size ? Cell(*size) : Cell("undetectable")};
-    std::optional<Record> at_published;
-    if (size) at_published = record_at(*size - healthy);
-    for (int way = 0; way < kWays; ++way) {
-      row.push_back(at_published ? Seen(sees(static_cast<Way>(way), *at_published))
-                                 : Cell("-"));
-    }
-    std::vector<std::optional<double>> smallest(kWays);
-    ParallelFor(kWays, [&, &limit = value](int way) {
-      smallest[static_cast<std::size_t>(way)] =
-          SmallestDeviation(limit - healthy, kCoarseResolution, [&](double deviation) {
-            return sees(static_cast<Way>(way), record_at(deviation));
-          });
-    });
-    for (const auto& deviation : smallest) row.push_back(DeviationCell(deviation));
-    table.rows.push_back(std::move(row));
-    std::vector<Cell> false_alarms{fault};
-    for (int way = 0; way < kWays; ++way) {
-      const auto count = std::count_if(
-          healthy_runs.begin(), healthy_runs.end(),
-          [&](const Record& run) { return sees(static_cast<Way>(way), run); });
-      false_alarms.emplace_back(static_cast<double>(count));
-    }
-    alarms.rows.push_back(std::move(false_alarms));
-    if (options.progress) {
-      options.progress(static_cast<double>(i + 1) /
-                       static_cast<double>(largest.size()));
-    }
   }
-  table.notes = {
+  plan.detectors.push_back(ByTwin(machine, false));
+  std::vector<StudyTable> tables =
+      Detect(plan,
+             std::string("Smallest detectable faults, nonlinear plant") +
+                 (baseline ? ", baseline subtracted" : ""),
+             options);
+  tables.front().notes.emplace_back(
       "The robust residual is, of all residuals of the robust degree, the one that "
       "nominal runs excite least while the fault is seen; its limits come from nominal "
-      "runs, too.",
-      "An estimate counts when it is outside what nominal runs of this motion gave."};
-  return {table, alarms};
+      "runs, too. An estimate counts when it is outside what nominal runs of this "
+      "motion "
+      "gave.");
+  return tables;
 }
 
 }  // namespace mjdiag

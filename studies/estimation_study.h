@@ -7,12 +7,13 @@
 
 namespace mjdiag {
 
-/// For the sizes under [studies.estimation_large] and [studies.estimation_small], all
-/// faults of a table present at once on the linear plant: mean estimate over
-/// `options.runs` runs, largest error as a share of the deviation, standard deviation
-/// claimed and found, how often the 95 % interval held the truth with the binomial 99 %
-/// band of that count, and the multiple of the information bound. Every fault parameter
-/// and disturbance is estimated, by the twin of the machine (twin_estimator.h).
+/// For the sizes under [studies.estimation_large], [studies.estimation_small] and
+/// [studies.estimation_faint], all faults of a table present at once on the linear plant,
+/// and for the healthy one: mean estimate over `options.runs` runs, largest error as a
+/// share of the deviation, standard deviation claimed and found, how often the 95 %
+/// interval held the truth with the binomial 99 % band of that count, and the multiple of
+/// the information bound. Every fault parameter and disturbance is estimated, by the twin
+/// of the machine (twin_estimator.h).
 std::vector<StudyTable> EstimationStudy(const Machine& machine,
                                         const StudyOptions& options);
 

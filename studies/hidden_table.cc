@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <utility>
 
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
@@ -72,25 +72,46 @@ StudyTable Summary(const Count& count, int causes) {
   return table;
 }
 
+std::vector<Cell> RowOf(const HiddenOutcome& outcome, std::uint64_t seed,
+                        double seconds) {
+  const bool named = !outcome.answer.causes.empty();
+  return {std::to_string(seed),
+          List(outcome.hidden.truth),
+          List(outcome.answer.causes),
+          outcome.right       ? "yes"
+          : outcome.undecided ? "not told apart"
+                              : "no",
+          named ? Cell(outcome.answer.causes.front().probability) : Cell("-"),
+          Of(outcome.covered, outcome.parameters),
+          outcome.unseen_ratio,
+          seconds};
+}
+
 }  // namespace
 
 std::vector<StudyTable> HiddenStudy(const Machine& machine, int causes,
                                     const StudyOptions& options) {
   using Clock = std::chrono::steady_clock;
-  StudyTable runs;
-  runs.title = "Effects hidden in simulated measurements of " + machine.setup().name;
-  runs.columns = {"seed",
-                  "hidden",
-                  "found",
-                  "right",
-                  "p",
-                  "parameters covered",
-                  "unseen mismatch / floor",
-                  "s"};
+  StudyTable empty;
+  empty.title = "Effects hidden in simulated measurements of " + machine.setup().name;
+  empty.columns = {"seed",
+                   "hidden",
+                   "found",
+                   "right",
+                   "p",
+                   "parameters covered",
+                   "unseen mismatch / floor",
+                   "s"};
+  empty.notes = {
+      "Sizes are drawn evenly in the logarithm of what an effect adds to the squared "
+      "innovations, from 200 (14 standard deviations) to 1e8, or to the largest that a "
+      "machine has.",
+      "A fault parameter and the effect that changes the same attribute of the model "
+      "count as one: no measurement tells them apart."};
+  GrowingTable runs(std::move(empty), options.row);
   std::vector<HiddenOutcome> outcomes(static_cast<std::size_t>(options.runs));
-  std::vector<double> seconds(outcomes.size());
   // Several at once: much of a discovery waits for its longest run.
-  ParallelFor(
+  ParallelInOrder(
       options.runs,
       [&](int run) {
         const auto i = static_cast<std::size_t>(run);
@@ -98,30 +119,14 @@ std::vector<StudyTable> HiddenStudy(const Machine& machine, int causes,
         const auto start = Clock::now();
         outcomes[i] =
             RunHidden(machine, TypesOfRun(static_cast<int>(seed - 1), causes), seed);
-        seconds[i] = std::chrono::duration<double>(Clock::now() - start).count();
+        const double seconds =
+            std::chrono::duration<double>(Clock::now() - start).count();
+        runs.Put(i, RowOf(outcomes[i], seed, seconds));
       },
       options.progress);
   Count count;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const HiddenOutcome& outcome = outcomes[i];
-    Add(outcome, count);
-    const bool named = !outcome.answer.causes.empty();
-    runs.rows.push_back(
-        {std::to_string(options.seed + i), List(outcome.hidden.truth),
-         List(outcome.answer.causes),
-         outcome.right       ? "yes"
-         : outcome.undecided ? "not told apart"
-                             : "no",
-         named ? Cell(outcome.answer.causes.front().probability) : Cell("-"),
-         Of(outcome.covered, outcome.parameters), outcome.unseen_ratio, seconds[i]});
-  }
-  runs.notes = {
-      "Sizes are drawn evenly in the logarithm of what an effect adds to the squared "
-      "innovations, from 200 (14 standard deviations) to 1e8, or to the largest that a "
-      "machine has.",
-      "A fault parameter and the effect that changes the same attribute of the model "
-      "count as one: no measurement tells them apart."};
-  return {Summary(count, causes), runs};
+  for (const HiddenOutcome& outcome : outcomes) Add(outcome, count);
+  return {Summary(count, causes), runs.table()};
 }
 
 }  // namespace mjdiag

@@ -9,6 +9,7 @@
 
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/studies/growing_table.h"
 
 namespace mjdiag {
 
@@ -16,6 +17,8 @@ struct StudyOptions {
   int runs = 200;          ///< Monte-Carlo runs where a study has any
   std::uint64_t seed = 1;  ///< of the first run
   std::function<void(double fraction)> progress;
+  RowSink row;          ///< sees tables grow; may be called from any thread
+  bool linear = false;  ///< the linear plant, where a study has either
 };
 
 /// A fault parameter or disturbance with its value.

@@ -76,4 +76,14 @@ std::pair<int, int> BinomialInterval(int trials, double probability,
           static_cast<int>(bm::quantile(bm::complement(count, tail)))};
 }
 
+std::pair<double, double> ProbabilityInterval(int trials, int successes,
+                                              double confidence) {
+  // Quantiles of beta distributions.
+  const double tail = 0.5 * (1.0 - confidence);
+  const double k = successes;
+  const double rest = trials - k;
+  return {successes == 0 ? 0.0 : bm::ibeta_inv(k, rest + 1.0, tail, Policy()),
+          successes == trials ? 1.0 : bm::ibetac_inv(k + 1.0, rest, tail, Policy())};
+}
+
 }  // namespace mjdiag

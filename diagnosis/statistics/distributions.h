@@ -52,4 +52,13 @@ double FExceedance(double x, double dof1, double dof2);
 /// @param probability, confidence  above 0, below 1
 std::pair<int, int> BinomialInterval(int trials, double probability, double confidence);
 
+/// The probabilities of which so many successes are no surprise: an interval that holds
+/// the true one with at least this confidence (C. J. Clopper, E. S. Pearson, Biometrika
+/// 26, 1934).
+/// @param trials      1 or more
+/// @param successes   0 to trials
+/// @param confidence  above 0, below 1
+std::pair<double, double> ProbabilityInterval(int trials, int successes,
+                                              double confidence);
+
 }  // namespace mjdiag

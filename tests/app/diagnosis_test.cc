@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -326,6 +329,53 @@ TEST(Study, WritesAPageWithItsTables) {
   EXPECT_THAT(ReadAll(out + "/report.html"),
               AllOf(HasSubstr("Study bound of AB383"), HasSubstr("<td>zeta_x</td>"),
                     HasSubstr("Standard deviations of the deviation")));
+}
+
+TEST(Study, KeepsFinishedRowsWhenItIsKilled) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "random").string();
+  const pid_t study = fork();
+  ASSERT_NE(study, -1);
+  if (study == 0) {
+    const bool ready =
+        chdir(MJDIAG_SOURCE_DIR) == 0 && freopen("/dev/null", "w", stdout) != nullptr;
+    if (ready) {
+      execl(MJDIAG_COMMAND, MJDIAG_COMMAND, "study", "--setup", "mjcf/ab383", "--set",
+            "trajectories.multi.duration=0.5", "--preset", "random-faults", "--linear",
+            "--runs", "100000", "--out", out.c_str(), static_cast<char*>(nullptr));
+    }
+    _exit(127);
+  }
+  const fs::path file = fs::path(out) / "study.json";
+  constexpr int kPatience = 1200;
+  for (int i = 0; i < kPatience && !fs::exists(file); ++i) usleep(50000);
+  kill(study, SIGKILL);
+  int status = 0;
+  waitpid(study, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  const json document = json::parse(ReadAll(file));
+  EXPECT_EQ(document["finished"], false);
+  EXPECT_EQ(document["linear"], true);
+  EXPECT_GE(document["tables"][0]["rows"].size(), 1u);
+}
+
+TEST(Study, ShowsRowsAsTheyComeAndEveryTableOnce) {
+  const CommandResult result = RunCommand(
+      "study --setup mjcf/ab383 --set trajectories.multi.duration=0.25 "
+      "--preset random-faults --linear --runs 2 --seed 3");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("Random faults of AB383"),
+                    HasSubstr("standard deviations of its information bound"),
+                    HasSubstr("\n3 "), HasSubstr("\n4 "),
+                    HasSubstr("How often the names are right")));
+  const std::string title = "Random faults of";
+  EXPECT_EQ(result.out.find(title), result.out.rfind(title));
+}
+
+TEST(Study, RefusesAnotherPlantWhereItHasItsOwn) {
+  EXPECT_THAT(Refused("study --setup mjcf/ab383 --preset bound --linear"),
+              HasSubstr("--linear: bound has its own plant"));
 }
 
 TEST(Study, ListsThePresetsWhenOneIsUnknown) {

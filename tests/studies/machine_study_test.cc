@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mjdiag/studies/estimation_study.h"
 #include "support/bonder.h"
 
@@ -32,20 +34,31 @@ TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
   EXPECT_FALSE(Cell("-").is_number);
 }
 
-// [AB383], Section 5.5 in small: 6 runs of each size.
-TEST(EstimationStudy, FindsAllFaultsAtOnceWithinOnePerCent) {
+// [AB383], Section 5.5 in small: 3 runs of each size. The faults of the thesis are found
+// within 1 %; errors of an estimator at the bound have an rms below 1.25 of it over all
+// 3 x 30 (chi-squared with 90 degrees of freedom: with a probability of 0.999).
+TEST(EstimationStudy, FindsAllEightFaultsAtOnceAtTheBound) {
   const Machine machine = test::Bonder();
   StudyOptions options;
-  options.runs = 6;
-  for (const StudyTable& table : EstimationStudy(machine, options)) {
-    int judged = 0;
-    for (const auto& row : table.rows) {
-      if (!row[3].is_number) continue;
-      EXPECT_LT(row[3].number, 1.0) << row[0].text;
-      ++judged;
+  options.runs = 3;
+  const std::vector<StudyTable> tables = EstimationStudy(machine, options);
+  ASSERT_EQ(tables.size(), 4u);
+  double square = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    for (const auto& row : tables[i].rows) {
+      const bool in_thesis =
+          row[0].text.starts_with("zeta") || row[0].text.starts_with("eta");
+      if (i < 2 && in_thesis) {
+        EXPECT_LT(row[3].number, 1.0) << row[0].text;
+      }
+      if (row[0].text == "gamma" && i >= 2) continue;  // it has a floor
+      square += row[9].number * row[9].number;
+      ++count;
     }
-    EXPECT_EQ(judged, 5);
   }
+  EXPECT_EQ(count, 30);
+  EXPECT_LT(std::sqrt(square / count), 1.25);
 }
 
 }  // namespace

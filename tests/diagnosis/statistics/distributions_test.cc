@@ -103,6 +103,19 @@ TEST(BinomialInterval, HoldsAtLeastTheWantedShare) {
   EXPECT_EQ(BinomialInterval(1000, 0.5, 0.9), std::pair(474, 526));
 }
 
+// The ends are where a count as extreme has a probability of 2.5 %; of none and of all
+// in closed form.
+TEST(ProbabilityInterval, EndsWhereTheCountWouldBeASurprise) {
+  const auto [low, high] = ProbabilityInterval(200, 190, 0.95);
+  EXPECT_NEAR(low, 0.9099725, 1e-7);
+  EXPECT_NEAR(high, 0.9757658, 1e-7);
+  EXPECT_EQ(ProbabilityInterval(20, 0, 0.95).first, 0.0);
+  EXPECT_NEAR(ProbabilityInterval(20, 0, 0.95).second, 1.0 - std::pow(0.025, 0.05),
+              1e-12);
+  EXPECT_NEAR(ProbabilityInterval(20, 20, 0.95).first, std::pow(0.025, 0.05), 1e-12);
+  EXPECT_EQ(ProbabilityInterval(20, 20, 0.95).second, 1.0);
+}
+
 TEST(Distributions, AreNanOutsideTheirRanges) {
   for (const double probability : {-0.1, 1.1, kNan}) {
     EXPECT_TRUE(std::isnan(NormalQuantile(probability))) << probability;

@@ -1,0 +1,307 @@
+#include "mjdiag/studies/random_fault_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/plugin/design/fault_family.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/studies/run_bound.h"
+#include "mjdiag/studies/twin_listening.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kConfidence = 0.95;
+
+bool AnyFault(const RandomOutcome& run,
+              const std::function<bool(const RandomOutcome&, Index)>& holds) {
+  for (Index i = 0; i < run.truth.size(); ++i) {
+    if (holds(run, i)) return true;
+  }
+  return false;
+}
+
+/// Error of an estimate; none of a disturbance that is not there, whose magnitude has a
+/// floor at 0.
+bool HasError(const RandomOutcome& run, Index fault, Index parameters) {
+  return !run.diverged && (fault < parameters || run.Nameable(fault));
+}
+
+double ErrorOverBound(const RandomOutcome& run, Index i) {
+  return std::abs(run.reading.deviation[i] - run.truth[i]) / run.bound[i];
+}
+
+double ErrorOverSd(const RandomOutcome& run, Index i) {
+  return std::abs(run.reading.deviation[i] - run.truth[i]) / run.reading.sd[i];
+}
+
+std::string NamesWhere(const RandomOutcome& run, const std::vector<std::string>& names,
+                       const std::function<bool(Index)>& holds) {
+  std::string text;
+  for (Index i = 0; i < run.truth.size(); ++i) {
+    if (!holds(i)) continue;
+    text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
+  }
+  return text.empty() ? "-" : text;
+}
+
+/// "zeta_x +0.2 (4e+05)": with its multiple of the bound.
+std::string DrawnWithMultiples(const RandomOutcome& run,
+                               const std::vector<std::string>& names,
+                               const Setup& setup) {
+  std::string text;
+  for (const SizedFault& fault : run.draw.faults) {
+    const Index at = std::find(names.begin(), names.end(), fault.name) - names.begin();
+    text += (text.empty() ? "" : ", ") + ListFaults(setup, {fault}) + " (" +
+            Cell(std::round(std::abs(run.truth[at]) / run.bound[at])).text + ")";
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::vector<Cell> RowOf(const RandomOutcome& run, const std::vector<std::string>& names,
+                        const Machine& machine) {
+  const double from = static_cast<double>(run.draw.from) * machine.rates().tick();
+  const std::string seed = std::to_string(run.draw.seed);
+  if (run.diverged) {
+    return {seed,       Cell(from),
+            "diverged", "-",
+            "-",        "-",
+            "-",        "-",
+            "-",        ListFaults(machine.setup(), run.draw.faults)};
+  }
+  const auto parameters =
+      static_cast<Index>(names.size() - machine.setup().disturbances.size());
+  double over_sd = 0.0;
+  double over_bound = 0.0;
+  for (Index i = 0; i < run.truth.size(); ++i) {
+    if (!HasError(run, i, parameters)) continue;
+    over_sd = std::max(over_sd, ErrorOverSd(run, i));
+    over_bound = std::max(over_bound, ErrorOverBound(run, i));
+  }
+  const auto named = [&](Index i) {
+    return static_cast<bool>(run.reading.named[static_cast<std::size_t>(i)]);
+  };
+  return {seed,
+          Cell(from),
+          run.Right() ? "right" : "wrong",
+          Cell(run.reading.misfit),
+          Cell(over_sd),
+          Cell(over_bound),
+          NamesWhere(run, names, named),
+          NamesWhere(run, names, [&](Index i) { return run.Missed(i); }),
+          NamesWhere(run, names, [&](Index i) { return run.False(i); }),
+          DrawnWithMultiples(run, names, machine.setup())};
+}
+
+StudyTable EmptyRuns(const Machine& machine, bool linear) {
+  return {
+      "Random faults of " + machine.setup().name + ", " +
+          (linear ? "linear plant" : "nonlinear plant"),
+      {"seed", "from [s]", "names", "misfit", "error / sd", "error / bound", "named",
+       "missed", "false", "drawn (multiple of the bound)"},
+      {},
+      {"Names are right if every fault farther from healthy than " +
+           Cell(kNameable).text +
+           " standard deviations of its information bound is named and nothing that "
+           "is not there; a fainter one that is there may be named or not.",
+       "Errors are the largest of a run, over the standard deviation that the "
+       "diagnosis claims and over the bound. The bound is that of this very record: "
+       "all faults, phases of disturbances, dry friction and the state at its start "
+       "unknown."}};
+}
+
+/// "190 of 200", and the interval of the probability.
+void AddCount(StudyTable& table, const std::string& what, int count, int of) {
+  if (of == 0) return;
+  const auto [low, high] = ProbabilityInterval(of, count, kConfidence);
+  table.rows.push_back({what, std::to_string(count) + " of " + std::to_string(of),
+                        100.0 * count / of,
+                        Cell(100.0 * low).text + " to " + Cell(100.0 * high).text});
+}
+
+StudyTable Counts(const std::vector<RandomOutcome>& runs) {
+  StudyTable table{"How often the names are right",
+                   {"figure", "count", "[%]", "95 % interval [%]"},
+                   {},
+                   {"Intervals of Clopper and Pearson."}};
+  const auto add = [&](const std::string& what,
+                       const std::function<bool(const RandomOutcome&)>& among,
+                       const std::function<bool(const RandomOutcome&)>& holds) {
+    int of = 0;
+    int count = 0;
+    for (const RandomOutcome& run : runs) {
+      if (run.diverged || !among(run)) continue;
+      ++of;
+      count += holds(run) ? 1 : 0;
+    }
+    AddCount(table, what, count, of);
+  };
+  const auto right = [](const RandomOutcome& run) { return run.Right(); };
+  const auto all = [](const RandomOutcome&) { return true; };
+  const auto faulty = [](const RandomOutcome& run) { return !run.draw.faults.empty(); };
+  add("right names, all runs", all, right);
+  add("right names, faulty runs", faulty, right);
+  for (std::size_t n = 1; n <= 3; ++n) {
+    add(
+        "right names, " + std::to_string(n) + (n == 1 ? " fault" : " faults"),
+        [n](const RandomOutcome& run) { return run.draw.faults.size() == n; }, right);
+  }
+  add(
+      "right names, from rest",
+      [&](const RandomOutcome& run) { return run.draw.from == 0 && faulty(run); },
+      right);
+  add(
+      "right names, from the middle of the motion",
+      [&](const RandomOutcome& run) { return run.draw.from > 0 && faulty(run); },
+      right);
+  add("a nameable fault missed, faulty runs", faulty, [](const RandomOutcome& run) {
+    return AnyFault(run, [](const auto& r, Index i) { return r.Missed(i); });
+  });
+  add("a fault named that is not there, faulty runs", faulty,
+      [](const RandomOutcome& run) {
+        return AnyFault(run, [](const auto& r, Index i) { return r.False(i); });
+      });
+  add(
+      "false alarms, healthy runs",
+      [](const RandomOutcome& run) { return run.draw.faults.empty(); },
+      [](const RandomOutcome& run) { return !run.Right(); });
+
+  int present = 0;
+  int nameable = 0;
+  int faint_named = 0;
+  int named = 0;
+  int diverged = 0;
+  double misfit = 0.0;
+  for (const RandomOutcome& run : runs) {
+    diverged += run.diverged ? 1 : 0;
+    if (run.diverged) continue;
+    misfit = std::max(misfit, run.reading.misfit);
+    for (Index i = 0; i < run.truth.size(); ++i) {
+      if (!run.Present(i)) continue;
+      const bool is_named = run.reading.named[static_cast<std::size_t>(i)];
+      ++present;
+      nameable += run.Nameable(i) ? 1 : 0;
+      named += run.Nameable(i) && is_named ? 1 : 0;
+      faint_named += !run.Nameable(i) && is_named ? 1 : 0;
+    }
+  }
+  AddCount(table, "nameable faults that are named", named, nameable);
+  AddCount(table, "fainter faults that are named", faint_named, present - nameable);
+  table.rows.push_back({"largest misfit", Cell(misfit), "", ""});
+  if (diverged > 0)
+    AddCount(table, "runs that diverged", diverged, static_cast<int>(runs.size()));
+  return table;
+}
+
+/// The value that this share of them does not exceed; sorted.
+double Quantile(const std::vector<double>& sorted, double share) {
+  const auto last = static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::lround(share * last))];
+}
+
+StudyTable ErrorTable(const std::vector<RandomOutcome>& runs,
+                      const std::vector<std::string>& names, Index parameters) {
+  StudyTable table{
+      "Errors over the information bound",
+      {"fault", "runs", "bound, median", "rms", "50 %", "90 %", "95 %", "largest",
+       "sd claimed, median", "inside 95 % interval [%]"},
+      {},
+      {"Columns from rms to the sd claimed are multiples of the bound of each "
+       "run; 0.67, 1.64 and 1.96 are the quantiles of an estimate at the "
+       "bound. A disturbance counts where it is nameable."}};
+  const double half = TwoSidedNormalQuantile(1.0 - kConfidence);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto i = static_cast<Index>(k);
+    std::vector<double> errors;
+    std::vector<double> bounds;
+    std::vector<double> claimed;
+    double square = 0.0;
+    int inside = 0;
+    for (const RandomOutcome& run : runs) {
+      if (!HasError(run, i, parameters)) continue;
+      errors.push_back(ErrorOverBound(run, i));
+      bounds.push_back(run.bound[i]);
+      claimed.push_back(run.reading.sd[i] / run.bound[i]);
+      square += errors.back() * errors.back();
+      inside += ErrorOverSd(run, i) <= half ? 1 : 0;
+    }
+    if (errors.empty()) continue;
+    for (auto* values : {&errors, &bounds, &claimed}) std::ranges::sort(*values);
+    const auto count = static_cast<double>(errors.size());
+    table.rows.push_back({names[k], Cell(count), Quantile(bounds, 0.5),
+                          std::sqrt(square / count), Quantile(errors, 0.5),
+                          Quantile(errors, 0.9), Quantile(errors, 0.95), errors.back(),
+                          Quantile(claimed, 0.5), 100.0 * inside / count});
+  }
+  return table;
+}
+
+}  // namespace
+
+bool RandomOutcome::Nameable(Index fault) const {
+  return std::abs(truth[fault]) > kNameable * bound[fault];
+}
+
+bool RandomOutcome::Missed(Index fault) const {
+  return Nameable(fault) && !reading.named[static_cast<std::size_t>(fault)];
+}
+
+bool RandomOutcome::False(Index fault) const {
+  return !Present(fault) && reading.named[static_cast<std::size_t>(fault)];
+}
+
+bool RandomOutcome::Right() const {
+  return !AnyFault(*this, [](const RandomOutcome& run, Index i) {
+    return run.Missed(i) || run.False(i);
+  });
+}
+
+RandomOutcome TryDraw(const Machine& machine, const Excitation& motion,
+                      const RandomDraw& draw, bool linear) {
+  const std::vector<std::string> names = MakeFaultFamily(machine).Names();
+  RandomOutcome outcome;
+  outcome.draw = draw;
+  outcome.truth = DeviationsOf(machine.setup(), names, draw.faults);
+  const FaultyMachine faulty = WithFaults(machine, draw.faults, draw.seed);
+  Record record;
+  try {
+    record = linear ? RunLinear(motion, faulty) : RunNonlinear(motion, faulty);
+  } catch (const NumericalError&) {
+    outcome.diverged = true;
+    return outcome;
+  }
+  outcome.bound = RunBound(machine, outcome.truth, record, draw.from, linear);
+  outcome.reading =
+      Listen(machine, record.Slice(draw.from, record.samples() - draw.from), linear);
+  return outcome;
+}
+
+std::vector<StudyTable> RandomFaultStudy(const Machine& machine,
+                                         const StudyOptions& options) {
+  const Excitation motion = DefaultMotion(machine.setup());
+  const std::vector<DrawRange> ranges = DrawRanges(machine.setup());
+  const std::vector<std::string> names = MakeFaultFamily(machine).Names();
+  const auto parameters =
+      static_cast<Index>(names.size() - machine.setup().disturbances.size());
+  std::vector<RandomOutcome> outcomes(static_cast<std::size_t>(options.runs));
+  GrowingTable runs(EmptyRuns(machine, options.linear), options.row);
+  ParallelInOrder(
+      options.runs,
+      [&](int run) {
+        const auto i = static_cast<std::size_t>(run);
+        outcomes[i] = TryDraw(machine, motion,
+                              DrawFaults(ranges, motion.samples(), options.seed + i),
+                              options.linear);
+        runs.Put(i, RowOf(outcomes[i], names, machine));
+      },
+      options.progress);
+  return {runs.table(), Counts(outcomes), ErrorTable(outcomes, names, parameters)};
+}
+
+}  // namespace mjdiag

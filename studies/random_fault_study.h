@@ -1,0 +1,44 @@
+#pragma once
+// Whether a machine's twin names the right faults, whatever they are and whenever the
+// record begins: one to three faults of random sizes, and none in a fifth of the runs.
+
+#include "mjdiag/diagnosis/twin/twin_estimator.h"
+#include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/random_fault.h"
+#include "mjdiag/studies/study_table.h"
+
+namespace mjdiag {
+
+/// A fault nearer to healthy than this many standard deviations of its information bound
+/// (run_bound.h) need not be named, and may be: nobody could tell it from noise with the
+/// confidence that naming asks for (4.4 of a parameter, 5.9 of three tones), and fail
+/// less than once in twenty.
+inline constexpr double kNameable = 6.0;
+
+/// What became of a draw.
+struct RandomOutcome {
+  RandomDraw draw;
+  bool diverged = false;  ///< the machine did, under those faults: nothing else is said
+  Eigen::VectorXd truth;  ///< deviations from healthy, nf
+  Eigen::VectorXd bound;  ///< standard deviations, nf
+  TwinReading reading;
+
+  bool Present(Eigen::Index fault) const { return truth[fault] != 0.0; }
+  bool Nameable(Eigen::Index fault) const;
+  bool Missed(Eigen::Index fault) const;  ///< nameable and not named
+  bool False(Eigen::Index fault) const;   ///< named and not there
+  /// Nothing missed and nothing false.
+  bool Right() const;
+};
+
+/// One run: on the plant of `linear`, diagnosed by the healthy machine's twin.
+RandomOutcome TryDraw(const Machine& machine, const Excitation& motion,
+                      const RandomDraw& draw, bool linear);
+
+/// `options.runs` draws with the seeds from `options.seed` on: every run, how often the
+/// names were right with the interval of that probability, false alarms, and errors over
+/// the standard deviations that were claimed and over the bound.
+std::vector<StudyTable> RandomFaultStudy(const Machine& machine,
+                                         const StudyOptions& options);
+
+}  // namespace mjdiag

@@ -1,0 +1,37 @@
+#pragma once
+// How small a fault is seen, and how surely: over many seeds, each of which is another
+// run with other noise.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+namespace mjdiag {
+
+/// Whether a fault of that deviation from healthy is seen in the run of that seed.
+using SeesFault = std::function<bool(double deviation, std::uint64_t seed)>;
+
+struct SeedsOfASize {
+  int count = 40;
+  std::uint64_t first = 1;
+};
+
+/// The share of seeds with which a fault has to be seen to count as seen.
+inline constexpr double kSurelySeen = 0.95;
+
+/// How many of the seeds see it.
+int CountSeen(double deviation, const SeedsOfASize& seeds, const SeesFault& sees);
+
+/// Whether kSurelySeen of them do; ends as soon as that is decided.
+bool SurelySeen(double deviation, const SeedsOfASize& seeds, const SeesFault& sees);
+
+/// The smallest deviation that is surely seen, by doubling or halving and then bisection
+/// of its logarithm, accurate to a factor of `resolution`; nullopt if `largest` is not
+/// surely seen and nothing below it that was tried.
+/// @param largest  deviation, of the sign that is looked for
+/// @param guess    where to begin, of that sign; none: where the first seed sees it
+std::optional<double> SurelySeenSize(double largest, std::optional<double> guess,
+                                     double resolution, const SeedsOfASize& seeds,
+                                     const SeesFault& sees);
+
+}  // namespace mjdiag
