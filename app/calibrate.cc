@@ -12,6 +12,7 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/diagnosis/filters_file.h"
+#include "mjdiag/discovery/extension/calibrated_setup.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -31,41 +32,21 @@ struct CalibrateCommand {
   NominalRuns runs;
 };
 
-/// The setup's text with the key that names the calibration, before its first table.
-std::string WithCalibration(const std::string& setup) {
-  const std::string key = "calibration";
-  std::string text;
-  bool placed = false;
-  std::istringstream lines(setup);
-  for (std::string line; std::getline(lines, line);) {
-    if (!placed && line.starts_with(key) &&
-        line.find_first_not_of(" \t=", key.size()) != line.npos &&
-        line[line.find_first_not_of(" \t", key.size())] == '=') {
-      continue;  // of an earlier one
-    }
-    if (!placed && line.starts_with("[")) {
-      text += key + " = \"" + kCalibrationFile + "\"\n\n";
-      placed = true;
-    }
-    text += line + "\n";
+void RequireOtherFolder(const fs::path& setup_file, const fs::path& folder) {
+  if (fs::exists(folder) && fs::equivalent(setup_file.parent_path(), folder)) {
+    throw InputError("--out", "is the folder of the setup itself", "another folder");
   }
-  return text;
 }
 
 /// Everything that stands beside the setup, so that the folder is one by itself.
-void CopySetup(const fs::path& setup, const fs::path& folder) {
-  const fs::path file = fs::is_directory(setup) ? setup / "setup.toml" : setup;
-  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
-    throw InputError("--out", "is the folder of the setup itself", "another folder");
-  }
+void CopySetup(const fs::path& setup_file, const fs::path& folder) {
   MakeOutputFolder(folder);
-  for (const fs::directory_entry& entry : fs::directory_iterator(
-           file.parent_path().empty() ? fs::path(".") : file.parent_path())) {
+  for (const auto& entry : fs::directory_iterator(setup_file.parent_path())) {
     const fs::path name = entry.path().filename();
-    if (!entry.is_regular_file() || name == file.filename()) continue;
+    if (!entry.is_regular_file() || name == setup_file.filename()) continue;
     fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
   }
-  WriteTextFile(folder / "setup.toml", WithCalibration(ReadTextFile(file)));
+  WriteTextFile(folder / "setup.toml", CalibratedSetup(setup_file, kCalibrationFile));
 }
 
 std::string CalibrationText(const CalibrateCommand& command,
@@ -75,7 +56,7 @@ std::string CalibrationText(const CalibrateCommand& command,
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     numbers.Add({calibration.numbers[i], Short(calibration.factors[at]),
-                 Short(100.0 * std::sqrt(calibration.covariance(at, at))),
+                 Short(100.0 * calibration.Sd()[at]),
                  Short(100.0 * report.prior_sd[at])});
   }
   std::string text = numbers.ToString() + "\nforce noise: ";
@@ -90,9 +71,9 @@ std::string CalibrationText(const CalibrateCommand& command,
     text += command.records[i] + ": misfit " + Short(record.misfit) +
             (record.misfit > 2.0 ? ", which this plant does not explain" : "") + "\n";
   }
-  if (!report.records.front().doubts.empty()) {
+  if (!report.doubts.empty()) {
     text += "Far from what was known, as on a machine that was not healthy:";
-    for (const std::string& name : report.records.front().doubts) text += " " + name;
+    for (const std::string& name : report.doubts) text += " " + name;
     text += "\n";
   }
   return text;
@@ -101,17 +82,16 @@ std::string CalibrationText(const CalibrateCommand& command,
 nlohmann::json CalibrationDocument(const CalibrateCommand& command,
                                    const CalibrationReport& report) {
   const Calibration& calibration = report.calibration;
-  nlohmann::json document = {{"schema", "mjdiag.calibration_report/1"},
-                             {"command", CommandLine()},
-                             {"force_noise", calibration.force_noise},
-                             {"numbers", nlohmann::json::array()},
-                             {"records", nlohmann::json::array()},
-                             {"doubts", report.records.front().doubts}};
+  nlohmann::json document = {
+      {"schema", "mjdiag.calibration_report/1"}, {"command", CommandLine()},
+      {"force_noise", calibration.force_noise},  {"numbers", nlohmann::json::array()},
+      {"records", nlohmann::json::array()},      {"doubts", report.doubts},
+  };
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     document["numbers"].push_back({{"name", calibration.numbers[i]},
                                    {"factor", calibration.factors[at]},
-                                   {"sd", std::sqrt(calibration.covariance(at, at))},
+                                   {"sd", calibration.Sd()[at]},
                                    {"prior_sd", report.prior_sd[at]}});
   }
   for (std::size_t i = 0; i < report.records.size(); ++i) {
@@ -129,7 +109,10 @@ void RunCalibration(CalibrateCommand& command) {
                      "the calibrated setup would not have them",
                      "the setup and its plant as they are");
   }
+  const fs::path setup_file = fs::absolute(FindSetupFile(command.machine.setup));
+  const fs::path folder = command.output.folder;
   Setup setup = ReadSetup(command.machine.setup);
+  RequireOtherFolder(setup_file, folder);
   setup.calibration.reset();
   const Machine machine(setup);
   std::vector<Record> records;
@@ -138,6 +121,7 @@ void RunCalibration(CalibrateCommand& command) {
   }
   PrepareOutput(command.output);
   CalibrationReport report;
+  DiagnosisDesign design;
   {
     ProgressBar bar("calibrating");
     command.calibration.linear = command.runs.linear;
@@ -146,11 +130,12 @@ void RunCalibration(CalibrateCommand& command) {
   }
   setup.calibration = report.calibration;
   const Machine calibrated(setup);
-  ProgressBar bar("healthy runs");
-  command.runs.progress = [&bar](double part) { bar.Show(part); };
-  const DiagnosisDesign design = CalibratedFilters(calibrated, records, command.runs);
-  const fs::path folder = command.output.folder;
-  CopySetup(command.machine.setup, folder);
+  {
+    ProgressBar bar("healthy runs");
+    command.runs.progress = [&bar](double part) { bar.Show(part); };
+    design = CalibratedFilters(calibrated, records, command.runs);
+  }
+  CopySetup(setup_file, folder);
   WriteCalibration(folder / kCalibrationFile, report.calibration);
   WriteFilters(folder / kCalibratedFilters, design);
   Publish(command.output, "calibration_report", CalibrationDocument(command, report),

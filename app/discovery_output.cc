@@ -29,11 +29,6 @@ std::string NotesText(const std::vector<std::string>& notes) {
   return text;
 }
 
-/// The file that `--setup` names, which may be its folder.
-fs::path SetupFile(const fs::path& setup) {
-  return fs::is_directory(setup) ? setup / "setup.toml" : setup;
-}
-
 }  // namespace
 
 std::string Describe(const Discovery& discovery) {
@@ -56,7 +51,7 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
   const std::string plant = ExtendMjcf(machine.setup().plant, machine.plant(),
                                        changes.faults, changes.effects, extended);
   const std::string text =
-      ExtendSetup(SetupFile(setup), machine.setup(), changes.effects, extended);
+      ExtendSetup(setup, machine.setup(), changes.effects, extended);
   WriteTextFile(extended / "plant.xml", plant);
   WriteTextFile(extended / "setup.toml", text);
   return (extended / "plant.xml").string();

@@ -10,6 +10,7 @@
 #include "app/format.h"
 #include "app/output.h"
 #include "app/subject.h"
+#include "mjdiag/diagnosis/json_matrix.h"
 #include "mjdiag/plugin/plant/transition.h"
 #include "mjdiag/plugin/runtime/closed_loop.h"
 #include "mjdiag/plugin/setup/chain_file.h"
@@ -34,15 +35,6 @@ constexpr double kTickTolerance = 1e-8;
 // One unit in the last printed digit.
 constexpr double kPrintedHalfUlps = 2.0;
 
-nlohmann::json Rows(const Eigen::MatrixXd& matrix) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    const Eigen::VectorXd row = matrix.row(i);
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
-
 double RelativeDifference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const double scale = b.norm();
   return scale > 0.0 ? (a - b).norm() / scale : a.norm();
@@ -57,11 +49,11 @@ nlohmann::json ModelJson(const MechanicalModel& model) {
   return {{"coordinates", model.coordinates},
           {"inputs", model.inputs},
           {"outputs", model.outputs},
-          {"M", Rows(model.M)},
-          {"D", Rows(model.D)},
-          {"K", Rows(model.K)},
-          {"Gamma", Rows(model.Gamma)},
-          {"b", Rows(model.b)},
+          {"M", MatrixJson(model.M)},
+          {"D", MatrixJson(model.D)},
+          {"K", MatrixJson(model.K)},
+          {"Gamma", MatrixJson(model.Gamma)},
+          {"b", MatrixJson(model.b)},
           {"modes", modes}};
 }
 

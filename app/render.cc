@@ -17,7 +17,7 @@
 #include "app/subject.h"
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
-#include "mjdiag/plugin/design/machine_twin.h"
+#include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/render/clip.h"
 #include "mjdiag/signals/error.h"
 
@@ -155,15 +155,13 @@ DiagnosisOverlay OverlayOf(const Machine& machine, const PreparedDiagnosis& prep
     overlay.estimates.push_back({names[i], design.Healthy(static_cast<Eigen::Index>(i)),
                                  Eigen::VectorXd(count), Eigen::VectorXd(count)});
   }
-  DiagnosisRecording recording(design, record.samples(), prepared.baseline);
-  if (auto twin = MakeTwinEstimator(machine, prepared.nominal.linear)) {
-    recording.monitor.Follow(std::move(twin));
-  }
+  DiagnosisRecording recording = BeginDiagnosis(machine, prepared, record.samples());
   const DiagnosisMonitor& monitor = recording.monitor;
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index first = k * every;
     const Eigen::Index samples = std::min(every, record.samples() - first);
-    Run(recording, record.Slice(first, samples));
+    RunPart(recording, record.Slice(first, samples));
+    if (k + 1 == count) recording.Finish();
     overlay.estimate_time[k] =
         record.start_time() +
         static_cast<double>(first + samples - 1) * record.sample_time();

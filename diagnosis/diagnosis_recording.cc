@@ -28,7 +28,6 @@ void Feed(Watcher& watcher, const DiagnosisDesign& design, const Record& record)
   const Eigen::MatrixXd y = SamplesOf(record, design.outputs);
   const Eigen::MatrixXd u = SamplesOf(record, design.inputs);
   for (Index k = 0; k < record.samples(); ++k) watcher.Add(Tick(y, k), Tick(u, k));
-  watcher.Finish();
 }
 
 }  // namespace
@@ -39,10 +38,16 @@ DiagnosisRecording::DiagnosisRecording(const DiagnosisDesign& design, Index capa
 
 void Run(DiagnosisMonitor& monitor, const Record& record) {
   Feed(monitor, monitor.design(), record);
+  monitor.Finish();
 }
 
 void Run(DiagnosisRecording& recording, const Record& record) {
-  Feed(recording, recording.monitor.design(), record);
+  RunPart(recording, record);
+  recording.Finish();
+}
+
+void RunPart(DiagnosisRecording& recording, const Record& part) {
+  Feed(recording, recording.monitor.design(), part);
 }
 
 DiagnosisRecording RecordDiagnosis(const DiagnosisDesign& design, const Record& record,

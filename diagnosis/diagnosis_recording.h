@@ -34,10 +34,12 @@ struct DiagnosisRecording {
   MonitorRecorder recorder;
 };
 
-/// Feeds a record to a monitor, sample by sample. InputError if a channel is missing or
-/// the record is sampled at another rate than the filters.
+/// Feeds the record of a run to a monitor, sample by sample, and finishes. InputError
+/// if a channel is missing or the record is sampled at another rate than the filters.
 void Run(DiagnosisMonitor& monitor, const Record& record);
 void Run(DiagnosisRecording& recording, const Record& record);
+/// The same of a part of a run, which goes on: Finish ends it.
+void RunPart(DiagnosisRecording& recording, const Record& part);
 
 /// The recording of a whole record.
 /// @param baseline  see DiagnosisMonitor

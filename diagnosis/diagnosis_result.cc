@@ -18,26 +18,36 @@ std::optional<double> TimeOf(const std::optional<Index>& sample, double sample_t
   return static_cast<double>(*sample) * sample_time;
 }
 
-std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
-                                const FaultEstimate& estimate) {
-  const std::vector<std::string> names = design.FaultNames();
-  const auto count = static_cast<double>(names.size());
-  const double reach = TwoSidedNormalQuantile(kFalseFault / count);
-  const double half = TwoSidedNormalQuantile(0.05);
-  std::vector<FaultVerdict> verdicts;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto at = static_cast<Index>(i);
-    const auto [deviation, sd, usual] = Calibrate(
-        design, at, estimate.value[at], std::sqrt(estimate.covariance(at, at)));
-    const double value = design.Healthy(at) + deviation;
-    verdicts.push_back({names[i],
-                        value,
-                        deviation,
-                        sd,
-                        {value - half * sd, value + half * sd},
-                        std::abs(deviation) > reach * sd && !usual});
+/// What the residuals say of the faults, one by one, as a twin would put it. The
+/// standard deviations are NaN as long as the motion does not tell all faults apart.
+/// @param noise_ratio  variance of the noise over what the setup says of it
+TwinReading ReadResiduals(const DiagnosisMonitor& monitor, double noise_ratio) {
+  const DiagnosisDesign& design = monitor.design();
+  const Index count = design.faults();
+  TwinReading reading;
+  reading.deviation = reading.sd = Eigen::VectorXd::Zero(count);
+  reading.inseparable = monitor.estimator().Inseparable();
+  FaultEstimate estimate{Eigen::VectorXd::Zero(count),
+                         Eigen::MatrixXd::Constant(
+                             count, count, std::numeric_limits<double>::quiet_NaN())};
+  if (reading.inseparable.empty()) estimate = monitor.estimator().Estimate();
+  const double reach = TwoSidedNormalQuantile(kFalseFault / static_cast<double>(count));
+  for (Index i = 0; i < count; ++i) {
+    const auto [deviation, sd, usual] =
+        Calibrate(design, i, estimate.value[i],
+                  std::sqrt(noise_ratio * estimate.covariance(i, i)));
+    reading.deviation[i] = deviation;
+    reading.sd[i] = sd;
+    reading.named.push_back(std::abs(deviation) > reach * sd && !usual);
   }
-  return verdicts;
+  return reading;
+}
+
+/// Noisier sensors than the setup says make estimates from residuals less certain than
+/// it says; a twin sees that itself.
+TwinReading ReadFaults(const DiagnosisMonitor& monitor, double noise_ratio) {
+  return monitor.twin() != nullptr ? monitor.twin()->Read()
+                                   : ReadResiduals(monitor, noise_ratio);
 }
 
 std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
@@ -109,16 +119,7 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
 }
 
 std::vector<FaultVerdict> JudgeFaults(const DiagnosisMonitor& monitor) {
-  const DiagnosisDesign& design = monitor.design();
-  if (monitor.twin() != nullptr) return Judge(design, monitor.twin()->Read());
-  if (monitor.estimator().Inseparable().empty()) {
-    return Judge(design, monitor.estimator().Estimate());
-  }
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const Index count = design.faults();
-  return Judge(design,
-               FaultEstimate{Eigen::VectorXd::Zero(count),
-                             Eigen::MatrixXd::Constant(count, count, kUnknown)});
+  return Judge(monitor.design(), ReadFaults(monitor, 1.0));
 }
 
 DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log) {
@@ -136,19 +137,12 @@ DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log)
                               design.limits.disturbance, design.options.disturbance);
   };
   result.disturbance = analyse(log.disturbance);
-  if (monitor.twin() != nullptr) {
-    const TwinReading reading = monitor.twin()->Read();
-    RequireSeparableFaults(design, reading.inseparable);
-    result.faults = Judge(design, reading);
-    result.by_twin = true;
-    result.misfit = reading.misfit;
-  } else {
-    RequireSeparableFaults(design, monitor.estimator().Inseparable());
-    // Noisier sensors than the setup says make estimates less certain than it says.
-    FaultEstimate honest = monitor.estimator().Estimate();
-    honest.covariance *= std::max(1.0, result.disturbance.noise_ratio);
-    result.faults = Judge(design, honest);
-  }
+  const TwinReading reading =
+      ReadFaults(monitor, std::max(1.0, result.disturbance.noise_ratio));
+  RequireSeparableFaults(design, reading.inseparable);
+  result.faults = Judge(design, reading);
+  result.by_twin = monitor.twin() != nullptr;
+  result.misfit = reading.misfit;
   if (AnyDetected(result.faults)) {
     result.disturbance = analyse(WithoutFaults(design, log, result.faults));
   }

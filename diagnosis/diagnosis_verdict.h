@@ -14,8 +14,8 @@
 
 namespace mjdiag {
 
-/// Without a twin a detected fault is named only if its significance is at least this part of the
-/// strongest one's.
+/// Without a twin a detected fault is named only if its significance is at least this
+/// part of the strongest one's.
 inline constexpr double kNamedSignificance = 0.05;
 
 /// Detected faults first, by falling significance; the others keep their order.
@@ -24,9 +24,9 @@ std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result);
 /// "yes" or "no".
 std::string DetectionText(const FaultVerdict& fault);
 
-/// The answer in one sentence. Besides those it leaves out those whose
-/// value reads as healthy in five digits, unless none is left: then the strongest is
-/// named by its deviation, "eta_z = 1 - 4.00e-07".
+/// The answer in one sentence. Detected faults whose value reads as healthy in five
+/// digits are left out of it as well, unless none is left: then the strongest is named
+/// by its deviation, "eta_z = 1 - 4.00e-07".
 std::string DiagnosisVerdict(const DiagnosisResult& result);
 
 }  // namespace mjdiag

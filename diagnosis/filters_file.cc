@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "mjdiag/diagnosis/json_matrix.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -13,52 +14,20 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 using nlohmann::json;
 
 constexpr const char* kSchema = "mjdiag.filters/1";
 
-json Json(const VectorXd& vector) {
-  return std::vector<double>(vector.begin(), vector.end());
-}
-
-json Json(const MatrixXd& matrix) {
-  json rows = json::array();
-  for (Index i = 0; i < matrix.rows(); ++i)
-    rows.push_back(Json(VectorXd(matrix.row(i))));
-  return rows;
-}
-
-VectorXd Vector(const json& array) {
-  const auto values = array.get<std::vector<double>>();
-  return VectorXd::Map(values.data(), static_cast<Index>(values.size()));
-}
-
-MatrixXd Matrix(const json& rows) {
-  const auto values = rows.get<std::vector<std::vector<double>>>();
-  if (values.empty()) return {};
-  MatrixXd matrix(static_cast<Index>(values.size()),
-                  static_cast<Index>(values.front().size()));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i].size() != values.front().size()) {
-      throw json::other_error::create(501, "rows of unequal length", &rows);
-    }
-    matrix.row(static_cast<Index>(i)) =
-        VectorXd::Map(values[i].data(), static_cast<Index>(values[i].size()));
-  }
-  return matrix;
-}
-
 json Json(const FilterBank& bank) {
   return {{"gain", bank.gain},
-          {"feedback", Json(bank.feedback)},
-          {"B", Json(bank.B)},
-          {"D", Json(bank.D)}};
+          {"feedback", VectorJson(bank.feedback)},
+          {"B", MatrixJson(bank.B)},
+          {"D", MatrixJson(bank.D)}};
 }
 
 FilterBank Bank(const json& object, double sample_time) {
-  return {sample_time, Vector(object.at("feedback")), object.at("gain").get<double>(),
-          Matrix(object.at("B")), Matrix(object.at("D"))};
+  return {sample_time, VectorOf(object.at("feedback")), object.at("gain").get<double>(),
+          MatrixOf(object.at("B")), MatrixOf(object.at("D"))};
 }
 
 json Json(const Interval& interval) { return {interval.min, interval.max}; }
@@ -69,7 +38,7 @@ Interval ToInterval(const json& pair) {
 json Json(const Multisine& source) {
   return {{"name", source.name},
           {"frequencies", source.frequencies},
-          {"amplitude", Json(source.amplitude)}};
+          {"amplitude", VectorJson(source.amplitude)}};
 }
 
 json Json(const DisturbanceFilter& filter) {
@@ -119,9 +88,9 @@ json Json(const DisturbanceThresholds& limits) {
           {"total", limits.total},
           {"noise_ratio", limits.noise_ratio},
           {"broadband", limits.broadband},
-          {"frequency", Json(limits.nominal.frequency)},
-          {"nominal", Json(limits.nominal.density)},
-          {"highest", Json(limits.highest)},
+          {"frequency", VectorJson(limits.nominal.frequency)},
+          {"nominal", VectorJson(limits.nominal.density)},
+          {"highest", VectorJson(limits.highest)},
           {"nominal_dof", limits.nominal_dof}};
 }
 
@@ -132,8 +101,8 @@ DisturbanceThresholds ToDisturbanceThresholds(const json& object) {
   limits.total = object.at("total");
   limits.noise_ratio = object.at("noise_ratio");
   limits.broadband = object.at("broadband");
-  limits.nominal = {Vector(object.at("frequency")), Vector(object.at("nominal"))};
-  limits.highest = Vector(object.at("highest"));
+  limits.nominal = {VectorOf(object.at("frequency")), VectorOf(object.at("nominal"))};
+  limits.highest = VectorOf(object.at("highest"));
   limits.nominal_dof = object.at("nominal_dof");
   return limits;
 }
@@ -177,17 +146,17 @@ DiagnosisDesign Parse(const json& object) {
   design.linear = object.value("linear", false);
   design.outputs = object.at("outputs").get<std::vector<std::string>>();
   design.inputs = object.at("inputs").get<std::vector<std::string>>();
-  design.offset = Vector(object.at("offset"));
-  design.sensor_noise = Vector(object.at("sensor_noise"));
+  design.offset = VectorOf(object.at("offset"));
+  design.sensor_noise = VectorOf(object.at("sensor_noise"));
   design.bank.residuals = object.at("residuals");
   design.bank.faults = object.at("faults").get<std::vector<std::string>>();
   design.bank.filters = Bank(object.at("filters"), sample_time);
   for (const json& rows : object.at("rows"))
-    design.bank.relations.push_back(Matrix(rows));
+    design.bank.relations.push_back(MatrixOf(rows));
   for (const json& source : object.at("disturbances")) {
     design.disturbances.push_back({source.at("name"),
                                    source.at("frequencies").get<std::vector<double>>(),
-                                   Vector(source.at("amplitude"))});
+                                   VectorOf(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
   design.decimation = object.at("stride");
@@ -228,15 +197,15 @@ json Json(const DiagnosisDesign& design) {
     disturbances.push_back(Json(source));
   json rows = json::array();
   for (const MatrixXd& coefficient : design.bank.relations)
-    rows.push_back(Json(coefficient));
+    rows.push_back(MatrixJson(coefficient));
   return {{"schema", kSchema},
           {"setup", design.setup},
           {"linear", design.linear},
           {"sample_time", design.sample_time()},
           {"outputs", design.outputs},
           {"inputs", design.inputs},
-          {"offset", Json(design.offset)},
-          {"sensor_noise", Json(design.sensor_noise)},
+          {"offset", VectorJson(design.offset)},
+          {"sensor_noise", VectorJson(design.sensor_noise)},
           {"residuals", design.bank.residuals},
           {"faults", design.bank.faults},
           {"filters", Json(design.bank.filters)},

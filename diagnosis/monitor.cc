@@ -104,7 +104,7 @@ void DiagnosisMonitor::Follow(std::unique_ptr<TwinEstimator> twin) {
 void DiagnosisMonitor::Finish() noexcept {
   if (!twin_) return;
   twin_->CatchUp();
-  if (twin_->estimator().active() > 0) twin_->ReadSpread(estimate_sd_);
+  if (twin_->estimator().began()) twin_->ReadSpread(estimate_sd_);
   twin_->Read(estimate_);
 }
 
@@ -176,7 +176,7 @@ void DiagnosisMonitor::Detect() noexcept {
 
 void DiagnosisMonitor::Regress() noexcept {
   if (twin_) {
-    if (twin_->estimator().active() > 0 &&
+    if (twin_->estimator().began() &&
         samples_ % (kSpreadEvery * design_.decimation) == 0) {
       twin_->ReadSpread(estimate_sd_);
     }

@@ -1,5 +1,7 @@
 #include "mjdiag/diagnosis/twin/information.h"
 
+#include "mjdiag/signals/decompositions.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
@@ -12,6 +14,12 @@ namespace {
 constexpr double kRidge = 1e-13;
 
 }  // namespace
+
+MatrixXd CovarianceOf(const MatrixXd& H) {
+  const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * Inverse(scale.asDiagonal() * H * scale.asDiagonal()) *
+         scale.asDiagonal();
+}
 
 Information::Information(Index p, Index ny) : small_(ny) {
   H_ = factor_ = inverse_ = MatrixXd::Identity(p, p);

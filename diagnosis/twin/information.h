@@ -12,6 +12,9 @@
 
 namespace mjdiag {
 
+/// H^-1, of unknowns of any units.
+Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& H);
+
 class Information {
  public:
   /// @param p   unknowns
@@ -41,6 +44,7 @@ class Information {
   double SquaredChange() const;
   Eigen::Index active() const { return active_; }
   const Eigen::MatrixXd& H() const { return H_; }
+  const Eigen::VectorXd& g() const { return g_; }
   /// Variances of the estimate, p.
   const Eigen::VectorXd& Variance() noexcept;
 

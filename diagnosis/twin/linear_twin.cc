@@ -13,73 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Column of that direction, a new one if there is none yet.
-Index DirectionOf(LeverArms& arms, const VectorXd& direction) {
-  for (Index i = 0; i < arms.directions.cols(); ++i) {
-    if (arms.directions.col(i) == direction) return i;
-  }
-  const Index count = arms.directions.cols();
-  arms.directions.conservativeResize(direction.size(), count + 1);
-  arms.directions.col(count) = direction;
-  return count;
-}
-
-/// Row by row: the force on a coordinate is minus what the row says.
-void AddRows(LeverArms& arms, const Lever& lever, const MatrixXd& part) {
-  for (Index row = 0; row < part.rows(); ++row) {
-    for (Index i = 0; i < part.cols(); ++i) {
-      if (part(row, i) == 0.0) continue;
-      Lever of_entry = lever;
-      of_entry.direction = DirectionOf(arms, VectorXd::Unit(part.rows(), row));
-      of_entry.index = i;
-      of_entry.coefficient = -part(row, i);
-      arms.levers.push_back(std::move(of_entry));
-    }
-  }
-}
-
-LeverArms ArmsOf(const UncertainModel& model, Index first_tone) {
-  LeverArms arms;
-  arms.directions.resize(model.nominal.M.rows(), 0);
-  for (std::size_t number = 0; number < model.parts.size(); ++number) {
-    const ModelPart& part = model.parts[number];
-    Lever lever;
-    lever.unknowns = part.factors;
-    lever.number = static_cast<Index>(number);
-    const auto add = [&](LeverSignal signal, const MatrixXd& rows) {
-      lever.signal = signal;
-      AddRows(arms, lever, rows);
-    };
-    add(LeverSignal::kAcceleration, part.M);
-    add(LeverSignal::kVelocity, part.D);
-    add(LeverSignal::kPosition, part.K);
-    add(LeverSignal::kConstant, -part.force);
-    lever.signal = LeverSignal::kInput;
-    lever.coefficient = 1.0;
-    for (Index i = 0; i < part.Gamma.cols(); ++i) {
-      if (part.Gamma.col(i).isZero(0.0)) continue;
-      lever.direction = DirectionOf(arms, part.Gamma.col(i));
-      lever.index = i;
-      arms.levers.push_back(lever);
-    }
-  }
-  for (std::size_t i = 0; i < model.tones.size(); ++i) {
-    // A direction of its own: it changes with the motors.
-    Lever lever;
-    lever.direction = arms.directions.cols();
-    arms.directions.conservativeResize(Eigen::NoChange, lever.direction + 1);
-    arms.directions.col(lever.direction) =
-        model.nominal.Gamma * model.tones[i].amplitude;
-    lever.index = static_cast<Index>(i);
-    lever.coefficient = 1.0;
-    for (const LeverSignal signal : {LeverSignal::kSine, LeverSignal::kCosine}) {
-      lever.signal = signal;
-      lever.unknowns = {first_tone++};
-      arms.levers.push_back(lever);
-    }
-  }
-  return arms;
-}
+/// Periods in which a resonance rings.
+constexpr double kCurvature = 100.0;
 
 /// K with a slow spring for what nothing holds.
 MatrixXd Held(const MechanicalModel& model) {
@@ -113,39 +48,59 @@ MatrixXd StartDirections(const MechanicalModel& model, double energy) {
 
 LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
                        Index block)
-    : model_(model),
-      gains_(std::move(gains)),
-      block_(block),
-      first_tone_(static_cast<Index>(model.unknowns.size()) - model.start.cols() -
-                  2 * static_cast<Index>(model.tones.size())),
-      tones_(model.tones, model.timing.tick()) {
+    : Twin({model.nominal.b.cols(), model.nominal.Gamma.cols(),
+            2 * model.nominal.M.rows(), static_cast<Index>(model.unknowns.size()),
+            model.start.cols(), block, kCurvature},
+           std::move(gains), model.tones, model.timing.tick()),
+      model_(model),
+      moved_rest_(model.nominal, model.parts, unknowns()) {
   const MechanicalModel& nominal = model_.nominal;
   const Index nq = nominal.M.rows();
   const Index ny = nominal.b.cols();
   const Index nu = nominal.Gamma.cols();
   const auto p = static_cast<Index>(model_.unknowns.size());
-  arms_ = ArmsOf(model_, first_tone_);
-  const Index directions = arms_.directions.cols();
   C_ = MatrixXd::Zero(ny, 2 * nq);
   C_.leftCols(nq) = nominal.b.transpose();
-  mean_ = C_ / static_cast<double>(block_);
+  mean_ = C_ / static_cast<double>(block);
   place_ = PlacementOf(nominal);
-  theta_ = VectorXd::Zero(p);
   values_ = VectorXd::Ones(static_cast<Index>(model_.parts.size()));
   M_ = D_ = K_ = left_ = nominal.M;
   Gamma_ = nominal.Gamma;
   f_ = VectorXd::Zero(nq);
   factor_ = Eigen::LLT<MatrixXd>(nq);
-  A_ = F_ = power_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
-  B_ = MatrixXd::Zero(2 * nq, nu);
-  force_ = MatrixXd::Zero(2 * nq, nq);
-  carried_.assign(static_cast<std::size_t>(block_), MatrixXd::Zero(2 * nq, directions));
+  A_step_ = A_ = F_ = power_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
+  B_step_ = MatrixXd::Zero(2 * nq, nu);
+  pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);
   seen_ = MatrixXd::Zero(ny, 2 * nq);
-  seen_of_.assign(static_cast<std::size_t>(block_), MatrixXd::Zero(ny, directions));
-  x_ = next_ = constant_ = VectorXd::Zero(2 * nq);
-  u_ = VectorXd::Zero(nu);
-  S_ = S_next_ = S_drive_ = MatrixXd::Zero(2 * nq, p);
-  seen_drive_ = sensitivity_ = MatrixXd::Zero(ny, p);
+  const auto ticks = static_cast<std::size_t>(block);
+  of_tick_.carried.assign(ticks, pulse_);
+  of_tick_.seen.assign(ticks, MatrixXd::Zero(ny, nq));
+  of_step_.assign(static_cast<std::size_t>(model_.timing.substeps), of_tick_);
+  pulses_.assign(of_step_.size(), pulse_);
+  x_ = next_ = driven_ = constant_ = VectorXd::Zero(2 * nq);
+  const auto numbers = static_cast<Index>(model_.parts.size());
+  for (Index i = 0; i < numbers; ++i) {
+    const ModelPart& part = model_.parts[static_cast<std::size_t>(i)];
+    AddEntries(i, Motion::kAcceleration, part.M);
+    AddEntries(i, Motion::kVelocity, part.D);
+    AddEntries(i, Motion::kPosition, part.K);
+  }
+  moving_ = MatrixXd::Zero(nq, numbers);
+  held_ = MatrixXd::Zero(nq, numbers + 2 * tones_.count());
+  carried_ = MatrixXd::Zero(2 * nq, held_.cols());
+  of_block_ = MatrixXd::Zero(ny, held_.cols());
+  S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
+  sensitivity_ = MatrixXd::Zero(ny, p);
+  MakeMaps();
+}
+
+void LinearTwin::AddEntries(Index number, Motion motion, const MatrixXd& part) {
+  for (Index on = 0; on < part.rows(); ++on) {
+    for (Index of = 0; of < part.cols(); ++of) {
+      if (part(on, of) == 0.0) continue;
+      entries_.push_back({number, on, motion, of, -part(on, of)});
+    }
+  }
 }
 
 void LinearTwin::MakeMaps() noexcept {
@@ -158,8 +113,7 @@ void LinearTwin::MakeMaps() noexcept {
   f_.setZero();
   for (std::size_t i = 0; i < model_.parts.size(); ++i) {
     const ModelPart& part = model_.parts[i];
-    double sum = 0.0;
-    for (const Index factor : part.factors) sum += theta_[factor];
+    const double sum = Logarithm(part.factors);
     values_[static_cast<Index>(i)] = std::exp(sum);
     const double moved = std::expm1(sum);
     if (part.M.size() > 0) M_ += moved * part.M;
@@ -168,36 +122,32 @@ void LinearTwin::MakeMaps() noexcept {
     if (part.Gamma.size() > 0) Gamma_ += moved * part.Gamma;
     if (part.force.size() > 0) f_ += moved * part.force;
   }
-  // A substep: v' = v + h (M + h D)^-1 (f - K q - D v), q' = q + h v'.
+  // v' = v + h (M + h D)^-1 (f - K q - D v), q' = q + h v'.
   const double h = model_.timing.step;
   left_ = M_ + h * D_;
   factor_.compute(left_);
-  A_.setIdentity();
-  force_.setZero();
-  auto columns = scratch_.leftCols(nq);  // of work space
-  for (int substep = 0; substep < model_.timing.substeps; ++substep) {
-    const auto advance = [&](auto& map, bool driven) {
-      for (Index first = 0; first < map.cols(); first += nq) {
-        auto part = map.middleCols(first, nq);
-        auto change = columns.topRows(nq);
-        change.noalias() = K_ * part.topRows(nq);
-        change.noalias() += D_ * part.bottomRows(nq);
-        change *= -1.0;
-        if (driven) change += MatrixXd::Identity(nq, nq);
-        factor_.solveInPlace(change);
-        part.bottomRows(nq) += h * change;
-        part.topRows(nq) += h * part.bottomRows(nq);
-      }
-    };
-    advance(A_, false);
-    advance(force_, true);
-  }
-  B_.noalias() = force_ * Gamma_;
-  constant_.noalias() = force_ * f_;
-  for (const Lever& lever : arms_.levers) {
-    if (lever.signal != LeverSignal::kSine) continue;
-    arms_.directions.col(lever.direction).noalias() =
-        Gamma_ * tones_.amplitude(lever.index);
+  const auto into_velocity = [&](auto rows) {
+    factor_.solveInPlace(rows);
+    rows *= h;
+  };
+  pulse_step_.bottomRows(nq).setIdentity();
+  into_velocity(pulse_step_.bottomRows(nq));
+  pulse_step_.topRows(nq) = h * pulse_step_.bottomRows(nq);
+  A_step_.bottomLeftCorner(nq, nq) = -K_;
+  A_step_.bottomRightCorner(nq, nq) = -D_;
+  into_velocity(A_step_.bottomRows(nq));
+  A_step_.bottomRightCorner(nq, nq).diagonal().array() += 1.0;
+  A_step_.topRows(nq) = h * A_step_.bottomRows(nq);
+  A_step_.topLeftCorner(nq, nq).diagonal().array() += 1.0;
+  B_step_.noalias() = pulse_step_ * Gamma_;
+  constant_.noalias() = pulse_step_ * f_;
+  A_ = A_step_;
+  pulses_.back() = pulse_ = pulse_step_;
+  for (std::size_t s = pulses_.size() - 1; s > 0; --s) {
+    pulses_[s - 1].noalias() = A_step_ * pulses_[s];
+    pulse_ += pulses_[s - 1];
+    scratch_.noalias() = A_step_ * A_;
+    A_.swap(scratch_);
   }
   LiftSensitivities();
 }
@@ -210,46 +160,54 @@ void LinearTwin::UseGain(std::size_t gain) noexcept {
 
 void LinearTwin::LiftSensitivities() noexcept {
   F_ = A_;
-  F_.noalias() -= gains_[gain_].L * C_;
-  carried_.back().noalias() = force_ * arms_.directions;
+  F_.noalias() -= gain().L * C_;
   power_ = F_;
   seen_ = mean_;
-  for (Index j = block_ - 2; j >= 0; --j) {
-    const auto at = static_cast<std::size_t>(j);
-    carried_[at].noalias() = F_ * carried_[at + 1];
-  }
-  // seen_of_[j] = (1/d) sum_(i>j) C F^(i-1-j) B E: what is carried from the end of j.
-  seen_of_.back().setZero();
-  for (Index j = block_ - 2; j >= 0; --j) {
-    const auto at = static_cast<std::size_t>(j);
-    seen_of_[at] = seen_of_[at + 1];
-    seen_of_[at].noalias() += mean_ * carried_[at + 1];
-  }
-  for (Index j = 1; j < block_; ++j) {
+  for (Index j = 1; j < block(); ++j) {
     seen_.noalias() += mean_ * power_;
     scratch_.noalias() = F_ * power_;
     power_.swap(scratch_);
   }
+  Lift(pulse_, of_tick_);
+  for (std::size_t s = 0; s < pulses_.size() && !entries_.empty(); ++s) {
+    Lift(pulses_[s], of_step_[s]);
+  }
+}
+
+void LinearTwin::Lift(const MatrixXd& pulse, Response& response) noexcept {
+  response.carried.back() = pulse;
+  response.seen.back().setZero();
+  for (auto j = static_cast<std::size_t>(block() - 1); j > 0; --j) {
+    response.carried[j - 1].noalias() = F_ * response.carried[j];
+    // What is carried from the end of tick j - 1 is seen from the next one on.
+    response.seen[j - 1] = response.seen[j];
+    response.seen[j - 1].noalias() += mean_ * response.carried[j];
+  }
 }
 
 void LinearTwin::Start(const VectorXd& theta) noexcept {
-  theta_ = theta;
-  in_block_ = 0;
-  active_ = theta_.size() - start_unknowns();
-  x_.setZero();
-  S_.setZero();
-  S_drive_.setZero();
-  seen_drive_.setZero();
-  tones_.Start();
-  MakeMaps();
+  Begin(theta, true);
+  Reset();
+  moved_rest_.Find(theta_);
+  x_.head(M_.rows()) = moved_rest_.position();
+  S_.topRows(M_.rows()) = moved_rest_.sensitivity();
 }
 
 void LinearTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
-  Start(theta);
-  active_ = theta_.size();
+  Begin(theta, false);
+  Reset();
   x_ = state;
   x_.noalias() += model_.start * theta_.tail(start_unknowns());
   S_.rightCols(start_unknowns()) = model_.start;
+}
+
+void LinearTwin::Reset() noexcept {
+  in_block_ = 0;
+  x_.setZero();
+  S_.setZero();
+  carried_.setZero();
+  of_block_.setZero();
+  MakeMaps();
 }
 
 void LinearTwin::StateAt(const VectorXd& reading, VectorXd& state) noexcept {
@@ -263,61 +221,83 @@ void LinearTwin::Predict(VectorXd& reading) noexcept {
   reading.noalias() += C_ * x_;
 }
 
-double LinearTwin::Signal(const Lever& lever) const noexcept {
-  // The mean of a tick of n steps, of which each takes the position at its start and
-  // the velocity at its end.
-  const Index nq = M_.rows();
-  const auto steps = static_cast<double>(model_.timing.substeps);
-  const Index i = lever.index;
-  switch (lever.signal) {
-    case LeverSignal::kAcceleration:
-      return (next_[nq + i] - x_[nq + i]) / model_.timing.tick();
-    case LeverSignal::kVelocity:
-      return x_[nq + i] + 0.5 * (steps + 1.0) / steps * (next_[nq + i] - x_[nq + i]);
-    case LeverSignal::kPosition:
-      return x_[i] + 0.5 * (steps - 1.0) / steps * (next_[i] - x_[i]);
-    case LeverSignal::kConstant:
-      return 1.0;
-    case LeverSignal::kInput:
-      return u_[i];
-    case LeverSignal::kSine:
-      return tones_.sine(i);
-    case LeverSignal::kCosine:
-      return tones_.cosine(i);
+void LinearTwin::Push(const MatrixXd& forces, const Response& response) noexcept {
+  const auto tick = static_cast<std::size_t>(in_block_);
+  carried_.leftCols(forces.cols()).noalias() += response.carried[tick] * forces;
+  of_block_.leftCols(forces.cols()).noalias() += response.seen[tick] * forces;
+}
+
+void LinearTwin::AddHeldForces() noexcept {
+  held_.setZero();
+  Index column = 0;
+  for (const ModelPart& part : model_.parts) {
+    auto force = held_.col(column++);
+    if (part.Gamma.size() > 0) force.noalias() += part.Gamma * u_;
+    if (part.force.size() > 0) force += part.force;
   }
-  return 0.0;
+  for (Index i = 0; i < tones_.count(); ++i) {
+    auto cosine = held_.col(column + 1);
+    cosine.noalias() = Gamma_ * tones_.amplitude(i);
+    held_.col(column) = tones_.sine(i) * cosine;
+    cosine *= tones_.cosine(i);
+    column += 2;
+  }
+}
+
+void LinearTwin::AddMovingForces() noexcept {
+  const Index nq = M_.rows();
+  moving_.setZero();
+  for (const Entry& entry : entries_) {
+    double signal = x_[entry.of];
+    if (entry.motion == Motion::kVelocity) signal = next_[nq + entry.of];
+    if (entry.motion == Motion::kAcceleration) {
+      signal = (next_[nq + entry.of] - x_[nq + entry.of]) / model_.timing.step;
+    }
+    moving_(entry.on, entry.number) += entry.coefficient * signal;
+  }
 }
 
 void LinearTwin::Step(std::span<const double> inputs,
                       const VectorXd& innovation) noexcept {
-  u_ = VectorXd::Map(inputs.data(), u_.size());
-  tones_.AddTo(u_, theta_.segment(first_tone_, 2 * tones_.count()));
-  next_ = constant_;
-  next_.noalias() += A_ * x_;
-  next_.noalias() += B_ * u_;
-  const auto at = static_cast<std::size_t>(in_block_);
-  for (const Lever& lever : arms_.levers) {
-    const double value = lever.number < 0 ? 1.0 : values_[lever.number];
-    const double force = value * lever.coefficient * Signal(lever);
-    for (const Index unknown : lever.unknowns) {
-      S_drive_.col(unknown) += force * carried_[at].col(lever.direction);
-      seen_drive_.col(unknown) += force * seen_of_[at].col(lever.direction);
+  Command(inputs);
+  AddHeldForces();
+  Push(held_, of_tick_);
+  driven_ = constant_;
+  driven_.noalias() += B_step_ * u_;
+  for (const Response& response : of_step_) {
+    next_ = driven_;
+    next_.noalias() += A_step_ * x_;
+    if (!entries_.empty()) {
+      AddMovingForces();
+      Push(moving_, response);
     }
+    x_.swap(next_);
   }
-  next_.noalias() += gains_[gain_].L * innovation;
-  x_.swap(next_);
+  x_.noalias() += gain().L * innovation;
   tones_.Advance();
   ++in_block_;
 }
 
 const MatrixXd& LinearTwin::EndBlock() noexcept {
-  sensitivity_ = seen_drive_;
-  sensitivity_.leftCols(active_).noalias() += seen_ * S_.leftCols(active_);
-  S_next_ = S_drive_;
-  S_next_.leftCols(active_).noalias() += power_ * S_.leftCols(active_);
+  sensitivity_.setZero();
+  S_next_.setZero();
+  Index column = 0;
+  for (const ModelPart& part : model_.parts) {
+    const double value = values_[column];
+    for (const Index factor : part.factors) {
+      S_next_.col(factor) += value * carried_.col(column);
+      sensitivity_.col(factor) += value * of_block_.col(column);
+    }
+    ++column;
+  }
+  const Index of_tones = 2 * tones_.count();
+  S_next_.middleCols(first_tone(), of_tones) = carried_.rightCols(of_tones);
+  sensitivity_.middleCols(first_tone(), of_tones) = of_block_.rightCols(of_tones);
+  sensitivity_.leftCols(acting()).noalias() += seen_ * S_.leftCols(acting());
+  S_next_.leftCols(acting()).noalias() += power_ * S_.leftCols(acting());
   S_.swap(S_next_);
-  S_drive_.setZero();
-  seen_drive_.setZero();
+  carried_.setZero();
+  of_block_.setZero();
   in_block_ = 0;
   return sensitivity_;
 }

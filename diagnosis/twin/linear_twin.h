@@ -5,14 +5,20 @@
 //
 // on the exact map of a control tick (TickModel), with unknown tones w in the commands.
 // M, D, K, Gamma and f are affine in numbers of the machine, each of them a product of
-// unknown factors. State and sensitivities are those of that map; a tick's force of an
-// unknown is taken with the mean acceleration, velocity and position of the tick.
+// unknown factors. The derivative of a step of h, v' = v + h a, is exact too:
 //
-// Sensitivities go a block of d ticks at a time. With F = A - L C and forces
-// B E s[j], E the directions of the levers and s their signals,
+//   (M + h D) dv' = M dv - h K dq + h (dGamma u + df - dM a - dD v' - dK q)
 //
-//   S[k+d] = F^d S[k] + sum_j F^(d-1-j) B E s[k+j]
-//   d mean(yp) = (1/d) sum_j C F^j S[k] + (1/d) sum_j sum_(i>j) C F^(i-1-j) B E s[k+j]
+// so that a number of the machine is a force of the acceleration, the velocity at the end
+// and the position at the start of every step.
+//
+// Sensitivities go a block of d ticks of n steps at a time. With F = A - L C of a tick,
+// P_s the response at the end of a tick to a force in its step s, and forces f of a unit
+// of a number,
+//
+//   S[k+d] = F^d S[k] + sum_j sum_s F^(d-1-j) P_s f[k+j, s]
+//   d mean(yp) = (1/d) sum_j C F^j S[k]
+//              + (1/d) sum_j sum_s sum_(i>j) C F^(i-1-j) P_s f[k+j, s]
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -21,23 +27,11 @@
 
 #include "mjdiag/diagnosis/model/delta_form.h"
 #include "mjdiag/diagnosis/model/mechanical_model.h"
-#include "mjdiag/diagnosis/twin/lever.h"
-#include "mjdiag/diagnosis/twin/running_tones.h"
+#include "mjdiag/diagnosis/twin/model_part.h"
+#include "mjdiag/diagnosis/twin/moved_rest.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 
 namespace mjdiag {
-
-/// What a number of the machine adds to the model where it is what it should be; empty
-/// matrices: nothing.
-struct ModelPart {
-  Eigen::MatrixXd M;      ///< nq x nq
-  Eigen::MatrixXd D;      ///< nq x nq
-  Eigen::MatrixXd K;      ///< nq x nq
-  Eigen::MatrixXd Gamma;  ///< nq x nu
-  Eigen::VectorXd force;  ///< nq, beyond what holds the machine at its nominal rest
-  /// Its unknown factors.
-  std::vector<Eigen::Index> factors;
-};
 
 /// A linear machine and what is not known of it.
 struct UncertainModel {
@@ -66,14 +60,6 @@ class LinearTwin final : public Twin {
   LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
              Eigen::Index block);
 
-  Eigen::Index outputs() const override { return C_.rows(); }
-  Eigen::Index inputs() const override { return u_.size(); }
-  Eigen::Index states() const override { return x_.size(); }
-  Eigen::Index unknowns() const override { return theta_.size(); }
-  Eigen::Index start_unknowns() const override { return model_.start.cols(); }
-  Eigen::Index block() const override { return block_; }
-  const std::vector<TwinGain>& gains() const override { return gains_; }
-
   void UseGain(std::size_t gain) noexcept override;
   void Start(const Eigen::VectorXd& theta) noexcept override;
   void Start(const Eigen::VectorXd& theta,
@@ -88,42 +74,65 @@ class LinearTwin final : public Twin {
   void Shift(const Eigen::VectorXd& change) noexcept override;
 
  private:
+  /// Of a force on every coordinate in a tick j of a block: what it moves, F^(d-1-j) P,
+  /// and what of that the mean of the block sees.
+  struct Response {
+    std::vector<Eigen::MatrixXd> carried;  // 2 nq x nq
+    std::vector<Eigen::MatrixXd> seen;     // ny x nq
+  };
+  /// One entry of M, D or K of a number: a force on a coordinate, proportional to what
+  /// another one does.
+  enum class Motion { kAcceleration, kVelocity, kPosition };
+  struct Entry {
+    Eigen::Index number;
+    Eigen::Index on;
+    Motion motion;
+    Eigen::Index of;
+    double coefficient;
+  };
+
+  void AddEntries(Eigen::Index number, Motion motion, const Eigen::MatrixXd& part);
+  void Reset() noexcept;
   void MakeMaps() noexcept;
   void LiftSensitivities() noexcept;
-  double Signal(const Lever& lever) const noexcept;
+  /// Of one of these forces a tick.
+  void Lift(const Eigen::MatrixXd& pulse, Response& response) noexcept;
+  void Push(const Eigen::MatrixXd& forces, const Response& response) noexcept;
+  /// Of what a tick holds: commands, constants, tones.
+  void AddHeldForces() noexcept;
+  /// Of what moves, in the step from x_ to next_.
+  void AddMovingForces() noexcept;
 
   UncertainModel model_;
-  std::vector<TwinGain> gains_;
-  std::size_t gain_ = 0;
-  Eigen::Index block_;
-  Eigen::MatrixXd C_;     // ny x 2 nq
-  Eigen::MatrixXd mean_;  // C / d
-  LeverArms arms_;
-  Eigen::MatrixXd place_;    // of coordinates by readings, nq x ny
-  Eigen::Index first_tone_;  // of the unknowns
-  Eigen::Index active_ = 0;  // columns of S that are in use
-  Eigen::VectorXd theta_;
+  Eigen::MatrixXd C_;       // ny x 2 nq
+  Eigen::MatrixXd mean_;    // C / d
+  Eigen::MatrixXd place_;   // of coordinates by readings, nq x ny
   Eigen::VectorXd values_;  // of the numbers
+
+  MovedRest moved_rest_;
+  std::vector<Entry> entries_;
 
   // Maps at theta_.
   Eigen::MatrixXd M_, D_, K_, Gamma_, left_;
   Eigen::VectorXd f_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
-  Eigen::MatrixXd A_;                     // of a tick
-  Eigen::MatrixXd B_;                     // of the commands
-  Eigen::MatrixXd force_;                 // of forces on every coordinate
-  Eigen::VectorXd constant_;              // of f
-  Eigen::MatrixXd F_, power_, scratch_;   // A - L C, F^d
-  std::vector<Eigen::MatrixXd> carried_;  // F^(d-1-j) B E
-  Eigen::MatrixXd seen_;                  // (1/d) sum_j C F^j
-  std::vector<Eigen::MatrixXd> seen_of_;  // of the forces of tick j
+  Eigen::MatrixXd A_step_, B_step_;      // of a step; of the commands
+  Eigen::MatrixXd pulse_step_;           // of forces on every coordinate
+  Eigen::VectorXd constant_;             // of f, a step
+  Eigen::MatrixXd A_;                    // of a tick
+  Eigen::MatrixXd F_, power_, scratch_;  // A - L C, F^d
+  Eigen::MatrixXd seen_;                 // (1/d) sum_j C F^j
+  std::vector<Eigen::MatrixXd> pulses_;  // P_s
+  Eigen::MatrixXd pulse_;                // their sum
+  std::vector<Response> of_step_;        // of a force in that step of a tick
+  Response of_tick_;                     // of one that a tick holds
 
   // The run.
   Eigen::Index in_block_ = 0;
-  Eigen::VectorXd x_, next_, u_;
-  RunningTones tones_;
-  Eigen::MatrixXd S_, S_next_, S_drive_;
-  Eigen::MatrixXd seen_drive_, sensitivity_;
+  Eigen::VectorXd x_, next_, driven_;
+  Eigen::MatrixXd held_, moving_;       // forces of a unit of every number, and tone
+  Eigen::MatrixXd carried_, of_block_;  // of those of a block: at its end, in its mean
+  Eigen::MatrixXd S_, S_next_, sensitivity_;
 };
 
 }  // namespace mjdiag

@@ -16,23 +16,15 @@ using Eigen::VectorXd;
 /// A change by less than that, in standard deviations that an unknown has where all
 /// others are known, needs no other pass.
 constexpr double kMoved = 0.3;
+/// Nor does one of which the second order is less than that.
+constexpr double kCurved = 0.1;
 /// A logarithm moves no farther than this at once.
 constexpr double kLongestStep = 0.5;
-/// Blocks over which surprises are averaged.
-constexpr double kRecent = 32.0;
-/// A surprise this many standard deviations beyond what is expected is no chance.
-constexpr double kNoChance = 8.0;
-/// A reading within this many standard deviations of that at rest is one.
-constexpr double kAtRest = 6.0;
-/// Part of a first movement by which a faulty machine may differ.
-constexpr double kUnlike = 1.0;
 /// No prior becomes wider than this.
 constexpr double kWidest = 0.7;
 constexpr double kWidestStart = 1e3;
 /// Standard deviations.
 constexpr double kSure = 5.0;
-/// Ticks a tick while it looks for the start.
-constexpr int kPace = 3;
 constexpr Index kFirstLook = 256;
 /// Passes without a longer horizon before it is looked at more coarsely.
 constexpr int kPatience = 3;
@@ -57,8 +49,9 @@ constexpr double kRobust = 4.0;
 constexpr double kMostSurprising = 32.0;
 /// On average over recent blocks, that is none that came loose.
 constexpr double kSurprisingThroughout = 8.0;
-/// Ticks that such a twin looks at before it goes back.
+/// Ticks that such a twin looks at before it goes back, and at first.
 constexpr Index kPulledLook = 1024;
+constexpr Index kFirstGuess = 128;
 constexpr int kPulledPasses = 6;
 /// Blocks between two steps of the walk, and of theta0.
 constexpr Index kWalkEvery = 64;
@@ -66,51 +59,59 @@ constexpr Index kWalkEvery = 64;
 }  // namespace
 
 PredictionErrorEstimator::PredictionErrorEstimator(
-    std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, const MatrixXd& prior,
-    double sample_time, const PredictionErrorOptions& options)
+    std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, double sample_time,
+    const PredictionErrorOptions& options)
     : twin_(std::move(twin)),
       unknowns_(std::move(unknowns)),
       sample_time_(sample_time),
       options_(options),
+      kept_(twin_->outputs(), twin_->inputs(), options.kept),
       next_look_(kFirstLook),
-      information_(static_cast<Index>(unknowns_.size()), twin_->outputs()) {
+      look_(kFirstGuess),
+      run_start_(twin_->outputs(), twin_->block(), twin_->unknowns()),
+      information_(static_cast<Index>(unknowns_.size()), twin_->outputs()),
+      surprise_(twin_->outputs()),
+      said_{.information = information_, .theta = {}, .variance = {}, .prior = {}} {
   const auto p = static_cast<Index>(unknowns_.size());
   const Index ny = twin_->outputs();
   const auto block = static_cast<double>(twin_->block());
   nominal_ = walk_ = VectorXd::Zero(p);
-  prior_covariance_ = MatrixXd::Zero(p, p);
+  prior_covariance_ = PriorOf(unknowns_);
   for (Index i = 0; i < p; ++i) {
     const Unknown& unknown = unknowns_[static_cast<std::size_t>(i)];
-    nominal_[i] = unknown.factor ? std::log(unknown.nominal) : unknown.nominal;
-    prior_covariance_(i, i) = unknown.prior_sd * unknown.prior_sd;
+    nominal_[i] = unknown.nominal;
     if (!unknown.wears) continue;
     walk_[i] = options_.wear * options_.wear * sample_time_ * block *
                static_cast<double>(kWalkEvery);
   }
-  if (prior.size() > 0) prior_covariance_ = prior;
   for (const TwinGain& gain : twin_->gains()) {
     covariances_.emplace_back(gain.covariance / block);
   }
   covariance_ = covariances_.front();
   proven_.assign(covariances_.size(), nominal_);
   is_proven_.assign(covariances_.size(), false);
-  kept_ = MatrixXd::Zero(ny + twin_->inputs(), options_.kept);
   theta_ = center_ = nominal_;
   variance_ = prior_covariance_.diagonal();
   work_ = VectorXd::Zero(p);
   prior_ = inverse_ = MatrixXd::Identity(p, p);
   reading_ = innovation_ = sum_ = VectorXd::Zero(ny);
-  beginning_ = MatrixXd::Zero(ny, 3 * twin_->block());
-  segment_.state = segment_.settling_state = VectorXd::Zero(twin_->states());
-  checkpoints_.assign(kCheckpoints, {-1, segment_.state});
+  segment_.first.state = segment_.first.settling_state =
+      VectorXd::Zero(twin_->states());
+  segment_.now = segment_.first;
+  checkpoints_.assign(kCheckpoints, {-1, segment_.first.state});
   WidenPrior();
+  said_.theta = theta_;
+  said_.variance = variance_;
+  said_.prior = prior_;
+  work_.setZero();
+  said_.information.Start(p, prior_, work_);
 }
 
 void PredictionErrorEstimator::WidenPrior() noexcept {
   // What is surely far from nominal is not held there; all else is.
   const Index started = theta_.size() - twin_->start_unknowns();
   inverse_ = prior_covariance_;
-  for (Index i = 0; i < active(); ++i) {
+  for (Index i = 0; i < information_.active(); ++i) {
     const double away = std::abs(theta_[i] - nominal_[i]);
     if (!(away > kSure * std::sqrt(variance_[i]))) continue;
     const double width = std::min(away, i < started ? kWidest : kWidestStart);
@@ -127,7 +128,7 @@ void PredictionErrorEstimator::WidenPrior() noexcept {
 
 void PredictionErrorEstimator::Begin() noexcept {
   const VectorXd& change = information_.change();
-  if (active() > 0 && change.allFinite()) {
+  if (information_.active() > 0 && change.allFinite()) {
     const double farthest = Farthest(change);
     center_ += (farthest > kLongestStep ? kLongestStep / farthest : 1.0) * change;
   }
@@ -137,52 +138,73 @@ void PredictionErrorEstimator::Begin() noexcept {
   if (settles || settled_) center_.tail(started).setZero();
   settled_ = settles;
   theta_ = center_;
-  pull_ = settles && !segment_.at_rest ? covariances_.size() - 1 : gain_;
+  const Beginning& from = segment_.now;
+  pull_ = settles && !from.at_rest ? covariances_.size() - 1 : gain_;
   twin_->UseGain(pull_);
-  if (segment_.at_rest) {
+  if (from.at_rest) {
     twin_->Start(theta_);
-  } else if (settles) {
-    twin_->Start(theta_, segment_.settling_state);
   } else {
-    twin_->Start(theta_, segment_.state);
+    twin_->Start(theta_, settles ? from.settling_state : from.state);
   }
-  seen_ = settles ? segment_.settling_from : segment_.origin;
+  seen_ = settles ? from.settling_from : from.origin;
+  counts_from_ =
+      settles ? std::max(from.origin, from.settling_from + from.settling) : from.origin;
   phase_origin_ = seen_;
   softer_at_ = seen_ + twin_->gains()[pull_].settling;
   work_ = nominal_ - center_;
-  information_.Start(theta_.size() - (segment_.at_rest || settles ? started : 0),
-                     prior_, work_);
-  surprise_ = block_surprise_ = 1.0;
+  information_.Start(theta_.size() - (from.at_rest || settles ? started : 0), prior_,
+                     work_);
+  surprise_.Start();
   sum_.setZero();
   in_block_ = blocks_ = 0;
 }
 
+void PredictionErrorEstimator::StartOver(std::size_t gain,
+                                         const VectorXd& theta) noexcept {
+  gain_ = gain;
+  segment_.explained = segment_.surprised = 0;
+  segment_.stuck = segment_.same = 0;
+  pulled_passes_ = 0;
+  next_look_ = kept_.added() + kPulledLook;
+  look_ = kFirstGuess;
+  center_ = theta_ = theta;
+  information_.Recentre();
+  GoBack();
+}
+
 void PredictionErrorEstimator::GoBack() noexcept {
   ++returns_;
-  Variance();
+  variance_ = information_.Variance();
   WidenPrior();
   Begin();
 }
 
 void PredictionErrorEstimator::Add(std::span<const double> outputs,
                                    std::span<const double> inputs) noexcept {
-  auto slot = kept_.col(added_ % options_.kept);
-  std::copy(outputs.begin(), outputs.end(), slot.begin());
-  std::copy(inputs.begin(), inputs.end(),
-            slot.begin() + static_cast<Index>(outputs.size()));
-  ++added_;
-  if (active() == 0 && !FindStart()) return;
+  kept_.Add(outputs, inputs);
+  if (information_.active() == 0 && !FindStart()) return;
   ProcessKept();
-  if (seen_ < added_) ProcessKept();
+  if (seen_ < kept_.added()) ProcessKept();
+}
+
+void PredictionErrorEstimator::Say() noexcept {
+  const bool same = said_.began && said_.since == segment_.first.origin;
+  if (blocks_ == 0 || (same && (gain_ > said_.gain || seen_ < said_.until))) return;
+  said_.began = true;
+  said_.information = information_;
+  said_.theta = theta_;
+  said_.prior = prior_;
+  said_.surprise = surprise_.recent();
+  said_.phase_origin = phase_origin_;
+  said_.since = segment_.first.origin;
+  said_.until = seen_;
+  said_.gain = gain_;
 }
 
 bool PredictionErrorEstimator::StepTwin() noexcept {
-  const auto slot = kept_.col(seen_ % options_.kept);
   twin_->Predict(reading_);
-  innovation_ = slot.head(reading_.size()) - reading_;
-  twin_->Step({slot.data() + reading_.size(),
-               static_cast<std::size_t>(slot.size() - reading_.size())},
-              innovation_);
+  innovation_ = kept_.outputs(seen_) - reading_;
+  twin_->Step(kept_.inputs(seen_), innovation_);
   ++seen_;
   if (++in_block_ < twin_->block()) return false;
   in_block_ = 0;
@@ -190,88 +212,27 @@ bool PredictionErrorEstimator::StepTwin() noexcept {
 }
 
 bool PredictionErrorEstimator::FindStart() noexcept {
-  if (added_ < twin_->block()) return false;
-  if (added_ == twin_->block() && BeganAtRest()) {
-    Begin();
-    return true;
+  if (kept_.added() < twin_->block()) return false;
+  if (kept_.added() == twin_->block()) {
+    work_ = nominal_;
+    if (run_start_.BeganAtRest(*twin_, kept_, work_, twin_->first_tone(),
+                               prior_covariance_)) {
+      Begin();
+      return true;
+    }
   }
-  const Index settled = twin_->gains().back().settling;
-  const auto looked =
-      settled + static_cast<Index>(std::lround(options_.looking / sample_time_));
-  if (added_ < looked) return false;
-  segment_.origin = QuietestTick(settled, looked);
-  segment_.at_rest = false;
-  segment_.settling_from = 0;
-  reading_ = kept_.col(0).head(reading_.size());
-  twin_->StateAt(reading_, segment_.settling_state);
-  // Beside the machine by its stiffest gain, until it has forgotten how it began.
-  gain_ = covariances_.size() - 1;
-  next_look_ = segment_.origin + kPulledLook;
+  Beginning& first = segment_.first;
+  first.at_rest = false;
+  first.settling = twin_->gains().back().settling;
+  reading_ = kept_.outputs(0);
+  twin_->StateAt(reading_, first.settling_state);
+  first.state = first.settling_state;
+  segment_.now = first;
+  if (Finest() > 0) {
+    gain_ = covariances_.size() - 1;
+  }
   Begin();
   return true;
-}
-
-bool PredictionErrorEstimator::BeganAtRest() noexcept {
-  // How far the known commands move it from there, and tones as large as they come.
-  sum_.setZero();
-  bool at_rest = true;
-  const Index ticks = added_;
-  const Index first_tone = FirstTone();
-  const Index tones = (theta_.size() - twin_->start_unknowns() - first_tone) / 2;
-  twin_->UseGain(0);
-  innovation_.setZero();
-  // Predictions of three runs side by side: without tones, sines, cosines.
-  for (int run = 0; run < 3; ++run) {
-    work_ = nominal_;
-    for (Index i = 0; run > 0 && i < tones; ++i)
-      work_[first_tone + 2 * i + run - 1] = 1.0;
-    twin_->Start(work_);
-    for (Index k = 0; k < ticks; ++k) {
-      const auto slot = kept_.col(k);
-      twin_->Predict(reading_);
-      beginning_.col(run * ticks + k) = reading_;
-      twin_->Step({slot.data() + reading_.size(),
-                   static_cast<std::size_t>(slot.size() - reading_.size())},
-                  innovation_);
-    }
-  }
-  for (Index k = 0; k < ticks; ++k) {
-    for (Index i = 0; i < reading_.size(); ++i) {
-      const double predicted = beginning_(i, k);
-      const double sd = std::sqrt(twin_->gains().front().covariance(i, i));
-      const double moved = std::abs(predicted - beginning_(i, 0)) +
-                           std::abs(beginning_(i, ticks + k) - predicted) +
-                           std::abs(beginning_(i, 2 * ticks + k) - predicted);
-      if (std::abs(kept_(i, k) - predicted) > kAtRest * sd + kUnlike * moved) {
-        at_rest = false;
-      }
-    }
-  }
-  return at_rest;
-}
-
-Index PredictionErrorEstimator::FirstTone() const noexcept {
-  Index end = theta_.size() - twin_->start_unknowns();
-  while (end > 0 && !unknowns_[static_cast<std::size_t>(end - 1)].factor) --end;
-  return end;
-}
-
-Index PredictionErrorEstimator::QuietestTick(Index from, Index to) const noexcept {
-  const Index block = twin_->block();
-  Index quietest = from - from % block;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index k = quietest; k < to; k += block) {
-    double moved = 0.0;
-    for (Index i = 0; i < reading_.size(); ++i) {
-      const double way = kept_(i, k) - kept_(i, k - block);
-      moved += way * way / covariances_.front()(i, i);
-    }
-    if (moved < least) {
-      least = moved;
-      quietest = k;
-    }
-  }
-  return quietest;
 }
 
 void PredictionErrorEstimator::ProcessKept() noexcept {
@@ -279,6 +240,7 @@ void PredictionErrorEstimator::ProcessKept() noexcept {
   sum_ += innovation_;
   if (!ended) return;
   Regress();
+  if (exhausted_ || !Surprised()) Say();
   if (following()) {
     Follow();
   } else if (!exhausted_) {
@@ -297,19 +259,25 @@ void PredictionErrorEstimator::Regress() noexcept {
     twin_->UseGain(--pull_);
     softer_at_ = seen_ + twin_->gains()[pull_].settling;
   }
-  if (seen_ <= segment_.origin) {  // it settles
+  if (seen_ <= counts_from_) {  // it settles
     sum_.setZero();
-    if (seen_ == segment_.origin) twin_->ReadState(segment_.state);
+    if (seen_ == segment_.now.origin) {
+      twin_->ReadState(segment_.now.state);
+      if (segment_.now.origin == segment_.first.origin) {
+        segment_.first.state = segment_.now.state;
+      }
+    }
     return;
   }
+  learned_ = !WorthGoingBack();
   covariance_ = covariances_[pull_];
   sum_ /= static_cast<double>(twin_->block());
-  block_surprise_ = information_.Surprise(psi, sum_, covariance_);
+  double surprise = information_.Surprise(psi, sum_, covariance_);
   if (gain_ > 0) {
-    covariance_ *= std::max(1.0, block_surprise_ / kRobust);
-    block_surprise_ = std::min(block_surprise_, kMostSurprising);
+    covariance_ *= std::max(1.0, surprise / kRobust);
+    surprise = std::min(surprise, kMostSurprising);
   }
-  surprise_ += (block_surprise_ - surprise_) / kRecent;
+  surprise_.Add(surprise);
   information_.Add(psi, sum_, covariance_);
   theta_ = center_ + information_.change();
   sum_.setZero();
@@ -317,27 +285,85 @@ void PredictionErrorEstimator::Regress() noexcept {
 }
 
 bool PredictionErrorEstimator::Surprised() const noexcept {
-  if (gain_ > 0) return !(surprise_ < kSurprisingThroughout);
-  const double by_chance = std::sqrt(2.0 / static_cast<double>(twin_->outputs()));
-  return !(block_surprise_ < 1.0 + 3.0 * kNoChance * by_chance) ||
-         !(surprise_ < 1.0 + kNoChance * by_chance / std::sqrt(kRecent / 2.0));
+  return gain_ > 0 ? !(surprise_.recent() < kSurprisingThroughout)
+                   : surprise_.NoChance();
 }
 
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (!Pulled() && Surprised()) return Unexplained();
-  if (seen_ < added_ || seen_ < next_look_) return;
-  next_look_ = Pulled() ? added_ + kPulledLook : added_ + added_ / 2;
-  if (Pulled() && WorthGoingBack() && ++pulled_passes_ <= kPulledPasses) {
-    GoBack();
-  } else if (!LookMoreFinely() && WorthGoingBack()) {
+  if (Pulled() && gain_ + 1 == covariances_.size()) return Guess();
+  if (seen_ < kept_.added() || seen_ < next_look_) return;
+  // It catches up in as long as it goes back.
+  next_look_ = kept_.added() +
+               (Pulled() ? kPulledLook : 2 * (kept_.added() - segment_.now.origin));
+  if (Pulled()) {
+    if (!WorthGoingBack() || ++pulled_passes_ > kPulledPasses) {
+      LookMoreFinely();
+    } else {
+      GoBack();
+    }
+  } else if (!WidenHorizon() && WorthGoingBack()) {
     GoBack();
   }
 }
 
+void PredictionErrorEstimator::Guess() noexcept {
+  if (seen_ - counts_from_ < look_) return;
+  const bool worth = WorthGoingBack() && pulled_passes_ < kPulledPasses;
+  if (look_ >= kPulledLook && !worth) {
+    LookMoreFinely();
+    return;
+  }
+  if (look_ < kPulledLook) {
+    look_ *= 2;
+  } else {
+    ++pulled_passes_;
+    MoveOrigin();
+  }
+  if (worth) GoBack();
+}
+
+const PredictionErrorEstimator::Checkpoint* PredictionErrorEstimator::LastCheckpoint(
+    Index until) const noexcept {
+  const Checkpoint* last = nullptr;
+  for (const Checkpoint& checkpoint : checkpoints_) {
+    if (checkpoint.tick < segment_.now.origin || checkpoint.tick > until ||
+        checkpoint.tick <= kept_.first()) {
+      continue;
+    }
+    if (last == nullptr || checkpoint.tick > last->tick) last = &checkpoint;
+  }
+  return last;
+}
+
+void PredictionErrorEstimator::MoveOrigin() noexcept {
+  if (seen_ < kept_.added()) return;
+  const Checkpoint* from = LastCheckpoint(seen_ - kPulledLook - kUnnoticed);
+  if (from == nullptr) return;
+  Beginning& now = segment_.now;
+  now.at_rest = false;
+  now.settling_from = from->tick;
+  now.settling = kUnnoticed;
+  now.settling_state = from->state;
+  now.origin = from->tick + kUnnoticed;
+}
+
+bool PredictionErrorEstimator::WidenHorizon() noexcept {
+  const Beginning& first = segment_.first;
+  if (segment_.now.origin == first.origin ||
+      std::min(first.origin, first.settling_from) < kept_.first()) {
+    return false;
+  }
+  segment_.now = first;
+  next_look_ = kept_.added() + 2 * (kept_.added() - first.origin);
+  GoBack();
+  return true;
+}
+
 void PredictionErrorEstimator::Unexplained() noexcept {
   // Beside a machine that it had nothing to learn of any more.
-  if (seen_ == added_ && !WorthGoingBack() && TryChange()) return;
-  const Index horizon = seen_ - segment_.origin;
+  if (learned_ && TryChange()) return;
+  const Index horizon = seen_ - segment_.now.origin;
   const bool same = std::abs(horizon - segment_.surprised) <= kSame;
   segment_.same = same ? segment_.same + 1 : 0;
   segment_.surprised = horizon;
@@ -354,63 +380,46 @@ void PredictionErrorEstimator::Unexplained() noexcept {
 }
 
 void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
-  segment_.explained = segment_.surprised = 0;
-  segment_.stuck = segment_.same = 0;
   const std::size_t stiffest = covariances_.size() - 1;
-  exhausted_ = gain_ == stiffest || returns_ >= kMostReturns;
+  exhausted_ = gain_ == stiffest || returns_ >= kMostReturns ||
+               (gain_ + 1 == stiffest && is_proven_[stiffest]);
   if (exhausted_) return;
-  gain_ = is_proven_[gain_ + 1] ? gain_ + 1 : stiffest;
-  pulled_passes_ = 0;
-  next_look_ = is_proven_[gain_] ? added_ + added_ / 2 : added_ + kPulledLook;
-  center_ = is_proven_[gain_] ? proven_[gain_] : nominal_;
-  theta_ = center_;
-  information_.Recentre();
-  GoBack();
+  said_.gain = stiffest;  // what was said of it is not true
+  if (is_proven_[stiffest]) return StartOver(gain_ + 1, proven_[stiffest]);
+  // States of a twin that does not explain the machine are of no use.
+  for (Checkpoint& checkpoint : checkpoints_) checkpoint.tick = -1;
+  StartOver(stiffest, nominal_);
 }
 
 bool PredictionErrorEstimator::LookMoreFinely() noexcept {
   if (gain_ == Finest()) return false;
-  segment_.explained = segment_.surprised = 0;
-  segment_.stuck = segment_.same = 0;
-  pulled_passes_ = 0;
   proven_[gain_] = theta_;
   is_proven_[gain_] = true;
-  --gain_;
-  GoBack();
+  const std::size_t stiffest = covariances_.size() - 1;
+  StartOver(gain_ == stiffest ? Finest() : gain_ - 1, theta_);
   return true;
 }
 
 bool PredictionErrorEstimator::TryChange() noexcept {
-  if (Pulled() || seen_ - segment_.origin < kLongExplained) return false;
-  const Checkpoint* from = nullptr;
-  for (const Checkpoint& checkpoint : checkpoints_) {
-    if (checkpoint.tick < segment_.origin || checkpoint.tick > seen_ - kUnnoticed ||
-        checkpoint.tick <= added_ - options_.kept) {
-      continue;
-    }
-    if (from == nullptr || checkpoint.tick > from->tick) from = &checkpoint;
-  }
+  if (Pulled() || seen_ - counts_from_ < kLongExplained) return false;
+  const Checkpoint* from = LastCheckpoint(seen_ - kUnnoticed);
   if (from == nullptr) return false;
-  segment_.at_rest = false;
-  segment_.settling_from = from->tick;
-  segment_.settling_state = from->state;
-  segment_.state = from->state;
-  segment_.origin = seen_ - kNoticed * twin_->block();
-  segment_.explained = segment_.surprised = 0;
-  segment_.stuck = segment_.same = 0;
-  returns_ = pulled_passes_ = 0;
+  Beginning& first = segment_.first;
+  first.at_rest = false;
+  first.settling_from = from->tick;
+  first.settling = kUnnoticed;
+  first.settling_state = first.state = from->state;
+  first.origin = seen_ - kNoticed * twin_->block();
+  segment_.now = first;
+  returns_ = 0;
   std::fill(is_proven_.begin(), is_proven_.end(), false);
-  gain_ = covariances_.size() - 1;
-  next_look_ = segment_.origin + kPulledLook;
-  center_ = theta_;
-  information_.Recentre();
-  WidenPrior();
-  Begin();
+  variance_ = information_.Variance();
+  StartOver(covariances_.size() - 1, theta_);
   return true;
 }
 
 std::size_t PredictionErrorEstimator::Finest() const noexcept {
-  const bool known = segment_.at_rest || twin_->start_unknowns() > 0;
+  const bool known = segment_.now.at_rest || twin_->start_unknowns() > 0;
   return known ? 0 : std::min<std::size_t>(1, covariances_.size() - 1);
 }
 
@@ -434,19 +443,18 @@ void PredictionErrorEstimator::Follow() noexcept {
 }
 
 void PredictionErrorEstimator::PassesToTheEnd() noexcept {
-  while (seen_ < added_) ProcessKept();
+  while (seen_ < kept_.added()) ProcessKept();
   std::size_t failed = covariances_.size();  // gain
   for (int i = 0; i < kMostReturns && !following() && !exhausted_; ++i) {
-    const bool worth = WorthGoingBack() && ++pulled_passes_ <= kLastPasses;
-    if (worth) {
+    if (WorthGoingBack() && ++pulled_passes_ <= kLastPasses) {
       GoBack();
-    } else if (gain_ == Finest() || gain_ == failed + 1) {
-      break;
-    } else {
+    } else if (gain_ != Finest() && gain_ != failed + 1) {
       LookMoreFinely();
+    } else if (!WidenHorizon()) {
+      break;
     }
     const std::size_t tried = gain_;
-    while (seen_ < added_) ProcessKept();
+    while (seen_ < kept_.added()) ProcessKept();
     if (gain_ > tried) {
       failed = tried;
       pulled_passes_ = 0;
@@ -455,20 +463,14 @@ void PredictionErrorEstimator::PassesToTheEnd() noexcept {
 }
 
 void PredictionErrorEstimator::CatchUp() noexcept {
-  if (active() == 0) {
-    while (added_ > 0 && !FindStart()) {
-      if (segment_.at_rest) return;  // too short to find a start in it
-    }
-  }
-  PassesToTheEnd();
+  if (information_.active() > 0) PassesToTheEnd();
 }
 
 double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {
   double farthest = 0.0;
   for (Index i = 0; i < change.size(); ++i) {
-    if (unknowns_[static_cast<std::size_t>(i)].factor) {
-      farthest = std::max(farthest, std::abs(change[i]));
-    }
+    const double reach = unknowns_[static_cast<std::size_t>(i)].reach;
+    farthest = std::max(farthest, reach * std::abs(change[i]));
   }
   return farthest;
 }
@@ -481,7 +483,8 @@ bool PredictionErrorEstimator::WorthGoingBack() const noexcept {
   for (Index i = 0; i < machine; ++i) {
     moved = std::max(moved, change[i] * change[i] * information_.H()(i, i));
   }
-  return moved > kMoved * kMoved;
+  moved = std::sqrt(moved);
+  return moved > kMoved && moved * twin_->curvature() * Farthest(change) > kCurved;
 }
 
 }  // namespace mjdiag

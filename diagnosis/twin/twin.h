@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "mjdiag/diagnosis/twin/running_tones.h"
 #include "mjdiag/diagnosis/twin/unknown.h"
 
 namespace mjdiag {
@@ -30,21 +31,39 @@ struct TwinGain {
   Eigen::Index settling = 0;   ///< ticks until it has forgotten how the twin began
 };
 
+/// How large a twin is.
+struct TwinShape {
+  Eigen::Index outputs = 0;  ///< ny
+  Eigen::Index inputs = 0;   ///< nu
+  Eigen::Index states = 0;   ///< nx
+  /// p: factors of the machine, two of every tone, then those of the start.
+  Eigen::Index unknowns = 0;
+  /// Of the state at the start of the run, in standard deviations of it.
+  Eigen::Index start_unknowns = 0;
+  Eigen::Index block = 1;  ///< ticks
+  /// How many times faster than a factor what it does to the readings may change: a
+  /// resonance gets out of step in as many of its periods as its stiffness changes by
+  /// parts, a joint that sticks comes loose at another tick at once.
+  double curvature = 1.0;
+};
+
 class Twin {
  public:
   virtual ~Twin() = default;
 
-  virtual Eigen::Index outputs() const = 0;  ///< ny
-  virtual Eigen::Index inputs() const = 0;   ///< nu
-  virtual Eigen::Index states() const = 0;   ///< nx
-  /// p: of the machine, then of the state at the start of the run.
-  virtual Eigen::Index unknowns() const = 0;
-  /// How many of them are of that state, in standard deviations of it.
-  virtual Eigen::Index start_unknowns() const = 0;
-  /// Ticks of a block.
-  virtual Eigen::Index block() const = 0;
+  Eigen::Index outputs() const { return shape_.outputs; }
+  Eigen::Index states() const { return shape_.states; }
+  Eigen::Index inputs() const { return shape_.inputs; }
+  Eigen::Index unknowns() const { return shape_.unknowns; }
+  Eigen::Index start_unknowns() const { return shape_.start_unknowns; }
+  Eigen::Index block() const { return shape_.block; }
+  double curvature() const { return shape_.curvature; }
+  /// The first of those of tones.
+  Eigen::Index first_tone() const {
+    return unknowns() - start_unknowns() - 2 * tones_.count();
+  }
   /// From that of the force noise that is assumed to ever stiffer ones; at least one.
-  virtual const std::vector<TwinGain>& gains() const = 0;
+  const std::vector<TwinGain>& gains() const { return gains_; }
 
   // Nothing below allocates, locks, throws or does I/O.
 
@@ -74,6 +93,31 @@ class Twin {
   virtual const Eigen::MatrixXd& EndBlock() noexcept = 0;
   /// theta + change, and the state that goes with it to first order. Between blocks.
   virtual void Shift(const Eigen::VectorXd& change) noexcept = 0;
+
+ protected:
+  /// @param tones  of which theta holds the parts, behind the factors
+  Twin(const TwinShape& shape, std::vector<TwinGain> gains,
+       std::vector<UnknownTone> tones, double sample_time);
+
+  const TwinGain& gain() const { return gains_[gain_]; }
+  /// Unknowns of theta that act: all, or all but those of the start.
+  Eigen::Index acting() const { return acting_; }
+  /// Logarithm of a product of factors.
+  double Logarithm(const std::vector<Eigen::Index>& factors) const noexcept;
+  /// theta at the first tick of a run.
+  void Begin(const Eigen::VectorXd& theta, bool at_rest) noexcept;
+  /// u_: those commands, and the tones.
+  void Command(std::span<const double> inputs) noexcept;
+
+  std::size_t gain_ = 0;
+  Eigen::VectorXd theta_;  // p
+  RunningTones tones_;
+  Eigen::VectorXd u_;
+
+ private:
+  TwinShape shape_;
+  std::vector<TwinGain> gains_;
+  Eigen::Index acting_ = 0;
 };
 
 }  // namespace mjdiag

@@ -47,7 +47,7 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
 TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
     : faults_(std::move(machine.faults)),
       sample_time_(machine.sample_time),
-      estimator_(std::move(machine.twin), std::move(machine.unknowns), machine.prior,
+      estimator_(std::move(machine.twin), std::move(machine.unknowns),
                  machine.sample_time, options) {}
 
 void TwinEstimator::Read(Eigen::Ref<VectorXd> deviation) noexcept {
@@ -83,18 +83,14 @@ TwinReading TwinEstimator::Read() const {
   TwinReading reading;
   reading.deviation = reading.sd = VectorXd::Zero(nf);
   reading.named.assign(faults_.size(), false);
+  if (!estimator_.began()) return reading;
   const Index active = estimator_.active();
-  if (active == 0) return reading;  // it has not begun
   const VectorXd& theta = estimator_.theta();
   const MatrixXd information = estimator_.H().topLeftCorner(active, active);
-  const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   reading.misfit = estimator_.surprise();
   // A twin that does not explain what it sees is less sure than it says.
   const double honest = reading.misfit > kExplained ? reading.misfit : 1.0;
-  const MatrixXd covariance =
-      honest * scale.asDiagonal() *
-      Inverse(scale.asDiagonal() * information * scale.asDiagonal()) *
-      scale.asDiagonal();
+  const MatrixXd covariance = honest * CovarianceOf(information);
   const VectorXd variance = covariance.diagonal();
   std::vector<std::vector<Index>> groups;
   for (std::size_t i = 0; i < faults_.size(); ++i) {

@@ -34,13 +34,12 @@ struct MachineTwin {
   std::unique_ptr<Twin> twin;
   std::vector<Unknown> unknowns;
   std::vector<TwinFault> faults;
-  Eigen::MatrixXd prior;     ///< see PredictionErrorEstimator
   double sample_time = 0.0;  ///< [s]
 };
 
 /// A misfit beyond this is no chance and no small error of the model: the run is not
 /// explained by any faults, and none is named.
-inline constexpr double kLargestMisfit = 10.0;
+inline constexpr double kLargestMisfit = 3.0;
 
 /// What a twin says of the faults of its machine.
 struct TwinReading {

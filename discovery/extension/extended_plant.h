@@ -37,7 +37,8 @@ std::string ExtendMjcf(const std::filesystem::path& mjcf, const mjModel& plant,
 /// The setup file for that plant, with plant = "plant.xml" and " (extended)" behind the
 /// name. `analytic` and `published` describe the old plant and are left out, and static
 /// friction is that of plant.xml.
-/// @param setup  what ReadSetup makes of the file
+/// @param setup_file  the nominal one, or its folder
+/// @param setup       what ReadSetup makes of it
 /// InputError if the text would replace the nominal setup.
 std::string ExtendSetup(const std::filesystem::path& setup_file, const Setup& setup,
                         const std::vector<PlacedEffect>& effects,

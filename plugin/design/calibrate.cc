@@ -1,13 +1,15 @@
 #include "mjdiag/plugin/design/calibrate.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <memory>
 
-#include "mjdiag/diagnosis/twin/prediction_error.h"
+#include "mjdiag/diagnosis/twin/information.h"
+#include "mjdiag/diagnosis/twin/run_pass.h"
 #include "mjdiag/plugin/design/machine_twin.h"
-#include "mjdiag/signals/decompositions.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -17,11 +19,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Force noises that are tried, in parts of the control rate (machine_twin.cc).
-constexpr std::array<double, 6> kForceNoise = {0.0,     1.25e-4, 4e-4,
-                                               1.25e-3, 4e-3,    1.25e-2};
-/// By chance the misfit, a mean of about a hundred squares, is not above it.
-constexpr double kExplainedBy = 1.7;
+/// Of the largest information of a direction, what rounding leaves of another.
+constexpr double kRounding = 1e-15;
+/// A step of logarithms that is large compared with rounding.
+constexpr double kLeastStep = 1e-4;
+/// Of a noise that is given: less is none.
+constexpr double kLeastNoise = 1e-3;
 /// A number is not that far from where it was known to be, in standard deviations.
 constexpr double kDoubtful = 4.0;
 
@@ -82,167 +85,140 @@ VectorXd FirstNoise(const Machine& machine, const std::vector<Samples>& runs) {
   return noise;
 }
 
-/// Of the innovations of a twin that follows the run.
-VectorXd InnovationNoise(Twin& twin, const VectorXd& theta, const Samples& run) {
-  const Index ticks = run.outputs.cols();
-  MatrixXd innovations(run.outputs.rows(), ticks);
-  VectorXd reading(run.outputs.rows());
-  VectorXd state(twin.states());
-  twin.StateAt(run.outputs.col(0), state);
-  twin.UseGain(0);
-  twin.Start(theta, state);
-  for (Index k = 0; k < ticks; ++k) {
-    twin.Predict(reading);
-    innovations.col(k) = run.outputs.col(k) - reading;
-    twin.Step({run.inputs.col(k).data(), static_cast<std::size_t>(run.inputs.rows())},
-              innovations.col(k));
-    if ((k + 1) % twin.block() == 0) twin.EndBlock();
+/// The plant with these logarithms of factors in it.
+Machine WithNumbers(const Machine& machine, UncertaintyOptions options, bool linear,
+                    const VectorXd& theta) {
+  options.friction = !linear;
+  const UncertainMachine uncertain = MakeUncertainMachine(machine, options);
+  std::vector<std::pair<PlantNumber, double>> factors;
+  for (Index i = 0; i < theta.size(); ++i) {
+    factors.emplace_back(
+        FindPlantNumber(machine.plant(),
+                        uncertain.unknowns[static_cast<std::size_t>(i)].name),
+        std::exp(theta[i]));
   }
-  VectorXd noise(innovations.rows());
-  for (Index i = 0; i < noise.size(); ++i) {
-    noise[i] = NoiseOf(innovations.row(i), 1, 2.0);
-  }
-  return noise;
+  return machine.WithNumbers(factors);
 }
 
-/// What a whole run says of the numbers about theta, wherever it began: H and g, with
-/// the state at the start, on which a linear twin depends linearly, eliminated.
-void AddRun(Twin& twin, const VectorXd& theta, const Samples& run, MatrixXd& H,
-            VectorXd& g) {
-  const Index n = theta.size();
-  const Index p = twin.unknowns();
-  const Index started = twin.start_unknowns();
-  VectorXd all = VectorXd::Zero(p);
-  all.head(n) = theta;
-  const MatrixXd weight =
-      Inverse(twin.gains().front().covariance) * static_cast<double>(twin.block());
-  MatrixXd of_all = MatrixXd::Zero(p, p);
-  of_all.bottomRightCorner(started, started).setIdentity();
-  VectorXd gradient = VectorXd::Zero(p);
-  VectorXd reading(run.outputs.rows());
-  VectorXd sum = VectorXd::Zero(run.outputs.rows());
-  VectorXd state(twin.states());
-  twin.StateAt(run.outputs.col(0), state);
-  twin.UseGain(0);
-  twin.Start(all, state);
-  for (Index k = 0; k < run.outputs.cols(); ++k) {
-    twin.Predict(reading);
-    const VectorXd innovation = run.outputs.col(k) - reading;
-    sum += innovation;
-    twin.Step({run.inputs.col(k).data(), static_cast<std::size_t>(run.inputs.rows())},
-              innovation);
-    if ((k + 1) % twin.block() != 0) continue;
-    const MatrixXd& psi = twin.EndBlock();
-    sum /= static_cast<double>(twin.block());
-    of_all += psi.transpose() * weight * psi;
-    gradient += psi.transpose() * weight * sum;
-    sum.setZero();
+/// One calibration in the making: all runs about one and the same theta. One after the
+/// other, each about a point of its own, they would contradict each other along
+/// directions that are hardly known.
+class Learner {
+ public:
+  /// @param before  theta that the machine gets to begin with
+  Learner(const Machine& machine, const VectorXd& noise,
+          const std::vector<Samples>& runs, bool linear, const VectorXd& before)
+      : before_(before), own_(VectorXd::Zero(before.size())) {
+    const UncertaintyOptions options{.faults = false, .doubt = true};
+    const Machine with =
+        WithNumbers(machine, options, linear, before).WithSensorNoise(noise);
+    for (const Samples& run : runs) {
+      MachineTwin twin = MakeTwin(with, linear, options);
+      const Index n = before.size();
+      unknowns_.assign(twin.unknowns.begin(), twin.unknowns.begin() + n);
+      known_ = CovarianceOf(PriorOf(unknowns_));
+      gains_ = twin.twin->gains();
+      passes_.push_back(std::make_shared<RunPass>(std::move(twin.twin), run.outputs,
+                                                  run.inputs, PriorOf(twin.unknowns)));
+    }
+    H_ = known_;
   }
-  const MatrixXd by_start = Solve(of_all.bottomRightCorner(started, started),
-                                  of_all.bottomLeftCorner(started, n))
-                                .transpose();
-  H += of_all.topLeftCorner(n, n) - by_start * of_all.bottomLeftCorner(started, n);
-  g += gradient.head(n) - by_start * gradient.tail(started);
-}
 
-struct Learned {
-  std::vector<Unknown> unknowns;
-  VectorXd theta;       ///< of the numbers
-  MatrixXd covariance;  ///< of them
-  std::vector<double> misfits;
-  VectorXd noise;
+  VectorXd theta() const { return before_ + own_; }
+  /// A root of their covariance.
+  MatrixXd Root() const {
+    // By the modes of H in units of its diagonal: those that hardly anything is known of
+    // are as well found as the others.
+    const VectorXd scale = H_.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(
+        MatrixXd(scale.asDiagonal() * H_ * scale.asDiagonal()));
+    const VectorXd information =
+        modes.eigenvalues().cwiseMax(kRounding * modes.eigenvalues().maxCoeff());
+    return scale.asDiagonal() * modes.eigenvectors() *
+           information.cwiseSqrt().cwiseInverse().asDiagonal();
+  }
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  const std::vector<RunInformation>& said() const { return said_; }
+  std::size_t stiffest() const { return gains_.size() - 1; }
+  std::size_t finest() const {
+    std::size_t finest = 0;
+    for (const auto& pass : passes_) finest = std::max(finest, pass->Finest());
+    return finest;
+  }
+
+  /// The method of Gauss and Newton with that gain, from where it is.
+  /// @param rough  it is followed by another one
+  void Learn(std::size_t gain, bool rough) {
+    constexpr int kMostPasses = 12;
+    // Squared, in standard deviations of the estimate.
+    const double near = rough ? 100.0 : 0.1;
+    double before = std::numeric_limits<double>::infinity();
+    // A logarithm moves no farther at once.
+    constexpr double kLongest = 0.5;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      said_.resize(passes_.size());
+      ParallelFor(static_cast<int>(passes_.size()), [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        said_[at] = passes_[at]->About(own_, gain);
+      });
+      MatrixXd H = known_;
+      VectorXd g = -known_ * theta();
+      // Errors that are left count as noise: far from the solution, what is hardly known
+      // must not be bent to explain them.
+      for (const RunInformation& said : said_) {
+        H += said.H / std::max(1.0, said.misfit);
+        g += said.g / std::max(1.0, said.misfit);
+      }
+      H_ = H;
+      VectorXd change = CovarianceOf(H) * g;
+      diverged_ = !change.allFinite();
+      if (diverged_) return;
+      const double squared = change.dot(g);
+      const double farthest = change.cwiseAbs().maxCoeff();
+      if (farthest > kLongest) change *= kLongest / farthest;
+      // Nor does it help to go on where only rounding is left.
+      if (squared < near || (farthest < kLeastStep && squared > 0.5 * before)) break;
+      before = squared;
+      own_ += change;
+    }
+  }
+
+  /// Whether no block of any run is more of a surprise than chance lets expect.
+  bool Explains() const { return Excess() <= 1.0; }
+  /// How many times more.
+  double Excess() const {
+    if (diverged_) return std::numeric_limits<double>::infinity();
+    const Surprise limits(gains_.front().covariance.rows());
+    double excess = 0.0;
+    for (const RunInformation& said : said_) {
+      excess = std::max({excess, said.worst_block / limits.BlockLimit(),
+                         said.worst_stretch / limits.RecentLimit()});
+    }
+    return excess;
+  }
+
+  /// Of the readings, by what changes from one innovation to the next.
+  VectorXd Noise() const {
+    VectorXd noise = VectorXd::Zero(gains_.front().covariance.rows());
+    for (const RunInformation& said : said_) {
+      for (Index i = 0; i < noise.size(); ++i) {
+        noise[i] += NoiseOf(said.innovations.row(i), 1, 2.0) /
+                    static_cast<double>(said_.size());
+      }
+    }
+    return noise;
+  }
+
+ private:
+  std::vector<std::shared_ptr<RunPass>> passes_;  // their starts go with them
+  std::vector<Unknown> unknowns_;
+  std::vector<TwinGain> gains_;
+  MatrixXd known_;
+  VectorXd before_, own_;
+  MatrixXd H_;
+  std::vector<RunInformation> said_;
+  bool diverged_ = false;
 };
-
-Learned Learn(const Machine& machine, const std::vector<Samples>& runs,
-              const CalibrateOptions& options, double& done, double share) {
-  Learned learned;
-  learned.noise = VectorXd::Zero(runs.front().outputs.rows());
-  for (const Samples& run : runs) {
-    MachineTwin twin =
-        MakeTwin(machine, options.linear, {.faults = false, .doubt = true});
-    const Index n =
-        static_cast<Index>(twin.unknowns.size()) - twin.twin->start_unknowns();
-    if (learned.theta.size() == 0) {
-      learned.theta = VectorXd::Zero(n);
-      learned.covariance = twin.prior.topLeftCorner(n, n);
-      learned.unknowns.assign(twin.unknowns.begin(), twin.unknowns.begin() + n);
-    }
-    for (Index i = 0; i < n; ++i) {
-      twin.unknowns[static_cast<std::size_t>(i)].nominal = std::exp(learned.theta[i]);
-      twin.unknowns[static_cast<std::size_t>(i)].wears = false;
-    }
-    twin.prior.topLeftCorner(n, n) = learned.covariance;
-    Twin& inner = *twin.twin;
-    PredictionErrorOptions estimation;
-    estimation.kept = std::max(estimation.kept, run.outputs.cols());
-    PredictionErrorEstimator estimator(std::move(twin.twin), twin.unknowns, twin.prior,
-                                       twin.sample_time, estimation);
-    for (Index k = 0; k < run.outputs.cols(); ++k) {
-      estimator.Add(
-          {run.outputs.col(k).data(), static_cast<std::size_t>(run.outputs.rows())},
-          {run.inputs.col(k).data(), static_cast<std::size_t>(run.inputs.rows())});
-    }
-    estimator.CatchUp();
-    const Index active = estimator.active();
-    if (active > 0) {
-      const MatrixXd H = estimator.H().topLeftCorner(active, active);
-      const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-      const MatrixXd covariance = scale.asDiagonal() *
-                                  Inverse(scale.asDiagonal() * H * scale.asDiagonal()) *
-                                  scale.asDiagonal();
-      learned.covariance = covariance.topLeftCorner(n, n);
-      learned.theta = estimator.theta().head(n);
-    }
-    learned.misfits.push_back(estimator.surprise());
-    VectorXd theta = estimator.theta();
-    theta.tail(inner.start_unknowns()).setZero();
-    learned.noise +=
-        InnovationNoise(inner, theta, run) / static_cast<double>(runs.size());
-    done += share / static_cast<double>(runs.size());
-    if (options.progress) options.progress(done);
-  }
-  return learned;
-}
-
-/// All runs about one and the same theta: one after the other, each about a point of its
-/// own, they would contradict each other along directions that are hardly known. The
-/// machine is linearised anew about where it rests with these numbers.
-void Refine(const Machine& machine, const std::vector<Samples>& runs,
-            Learned& learned) {
-  constexpr int kPasses = 4;
-  const Index n = learned.theta.size();
-  MatrixXd known = MatrixXd::Zero(n, n);
-  for (Index i = 0; i < n; ++i) {
-    known(i, i) = std::pow(learned.unknowns[static_cast<std::size_t>(i)].prior_sd, -2);
-  }
-  for (int pass = 0; pass < kPasses; ++pass) {
-    std::vector<std::pair<PlantNumber, double>> factors;
-    for (Index i = 0; i < n; ++i) {
-      const Unknown& unknown = learned.unknowns[static_cast<std::size_t>(i)];
-      factors.emplace_back(FindPlantNumber(machine.plant(), unknown.name),
-                           std::exp(learned.theta[i]));
-    }
-    const MachineTwin twin =
-        MakeTwin(machine.WithNumbers(factors), true, {.faults = false, .doubt = true});
-    MatrixXd H = known;
-    VectorXd g = -known * learned.theta;
-    for (const Samples& run : runs) AddRun(*twin.twin, VectorXd::Zero(n), run, H, g);
-    const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-    const MatrixXd inverse = Inverse(scale.asDiagonal() * H * scale.asDiagonal());
-    learned.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
-    learned.theta += learned.covariance * g;
-  }
-}
-
-Machine WithForceNoise(const Machine& machine, const VectorXd& sensor_noise,
-                       double force_noise) {
-  Setup setup = machine.setup();
-  Calibration only;
-  only.force_noise = force_noise;
-  only.sensor_noise = sensor_noise;
-  setup.calibration = only;
-  return machine.WithSetup(setup).WithSensorNoise(sensor_noise);
-}
 
 }  // namespace
 
@@ -259,48 +235,73 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
                      "its plant has no number that may be unknown",
                      "masses, springs, dampers, friction or motors");
   }
+  const auto progress = [&](double part) {
+    if (options.progress) options.progress(part);
+  };
+  const VectorXd none = VectorXd::Zero(uncertain.known);
   VectorXd noise = FirstNoise(machine, runs);
-  double done = 0.0;
-  Learned learned;
-  double force_noise = 0.0;
-  for (const double part : kForceNoise) {
-    force_noise = part * machine.rates().control;
-    // Noise first as it is given, then as it was seen.
-    for (int pass = 0; pass < 2; ++pass) {
-      learned = Learn(WithForceNoise(machine, noise, force_noise), runs, options, done,
-                      0.5 / static_cast<double>(kForceNoise.size()));
-      const bool as_seen =
-          ((learned.noise - noise).cwiseAbs().array() < 0.05 * noise.array()).all();
-      if (as_seen) break;
-      noise = learned.noise.cwiseMax(1e-3 * noise);
+  // The machine is linearised anew about where it rests with what is learned.
+  const auto about = [&](const VectorXd& theta) {
+    return Learner(machine, noise, runs, options.linear, theta);
+  };
+  // Noise first, with the stiffest gain, which explains nearly anything: slow errors of
+  // the model leave changes from tick to tick as they are.
+  Learner learner = about(VectorXd::Zero(uncertain.known));
+  learner.Learn(learner.stiffest(), true);
+  noise = learner.Noise().cwiseMax(kLeastNoise * noise);
+  progress(0.2);
+  learner = about(learner.theta());
+  learner.Learn(learner.stiffest(), true);
+  if (!std::isfinite(learner.Excess())) {
+    throw NumericalError("calibration: the twin of the machine diverges");
+  }
+  if (!learner.Explains()) {
+    // What not even that explains counts as noise.
+    noise *= std::sqrt(learner.Excess());
+    learner = about(learner.theta());
+    learner.Learn(learner.stiffest(), true);
+  }
+  progress(0.4);
+  // The softest with which nothing is a surprise: at once, or step by step.
+  std::size_t gain = learner.stiffest();
+  for (std::size_t next = learner.finest(); gain > learner.finest(); next = gain - 1) {
+    Learner softer = about(learner.theta());
+    softer.Learn(next, true);
+    if (softer.Explains()) {
+      learner = std::move(softer);
+      gain = next;
+    } else if (next + 1 == gain) {
+      break;
     }
-    const double worst =
-        *std::max_element(learned.misfits.begin(), learned.misfits.end());
-    if (worst < kExplainedBy) break;
+    progress(0.9 -
+             0.5 * static_cast<double>(gain) / static_cast<double>(learner.stiffest()));
   }
-  if (options.linear) {
-    Refine(WithForceNoise(machine, noise, force_noise), runs, learned);
-  }
+  if (learner.Explains()) noise = noise.cwiseMin(learner.Noise());
+  learner = about(learner.theta());
+  learner.Learn(gain, false);
+
   CalibrationReport report;
   Calibration& calibration = report.calibration;
-  calibration.factors = learned.theta.array().exp();
-  calibration.covariance = learned.covariance;
+  const VectorXd theta = learner.theta();
+  calibration.factors = theta.array().exp();
+  calibration.root = learner.Root();
   calibration.sensor_noise = noise;
-  calibration.force_noise = force_noise;
+  calibration.force_noise =
+      gain == 0 ? 0.0 : kTwinBandwidths[gain - 1] * machine.rates().control;
   calibration.records = static_cast<int>(records.size());
-  report.prior_sd.resize(learned.theta.size());
-  std::vector<std::string> doubts;
-  for (Index i = 0; i < learned.theta.size(); ++i) {
-    const Unknown& unknown = learned.unknowns[static_cast<std::size_t>(i)];
+  report.prior_sd.resize(theta.size());
+  for (Index i = 0; i < theta.size(); ++i) {
+    const Unknown& unknown = learner.unknowns()[static_cast<std::size_t>(i)];
     calibration.numbers.push_back(unknown.name);
     report.prior_sd[i] = unknown.prior_sd;
-    if (std::abs(learned.theta[i]) > kDoubtful * unknown.prior_sd) {
-      doubts.push_back(unknown.name);
+    if (std::abs(theta[i]) > kDoubtful * unknown.prior_sd) {
+      report.doubts.push_back(unknown.name);
     }
   }
-  for (const double misfit : learned.misfits) {
-    report.records.push_back({misfit, doubts});
+  for (const RunInformation& said : learner.said()) {
+    report.records.push_back({said.misfit});
   }
+  progress(1.0);
   return report;
 }
 

@@ -1,16 +1,17 @@
 #pragma once
 // How well a machine is known, learned from measured runs of which one is sure that it
-// was healthy. The numbers of its plant start as well known as the plant says, or their
-// kind usually is, and every record adds what its twin sees of them (prediction_error.h):
-// the posterior of one is the prior of the next. What a fault then has for a standard
-// deviation beside m such runs of a comparable motion is sqrt(1 + 1/m) times that of an
-// exactly known plant.
+// was healthy. The numbers of its plant are as well known beforehand as the plant says,
+// or their kind usually is; what all runs together say of them is added (run_pass.h).
+// What a fault then has for a standard deviation beside m such runs of a comparable
+// motion is sqrt(1 + 1/m) times that of an exactly known plant.
 //
 // - Sensor noise is that of the innovations from tick to tick,
 //   r = 1.4826 median |e[k] - e[k-1]| / sqrt(2), which slow errors of the model leave
 //   as it is.
-// - Force noise, that is what the model does not know, is the least of a ladder with
-//   which innovations are as large as they are expected to be, in every record.
+// - Force noise, that is what the model does not know, is the least of a ladder
+//   (kTwinBandwidths) with which no block of any run is more of a surprise than chance
+//   lets expect, for that is what the estimator goes by. Where there is none, the noise
+//   of the sensors is taken as so much larger.
 // - Limits of residuals are those of the measured runs, and of simulated ones of plants
 //   drawn from what is known.
 
@@ -27,15 +28,15 @@ namespace mjdiag {
 
 struct CalibratedRecord {
   double misfit = 1.0;  ///< of the twin with that calibration
-  /// A number that is far from what was known of it: no healthy run of this machine, or
-  /// a plant that is not this machine's.
-  std::vector<std::string> doubts;
 };
 
 struct CalibrationReport {
   Calibration calibration;
   Eigen::VectorXd prior_sd;  ///< of the logarithms of the numbers, before any record
   std::vector<CalibratedRecord> records;
+  /// Numbers that are far from what was known of them: no healthy runs of this machine,
+  /// or a plant that is not this machine's.
+  std::vector<std::string> doubts;
 };
 
 struct CalibrateOptions {

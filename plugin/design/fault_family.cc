@@ -83,12 +83,8 @@ ModelAt FaultModels(const Machine& machine,
 std::vector<Multisine> Multisines(const Setup& setup) {
   std::vector<Multisine> sines;
   for (const MultisineSetup& source : setup.disturbances) {
-    Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(
-        static_cast<Eigen::Index>(setup.channels.actuators.size()));
-    for (const auto& [channel, value] : source.amplitude) {
-      amplitude[setup.channels.ActuatorIndex(channel)] = value;
-    }
-    sines.push_back({source.name, source.frequencies, amplitude});
+    sines.push_back(
+        {source.name, source.frequencies, setup.channels.AmplitudeOf(source)});
   }
   return sines;
 }

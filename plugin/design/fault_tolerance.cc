@@ -173,7 +173,7 @@ TolerancePlan PlanTolerance(const Machine& machine, ControlMode mode) {
 void ReadEstimates(const DiagnosisMonitor& monitor,
                    FaultEstimates& estimates) noexcept {
   const TwinEstimator* twin = monitor.twin();
-  if (twin == nullptr || twin->estimator().active() == 0) return;
+  if (twin == nullptr || !twin->estimator().began()) return;
   const PredictionErrorEstimator& estimator = twin->estimator();
   const double misfit = estimator.surprise();
   // A run that no faults explain tells of none (TwinEstimator::Read), and a twin that is

@@ -166,11 +166,7 @@ Machine DrawnPlant(const Machine& machine, std::uint64_t seed) {
   std::normal_distribution<double> drawn;
   VectorXd normal(static_cast<Index>(calibration->numbers.size()));
   for (double& value : normal) value = drawn(generator);
-  const VectorXd sd = calibration->covariance.diagonal().cwiseSqrt();
-  const MatrixXd correlation = sd.cwiseInverse().asDiagonal() *
-                               calibration->covariance * sd.cwiseInverse().asDiagonal();
-  const VectorXd moved =
-      sd.cwiseProduct(Eigen::LLT<MatrixXd>(correlation).matrixL() * normal);
+  const VectorXd moved = calibration->root * normal;
   std::vector<std::pair<PlantNumber, double>> factors;
   for (Index i = 0; i < moved.size(); ++i) {
     factors.emplace_back(

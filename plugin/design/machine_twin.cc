@@ -1,10 +1,10 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/diagnosis/twin/twin_in_coordinates.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/plant_twin.h"
 #include "mjdiag/signals/decompositions.h"
@@ -19,9 +19,6 @@ using Eigen::VectorXd;
 
 /// Ticks of a block at 8 kHz; what varies faster than it is seen by its mean.
 constexpr Index kBlock = 8;
-/// Bandwidths of the gains with which a twin is pulled along, in parts of the control
-/// rate: from 1 Hz at 8 kHz, to follow, to 100 Hz, to begin with.
-constexpr std::array<double, 5> kBandwidths = {1.25e-4, 4e-4, 1.25e-3, 4e-3, 1.25e-2};
 /// A linear machine answers to where it started exactly linearly. One with friction
 /// that sticks does not: to the first order it is not told.
 constexpr double kStartEnergy = 1.0;  // J
@@ -55,7 +52,7 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
     gains.push_back({MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
                      noise.cwiseAbs2().asDiagonal(), 0});
   }
-  for (const double part : kBandwidths) {
+  for (const double part : kTwinBandwidths) {
     const double bandwidth = part * machine.rates().control;
     gains.push_back(GainOf(machine, noise, std::max(bandwidth, force_noise)));
   }
@@ -70,14 +67,14 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
 }
 
 /// Fault parameters are the first unknowns.
+/// @param first  of the unknowns of tones
 std::vector<TwinFault> FaultsOf(const Machine& machine,
-                                const UncertainMachine& uncertain) {
+                                const UncertainMachine& uncertain, Index first) {
   std::vector<TwinFault> faults;
   for (Index i = 0; i < uncertain.faults; ++i) {
     faults.push_back({uncertain.unknowns[static_cast<std::size_t>(i)].name, i, {}});
   }
   if (uncertain.tones.empty()) return faults;
-  Index first = uncertain.first_tone();
   for (const MultisineSetup& source : machine.setup().disturbances) {
     faults.push_back({source.name, first, source.frequencies});
     first += 2 * faults.back().tones();
@@ -94,12 +91,9 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
   }
   options.friction = !linear;
   options.start_energy = linear ? kStartEnergy : 0.0;
-  UncertainMachine uncertain = MakeUncertainMachine(machine, options);
+  const UncertainMachine uncertain = MakeUncertainMachine(machine, options);
   MachineTwin twin;
   twin.sample_time = machine.rates().tick();
-  twin.unknowns = uncertain.unknowns;
-  twin.faults = FaultsOf(machine, uncertain);
-  twin.prior = uncertain.prior;
   const auto& calibration = machine.setup().calibration;
   const double force_noise = calibration ? calibration->force_noise : 0.0;
   std::vector<TwinGain> gains = GainsOf(machine, noise, force_noise);
@@ -107,9 +101,18 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
     twin.twin = std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
                                              std::move(gains), kBlock);
   } else {
-    twin.twin = std::make_unique<PlantTwin>(machine, std::move(uncertain),
-                                            std::move(gains), kBlock);
+    twin.twin =
+        std::make_unique<PlantTwin>(machine, uncertain, std::move(gains), kBlock);
   }
+  if (calibration && !options.doubt) {
+    const KnownTogether known = AsCalibrated(machine, uncertain);
+    twin.twin = std::make_unique<TwinInCoordinates>(std::move(twin.twin), known.T,
+                                                    uncertain.tones);
+    twin.unknowns = known.unknowns;
+  } else {
+    twin.unknowns = uncertain.unknowns;
+  }
+  twin.faults = FaultsOf(machine, uncertain, twin.twin->first_tone());
   return twin;
 }
 

@@ -3,6 +3,7 @@
 // taken as linear, else its plant in MuJoCo, with all fault parameters, disturbances and
 // whatever else is not known of it as unknowns.
 
+#include <array>
 #include <memory>
 
 #include "mjdiag/diagnosis/twin/twin_estimator.h"
@@ -10,6 +11,11 @@
 #include "mjdiag/plugin/replay/uncertain_machine.h"
 
 namespace mjdiag {
+
+/// Bandwidths of the gains with which a twin is pulled along, in parts of the control
+/// rate: from 1 Hz at 8 kHz, to follow, to 100 Hz, to begin with.
+inline constexpr std::array<double, 5> kTwinBandwidths = {1.25e-4, 4e-4, 1.25e-3, 4e-3,
+                                                          1.25e-2};
 
 /// InputError on a machine whose sensors have no noise: it says how sure the twin is of
 /// what it sees.

@@ -210,6 +210,8 @@ VectorXd StaticEquilibrium(const mjModel& model) {
   VectorXd force = force_at(position);
   constexpr int kIterations = 50;
   constexpr double kTolerance = 1e-13;  // m or rad
+  // A step that does not help any more is what rounding leaves.
+  constexpr double kRounding = 1e-9;
   for (int i = 0; i < kIterations; ++i) {
     const VectorXd step =
         NewtonStep(springs + GeometricStiffness(model, position), mass, force);
@@ -222,6 +224,10 @@ VectorXd StaticEquilibrium(const mjModel& model) {
     while (next.norm() >= force.norm() && fraction > 1e-6) {
       fraction *= 0.5;
       next = force_at(position + fraction * step);
+    }
+    if (next.norm() >= force.norm() && step.cwiseAbs().maxCoeff() <= kRounding) {
+      RequireRest(model, force.cwiseQuotient(mass));
+      return position;
     }
     position += fraction * step;
     force = next;

@@ -14,15 +14,30 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// Any change may be one too many for a joint that sticks.
+constexpr double kCurvature = 1e6;
+
+std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
+  std::vector<ModelPart> parts;
+  for (const UncertainNumber& number : uncertain.numbers) parts.push_back(number.part);
+  return parts;
+}
+
+}  // namespace
+
 PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
                      std::vector<TwinGain> gains, Index block)
-    : machine_(machine),
+    : Twin(
+          {machine.linear().b.cols(), machine.linear().Gamma.cols(),
+           2 * machine.linear().M.rows(), static_cast<Index>(uncertain.unknowns.size()),
+           uncertain.start.cols(), block, kCurvature},
+          std::move(gains), uncertain.tones, machine.rates().tick()),
+      machine_(machine),
       uncertain_(std::move(uncertain)),
-      gains_(std::move(gains)),
-      block_(block),
       effects_(machine.channels(), machine.plant(), machine.effects()),
-      first_tone_(uncertain_.first_tone()),
-      tones_(uncertain_.tones, machine.rates().tick()) {
+      moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()) {
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
   data_ = std::move(plant.data);
@@ -41,12 +56,12 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   K_rest_ = K_ - MatrixXd(JointStiffness(*model_).asDiagonal());
   D_rest_ = D_ - MatrixXd(VectorXd::Map(model_->dof_damping, nv).asDiagonal());
   for (const UncertainNumber& known : uncertain_.numbers) {
-    Number number{known.number, known.factors, 0, {}, 1.0};
+    Number number{known.number, known.part.factors, 0, {}, 1.0};
     const int element = known.number.element;
     switch (known.number.kind) {
       case PlantNumberKind::kMass:
       case PlantNumberKind::kInertia:
-        number.inertia = PartOf(machine, known.number);
+        number.inertia = known.part;
         heavy_ = true;
         break;
       case PlantNumberKind::kGear: {
@@ -64,13 +79,12 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   place_ = PlacementOf(linear);
   state_ = VectorXd::Zero(2 * nv);
   before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
-  theta_ = VectorXd::Zero(p);
   for (Map& map : maps_) map.Q = map.V = map.G = MatrixXd::Zero(nv, nv);
   inertia_ = identity_ = work_ = MatrixXd::Identity(nv, nv);
   factor_ = Eigen::LLT<MatrixXd>(nv);
   stick_r_.assign(static_cast<std::size_t>(nv), 0.0);
   stick_rb_ = stick_r_;
-  u_ = tone_ = VectorXd::Zero(nu);
+  tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
   S_ = MatrixXd::Zero(2 * nv, p);
   drive_ = drive_work_ = force_ = MatrixXd::Zero(nv, p);
@@ -81,8 +95,7 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
 void PlantTwin::SetParameters() noexcept {
   M_now_ = M_;
   for (Number& number : numbers_) {
-    double sum = 0.0;
-    for (const Index factor : number.factors) sum += theta_[factor];
+    const double sum = Logarithm(number.factors);
     number.value = std::exp(sum);
     SetNumber(*model_, machine_.plant(), number.number, number.value);
     if (number.inertia.M.size() > 0) M_now_ += std::expm1(sum) * number.inertia.M;
@@ -129,10 +142,8 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
   return map;
 }
 
-void PlantTwin::Start(const VectorXd& theta) noexcept {
-  theta_ = theta;
+void PlantTwin::Reset() noexcept {
   time_ = 0.0;
-  active_ = theta_.size() - start_unknowns();
   SetParameters();
   if (const std::vector<PlacedEffect> effects = machine_.effects(); !effects.empty()) {
     effects_ = ActiveEffects(machine_.channels(), *model_, effects);
@@ -143,12 +154,19 @@ void PlantTwin::Start(const VectorXd& theta) noexcept {
   VectorXd::Map(data_->qpos, start_.size()) = start_;
   S_.setZero();
   sum_.setZero();
-  tones_.Start();
+}
+
+void PlantTwin::Start(const VectorXd& theta) noexcept {
+  Begin(theta, true);
+  Reset();
+  moved_rest_.Find(theta_);
+  VectorXd::Map(data_->qpos, model_->nv) += moved_rest_.position();
+  S_.topRows(model_->nv) = moved_rest_.sensitivity();
 }
 
 void PlantTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
-  Start(theta);
-  active_ = theta_.size();
+  Begin(theta, false);
+  Reset();
   const Index nv = model_->nv;
   state_ = state;
   state_.noalias() += uncertain_.start * theta_.tail(start_unknowns());
@@ -197,7 +215,7 @@ void PlantTwin::AddInertial(const Number& number) noexcept {
 
 void PlantTwin::AddTickForces() noexcept {
   drive_.setZero();
-  const Index first = first_tone_;
+  const Index first = first_tone();
   for (Index i = 0; i < tones_.count(); ++i) {
     tone_ = tones_.amplitude(i);
     for (const Number& number : numbers_) {
@@ -243,10 +261,9 @@ void PlantTwin::AddStepForces() noexcept {
 void PlantTwin::Step(std::span<const double> inputs,
                      const VectorXd& innovation) noexcept {
   const Index nv = model_->nv;
-  read_.leftCols(active_).noalias() = C_ * S_.topRows(nv).leftCols(active_);
-  sum_.leftCols(active_) += read_.leftCols(active_);
-  u_ = VectorXd::Map(inputs.data(), u_.size());
-  tones_.AddTo(u_, theta_.segment(first_tone_, 2 * tones_.count()));
+  read_.leftCols(acting()).noalias() = C_ * S_.topRows(nv).leftCols(acting());
+  sum_.leftCols(acting()) += read_.leftCols(acting());
+  Command(inputs);
   AddTickForces();
   for (int substep = 0; substep < machine_.rates().substeps; ++substep) {
     if (substep > 0) mj_step1(model_.get(), data_.get());
@@ -261,11 +278,11 @@ void PlantTwin::Step(std::span<const double> inputs,
   }
   tones_.Advance();
   if (pulled_) {
-    const MatrixXd& L = gains_[gain_].L;
+    const MatrixXd& L = gain().L;
     state_.noalias() = L * innovation;
     VectorXd::Map(data_->qpos, nv) += state_.head(nv);
     VectorXd::Map(data_->qvel, nv) += state_.tail(nv);
-    S_.leftCols(active_).noalias() -= L * read_.leftCols(active_);
+    S_.leftCols(acting()).noalias() -= L * read_.leftCols(acting());
   }
   time_ += machine_.rates().tick();
 }
@@ -301,17 +318,17 @@ void PlantTwin::Substep() noexcept {
   }
   const Map& map = MapOf(sticking);
   // S_v' = Q S_q + V S_v + G f
-  auto next = drive_work_.leftCols(active_);
-  next.noalias() = map.Q * S_.topRows(nv).leftCols(active_);
-  next.noalias() += map.V * S_.bottomRows(nv).leftCols(active_);
+  auto next = drive_work_.leftCols(acting());
+  next.noalias() = map.Q * S_.topRows(nv).leftCols(acting());
+  next.noalias() += map.V * S_.bottomRows(nv).leftCols(acting());
   const Index forced = theta_.size() - start_unknowns();
   next.leftCols(forced).noalias() += map.G * force_.leftCols(forced);
-  S_.bottomRows(nv).leftCols(active_) = next;
-  S_.topRows(nv).leftCols(active_) += model_->opt.timestep * next;
+  S_.bottomRows(nv).leftCols(acting()) = next;
+  S_.topRows(nv).leftCols(acting()) += model_->opt.timestep * next;
 }
 
 const MatrixXd& PlantTwin::EndBlock() noexcept {
-  sensitivity_ = sum_ / static_cast<double>(block_);
+  sensitivity_ = sum_ / static_cast<double>(block());
   sum_.setZero();
   return sensitivity_;
 }

@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "mjdiag/diagnosis/twin/running_tones.h"
+#include "mjdiag/diagnosis/twin/moved_rest.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/machine/machine.h"
@@ -36,17 +36,9 @@ class PlantTwin final : public Twin {
   PlantTwin(const Machine& machine, UncertainMachine uncertain,
             std::vector<TwinGain> gains, Eigen::Index block);
 
-  Eigen::Index outputs() const override { return C_.rows(); }
-  Eigen::Index inputs() const override { return u_.size(); }
-  Eigen::Index states() const override { return state_.size(); }
-  Eigen::Index unknowns() const override { return theta_.size(); }
-  Eigen::Index start_unknowns() const override { return uncertain_.start.cols(); }
-  Eigen::Index block() const override { return block_; }
-  const std::vector<TwinGain>& gains() const override { return gains_; }
-
   void UseGain(std::size_t gain) noexcept override {
     gain_ = gain;
-    pulled_ = !gains_[gain_].L.isZero(0.0);
+    pulled_ = !this->gain().L.isZero(0.0);
   }
   void Start(const Eigen::VectorXd& theta) noexcept override;
   void Start(const Eigen::VectorXd& theta,
@@ -76,6 +68,7 @@ class PlantTwin final : public Twin {
     Eigen::MatrixXd Q, V, G;
   };
 
+  void Reset() noexcept;
   void SetParameters() noexcept;
   const Map& MapOf(std::uint64_t sticking) noexcept;
   void AddTickForces() noexcept;
@@ -90,13 +83,11 @@ class PlantTwin final : public Twin {
 
   Machine machine_;
   UncertainMachine uncertain_;
-  std::vector<TwinGain> gains_;
-  std::size_t gain_ = 0;
   bool pulled_ = false;
-  Eigen::Index block_;
   ModelPtr model_;
   DataPtr data_;
   ActiveEffects effects_;
+  MovedRest moved_rest_;
   Eigen::VectorXd start_;  // qpos
   Eigen::VectorXd state_;  // work space
   Eigen::MatrixXd C_, Gamma_, M_, K_, D_;
@@ -105,10 +96,7 @@ class PlantTwin final : public Twin {
   std::vector<Number> numbers_;
   bool heavy_ = false;  // masses are among them
 
-  Eigen::MatrixXd place_;    // of coordinates by readings, nq x ny
-  Eigen::Index active_ = 0;  // columns of S that are in use
-  Eigen::Index first_tone_;  // of the unknowns
-  Eigen::VectorXd theta_;
+  Eigen::MatrixXd place_;  // of coordinates by readings, nq x ny
   std::array<Map, 16> maps_;
   std::size_t next_map_ = 0;
   Eigen::MatrixXd inertia_, identity_, work_;
@@ -116,8 +104,7 @@ class PlantTwin final : public Twin {
   std::vector<double> stick_r_, stick_rb_;  // by dof
 
   double time_ = 0.0;
-  Eigen::VectorXd u_, tone_, before_, acceleration_, inertial_;
-  RunningTones tones_;
+  Eigen::VectorXd tone_, before_, acceleration_, inertial_;
   std::vector<double> outputs_;
   Eigen::MatrixXd S_, drive_, drive_work_, force_, read_, sensitivity_, sum_;
 };

@@ -17,39 +17,42 @@ using Eigen::VectorXd;
 constexpr double kFaultSpread = 0.1;
 
 /// Place of that number in the calibration; -1: it is not in it.
-Index InCalibration(const Machine& machine, const PlantNumber& number) {
+Index InCalibration(const Machine& machine, const std::string& number) {
   const auto& calibration = machine.setup().calibration;
   if (!calibration) return -1;
   const auto& names = calibration->numbers;
-  const auto found =
-      std::find(names.begin(), names.end(), PlantNumberName(machine.plant(), number));
+  const auto found = std::find(names.begin(), names.end(), number);
   return found == names.end() ? -1 : found - names.begin();
 }
 
 double Spread(const Machine& machine, const PlantNumber& number, bool doubt) {
-  if (const Index at = InCalibration(machine, number); at >= 0 && !doubt) {
-    return std::sqrt(machine.setup().calibration->covariance(at, at));
-  }
-  const double declared = SpreadOf(machine.plant(), number);
+  const Index at = InCalibration(machine, PlantNumberName(machine.plant(), number));
   const bool friction = number.kind == PlantNumberKind::kFriction;
+  // Dry friction is another one today than it was in the runs that were calibrated on.
+  if (at >= 0 && !doubt && !friction) return machine.setup().calibration->Sd()[at];
+  const double declared = SpreadOf(machine.plant(), number);
   return declared > 0.0 || !(doubt || friction) ? declared : UsualSpread(number.kind);
 }
 
-UncertainNumber& NumberOf(UncertainMachine& uncertain, const PlantNumber& number) {
+UncertainNumber& NumberOf(const Machine& machine, const PlantNumber& number,
+                          UncertainMachine& uncertain) {
   const auto found = std::find_if(
       uncertain.numbers.begin(), uncertain.numbers.end(),
       [&](const UncertainNumber& known) { return known.number == number; });
   if (found != uncertain.numbers.end()) return *found;
-  return uncertain.numbers.emplace_back(UncertainNumber{number, {}});
+  UncertainNumber& added = uncertain.numbers.emplace_back(UncertainNumber{number, {}});
+  if (number.kind != PlantNumberKind::kFriction) added.part = PartOf(machine, number);
+  return added;
 }
 
 void AddFaults(const Machine& machine, UncertainMachine& uncertain) {
   for (const FaultParameter& fault : FaultParameters(machine.plant())) {
     const auto unknown = static_cast<Index>(uncertain.unknowns.size());
     for (const int element : fault.elements) {
-      NumberOf(uncertain, {fault.kind, element}).factors.push_back(unknown);
+      NumberOf(machine, {fault.kind, element}, uncertain)
+          .part.factors.push_back(unknown);
     }
-    uncertain.unknowns.push_back({fault.name, 1.0, kFaultSpread, true, true});
+    uncertain.unknowns.push_back({fault.name, 0.0, kFaultSpread, 1.0, true});
   }
   uncertain.faults = static_cast<Index>(uncertain.unknowns.size());
 }
@@ -68,66 +71,42 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
     const bool friction = number.kind == PlantNumberKind::kFriction;
     if (friction && !options.friction) continue;
     const double spread = Spread(machine, number, options.doubt);
-    if (!(spread > 0.0) || (!friction && !Acts(PartOf(machine, number)))) continue;
+    if (!(spread > 0.0)) continue;
+    UncertainNumber& uncertain_number = NumberOf(machine, number, uncertain);
+    if (!friction && !Acts(uncertain_number.part)) {
+      if (uncertain_number.part.factors.empty()) uncertain.numbers.pop_back();
+      continue;
+    }
     const auto unknown = static_cast<Index>(uncertain.unknowns.size());
-    NumberOf(uncertain, number).factors.push_back(unknown);
+    uncertain_number.part.factors.push_back(unknown);
     uncertain.unknowns.push_back(
-        {PlantNumberName(plant, number), 1.0, spread, true, friction});
+        {PlantNumberName(plant, number), 0.0, spread, 1.0, friction});
     ++uncertain.known;
   }
 }
 
 void AddTones(const Machine& machine, UncertainMachine& uncertain) {
-  const Channels& channels = machine.channels();
   for (const MultisineSetup& source : machine.setup().disturbances) {
-    VectorXd amplitude = VectorXd::Zero(static_cast<Index>(channels.actuators.size()));
-    for (const auto& [channel, value] : source.amplitude) {
-      amplitude[channels.ActuatorIndex(channel)] = value;
-    }
+    const VectorXd amplitude = machine.channels().AmplitudeOf(source);
     for (const double frequency : source.frequencies) {
       uncertain.tones.push_back({frequency, amplitude});
       for (const char* part : {" sine", " cosine"}) {
         uncertain.unknowns.push_back(
-            {source.name + part, 0.0, kFaultSpread, false, true});
+            {source.name + part, 0.0, kFaultSpread, 0.0, true});
       }
     }
   }
 }
 
-/// Numbers that were calibrated together are known together.
-MatrixXd PriorOf(const Machine& machine, const UncertainMachine& uncertain,
-                 bool doubt) {
-  const auto p = static_cast<Index>(uncertain.unknowns.size());
-  MatrixXd prior = MatrixXd::Zero(p, p);
-  for (Index i = 0; i < p; ++i) {
-    prior(i, i) = std::pow(uncertain.unknowns[static_cast<std::size_t>(i)].prior_sd, 2);
-  }
-  const auto& calibration = machine.setup().calibration;
-  if (!calibration || doubt) return prior;
-  std::vector<Index> places;
-  for (Index i = uncertain.faults; i < uncertain.first_tone(); ++i) {
-    const std::string& name = uncertain.unknowns[static_cast<std::size_t>(i)].name;
-    const auto& names = calibration->numbers;
-    const auto found = std::find(names.begin(), names.end(), name);
-    places.push_back(found == names.end() ? -1 : found - names.begin());
-  }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      if (places[i] < 0 || places[k] < 0) continue;
-      prior(uncertain.faults + static_cast<Index>(i),
-            uncertain.faults + static_cast<Index>(k)) =
-          calibration->covariance(places[i], places[k]);
-    }
-  }
-  return prior;
-}
-
-/// Without what rounding leaves of entries that do not change; empty if none does.
-MatrixXd Changed(const MatrixXd& moved, const MatrixXd& base, double by) {
+/// Entries that rounding leaves of what does not change are dropped; empty if none does.
+/// @param rows, columns  sizes of the coordinates; an entry may be as large as their
+///                       product
+MatrixXd Derivative(const MatrixXd& up, const MatrixXd& down, double by,
+                    const VectorXd& rows, const VectorXd& columns) {
   constexpr double kRounding = 1e-12;
-  const double least = kRounding * base.cwiseAbs().maxCoeff();
-  const MatrixXd change = moved - base;
-  if (!(change.cwiseAbs().maxCoeff() > least)) return {};
+  const MatrixXd change = up - down;
+  const Eigen::ArrayXXd least = kRounding * (rows * columns.transpose()).array();
+  if (!(change.array().abs() > least).any()) return {};
   return (change.array().abs() > least).select(change / by, 0.0);
 }
 
@@ -145,29 +124,77 @@ UncertainMachine MakeUncertainMachine(const Machine& machine,
   }
   for (Index i = 0; i < uncertain.start.cols(); ++i) {
     uncertain.unknowns.push_back(
-        {"start " + std::to_string(i + 1), 0.0, 1.0, false, false});
+        {"start " + std::to_string(i + 1), 0.0, 1.0, 0.0, false});
   }
-  uncertain.prior = PriorOf(machine, uncertain, options.doubt);
   return uncertain;
 }
 
-ModelPart PartOf(const Machine& machine, const PlantNumber& number) {
-  // Half of it tells more than a small step: the model is affine in it.
-  constexpr double kMoved = -0.5;
-  // Of a rest found by Newton's method.
-  constexpr double kSameRest = 1e-9;
-  const Machine moved = machine.WithNumbers({{number, 1.0 + kMoved}});
-  const MechanicalModel& from = machine.linear();
-  const MechanicalModel& to = moved.linear();
-  ModelPart part;
-  part.M = Changed(to.M, from.M, kMoved);
-  part.D = Changed(to.D, from.D, kMoved);
-  part.K = Changed(to.K, from.K, kMoved);
-  part.Gamma = Changed(to.Gamma, from.Gamma, kMoved);
-  const VectorXd way = moved.rest() - machine.rest();
-  if (way.norm() > kSameRest * (1.0 + machine.rest().norm())) {
-    part.force = to.K * way / kMoved;
+KnownTogether AsCalibrated(const Machine& machine, const UncertainMachine& uncertain) {
+  const auto p = static_cast<Index>(uncertain.unknowns.size());
+  std::vector<Index> together;  // of the unknowns
+  std::vector<Index> rows;      // of the root
+  for (Index i = uncertain.faults; i < uncertain.first_tone(); ++i) {
+    const Unknown& unknown = uncertain.unknowns[static_cast<std::size_t>(i)];
+    const Index row = InCalibration(machine, unknown.name);
+    if (row < 0 || unknown.wears) continue;
+    together.push_back(i);
+    rows.push_back(row);
   }
+  KnownTogether known;
+  if (together.empty()) {
+    known.unknowns = uncertain.unknowns;
+    known.T = MatrixXd::Identity(p, p);
+    return known;
+  }
+  const MatrixXd root = machine.setup().calibration->root(rows, Eigen::all);
+  known.T = MatrixXd::Zero(p, p - static_cast<Index>(together.size()) + root.cols());
+  Index column = 0;
+  for (Index i = 0; i < p; ++i) {
+    if (i == together.front()) {
+      for (Index k = 0; k < root.cols(); ++k) {
+        for (std::size_t row = 0; row < together.size(); ++row) {
+          known.T(together[row], column) = root(static_cast<Index>(row), k);
+        }
+        known.unknowns.push_back({"calibration " + std::to_string(k + 1), 0.0, 1.0,
+                                  root.col(k).cwiseAbs().maxCoeff(), false});
+        ++column;
+      }
+    }
+    if (std::find(together.begin(), together.end(), i) != together.end()) continue;
+    known.T(i, column++) = 1.0;
+    known.unknowns.push_back(uncertain.unknowns[static_cast<std::size_t>(i)]);
+  }
+  return known;
+}
+
+ModelPart PartOf(const Machine& machine, const PlantNumber& number) {
+  // Central differences. Where the machine stays where it is, the model is affine in
+  // the number, and the step does not matter.
+  constexpr double kStep = 1e-3;
+  // Of a rest found by Newton's method, m or rad.
+  constexpr double kSameRest = 1e-11;
+  // What nothing holds has a stiffness and a damping of this time constant.
+  constexpr double kRate = 1.0;  // 1/s
+  const Machine more = machine.WithNumbers({{number, 1.0 + kStep}});
+  const Machine less = machine.WithNumbers({{number, 1.0 - kStep}});
+  const MechanicalModel& up = more.linear();
+  const MechanicalModel& down = less.linear();
+  const MechanicalModel& model = machine.linear();
+  const VectorXd mass = model.M.diagonal();
+  const VectorXd inertia = mass.cwiseSqrt();
+  const VectorXd damper = (model.D.diagonal().cwiseAbs() + kRate * mass).cwiseSqrt();
+  const VectorXd spring =
+      (model.K.diagonal().cwiseAbs() + kRate * kRate * mass).cwiseSqrt();
+  const double by = 2.0 * kStep;
+  ModelPart part;
+  part.M = Derivative(up.M, down.M, by, inertia, inertia);
+  part.D = Derivative(up.D, down.D, by, damper, damper);
+  part.K = Derivative(up.K, down.K, by, spring, spring);
+  part.Gamma = Derivative(up.Gamma, down.Gamma, by,
+                          VectorXd::Constant(mass.size(), model.Gamma.norm()),
+                          VectorXd::Ones(model.Gamma.cols()));
+  const VectorXd way = more.rest() - less.rest();
+  if (way.cwiseAbs().maxCoeff() > kSameRest) part.force = model.K * way / by;
   return part;
 }
 
@@ -179,9 +206,7 @@ UncertainModel MakeUncertainModel(const Machine& machine,
   model.rest = SensorReadings(machine.channels(), machine.plant(), machine.rest());
   for (const UncertainNumber& number : uncertain.numbers) {
     if (number.number.kind == PlantNumberKind::kFriction) continue;
-    ModelPart part = PartOf(machine, number.number);
-    part.factors = number.factors;
-    model.parts.push_back(std::move(part));
+    model.parts.push_back(number.part);
   }
   model.unknowns = uncertain.unknowns;
   model.tones = uncertain.tones;

@@ -15,18 +15,16 @@ namespace mjdiag {
 /// A number of the plant with the unknowns whose product it is multiplied by.
 struct UncertainNumber {
   PlantNumber number;
-  std::vector<Eigen::Index> factors;
+  ModelPart part;  ///< of its linear plant, its factors among it; of dry friction: none
 };
 
-/// Unknowns in this order: fault parameters, numbers of the plant that are not known
-/// exactly, two of every tone, those of the start.
+/// What theta of its twin is, in this order: fault parameters, numbers of the plant that
+/// are not known exactly, two of every tone, those of the start.
 struct UncertainMachine {
   std::vector<Unknown> unknowns;
   std::vector<UncertainNumber> numbers;
   std::vector<UnknownTone> tones;
   Eigen::MatrixXd start;  ///< see UncertainModel
-  /// Covariance of all of them beforehand.
-  Eigen::MatrixXd prior;
   Eigen::Index faults = 0;
   Eigen::Index known = 0;  ///< numbers of the plant, behind the faults
 
@@ -48,7 +46,16 @@ struct UncertaintyOptions {
 UncertainMachine MakeUncertainMachine(const Machine& machine,
                                       const UncertaintyOptions& options);
 
-/// Its linear plant.
+/// Coordinates z in which the unknowns of a calibrated machine are known independently of
+/// each other, theta = T z: in the place of the numbers that were calibrated together as
+/// many along the columns of the root of their covariance, of standard deviation 1.
+struct KnownTogether {
+  std::vector<Unknown> unknowns;
+  Eigen::MatrixXd T;  ///< of all unknowns
+};
+KnownTogether AsCalibrated(const Machine& machine, const UncertainMachine& uncertain);
+
+/// Its linear plant: without dry friction.
 UncertainModel MakeUncertainModel(const Machine& machine,
                                   const UncertainMachine& uncertain);
 

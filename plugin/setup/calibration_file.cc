@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "mjdiag/diagnosis/json_matrix.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -10,16 +11,9 @@ namespace mjdiag {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 using nlohmann::json;
 
 constexpr const char* kCalibrationSchema = "mjdiag.calibration/1";
-
-VectorXd Vector(const json& array) {
-  const auto values = array.get<std::vector<double>>();
-  return VectorXd::Map(values.data(), static_cast<Index>(values.size()));
-}
 
 void Require(bool fulfilled, const std::filesystem::path& file, const char* what,
              const char* expected) {
@@ -40,17 +34,13 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
       calibration.factors[calibration.factors.size() - 1] = number.at("factor");
     }
     const auto n = static_cast<Index>(calibration.numbers.size());
-    calibration.covariance = MatrixXd::Zero(n, n);
-    const json& rows = document.at("covariance");
-    Require(rows.size() == calibration.numbers.size(), file,
-            "its covariance is of another size", "a row for each of the numbers");
-    for (Index i = 0; i < n; ++i) {
-      const VectorXd row = Vector(rows.at(static_cast<std::size_t>(i)));
-      Require(row.size() == n && row.allFinite() && row[i] > 0.0, file,
-              "a row of its covariance is none", "finite numbers, variances > 0");
-      calibration.covariance.row(i) = row.transpose();
-    }
-    calibration.sensor_noise = Vector(document.at("sensor_noise"));
+    calibration.root = MatrixOf(document.at("root"));
+    Require(calibration.root.rows() == n && calibration.root.cols() == n, file,
+            "its root is of another size",
+            "a row and a column for each of the numbers");
+    Require(calibration.root.allFinite(), file, "a row of its root is none",
+            "finite numbers");
+    calibration.sensor_noise = VectorOf(document.at("sensor_noise"));
     calibration.force_noise = document.at("force_noise");
     calibration.records = document.at("records");
   } catch (const json::exception& error) {
@@ -67,21 +57,18 @@ Calibration ReadCalibration(const std::filesystem::path& file) {
 
 void WriteCalibration(const std::filesystem::path& file,
                       const Calibration& calibration) {
-  json document = {
-      {"schema", kCalibrationSchema},
-      {"records", calibration.records},
-      {"force_noise", calibration.force_noise},
-      {"sensor_noise", std::vector<double>(calibration.sensor_noise.begin(),
-                                           calibration.sensor_noise.end())},
-      {"numbers", json::array()},
-      {"covariance", json::array()}};
+  json document = {{"schema", kCalibrationSchema},
+                   {"records", calibration.records},
+                   {"force_noise", calibration.force_noise},
+                   {"sensor_noise", VectorJson(calibration.sensor_noise)},
+                   {"numbers", json::array()},
+                   {"root", MatrixJson(calibration.root)}};
+  const Eigen::VectorXd sd = calibration.Sd();
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Index>(i);
     document["numbers"].push_back({{"name", calibration.numbers[i]},
                                    {"factor", calibration.factors[at]},
-                                   {"sd", std::sqrt(calibration.covariance(at, at))}});
-    const VectorXd row = calibration.covariance.row(at).transpose();
-    document["covariance"].push_back(std::vector<double>(row.begin(), row.end()));
+                                   {"sd", sd[at]}});
   }
   WriteTextFile(file, document.dump(1) + "\n");
 }

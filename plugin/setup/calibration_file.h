@@ -12,12 +12,17 @@ namespace mjdiag {
 struct Calibration {
   std::vector<std::string> numbers;  ///< "mass@stage", see plant_number.h
   Eigen::VectorXd factors;           ///< of what the plant says
-  Eigen::MatrixXd covariance;        ///< of their logarithms
-  Eigen::VectorXd sensor_noise;      ///< sd of a reading, of each sensor [unit]
+  /// Root R of the covariance R R^T of their logarithms, n x n: some directions may be
+  /// known a million times better than others, which R still tells.
+  Eigen::MatrixXd root;
+  Eigen::VectorXd sensor_noise;  ///< sd of a reading, of each sensor [unit]
   /// What the model does not know, as a force noise: the bandwidth with which the twin
   /// is pulled along [Hz] (observer.h); 0: nothing.
   double force_noise = 0.0;
   int records = 0;  ///< that it was learned from
+
+  /// Standard deviations of the logarithms.
+  Eigen::VectorXd Sd() const { return root.rowwise().norm(); }
 
   bool operator==(const Calibration&) const = default;
 };

@@ -43,6 +43,15 @@ std::ptrdiff_t Channels::ActuatorIndex(std::string_view channel) const {
   return &Actuator(channel) - actuators.data();
 }
 
+Eigen::VectorXd Channels::AmplitudeOf(const MultisineSetup& source) const {
+  Eigen::VectorXd amplitude =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators.size()));
+  for (const auto& [channel, value] : source.amplitude) {
+    amplitude[ActuatorIndex(channel)] = value;
+  }
+  return amplitude;
+}
+
 const Trajectory& Trajectories::Find(std::string_view name) const {
   return FindNamed(setup, all, &Trajectory::name, name, "trajectory");
 }
@@ -54,6 +63,10 @@ const FaultSizes& Setup::Study(std::string_view study) const {
 bool IsDisturbance(const Setup& setup, std::string_view name) {
   return std::any_of(setup.disturbances.begin(), setup.disturbances.end(),
                      [&](const MultisineSetup& d) { return d.name == name; });
+}
+
+std::filesystem::path FindSetupFile(const std::filesystem::path& where) {
+  return std::filesystem::is_regular_file(where) ? where : where / "setup.toml";
 }
 
 Setup ReadSetup(const std::filesystem::path& where,

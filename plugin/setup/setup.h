@@ -107,6 +107,8 @@ struct Channels {
   /// Its place in `sensors` and `actuators`; InputError as above.
   std::ptrdiff_t SensorIndex(std::string_view channel) const;
   std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
+  /// A of a disturbance, of every command.
+  Eigen::VectorXd AmplitudeOf(const MultisineSetup& source) const;
 };
 
 /// Names of the channels of sensors or actuators, in their order.
@@ -159,10 +161,13 @@ struct Setup {
 /// Whether that is a disturbance of the setup, and no fault parameter of the plant.
 bool IsDisturbance(const Setup& setup, std::string_view name);
 
-/// Reads `<where>/setup.toml`, or `where` itself if it is a file. `overrides` are
-/// `key.path=value` in TOML syntax and replace values of the file. InputError names
-/// file, line and key: malformed TOML, unknown or missing key, wrong type, value out of
-/// range, a name that nothing declares.
+/// `where` itself if it is a file, else `<where>/setup.toml`.
+std::filesystem::path FindSetupFile(const std::filesystem::path& where);
+
+/// Reads the file that FindSetupFile names. `overrides` are `key.path=value` in TOML
+/// syntax and replace values of the file. InputError names file, line and key:
+/// malformed TOML, unknown or missing key, wrong type, value out of range, a name that
+/// nothing declares.
 Setup ReadSetup(const std::filesystem::path& where,
                 const std::vector<std::string>& overrides = {});
 

@@ -282,11 +282,11 @@ void ReadStudies(const TomlTable& root, Setup& setup) {
 
 Setup ReadSetup(const fs::path& where, const std::vector<std::string>& overrides,
                 std::set<std::string>& known_keys) {
-  const bool is_file = fs::is_regular_file(where);
-  const TomlDocument document(is_file ? where : where / "setup.toml", overrides);
+  const fs::path file = FindSetupFile(where);
+  const TomlDocument document(file, overrides);
   const TomlTable root = document.Root();
   Setup setup;
-  setup.folder = is_file ? where.parent_path() : where;
+  setup.folder = file.parent_path();
   ChannelUnits channels;
   ReadHead(root, setup);
   ReadRates(root, setup);

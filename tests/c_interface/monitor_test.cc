@@ -14,11 +14,6 @@ namespace {
 
 using nlohmann::json;
 using test::CountAllocations;
-using test::kFaults;
-using test::kSetup;
-using test::kSubsteps;
-using test::LastError;
-using test::Plant;
 using ::testing::HasSubstr;
 
 using CMonitor = test::MonitorBench;
@@ -48,24 +43,21 @@ TEST_F(CMonitor, SaysAtAnyTickWhatItsVerdictSaysAtTheEnd) {
   mjdiag_monitor* monitor = Nonlinear();
   EXPECT_TRUE(std::isnan(Estimates(monitor)[kFaults]));
   EXPECT_TRUE(std::isnan(Reading(monitor).first_detection));
-  std::vector<int> named(kFaults, -1);
-  EXPECT_EQ(mjdiag_monitor_named(monitor, named.data(), kFaults), 0);
-  EXPECT_THAT(named, testing::Each(0));
+  EXPECT_THAT(Named(monitor), testing::Each(0));
 
   mjdiag_instance* machine = plant.Attached();
-  ASSERT_EQ(mjdiag_monitor_watch(monitor, machine), 0) << mjdiag_last_error();
+  Watch(monitor, machine);
   plant.Step(1000);
   const std::vector<double> amid = Estimates(monitor);
   EXPECT_EQ(Reading(monitor).ticks, 1000);
   EXPECT_NEAR(amid[0], 1.2, 5.0 * amid[kFaults]);
   EXPECT_LT(amid[kFaults], 1e-3);
-  EXPECT_EQ(mjdiag_monitor_named(monitor, named.data(), kFaults), 0);
-  EXPECT_THAT(named, testing::ElementsAre(1, 0, 0, 0, 0, 0, 0, 0));
+  EXPECT_THAT(Named(monitor), testing::ElementsAre(1, 0, 0, 0, 0, 0, 0, 0));
   plant.Step(3000);
   mjdiag_detach(machine);
 
   EXPECT_STREQ(mjdiag_monitor_conclude(monitor), "Detected: zeta_x = 1.2.");
-  EXPECT_EQ(mjdiag_monitor_named(monitor, named.data(), kFaults), 0);
+  const std::vector<int> named = Named(monitor);
   const std::vector<double> end = Estimates(monitor);
   const json document = Written(monitor);
   for (std::size_t i = 0; i < kFaults; ++i) {
@@ -81,8 +73,7 @@ TEST_F(CMonitor, KnowsSinceWhenTheResidualIsOutsideItsLimits) {
   const Plant plant(1.2);  // with dry friction besides, too much for linear limits
   Watch(monitor, plant, 2500);
   const mjdiag_reading reading = Reading(monitor);
-  ASSERT_NE(mjdiag_monitor_conclude(monitor), nullptr) << mjdiag_last_error();
-  const json document = Written(monitor);
+  const json document = Concluded(monitor);
   EXPECT_EQ(document["first_detection"], reading.first_detection);
   EXPECT_EQ(document["lasting_since"], reading.lasting_since);
   EXPECT_GT(reading.first_detection, 0.0);
@@ -101,8 +92,7 @@ TEST_F(CMonitor, BeginsAnewWhenItIsRestarted) {
     mjdiag_monitor* monitor = Linear();
     EXPECT_EQ(Reading(monitor).ticks, 0);
     Watch(monitor, Plant(zeta_x), 2500);
-    ASSERT_NE(mjdiag_monitor_conclude(monitor), nullptr) << mjdiag_last_error();
-    written.push_back(Written(monitor));
+    written.push_back(Concluded(monitor));
   }
   EXPECT_NE(written[1], written[0]);
   EXPECT_EQ(written[2], written[0]);
@@ -111,7 +101,7 @@ TEST_F(CMonitor, BeginsAnewWhenItIsRestarted) {
 TEST_F(CMonitor, HearsOnceATick) {
   mjdiag_monitor* monitor = Linear();
   const Plant plant;
-  ASSERT_EQ(mjdiag_monitor_listen(monitor, plant.model), 0) << mjdiag_last_error();
+  Listen(monitor, plant);
   for (int i = 0; i < 10 * kSubsteps; ++i) {
     mj_step1(plant.model, plant.data);
     EXPECT_EQ(mjdiag_monitor_hear(monitor, plant.model, plant.data), 0);
@@ -128,13 +118,13 @@ TEST_F(CMonitor, DoesNotAllocateInATick) {
     EXPECT_GT(CountAllocations([&] { mjdiag_monitor_restart(monitor); }), 0);
 
     mjdiag_instance* machine = plant.Attached();
-    ASSERT_EQ(mjdiag_monitor_watch(monitor, machine), 0) << mjdiag_last_error();
+    Watch(monitor, machine);
     EXPECT_EQ(CountAllocations([&] { plant.Step(600); }), 0);
     EXPECT_EQ(Reading(monitor).ticks, 600);
     mjdiag_detach(machine);
 
     mjdiag_monitor_restart(monitor);
-    ASSERT_EQ(mjdiag_monitor_listen(monitor, plant.model), 0) << mjdiag_last_error();
+    Listen(monitor, plant);
     EXPECT_EQ(CountAllocations([&] {
                 for (int i = 0; i < 600; ++i) {
                   plant.data->ctrl[0] = i < 50 ? 1.0 : -1.0;

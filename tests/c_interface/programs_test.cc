@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/command_line.h"
+#include "c_interface/monitor_bench.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
 #include "mjdiag/diagnosis/diagnosis_result.h"
 #include "mjdiag/diagnosis/filters_file.h"
@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-constexpr const char* kSetup = MJDIAG_SOURCE_DIR "/mjcf/ab383";
 constexpr const char* kWorn = "Detected: zeta_x = 1.2.\n";
 
 void Cut(std::string& text, const std::string& from, const std::string& to) {
@@ -29,12 +28,9 @@ void Cut(std::string& text, const std::string& from, const std::string& to) {
   text.erase(begin, end - begin);
 }
 
-class CPrograms : public ::testing::Test {
+class CPrograms : public test::BonderBench {
  protected:
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string Read(const std::string& name) const { return ReadAll(folder_ / name); }
-
-  /// Filters of the linear or nonlinear bonder, made once for all tests of this process.
+  /// Filters of the linear or nonlinear bonder, made once for all tests.
   static std::string Filters(bool linear) {
     static const TemporaryFolder folder;
     const fs::path out = folder / (linear ? "linear" : "nonlinear");
@@ -75,8 +71,6 @@ class CPrograms : public ::testing::Test {
     Cut(text, "trajectories = [", "\n");
     return fs::path(folder_.Write("open/setup.toml", text)).parent_path().string();
   }
-
-  const TemporaryFolder folder_;
 };
 
 TEST_F(CPrograms, WatchWhatMjdiagControlsAsTheCommandDoes) {
@@ -116,10 +110,10 @@ TEST_F(CPrograms, ListenFromTheirControlCallbackToo) {
 
   Command("diagnose --setup mjcf/ab383 --record '" + Path("steps.csv") +
           "' --filters " + Filters(false));
-  json offline = json::parse(Read("command/diagnosis.json"));
+  json offline = ReadJson("command/diagnosis.json");
   offline.erase("command");
   offline.erase("record");
-  EXPECT_EQ(json::parse(Read("steps.json")), offline);
+  EXPECT_EQ(ReadJson("steps.json"), offline);
 }
 
 TEST_F(CPrograms, FeedSamplesWithoutMujocoToTheSameBits) {

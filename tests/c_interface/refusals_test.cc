@@ -13,11 +13,6 @@
 namespace mjdiag {
 namespace {
 
-using test::kFaults;
-using test::kRoom;
-using test::kSetup;
-using test::LastError;
-using test::Plant;
 using ::testing::HasSubstr;
 
 using CRefusals = test::MonitorBench;
@@ -26,7 +21,7 @@ TEST_F(CRefusals, EndsItsRunWhereATickIsMissing) {
   for (const double jump : {1.5, -2.0}) {
     mjdiag_monitor* monitor = Linear();
     const Plant plant;
-    ASSERT_EQ(mjdiag_monitor_listen(monitor, plant.model), 0) << mjdiag_last_error();
+    Listen(monitor, plant);
     EXPECT_EQ(plant.Hear(monitor), 0);
     EXPECT_EQ(plant.Hear(monitor), 0);
     plant.data->time += jump * mjdiag_monitor_sample_time(monitor);
@@ -156,7 +151,7 @@ TEST_F(CRefusals, RefusesNullPointers) {
     EXPECT_TRUE(refusals[i]()) << i;
     EXPECT_NE(LastError(), "") << i;
   }
-  ASSERT_EQ(mjdiag_monitor_listen(monitor, plant.model), 0);
+  Listen(monitor, plant);
   EXPECT_NE(mjdiag_monitor_hear(monitor, plant.model, nullptr), 0);
   EXPECT_NE(mjdiag_monitor_hear(monitor, nullptr, plant.data), 0);
   mjdiag_monitor_close(nullptr);
@@ -184,7 +179,7 @@ TEST_F(CRefusals, RefusesHandlesThatAreClosed) {
   EXPECT_EQ(mjdiag_ticks(next), 0);
 
   mjdiag_monitor* monitor = mjdiag_monitor_open(kSetup, nullptr, 1, 0);
-  ASSERT_EQ(mjdiag_monitor_watch(monitor, next), 0) << mjdiag_last_error();
+  Watch(monitor, next);
   plant.Step(1);
   EXPECT_EQ(Reading(monitor).ticks, 1);
   mjdiag_monitor_close(monitor);
@@ -209,7 +204,7 @@ TEST_F(CRefusals, RefusesCallsInTheWrongOrder) {
   EXPECT_THAT(LastError(), HasSubstr("does not listen"));
 
   // One source at a time.
-  ASSERT_EQ(mjdiag_monitor_listen(monitor, plant.model), 0) << mjdiag_last_error();
+  Listen(monitor, plant);
   EXPECT_NE(mjdiag_monitor_listen(monitor, other.model), 0);
   EXPECT_NE(other.Hear(monitor), 0);
   EXPECT_NE(Feed(monitor, 0.0), 0);

@@ -77,9 +77,7 @@ TEST(LinearTwin, KnowsHowItsPredictionsChangeWithEveryUnknown) {
     const VectorXd difference =
         (Predicted(twin, theta + step, false) - Predicted(twin, theta - step, false)) /
         (2.0 * kStep);
-    // Forces of springs and dampers are those of the mean of a tick.
-    const double allowed = i < 2 ? 1e-2 : 1e-6;
-    EXPECT_LT((sensitivities.col(i) - difference).norm(), allowed * difference.norm())
+    EXPECT_LT((sensitivities.col(i) - difference).norm(), 1e-7 * difference.norm())
         << test::UncertainStage().unknowns[static_cast<std::size_t>(i)].name;
   }
 }

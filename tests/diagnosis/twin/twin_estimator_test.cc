@@ -101,6 +101,25 @@ TEST(TwinEstimator, NeedsNoStartAtRest) {
   }
 }
 
+TEST(TwinEstimator, SaysAtEveryTickWhatItKnowsSoFar) {
+  const Vector3d truth(0.5, -0.2, -0.3);
+  const test::StageRun run = test::RunStage(truth, 0.01, 11);
+  TwinEstimator estimator = test::StageEstimator();
+  Vector3d last = Vector3d::Constant(1e-2);
+  for (Index k = 0; k < run.outputs.cols(); ++k) {
+    estimator.Add({run.outputs.col(k).data(), 2}, {run.inputs.col(k).data(), 2});
+    if (k < 1000 || k % 50 != 0) continue;
+    const TwinReading reading = estimator.Read();
+    for (int i = 0; i < 3; ++i) {
+      // 420 estimates of one run: 6 standard deviations but for a probability of 1e-6.
+      ASSERT_NEAR(reading.deviation[i], truth[i], 6.0 * reading.sd[i]) << k;
+      // It goes back in between, and does not forget.
+      ASSERT_LT(reading.sd[i], 1.1 * last[i]) << k;
+      last[i] = reading.sd[i];
+    }
+  }
+}
+
 TEST(TwinEstimator, SaysThatItsTwinDoesNotExplainAnotherMachine) {
   test::StageRun run = test::RunStage(Vector3d::Zero(), 0.0, 1);
   // A force that no unknown is: a quadratic one.

@@ -33,14 +33,14 @@ inline UncertainModel UncertainStage() {
                            {},
                            {i}});
     model.unknowns.push_back(
-        {kFaults[static_cast<std::size_t>(i)], 1.0, 0.1, true, true});
+        {kFaults[static_cast<std::size_t>(i)], 0.0, 0.1, 1.0, true});
   }
   model.tones.push_back({kTone, kToneAmplitude});
-  model.unknowns.push_back({"sine", 0.0, 0.1, false, true});
-  model.unknowns.push_back({"cosine", 0.0, 0.1, false, true});
+  model.unknowns.push_back({"sine", 0.0, 0.1, 0.0, true});
+  model.unknowns.push_back({"cosine", 0.0, 0.1, 0.0, true});
   model.start = StartDirections(model.nominal, 1.0);
   for (Eigen::Index i = 0; i < model.start.cols(); ++i) {
-    model.unknowns.push_back({"start " + std::to_string(i), 0.0, 1.0, false, false});
+    model.unknowns.push_back({"start " + std::to_string(i), 0.0, 1.0, 0.0, false});
   }
   return model;
 }

@@ -1,12 +1,17 @@
 #include "mjdiag/plugin/design/calibrate.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
+
+using testing::Each;
+using testing::ElementsAre;
 
 /// A bonder of which three numbers are not what its plant says.
 class CalibrateTheBonder : public testing::Test {
@@ -40,15 +45,45 @@ TEST_F(CalibrateTheBonder, LearnsItsNumbersAndItsNoise) {
     const auto at = static_cast<Eigen::Index>(i);
     const auto moved = truth.find(learned.numbers[i]);
     const double expected = moved == truth.end() ? 1.0 : moved->second;
-    // 29 numbers within 5 standard deviations: by chance outside with 2e-5. Beyond 2e-5
-    // the sensitivities of the twin, of the mean of a tick, are not exact.
+    // 29 numbers within 5 standard deviations: by chance outside with 2e-5.
     EXPECT_LT(std::abs(std::log(learned.factors[at] / expected)),
-              2e-5 + 5.0 * std::sqrt(learned.covariance(at, at)))
+              5.0 * learned.Sd()[at])
         << learned.numbers[i];
   }
   EXPECT_EQ(learned.force_noise, 0.0);
   for (const double noise : learned.sensor_noise) EXPECT_NEAR(noise, 20e-9, 1e-9);
   for (const CalibratedRecord& record : report.records) EXPECT_LT(record.misfit, 2.0);
+}
+
+TEST_F(CalibrateTheBonder, ThenNamesNothingThatIsHealthyAndEverythingThatIsNot) {
+  const CalibrationReport report = Calibrate(
+      nominal_, {Healthy(1), Healthy(2), Healthy(3)}, {.linear = true, .progress = {}});
+  Setup setup = nominal_.setup();
+  setup.calibration = report.calibration;
+  const Machine calibrated(setup);
+  const auto reading = [&](const Machine& machine, std::uint64_t seed) {
+    RunOptions options;
+    options.seed = seed;
+    const Record record = SimulateLinear(machine, DefaultMotion(setup), options);
+    const Eigen::MatrixXd y = SamplesOf(record, nominal_.linear().outputs);
+    const Eigen::MatrixXd u = SamplesOf(record, nominal_.linear().inputs);
+    const auto twin = MakeTwinEstimator(calibrated, true);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      twin->Add({y.col(k).data(), 3}, {u.col(k).data(), 3});
+    }
+    twin->CatchUp();
+    return twin->Read();
+  };
+  // A healthy run has something named with a probability of 1e-4.
+  for (const std::uint64_t seed : {11, 12, 13, 14, 15}) {
+    EXPECT_THAT(reading(real_, seed).named, Each(false)) << seed;
+  }
+  const TwinReading worn =
+      reading(real_.With({{{"zeta_x", 1.0 + 1e-5}, {"eta_y", 1.0 - 1e-6}}, {}}), 16);
+  EXPECT_THAT(worn.named,
+              ElementsAre(true, false, false, false, false, true, false, false));
+  EXPECT_NEAR(worn.deviation[0], 1e-5, 5.0 * worn.sd[0]);
+  EXPECT_NEAR(worn.deviation[5], -1e-6, 5.0 * worn.sd[5]);
 }
 
 }  // namespace

@@ -75,9 +75,10 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
       {"by = { s = 0.02 }", "by = { s = 0.02 }, to = 1", 54,
        "trajectories.slow.moves[0].to: unknown key; expected one of at, by"},
       {"[compare.forces]", "[comparison]\n[compare.forces]", 66,
-       "comparison: unknown key; expected one of actuators, analytic, axes, calibration, compare, "
-       "default_trajectory, diagnosis, disturbances, name, physics, plant, published, "
-       "rates, record, schema, sensors, studies, trajectories"},
+       "comparison: unknown key; expected one of actuators, analytic, axes, "
+       "calibration, compare, default_trajectory, diagnosis, disturbances, name, "
+       "physics, plant, published, rates, record, schema, sensors, studies, "
+       "trajectories"},
       // missing keys and wrong types
       {"control = 1000.0", "", 7, "rates.control: is missing; expected a number > 0"},
       {"control = 1000.0", "control = \"fast\"", 8,

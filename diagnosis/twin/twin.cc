@@ -1,0 +1,35 @@
+#include "mjdiag/diagnosis/twin/twin.h"
+
+#include <utility>
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+Twin::Twin(const TwinShape& shape, std::vector<TwinGain> gains,
+           std::vector<UnknownTone> tones, double sample_time)
+    : theta_(VectorXd::Zero(shape.unknowns)),
+      tones_(std::move(tones), sample_time),
+      u_(VectorXd::Zero(shape.inputs)),
+      shape_(shape),
+      gains_(std::move(gains)) {}
+
+double Twin::Logarithm(const std::vector<Index>& factors) const noexcept {
+  double sum = 0.0;
+  for (const Index factor : factors) sum += theta_[factor];
+  return sum;
+}
+
+void Twin::Begin(const VectorXd& theta, bool at_rest) noexcept {
+  theta_ = theta;
+  acting_ = unknowns() - (at_rest ? start_unknowns() : 0);
+  tones_.Start();
+}
+
+void Twin::Command(std::span<const double> inputs) noexcept {
+  u_ = VectorXd::Map(inputs.data(), u_.size());
+  tones_.AddTo(u_, theta_.segment(first_tone(), 2 * tones_.count()));
+}
+
+}  // namespace mjdiag
