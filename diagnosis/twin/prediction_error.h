@@ -28,10 +28,12 @@
 // random, so that what was long ago is forgotten. Memory is constant, time unbounded.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "mjdiag/diagnosis/twin/checkpoints.h"
 #include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/kept_readings.h"
 #include "mjdiag/diagnosis/twin/run_start.h"
@@ -91,6 +93,11 @@ class PredictionErrorEstimator {
   int returns() const { return returns_; }
 
  private:
+  /// Ticks of a first guess with the stiffest gain.
+  static constexpr Eigen::Index kFirstGuess = 128;
+  /// Blocks between two steps of the walk, and of theta0, while it follows.
+  static constexpr Eigen::Index kWalkEvery = 64;
+
   /// Where passes begin.
   struct Beginning {
     Eigen::Index origin = 0;  ///< first tick that counts
@@ -122,10 +129,6 @@ class PredictionErrorEstimator {
     Eigen::Index until = 0;  ///< tick up to which it has seen
     std::size_t gain = 0;
   };
-  struct Checkpoint {
-    Eigen::Index tick = -1;
-    Eigen::VectorXd state;
-  };
 
   bool FindStart() noexcept;
   /// One tick of the twin on kept readings. @return whether it ends a block
@@ -156,7 +159,9 @@ class PredictionErrorEstimator {
   void MoveOrigin() noexcept;
   /// From the first tick of the segment on, if it is still kept.
   bool WidenHorizon() noexcept;
-  const Checkpoint* LastCheckpoint(Eigen::Index until) const noexcept;
+  const Checkpoint* LastCheckpoint(Eigen::Index until) const noexcept {
+    return checkpoints_.Last(std::max(segment_.now.origin, kept_.first() + 1), until);
+  }
   /// Passes do not get farther: more coarsely.
   void LookMoreCoarsely() noexcept;
   /// All so far is explained: more finely, if it is not looked at as finely as can be.
@@ -193,7 +198,7 @@ class PredictionErrorEstimator {
   Eigen::Index phase_origin_ = 0;
 
   Segment segment_;
-  std::vector<Checkpoint> checkpoints_;
+  Checkpoints checkpoints_;
   std::size_t gain_ = 0;
   std::vector<Eigen::VectorXd> proven_;  // theta that explained all, by gain
   std::vector<bool> is_proven_;

@@ -47,7 +47,8 @@ std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
     text.Replace(name, WithSuffix(text.Raw(name), kSuffix));
   }
   text.Replace(*text.At("plant").node(), R"("plant.xml")");
-  for (const char* key : {"analytic", "published"}) {
+  // What was calibrated is in the plant, its noise in the sensors below.
+  for (const char* key : {"analytic", "published", "calibration"}) {
     if (const auto old = text.At(key)) text.RemoveLines(*old.node());
   }
   if (const auto friction = text.At("physics.static_friction")) {
@@ -59,7 +60,7 @@ std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
       if (placed.site != sensor.element) continue;
       sd = placed.effect->NoiseSd(sd, placed.values);
     }
-    if (sd != sensor.noise_sd) WriteNoise(text, setup, sensor, sd);
+    if (sd != sensor.noise_sd || setup.calibration) WriteNoise(text, setup, sensor, sd);
   }
   return text.Text();
 }

@@ -255,7 +255,8 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   if (!std::isfinite(learner.Excess())) {
     throw NumericalError("calibration: the twin of the machine diverges");
   }
-  if (!learner.Explains()) {
+  const bool inflated = !learner.Explains();
+  if (inflated) {
     // What not even that explains counts as noise.
     noise *= std::sqrt(learner.Excess());
     learner = about(learner.theta());
@@ -276,7 +277,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
     progress(0.9 -
              0.5 * static_cast<double>(gain) / static_cast<double>(learner.stiffest()));
   }
-  if (learner.Explains()) noise = noise.cwiseMin(learner.Noise());
+  if (!inflated) noise = noise.cwiseMin(learner.Noise());
   learner = about(learner.theta());
   learner.Learn(gain, false);
 

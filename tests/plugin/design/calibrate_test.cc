@@ -58,7 +58,7 @@ TEST_F(CalibrateTheBonder, LearnsItsNumbersAndItsNoise) {
 TEST_F(CalibrateTheBonder, ThenNamesNothingThatIsHealthyAndEverythingThatIsNot) {
   const CalibrationReport report = Calibrate(
       nominal_, {Healthy(1), Healthy(2), Healthy(3)}, {.linear = true, .progress = {}});
-  Setup setup = nominal_.setup();
+  mjdiag::Setup setup = nominal_.setup();
   setup.calibration = report.calibration;
   const Machine calibrated(setup);
   const auto reading = [&](const Machine& machine, std::uint64_t seed) {
