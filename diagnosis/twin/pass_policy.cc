@@ -31,6 +31,8 @@ constexpr int kConfirmed = 1;
 constexpr Index kUnnoticed = 256;
 /// Blocks before the surprise in which the change was there already.
 constexpr Index kNoticed = 2;
+/// What is not explained for that long from the first tick on was not at rest there.
+constexpr Index kAtOnce = 64;
 /// On average over recent blocks, that is none that came loose.
 constexpr double kSurprisingThroughout = 8.0;
 /// Ticks that a twin looks at that is pulled along, before it goes back.
@@ -117,6 +119,7 @@ void PredictionErrorEstimator::Unexplained() noexcept {
 }
 
 void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
+  if (segment_.first.at_rest && segment_.explained < kAtOnce) return StartInMotion();
   const std::size_t stiffest = covariances_.size() - 1;
   exhausted_ = gain_ == stiffest || returns_ >= kMostReturns ||
                (gain_ + 1 == stiffest && is_proven_[stiffest]);

@@ -177,6 +177,11 @@ bool PredictionErrorEstimator::FindStart() noexcept {
       return true;
     }
   }
+  StartInMotion();
+  return true;
+}
+
+void PredictionErrorEstimator::StartInMotion() noexcept {
   Beginning& first = segment_.first;
   first.at_rest = false;
   first.settling = twin_->gains().back().settling;
@@ -184,11 +189,7 @@ bool PredictionErrorEstimator::FindStart() noexcept {
   twin_->StateAt(reading_, first.settling_state);
   first.state = first.settling_state;
   segment_.now = first;
-  if (Finest() > 0) {
-    gain_ = covariances_.size() - 1;
-  }
-  Begin();
-  return true;
+  StartOver(Finest() > 0 ? covariances_.size() - 1 : 0, nominal_);
 }
 
 void PredictionErrorEstimator::ProcessKept() noexcept {

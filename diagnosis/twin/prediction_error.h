@@ -131,6 +131,8 @@ class PredictionErrorEstimator {
   };
 
   bool FindStart() noexcept;
+  /// The run did not begin at rest.
+  void StartInMotion() noexcept;
   /// One tick of the twin on kept readings. @return whether it ends a block
   bool StepTwin() noexcept;
 

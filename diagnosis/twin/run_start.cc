@@ -43,9 +43,13 @@ bool RunStart::BeganAtRest(Twin& twin, const KeptReadings& kept, VectorXd& theta
     }
     const MatrixXd& psi = twin.EndBlock();
     if (run > 0) continue;
-    weighted_.noalias() = prior * psi.transpose();
+    // Tones move it in the course of the block only.
+    const auto of_rest = psi.leftCols(first_tone);
+    auto weighted = weighted_.topRows(first_tone);
+    weighted.noalias() =
+        prior.topLeftCorner(first_tone, first_tone) * of_rest.transpose();
     for (Index i = 0; i < spread_.size(); ++i) {
-      spread_[i] = std::sqrt(psi.row(i).dot(weighted_.col(i)));
+      spread_[i] = std::sqrt(of_rest.row(i).dot(weighted.col(i)));
     }
   }
   for (Index i = 0; i < reading_.size(); ++i) {
