@@ -45,9 +45,8 @@ void PredictionErrorEstimator::Reconsider() noexcept {
   if (!Pulled() && Surprised()) return Unexplained();
   if (Pulled() && gain_ + 1 == covariances_.size()) return Guess();
   if (seen_ < kept_.added() || seen_ < next_look_) return;
-  // It catches up in as long as it goes back.
   next_look_ = kept_.added() +
-               (Pulled() ? kPulledLook : 2 * (kept_.added() - segment_.now.origin));
+               (Pulled() ? kPulledLook : (kept_.added() - segment_.now.origin) / 2);
   if (Pulled()) {
     if (!WorthGoingBack() || ++pulled_passes_ > kPulledPasses) {
       LookMoreFinely();
@@ -94,7 +93,7 @@ bool PredictionErrorEstimator::WidenHorizon() noexcept {
     return false;
   }
   segment_.now = first;
-  next_look_ = kept_.added() + 2 * (kept_.added() - first.origin);
+  next_look_ = kept_.added() + (kept_.added() - first.origin) / 2;
   GoBack();
   return true;
 }
@@ -120,11 +119,11 @@ void PredictionErrorEstimator::Unexplained() noexcept {
 
 void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
   if (segment_.first.at_rest && segment_.explained < kAtOnce) return StartInMotion();
+  Retract();
   const std::size_t stiffest = covariances_.size() - 1;
   exhausted_ = gain_ == stiffest || returns_ >= kMostReturns ||
                (gain_ + 1 == stiffest && is_proven_[stiffest]);
   if (exhausted_) return;
-  said_.gain = stiffest;  // what was said of it is not true
   if (is_proven_[stiffest]) return StartOver(gain_ + 1, proven_[stiffest]);
   // States of a twin that does not explain the machine are of no use.
   checkpoints_.Clear();
@@ -215,7 +214,7 @@ double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept
   return farthest;
 }
 
-bool PredictionErrorEstimator::WorthGoingBack() const noexcept {
+double PredictionErrorEstimator::SecondOrder() const noexcept {
   // Of the machine: where it started may be hard to say and does not matter.
   const Index machine = theta_.size() - twin_->start_unknowns();
   const VectorXd& change = information_.change();
@@ -223,8 +222,11 @@ bool PredictionErrorEstimator::WorthGoingBack() const noexcept {
   for (Index i = 0; i < machine; ++i) {
     moved = std::max(moved, change[i] * change[i] * information_.H()(i, i));
   }
-  moved = std::sqrt(moved);
-  return moved > kMoved && moved * twin_->curvature() * Farthest(change) > kCurved;
+  return moved > kMoved * kMoved ? std::sqrt(moved) * Farthest(change) : 0.0;
+}
+
+bool PredictionErrorEstimator::WorthGoingBack() const noexcept {
+  return twin_->curvature() * SecondOrder() > kCurved;
 }
 
 void PredictionErrorEstimator::StartOver(std::size_t gain,

@@ -20,6 +20,8 @@ constexpr double kWidestStart = 1e3;
 /// Standard deviations.
 constexpr double kSure = 5.0;
 constexpr Index kFirstLook = 256;
+/// Of a motion of a few periods (TwinShape).
+constexpr double kUsualCurvature = 3.0;
 /// While the twin is pulled along, a block that is more surprising counts less, in
 /// inverse proportion: a joint came loose a little sooner than the twin's.
 constexpr double kRobust = 4.0;
@@ -145,8 +147,10 @@ void PredictionErrorEstimator::Add(std::span<const double> outputs,
 
 void PredictionErrorEstimator::Say() noexcept {
   const bool same = said_.began && said_.since == segment_.first.origin;
-  if (blocks_ == 0 || (same && (gain_ > said_.gain || seen_ < said_.until))) return;
+  const bool less = gain_ > said_.gain || seen_ < said_.until;
+  if (blocks_ == 0 || (same && less && !exhausted_)) return;
   said_.began = true;
+  said_.sure = kUsualCurvature * SecondOrder() < 1.0;
   said_.information = information_;
   said_.theta = theta_;
   said_.prior = prior_;
@@ -155,6 +159,11 @@ void PredictionErrorEstimator::Say() noexcept {
   said_.since = segment_.first.origin;
   said_.until = seen_;
   said_.gain = gain_;
+}
+
+void PredictionErrorEstimator::Retract() noexcept {
+  said_.gain = covariances_.size() - 1;
+  said_.until = 0;
 }
 
 bool PredictionErrorEstimator::StepTwin() noexcept {
@@ -182,6 +191,7 @@ bool PredictionErrorEstimator::FindStart() noexcept {
 }
 
 void PredictionErrorEstimator::StartInMotion() noexcept {
+  Retract();
   Beginning& first = segment_.first;
   first.at_rest = false;
   first.settling = twin_->gains().back().settling;

@@ -85,7 +85,10 @@ class PredictionErrorEstimator {
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
   double surprise() const { return said_.surprise; }
   /// Whether what it says is of the machine as it is now: it knows of no change since.
-  bool current() const { return said_.began && said_.since == segment_.first.origin; }
+  bool current() const { return sure() && said_.since == segment_.first.origin; }
+  /// Whether the twin ran so near to it that the first order tells it, as its standard
+  /// deviation takes for granted.
+  bool sure() const { return said_.sure; }
   /// Tick at which the phases of its tones begin.
   Eigen::Index phase_origin() const { return said_.phase_origin; }
   /// Tick from which the machine has been as it is estimated.
@@ -120,6 +123,7 @@ class PredictionErrorEstimator {
   /// An estimate, with all that belongs to it.
   struct Estimate {
     bool began = false;
+    bool sure = false;
     Information information;
     Eigen::VectorXd theta, variance;
     Eigen::MatrixXd prior;
@@ -139,6 +143,8 @@ class PredictionErrorEstimator {
   void Begin() noexcept;
   /// What this pass says is said, unless another has seen more or more finely.
   void Say() noexcept;
+  /// What was said is not true: whatever comes takes its place.
+  void Retract() noexcept;
   void GoBack() noexcept;
   void WidenPrior() noexcept;
   void ProcessKept() noexcept;
@@ -173,7 +179,10 @@ class PredictionErrorEstimator {
   void PassesToTheEnd() noexcept;
   bool following() const { return kept_.added() - segment_.now.origin > options_.kept; }
   double Farthest(const Eigen::VectorXd& change) const noexcept;
-  /// Whether noise would show what the first order leaves.
+  /// What the first order leaves of the change since theta0, in standard deviations, for
+  /// a curvature of 1.
+  double SecondOrder() const noexcept;
+  /// Whether noise would show it.
   bool WorthGoingBack() const noexcept;
 
   std::unique_ptr<Twin> twin_;

@@ -119,7 +119,7 @@ TwinReading TwinEstimator::Read() const {
       reading.inseparable.push_back(static_cast<Index>(i));
     }
   }
-  if (!groups.empty() && reading.misfit < kLargestMisfit) {
+  if (!groups.empty() && estimator_.sure() && reading.misfit < kLargestMisfit) {
     reading.named = NameFaults(theta.head(active), covariance, groups, kFalseFault);
   }
   return reading;
