@@ -149,11 +149,16 @@ bool PredictionErrorEstimator::TryChange() noexcept {
   first.settling = kUnnoticed;
   first.settling_state = first.state = from->state;
   first.origin = seen_ - kNoticed * twin_->block();
+  if (twin_->start_unknowns() > 0) {
+    // Any state will do where it is among the unknowns.
+    reading_ = kept_.outputs(first.origin);
+    twin_->StateAt(reading_, first.state);
+  }
   segment_.now = first;
   returns_ = 0;
   std::fill(is_proven_.begin(), is_proven_.end(), false);
   variance_ = information_.Variance();
-  StartOver(covariances_.size() - 1, theta_);
+  StartOver(twin_->start_unknowns() > 0 ? 0 : covariances_.size() - 1, theta_);
   return true;
 }
 
@@ -236,7 +241,7 @@ void PredictionErrorEstimator::StartOver(std::size_t gain,
   segment_.stuck = segment_.same = 0;
   pulled_passes_ = 0;
   next_look_ = kept_.added() + kPulledLook;
-  look_ = kFirstGuess;
+  look_ = kPulledLook;
   center_ = theta_ = theta;
   information_.Recentre();
   GoBack();
