@@ -38,7 +38,9 @@ std::unique_ptr<Twin> MakeFreeTwin(const Machine& machine,
                                    const UncertainMachine& uncertain,
                                    const VectorXd& noise, bool linear) {
   std::vector<TwinGain> none = {{MatrixXd::Zero(2 * machine.plant().nv, noise.size()),
-                                 noise.cwiseAbs2().asDiagonal(), 0}};
+                                 noise.cwiseAbs2().asDiagonal(),
+                                 {},
+                                 0}};
   if (linear) {
     return std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
                                         std::move(none), 1);
@@ -46,18 +48,17 @@ std::unique_ptr<Twin> MakeFreeTwin(const Machine& machine,
   return std::make_unique<PlantTwin>(machine, uncertain, std::move(none), 1);
 }
 
-/// theta of the truth, phases of tones as they are at a time [s] of the run.
-VectorXd ThetaAt(const Machine& machine, const UncertainMachine& uncertain,
-                 const VectorXd& deviations, double time) {
+/// theta of the truth.
+VectorXd ThetaOf(const Machine& machine, const UncertainMachine& uncertain,
+                 const VectorXd& deviations) {
   VectorXd theta = VectorXd::Zero(static_cast<Index>(uncertain.unknowns.size()));
   theta.head(uncertain.faults) = deviations.head(uncertain.faults).array().log1p();
   Index at = uncertain.first_tone();
   Index fault = uncertain.faults;
   for (const MultisineSetup& source : machine.setup().disturbances) {
-    for (const double frequency : source.frequencies) {
-      const double phase = 2.0 * std::numbers::pi * frequency * time;
-      theta[at++] = deviations[fault] * std::cos(phase);
-      theta[at++] = deviations[fault] * std::sin(phase);
+    // All of its tones are sines.
+    for (std::size_t tone = 0; tone < source.frequencies.size(); ++tone, at += 2) {
+      theta[at] = deviations[fault];
     }
     ++fault;
   }
@@ -99,16 +100,18 @@ VectorXd RunBound(const Machine& machine, const VectorXd& deviations,
                innovation);
   };
 
-  twin->Start(ThetaAt(machine, uncertain, deviations, 0.0));
+  const VectorXd theta = ThetaOf(machine, uncertain, deviations);
+  twin->Start(theta);
   if (from > 0) {
     for (Index k = 0; k < from; ++k) {
       step(k);
       twin->EndBlock();
     }
-    VectorXd state = VectorXd::Zero(twin->states());
+    TwinState state = twin->MakeState();
     twin->ReadState(state);
-    const double time = static_cast<double>(from) * machine.rates().tick();
-    twin->Start(ThetaAt(machine, uncertain, deviations, time), state);
+    // Nothing is known of it.
+    state.S.setZero();
+    twin->Start(theta, state, from);
   }
   const Index p = twin->unknowns();
   const Index started = twin->start_unknowns();

@@ -4,18 +4,18 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "mjdiag/diagnosis/twin/twin.h"
+
 namespace mjdiag {
 
 struct Checkpoint {
   Eigen::Index tick = -1;
-  Eigen::VectorXd state;
+  TwinState state;
 };
 
 class Checkpoints {
  public:
-  explicit Checkpoints(Eigen::Index states) {
-    kept_.fill({-1, Eigen::VectorXd::Zero(states)});
-  }
+  explicit Checkpoints(const Twin& twin) { kept_.fill({-1, twin.MakeState()}); }
 
   // Nothing below allocates, locks or throws.
 

@@ -103,6 +103,15 @@ const VectorXd& Information::Variance() noexcept {
   return variance_;
 }
 
+void Information::Discount(const MatrixXd& prior, const VectorXd& away,
+                           double times) noexcept {
+  solution_.noalias() = prior * away;
+  H_ = prior + (H_ - prior) / times;
+  g_ = solution_ + (g_ - solution_) / times;
+  Factorise();
+  Solve();
+}
+
 void Information::Recentre() noexcept {
   g_.setZero();
   change_.setZero();

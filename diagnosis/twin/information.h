@@ -48,6 +48,9 @@ class Information {
   /// Variances of the estimate, p.
   const Eigen::VectorXd& Variance() noexcept;
 
+  /// What was added counts that many times less, what was there before it as before.
+  void Discount(const Eigen::MatrixXd& prior, const Eigen::VectorXd& away,
+                double times) noexcept;
   /// theta0 becomes theta.
   void Recentre() noexcept;
   /// The unknowns have walked: their covariance grows by that, p.

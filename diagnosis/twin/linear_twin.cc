@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Periods in which a resonance rings.
-constexpr double kCurvature = 100.0;
+constexpr double kCurvature = 3.0;
 
 /// K with a slow spring for what nothing holds.
 MatrixXd Held(const MechanicalModel& model) {
@@ -186,19 +186,18 @@ void LinearTwin::Lift(const MatrixXd& pulse, Response& response) noexcept {
 }
 
 void LinearTwin::Start(const VectorXd& theta) noexcept {
-  Begin(theta, true);
+  Begin(theta, true, 0);
   Reset();
   moved_rest_.Find(theta_);
   x_.head(M_.rows()) = moved_rest_.position();
   S_.topRows(M_.rows()) = moved_rest_.sensitivity();
 }
 
-void LinearTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
-  Begin(theta, false);
+void LinearTwin::Start(const VectorXd& theta, const TwinState& state,
+                       Index tick) noexcept {
+  Begin(theta, false, tick);
   Reset();
-  x_ = state;
-  x_.noalias() += model_.start * theta_.tail(start_unknowns());
-  S_.rightCols(start_unknowns()) = model_.start;
+  Place(state, model_.start);
 }
 
 void LinearTwin::Reset() noexcept {
@@ -210,10 +209,11 @@ void LinearTwin::Reset() noexcept {
   MakeMaps();
 }
 
-void LinearTwin::StateAt(const VectorXd& reading, VectorXd& state) noexcept {
-  state.setZero();
-  state.head(M_.rows()).noalias() = place_ * reading;
-  state.head(M_.rows()).noalias() -= place_ * model_.rest;
+void LinearTwin::StateAt(const VectorXd& reading, TwinState& state) noexcept {
+  state.S.setZero();
+  state.x.setZero();
+  state.x.head(M_.rows()).noalias() = place_ * reading;
+  state.x.head(M_.rows()).noalias() -= place_ * model_.rest;
 }
 
 void LinearTwin::Predict(VectorXd& reading) noexcept {

@@ -62,11 +62,9 @@ class LinearTwin final : public Twin {
 
   void UseGain(std::size_t gain) noexcept override;
   void Start(const Eigen::VectorXd& theta) noexcept override;
-  void Start(const Eigen::VectorXd& theta,
-             const Eigen::VectorXd& state) noexcept override;
-  void StateAt(const Eigen::VectorXd& reading,
-               Eigen::VectorXd& state) noexcept override;
-  void ReadState(Eigen::VectorXd& state) const noexcept override { state = x_; }
+  void Start(const Eigen::VectorXd& theta, const TwinState& state,
+             Eigen::Index tick) noexcept override;
+  void StateAt(const Eigen::VectorXd& reading, TwinState& state) noexcept override;
   void Predict(Eigen::VectorXd& reading) noexcept override;
   void Step(std::span<const double> inputs,
             const Eigen::VectorXd& innovation) noexcept override;
@@ -129,10 +127,10 @@ class LinearTwin final : public Twin {
 
   // The run.
   Eigen::Index in_block_ = 0;
-  Eigen::VectorXd x_, next_, driven_;
+  Eigen::VectorXd next_, driven_;
   Eigen::MatrixXd held_, moving_;       // forces of a unit of every number, and tone
   Eigen::MatrixXd carried_, of_block_;  // of those of a block: at its end, in its mean
-  Eigen::MatrixXd S_, S_next_, sensitivity_;
+  Eigen::MatrixXd S_next_, sensitivity_;
 };
 
 }  // namespace mjdiag

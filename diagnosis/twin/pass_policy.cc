@@ -1,4 +1,4 @@
-// When a pass is worth another one, where it begins and how finely it looks.
+// When a pass is worth another one, where that begins and how softly it is pulled.
 
 #include <algorithm>
 #include <cmath>
@@ -11,17 +11,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// A change by less than that, in standard deviations that an unknown has where all
-/// others are known, needs no other pass.
-constexpr double kMoved = 0.3;
-/// Nor does one of which the second order is less than that.
-constexpr double kCurved = 0.1;
-/// Passes without a longer horizon before it is looked at more coarsely.
+/// Passes without a longer horizon before the twin is pulled along.
 constexpr int kPatience = 3;
 /// A machine that this many passes do not explain is another one.
 constexpr int kMostReturns = 150;
-/// At the end of a run, until the estimate is where the twin runs.
-constexpr int kLastPasses = 12;
 /// A machine explained for that long has changed if it is not any more, which as many
 /// passes have to confirm.
 constexpr Index kLongExplained = 1024;
@@ -33,75 +26,115 @@ constexpr Index kUnnoticed = 256;
 constexpr Index kNoticed = 2;
 /// What is not explained for that long from the first tick on was not at rest there.
 constexpr Index kAtOnce = 64;
-/// On average over recent blocks, that is none that came loose.
-constexpr double kSurprisingThroughout = 8.0;
-/// Ticks that a twin looks at that is pulled along, before it goes back.
-constexpr Index kPulledLook = 1024;
+
+/// Ticks that a twin looks at that is pulled along, and of the first guess of one that
+/// began at rest.
+constexpr Index kLook = 1024;
+constexpr Index kFirstGuess = 128;
 constexpr int kPulledPasses = 6;
+/// At the end of a run, until the estimate is where the twin runs.
+constexpr int kLastPasses = 12;
+/// Standard deviations of what the first order does not tell.
+constexpr double kTooFar = 3.0;
+/// Squared change, in standard deviations with one gain, that the next softer one can
+/// make good: its predictions are not much longer.
+constexpr double kNear = 1000.0;
+/// That no other pass is needed after.
+constexpr double kThere = 0.1;
 
 }  // namespace
 
-void PredictionErrorEstimator::Reconsider() noexcept {
-  if (!Pulled() && Surprised()) return Unexplained();
-  if (Pulled() && gain_ + 1 == covariances_.size()) return Guess();
-  if (seen_ < kept_.added() || seen_ < next_look_) return;
-  next_look_ = kept_.added() +
-               (Pulled() ? kPulledLook : (kept_.added() - segment_.now.origin) / 2);
-  if (Pulled()) {
-    if (!WorthGoingBack() || ++pulled_passes_ > kPulledPasses) {
-      LookMoreFinely();
-    } else {
-      GoBack();
-    }
-  } else if (!WidenHorizon() && WorthGoingBack()) {
-    GoBack();
+void PredictionErrorEstimator::StartInMotion() noexcept {
+  Retract();
+  if (pass_.twin().linear()) {
+    pass_.StartMeasured(kept_, 0, segment_.first);
+    return StartOver(0, nominal_);
   }
+  pass_.StartSettling(kept_, 0, segment_.first);
+  segment_.window = segment_.first;
+  segment_.windowed = true;
+  StartOver(pass_.stiffest(), nominal_);
 }
 
-void PredictionErrorEstimator::Guess() noexcept {
-  if (seen_ - counts_from_ < look_) return;
-  const bool worth = WorthGoingBack() && pulled_passes_ < kPulledPasses;
-  if (look_ >= kPulledLook && !worth) {
-    LookMoreFinely();
+void PredictionErrorEstimator::StartOver(std::size_t gain,
+                                         const VectorXd& theta) noexcept {
+  segment_.explained = segment_.surprised = 0;
+  segment_.stuck = segment_.same = 0;
+  pulled_passes_ = 0;
+  look_ = segment_.windowed && segment_.window.at_rest ? kFirstGuess : kLook;
+  next_look_ = kept_.added() + kLook;
+  next_ = theta;
+  next_.tail(pass_.twin().start_unknowns()).setZero();
+  WidenPrior();
+  Begin(gain, next_);
+}
+
+void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
+
+void PredictionErrorEstimator::Reconsider() noexcept {
+  if (Surprised()) return Unexplained();
+  if (segment_.windowed) return Approach();
+  const Index horizon = pass_.seen() - now().origin;
+  if (Bias() > kTooFar && 4 * horizon > 5 * segment_.explained) {
+    segment_.explained = horizon;
+    return GoBack();
+  }
+  if (!CaughtUp() || pass_.seen() < next_look_) return;
+  next_look_ = kept_.added() + horizon / 2;
+  if (WorthGoingBack()) GoBack();
+}
+
+void PredictionErrorEstimator::Approach() noexcept {
+  if (pass_.blocks() * pass_.twin().block() < look_) return;
+  if (look_ < kLook) {
+    look_ *= 2;
+    if (WorthGoingBack()) GoBack();
     return;
   }
-  if (look_ < kPulledLook) {
-    look_ *= 2;
-  } else {
-    ++pulled_passes_;
-    MoveOrigin();
-  }
-  if (worth) GoBack();
+  const bool near =
+      gain() == 0 ? !WorthGoingBack() : pass_.information().SquaredChange() < kNear;
+  const bool again = !near && ++pulled_passes_ < kPulledPasses;
+  const VectorXd& theta = NextTheta();
+  if (!again && gain() == 0) return WidenHorizon();
+  MoveWindow();
+  if (again) return Begin(gain(), theta);
+  pulled_passes_ = 0;
+  Begin(Softer(gain(), kLook), theta);
 }
 
-void PredictionErrorEstimator::MoveOrigin() noexcept {
-  if (seen_ < kept_.added()) return;
-  const Checkpoint* from = LastCheckpoint(seen_ - kPulledLook - kUnnoticed);
+std::size_t PredictionErrorEstimator::Softer(std::size_t gain,
+                                             Index ticks) const noexcept {
+  // One that does not settle in that time is as good as none.
+  while (gain > 0 && pass_.twin().gains()[--gain].settling > ticks) {
+  }
+  return gain;
+}
+
+void PredictionErrorEstimator::MoveWindow() noexcept {
+  if (!CaughtUp()) return;
+  const Checkpoint* from = checkpoints_.Last(std::max(now().origin, kept_.first() + 1),
+                                             pass_.seen() - kLook - kUnnoticed);
   if (from == nullptr) return;
-  Beginning& now = segment_.now;
-  now.at_rest = false;
-  now.settling_from = from->tick;
-  now.settling = kUnnoticed;
-  now.settling_state = from->state;
-  now.origin = from->tick + kUnnoticed;
+  PassStart& window = segment_.window;
+  window.at_rest = window.known = false;
+  window.settles_from = from->tick;
+  window.settling = from->state;
+  window.origin = from->tick + kUnnoticed;
 }
 
-bool PredictionErrorEstimator::WidenHorizon() noexcept {
-  const Beginning& first = segment_.first;
-  if (segment_.now.origin == first.origin ||
-      std::min(first.origin, first.settling_from) < kept_.first()) {
-    return false;
-  }
-  segment_.now = first;
-  next_look_ = kept_.added() + (kept_.added() - first.origin) / 2;
-  GoBack();
-  return true;
+void PredictionErrorEstimator::WidenHorizon() noexcept {
+  if (segment_.first.first() < kept_.first()) segment_.first = segment_.window;
+  segment_.windowed = false;
+  segment_.explained = pulled_passes_ = 0;
+  next_look_ = 0;
+  next_.tail(pass_.twin().start_unknowns()).setZero();
+  Begin(0, next_);
 }
 
 void PredictionErrorEstimator::Unexplained() noexcept {
   // Beside a machine that it had nothing to learn of any more.
   if (learned_ && TryChange()) return;
-  const Index horizon = seen_ - segment_.now.origin;
+  const Index horizon = pass_.seen() - now().origin;
   const bool same = std::abs(horizon - segment_.surprised) <= kSame;
   segment_.same = same ? segment_.same + 1 : 0;
   segment_.surprised = horizon;
@@ -111,145 +144,107 @@ void PredictionErrorEstimator::Unexplained() noexcept {
   } else {
     ++segment_.stuck;
     if (segment_.same >= kConfirmed && TryChange()) return;
-    if (segment_.stuck > kPatience) return LookMoreCoarsely();
+    if (segment_.stuck > kPatience) return PullAlong();
   }
   exhausted_ = returns_ >= kMostReturns;
   if (!exhausted_) GoBack();
 }
 
-void PredictionErrorEstimator::LookMoreCoarsely() noexcept {
-  if (segment_.first.at_rest && segment_.explained < kAtOnce) return StartInMotion();
+void PredictionErrorEstimator::PullAlong() noexcept {
+  const PassStart& first = segment_.first;
+  const bool again = segment_.windowed;
+  if (!again && first.at_rest && segment_.explained < kAtOnce) return StartInMotion();
   Retract();
-  const std::size_t stiffest = covariances_.size() - 1;
-  exhausted_ = gain_ == stiffest || returns_ >= kMostReturns ||
-               (gain_ + 1 == stiffest && is_proven_[stiffest]);
+  exhausted_ = returns_ >= kMostReturns;
   if (exhausted_) return;
-  if (is_proven_[stiffest]) return StartOver(gain_ + 1, proven_[stiffest]);
   // States of a twin that does not explain the machine are of no use.
   checkpoints_.Clear();
-  StartOver(stiffest, nominal_);
-}
-
-bool PredictionErrorEstimator::LookMoreFinely() noexcept {
-  if (gain_ == Finest()) return false;
-  proven_[gain_] = theta_;
-  is_proven_[gain_] = true;
-  const std::size_t stiffest = covariances_.size() - 1;
-  StartOver(gain_ == stiffest ? Finest() : gain_ - 1, theta_);
-  return true;
+  segment_.windowed = true;
+  if (first.at_rest && !again) {
+    segment_.window = first;
+  } else {
+    // Where the first attempt was in vain, other readings may tell more.
+    const Index last = kept_.added() - kLook - pass_.twin().gains().back().settling;
+    pass_.StartSettling(kept_, std::max({last, first.first(), kept_.first()}),
+                        segment_.window);
+  }
+  StartOver(pass_.stiffest(), nominal_);
 }
 
 bool PredictionErrorEstimator::TryChange() noexcept {
-  if (Pulled() || seen_ - counts_from_ < kLongExplained) return false;
-  const Checkpoint* from = LastCheckpoint(seen_ - kUnnoticed);
+  if (gain() > 0 && !following()) return false;
+  if (pass_.seen() - now().origin < kLongExplained) return false;
+  const Checkpoint* from = checkpoints_.Last(std::max(now().origin, kept_.first() + 1),
+                                             pass_.seen() - kUnnoticed);
   if (from == nullptr) return false;
-  Beginning& first = segment_.first;
-  first.at_rest = false;
-  first.settling_from = from->tick;
-  first.settling = kUnnoticed;
-  first.settling_state = first.state = from->state;
-  first.origin = seen_ - kNoticed * twin_->block();
-  if (twin_->start_unknowns() > 0) {
-    // Any state will do where it is among the unknowns.
-    reading_ = kept_.outputs(first.origin);
-    twin_->StateAt(reading_, first.state);
+  PassStart& first = segment_.first;
+  first.at_rest = first.known = false;
+  first.settles_from = from->tick;
+  first.settling = from->state;
+  first.origin = pass_.seen() - kNoticed * pass_.twin().block();
+  segment_.windowed = !pass_.twin().linear();
+  if (pass_.twin().linear()) {
+    pass_.StartMeasured(kept_, first.origin, first);
+  } else {
+    segment_.window = first;
   }
-  segment_.now = first;
   returns_ = 0;
-  std::fill(is_proven_.begin(), is_proven_.end(), false);
-  variance_ = information_.Variance();
-  StartOver(twin_->start_unknowns() > 0 ? 0 : covariances_.size() - 1, theta_);
+  variance_ = pass_.information().Variance();
+  work_ = pass_.theta();
+  StartOver(segment_.windowed ? pass_.stiffest() : 0, work_);
   return true;
 }
 
-std::size_t PredictionErrorEstimator::Finest() const noexcept {
-  const bool known = segment_.now.at_rest || twin_->start_unknowns() > 0;
-  return known ? 0 : std::min<std::size_t>(1, covariances_.size() - 1);
+void PredictionErrorEstimator::RunToTheEnd() noexcept {
+  while (!CaughtUp()) pass_.Step(kept_);
 }
 
-void PredictionErrorEstimator::Follow() noexcept {
-  if (Surprised()) {
-    // The readings that it keeps begin after the origin, so only a change remains.
-    exhausted_ = false;
-    if (TryChange()) return;
-  }
-  if (blocks_ % kWalkEvery != 0) return;
-  information_.Walk(walk_);
-  const std::size_t soft = std::min<std::size_t>(1, covariances_.size() - 1);
-  if (gain_ < soft) {
-    gain_ = pull_ = soft;
-    twin_->UseGain(pull_);
-  }
-  center_ += information_.change();
-  theta_ = center_;
-  twin_->Shift(information_.change());
-  information_.Recentre();
+bool PredictionErrorEstimator::Explained() const noexcept {
+  return gain() == 0 && !segment_.windowed && !exhausted_ &&
+         pass_.worst_block() < pass_.surprise().BlockLimit() &&
+         pass_.worst_stretch() < pass_.surprise().RecentLimit();
 }
 
-void PredictionErrorEstimator::PassesToTheEnd() noexcept {
-  while (seen_ < kept_.added()) ProcessKept();
-  std::size_t failed = covariances_.size();  // gain
-  for (int i = 0; i < kMostReturns && !following() && !exhausted_; ++i) {
-    if (WorthGoingBack() && ++pulled_passes_ <= kLastPasses) {
-      GoBack();
-    } else if (gain_ != Finest() && gain_ != failed + 1) {
-      LookMoreFinely();
-    } else if (!WidenHorizon()) {
-      break;
-    }
-    const std::size_t tried = gain_;
-    while (seen_ < kept_.added()) ProcessKept();
-    if (gain_ > tried) {
-      failed = tried;
-      pulled_passes_ = 0;
-    }
+void PredictionErrorEstimator::ApproachWhole() noexcept {
+  segment_.windowed = true;
+  if (segment_.first.at_rest) {
+    segment_.window = segment_.first;
+  } else if (pass_.twin().linear()) {
+    pass_.StartSettling(kept_, segment_.first.origin, segment_.window);
+  } else {
+    segment_.window = segment_.first;
+    segment_.window.known = segment_.first.known = false;
   }
+  const Index length = kept_.added() - segment_.window.origin;
+  StartOver(pass_.stiffest(), nominal_);
+  while (true) {
+    for (int i = 0; i < kPulledPasses; ++i) {
+      if (i > 0) GoBack();
+      RunToTheEnd();
+      if (pass_.information().SquaredChange() < kNear) break;
+    }
+    const std::size_t softer = Softer(gain(), length / 2);
+    if (softer == 0) break;
+    Begin(softer, NextTheta());
+  }
+  segment_.windowed = false;
+  Begin(0, NextTheta());
+  RunToTheEnd();
 }
 
 void PredictionErrorEstimator::CatchUp() noexcept {
-  if (information_.active() > 0) PassesToTheEnd();
-}
-
-double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {
-  double farthest = 0.0;
-  for (Index i = 0; i < change.size(); ++i) {
-    const double reach = unknowns_[static_cast<std::size_t>(i)].reach;
-    farthest = std::max(farthest, reach * std::abs(change[i]));
+  if (!pass_.began()) return;
+  while (!CaughtUp()) ProcessKept();
+  if (following()) return;
+  if (!Explained()) ApproachWhole();
+  for (int i = 0; i < kLastPasses; ++i) {
+    if (pass_.information().SquaredChange() < kThere) break;
+    GoBack();
+    RunToTheEnd();
   }
-  return farthest;
-}
-
-double PredictionErrorEstimator::SecondOrder() const noexcept {
-  // Of the machine: where it started may be hard to say and does not matter.
-  const Index machine = theta_.size() - twin_->start_unknowns();
-  const VectorXd& change = information_.change();
-  double moved = 0.0;
-  for (Index i = 0; i < machine; ++i) {
-    moved = std::max(moved, change[i] * change[i] * information_.H()(i, i));
-  }
-  return moved > kMoved * kMoved ? std::sqrt(moved) * Farthest(change) : 0.0;
-}
-
-bool PredictionErrorEstimator::WorthGoingBack() const noexcept {
-  return twin_->curvature() * SecondOrder() > kCurved;
-}
-
-void PredictionErrorEstimator::StartOver(std::size_t gain,
-                                         const VectorXd& theta) noexcept {
-  gain_ = gain;
-  segment_.explained = segment_.surprised = 0;
-  segment_.stuck = segment_.same = 0;
-  pulled_passes_ = 0;
-  next_look_ = kept_.added() + kPulledLook;
-  look_ = kPulledLook;
-  center_ = theta_ = theta;
-  information_.Recentre();
-  GoBack();
-}
-
-bool PredictionErrorEstimator::Surprised() const noexcept {
-  return gain_ > 0 ? !(surprise_.recent() < kSurprisingThroughout)
-                   : surprise_.NoChance();
+  Retract();
+  Say();
+  exhausted_ = !Explained();
 }
 
 }  // namespace mjdiag

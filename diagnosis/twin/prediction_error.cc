@@ -20,70 +20,55 @@ constexpr double kWidestStart = 1e3;
 /// Standard deviations.
 constexpr double kSure = 5.0;
 constexpr Index kFirstLook = 256;
-/// Of a motion of a few periods (TwinShape).
-constexpr double kUsualCurvature = 3.0;
-/// While the twin is pulled along, a block that is more surprising counts less, in
-/// inverse proportion: a joint came loose a little sooner than the twin's.
-constexpr double kRobust = 4.0;
-constexpr double kMostSurprising = 32.0;
+/// Blocks between two steps of the walk while it follows.
+constexpr Index kWalkEvery = 64;
 
 }  // namespace
 
 PredictionErrorEstimator::PredictionErrorEstimator(
     std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, double sample_time,
     const PredictionErrorOptions& options)
-    : twin_(std::move(twin)),
+    : pass_(std::move(twin)),
       unknowns_(std::move(unknowns)),
-      sample_time_(sample_time),
       options_(options),
-      kept_(twin_->outputs(), twin_->inputs(), options.kept),
+      prior_covariance_(PriorOf(unknowns_)),
+      kept_(pass_.twin().outputs(), pass_.twin().inputs(), options.kept),
+      run_start_(pass_.twin().outputs(), pass_.twin().block(), pass_.twin().unknowns()),
+      checkpoints_(pass_.twin()),
       next_look_(kFirstLook),
-      look_(kFirstGuess),
-      checkpoints_(twin_->states()),
-      run_start_(twin_->outputs(), twin_->block(), twin_->unknowns()),
-      information_(static_cast<Index>(unknowns_.size()), twin_->outputs()),
-      surprise_(twin_->outputs()),
-      said_{.information = information_, .theta = {}, .variance = {}, .prior = {}} {
+      said_{.information = pass_.information(),
+            .theta = {},
+            .variance = {},
+            .prior = {}} {
   const auto p = static_cast<Index>(unknowns_.size());
-  const Index ny = twin_->outputs();
-  const auto block = static_cast<double>(twin_->block());
+  const auto block = static_cast<double>(pass_.twin().block());
   nominal_ = walk_ = VectorXd::Zero(p);
-  prior_covariance_ = PriorOf(unknowns_);
   for (Index i = 0; i < p; ++i) {
     const Unknown& unknown = unknowns_[static_cast<std::size_t>(i)];
     nominal_[i] = unknown.nominal;
     if (!unknown.wears) continue;
-    walk_[i] = options_.wear * options_.wear * sample_time_ * block *
+    walk_[i] = options_.wear * options_.wear * sample_time * block *
                static_cast<double>(kWalkEvery);
   }
-  for (const TwinGain& gain : twin_->gains()) {
-    covariances_.emplace_back(gain.covariance / block);
-  }
-  covariance_ = covariances_.front();
-  proven_.assign(covariances_.size(), nominal_);
-  is_proven_.assign(covariances_.size(), false);
-  theta_ = center_ = nominal_;
+  next_ = nominal_;
   variance_ = prior_covariance_.diagonal();
   work_ = VectorXd::Zero(p);
   prior_ = inverse_ = MatrixXd::Identity(p, p);
-  reading_ = innovation_ = sum_ = VectorXd::Zero(ny);
-  segment_.first.state = segment_.first.settling_state =
-      VectorXd::Zero(twin_->states());
-  segment_.now = segment_.first;
+  segment_.first.state = segment_.first.settling = pass_.twin().MakeState();
+  segment_.window = segment_.first;
   WidenPrior();
-  said_.theta = theta_;
+  said_.theta = nominal_;
   said_.variance = variance_;
   said_.prior = prior_;
-  work_.setZero();
   said_.information.Start(p, prior_, work_);
 }
 
 void PredictionErrorEstimator::WidenPrior() noexcept {
   // What is surely far from nominal is not held there; all else is.
-  const Index started = theta_.size() - twin_->start_unknowns();
+  const Index started = next_.size() - pass_.twin().start_unknowns();
   inverse_ = prior_covariance_;
-  for (Index i = 0; i < information_.active(); ++i) {
-    const double away = std::abs(theta_[i] - nominal_[i]);
+  for (Index i = 0; i < pass_.information().active(); ++i) {
+    const double away = std::abs(next_[i] - nominal_[i]);
     if (!(away > kSure * std::sqrt(variance_[i]))) continue;
     const double width = std::min(away, i < started ? kWidest : kWidestStart);
     inverse_(i, i) = std::max(inverse_(i, i), width * width);
@@ -95,157 +80,124 @@ void PredictionErrorEstimator::WidenPrior() noexcept {
   prior_.setIdentity();
   factor.solveInPlace(prior_);
   prior_ = work_.asDiagonal() * prior_ * work_.asDiagonal();
+  work_.setZero();
 }
 
-void PredictionErrorEstimator::Begin() noexcept {
-  const VectorXd& change = information_.change();
-  if (information_.active() > 0 && change.allFinite()) {
-    const double farthest = Farthest(change);
-    center_ += (farthest > kLongestStep ? kLongestStep / farthest : 1.0) * change;
-  }
-  const Index started = twin_->start_unknowns();
-  const bool settles = Settles();
-  // Nothing is known beyond the state that a settled twin had at the origin.
-  if (settles || settled_) center_.tail(started).setZero();
-  settled_ = settles;
-  theta_ = center_;
-  const Beginning& from = segment_.now;
-  pull_ = settles && !from.at_rest ? covariances_.size() - 1 : gain_;
-  twin_->UseGain(pull_);
-  if (from.at_rest) {
-    twin_->Start(theta_);
-  } else {
-    twin_->Start(theta_, settles ? from.settling_state : from.state);
-  }
-  seen_ = settles ? from.settling_from : from.origin;
-  counts_from_ =
-      settles ? std::max(from.origin, from.settling_from + from.settling) : from.origin;
-  phase_origin_ = seen_;
-  softer_at_ = seen_ + twin_->gains()[pull_].settling;
-  work_ = nominal_ - center_;
-  information_.Start(theta_.size() - (from.at_rest || settles ? started : 0), prior_,
-                     work_);
-  surprise_.Start();
-  sum_.setZero();
-  in_block_ = blocks_ = 0;
-}
-
-void PredictionErrorEstimator::GoBack() noexcept {
-  ++returns_;
-  variance_ = information_.Variance();
+const VectorXd& PredictionErrorEstimator::NextTheta() noexcept {
+  next_ = pass_.theta0();
+  const VectorXd& change = pass_.DiscountedChange();
+  if (!change.allFinite()) return next_;
+  const double farthest = Farthest(change);
+  next_ += (farthest > kLongestStep ? kLongestStep / farthest : 1.0) * change;
+  variance_ = pass_.information().Variance();
   WidenPrior();
-  Begin();
+  return next_;
+}
+
+void PredictionErrorEstimator::Begin(std::size_t gain, const VectorXd& theta) noexcept {
+  ++returns_;
+  pass_.Begin(now(), theta, gain, prior_, nominal_);
 }
 
 void PredictionErrorEstimator::Add(std::span<const double> outputs,
                                    std::span<const double> inputs) noexcept {
   kept_.Add(outputs, inputs);
-  if (information_.active() == 0 && !FindStart()) return;
-  ProcessKept();
-  if (seen_ < kept_.added()) ProcessKept();
-}
-
-void PredictionErrorEstimator::Say() noexcept {
-  const bool same = said_.began && said_.since == segment_.first.origin;
-  const bool less = gain_ > said_.gain || seen_ < said_.until;
-  if (blocks_ == 0 || (same && less && !exhausted_)) return;
-  said_.began = true;
-  said_.sure = kUsualCurvature * SecondOrder() < 1.0;
-  said_.information = information_;
-  said_.theta = theta_;
-  said_.prior = prior_;
-  said_.surprise = surprise_.recent();
-  said_.phase_origin = phase_origin_;
-  said_.since = segment_.first.origin;
-  said_.until = seen_;
-  said_.gain = gain_;
-}
-
-void PredictionErrorEstimator::Retract() noexcept {
-  said_.gain = covariances_.size() - 1;
-  said_.until = 0;
-}
-
-bool PredictionErrorEstimator::StepTwin() noexcept {
-  twin_->Predict(reading_);
-  innovation_ = kept_.outputs(seen_) - reading_;
-  twin_->Step(kept_.inputs(seen_), innovation_);
-  ++seen_;
-  if (++in_block_ < twin_->block()) return false;
-  in_block_ = 0;
-  return true;
-}
-
-bool PredictionErrorEstimator::FindStart() noexcept {
-  if (kept_.added() < twin_->block()) return false;
-  if (kept_.added() == twin_->block()) {
-    work_ = nominal_;
-    if (run_start_.BeganAtRest(*twin_, kept_, work_, twin_->first_tone(),
-                               prior_covariance_)) {
-      Begin();
-      return true;
-    }
+  if (!pass_.began()) {
+    if (kept_.added() < pass_.twin().block()) return;
+    FindStart();
   }
-  StartInMotion();
-  return true;
+  ProcessKept();
+  if (!CaughtUp()) ProcessKept();
 }
 
-void PredictionErrorEstimator::StartInMotion() noexcept {
-  Retract();
-  Beginning& first = segment_.first;
-  first.at_rest = false;
-  first.settling = twin_->gains().back().settling;
-  reading_ = kept_.outputs(0);
-  twin_->StateAt(reading_, first.settling_state);
-  first.state = first.settling_state;
-  segment_.now = first;
-  StartOver(Finest() > 0 ? covariances_.size() - 1 : 0, nominal_);
+void PredictionErrorEstimator::FindStart() noexcept {
+  work_ = nominal_;
+  if (run_start_.BeganAtRest(pass_.twin(), kept_, work_, pass_.twin().first_tone(),
+                             prior_covariance_)) {
+    pass_.Begin(segment_.first, nominal_, 0, prior_, nominal_);
+  } else {
+    StartInMotion();
+  }
 }
 
 void PredictionErrorEstimator::ProcessKept() noexcept {
-  const bool ended = StepTwin();
-  sum_ += innovation_;
-  if (!ended) return;
-  Regress();
+  const bool added = pass_.Step(kept_);
+  if (pass_.seen() % pass_.twin().block() != 0 || pass_.blocks() == 0) return;
+  if (Checkpoint* at = checkpoints_.At(pass_.seen())) {
+    pass_.twin().ReadState(at->state);
+  }
+  if (!added) return;
   if (exhausted_ || !Surprised()) Say();
   if (following()) {
     Follow();
   } else if (!exhausted_) {
     Reconsider();
   }
-  if (blocks_ == 0) return;
-  if (Checkpoint* at = checkpoints_.At(seen_)) twin_->ReadState(at->state);
+  learned_ = !WorthGoingBack();
 }
 
-void PredictionErrorEstimator::Regress() noexcept {
-  const MatrixXd& psi = twin_->EndBlock();
-  if (pull_ > gain_ && seen_ >= softer_at_) {
-    twin_->UseGain(--pull_);
-    softer_at_ = seen_ + twin_->gains()[pull_].settling;
+void PredictionErrorEstimator::Say() noexcept {
+  const bool same = said_.began && said_.since == segment_.first.origin;
+  const bool sure = Bias() < 1.0;
+  const bool less = gain() > said_.gain || pass_.seen() < said_.until ||
+                    (said_.sure && !sure);
+  if (pass_.blocks() == 0 || (same && less && !exhausted_)) return;
+  said_.began = true;
+  said_.sure = sure;
+  said_.information = pass_.information();
+  said_.theta = pass_.theta();
+  said_.prior = prior_;
+  said_.surprise = pass_.surprise().recent();
+  said_.since = segment_.first.origin;
+  said_.until = pass_.seen();
+  said_.gain = gain();
+}
+
+void PredictionErrorEstimator::Retract() noexcept {
+  said_.gain = pass_.stiffest();
+  said_.sure = false;
+  said_.until = 0;
+}
+
+void PredictionErrorEstimator::Follow() noexcept {
+  if (Surprised()) {
+    // The readings that it keeps begin after the origin, so only a change remains.
+    exhausted_ = false;
+    if (TryChange()) return;
   }
-  if (seen_ <= counts_from_) {  // it settles
-    sum_.setZero();
-    if (seen_ == segment_.now.origin) {
-      twin_->ReadState(segment_.now.state);
-      if (segment_.now.origin == segment_.first.origin) {
-        segment_.first.state = segment_.now.state;
-      }
-    }
-    return;
+  if (pass_.blocks() % kWalkEvery != 0) return;
+  pass_.information().Walk(walk_);
+  const std::size_t soft = std::min<std::size_t>(1, pass_.stiffest());
+  if (gain() < soft) pass_.Soften(soft);
+  pass_.Shift();
+}
+
+double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {
+  double farthest = 0.0;
+  for (Index i = 0; i < change.size(); ++i) {
+    const double reach = unknowns_[static_cast<std::size_t>(i)].reach;
+    farthest = std::max(farthest, reach * std::abs(change[i]));
   }
-  learned_ = !WorthGoingBack();
-  covariance_ = covariances_[pull_];
-  sum_ /= static_cast<double>(twin_->block());
-  double surprise = information_.Surprise(psi, sum_, covariance_);
-  if (gain_ > 0) {
-    covariance_ *= std::max(1.0, surprise / kRobust);
-    surprise = std::min(surprise, kMostSurprising);
+  return farthest;
+}
+
+double PredictionErrorEstimator::Bias() const noexcept {
+  /// Standard deviations that an unknown has where all others are known: less is none.
+  constexpr double kMoved = 0.3;
+  // Of the machine: where it started may be hard to say and does not matter.
+  const Index machine = nominal_.size() - pass_.twin().start_unknowns();
+  const Information& information = pass_.information();
+  const VectorXd& change = information.change();
+  double moved = 0.0;
+  for (Index i = 0; i < machine; ++i) {
+    moved = std::max(moved, change[i] * change[i] * information.H()(i, i));
   }
-  surprise_.Add(surprise);
-  information_.Add(psi, sum_, covariance_);
-  theta_ = center_ + information_.change();
-  sum_.setZero();
-  ++blocks_;
+  if (!(moved > kMoved * kMoved)) return 0.0;
+  return pass_.twin().curvature() * std::sqrt(moved) * Farthest(change);
+}
+
+bool PredictionErrorEstimator::Surprised() const noexcept {
+  return gain() == 0 && pass_.surprise().NoChance();
 }
 
 }  // namespace mjdiag

@@ -1,19 +1,15 @@
 #pragma once
-// What one whole run, all of its readings at hand, says of the numbers of its machine:
-// the least squares of information.h about a theta that is given, for several runs to be
-// added up. A run at rest begins there; else the twin is pulled along by its stiffest
-// gain until it has forgotten how it began, and where it starts is either among the
-// unknowns, and eliminated here, or forgotten.
+// What one whole run, all of its readings at hand, says of the numbers of its machine: a
+// pass about a theta that is given (twin_pass.h), for several runs to be added up. Where
+// it began is eliminated here.
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/kept_readings.h"
-#include "mjdiag/diagnosis/twin/surprise.h"
-#include "mjdiag/diagnosis/twin/twin.h"
+#include "mjdiag/diagnosis/twin/twin_pass.h"
 
 namespace mjdiag {
 
@@ -33,23 +29,21 @@ class RunPass {
   RunPass(std::unique_ptr<Twin> twin, const Eigen::MatrixXd& outputs,
           const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& prior);
 
-  bool at_rest() const { return at_rest_; }
-  /// The softest gain with which the twin can tell this run (Twin::gains).
-  std::size_t Finest() const;
+  bool at_rest() const { return start_.at_rest; }
   /// @param numbers  theta without the start, n
   RunInformation About(const Eigen::VectorXd& numbers, std::size_t gain);
 
  private:
-  void Begin(const Eigen::VectorXd& numbers, std::size_t gain);
   /// Whatever the run says of where it began, eliminated.
-  void Reduce(const Information& information, RunInformation& said);
+  void Reduce(RunInformation& said);
 
-  std::unique_ptr<Twin> twin_;
+  TwinPass pass_;
   KeptReadings run_;
-  Eigen::MatrixXd prior_, known_;  // and its inverse
-  bool at_rest_ = false;
+  Eigen::MatrixXd known_;  // inverse of the prior
+  PassStart start_;        // of a twin that is pulled along, or at rest
+  PassStart measured_;     // of one that answers linearly to where it starts
   // Of the start: the last pass says how it goes with the numbers.
-  Eigen::VectorXd numbers_, start_, start_step_;
+  Eigen::VectorXd numbers_, start_theta_, start_step_;
   Eigen::MatrixXd start_by_numbers_;
 };
 

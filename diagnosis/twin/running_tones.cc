@@ -12,19 +12,23 @@ using Eigen::VectorXd;
 RunningTones::RunningTones(std::vector<UnknownTone> tones, double sample_time)
     : tones_(std::move(tones)) {
   const auto count = static_cast<Index>(tones_.size());
-  sine_ = cosine_ = turn_sine_ = turn_cosine_ = VectorXd::Zero(count);
+  sine_ = cosine_ = turn_ = turn_sine_ = turn_cosine_ = VectorXd::Zero(count);
   for (Index i = 0; i < count; ++i) {
-    const double angle = 2.0 * std::numbers::pi *
-                         tones_[static_cast<std::size_t>(i)].frequency * sample_time;
+    turn_[i] = tones_[static_cast<std::size_t>(i)].frequency * sample_time;
+    const double angle = 2.0 * std::numbers::pi * turn_[i];
     turn_sine_[i] = std::sin(angle);
     turn_cosine_[i] = std::cos(angle);
   }
-  Start();
+  Start(0);
 }
 
-void RunningTones::Start() noexcept {
-  sine_.setZero();
-  cosine_.setOnes();
+void RunningTones::Start(Index tick) noexcept {
+  for (Index i = 0; i < count(); ++i) {
+    const double turns = turn_[i] * static_cast<double>(tick);
+    const double angle = 2.0 * std::numbers::pi * (turns - std::floor(turns));
+    sine_[i] = std::sin(angle);
+    cosine_[i] = std::cos(angle);
+  }
 }
 
 void RunningTones::AddTo(VectorXd& inputs,

@@ -19,8 +19,8 @@ class RunningTones {
   double sine(Eigen::Index tone) const { return sine_[tone]; }
   double cosine(Eigen::Index tone) const { return cosine_[tone]; }
 
-  /// To phase 0.
-  void Start() noexcept;
+  /// To that tick: their phases are 0 at tick 0.
+  void Start(Eigen::Index tick) noexcept;
   /// Adds what they put on the commands.
   /// @param parts  s and c of every tone, 2 count
   void AddTo(Eigen::VectorXd& inputs,
@@ -30,7 +30,8 @@ class RunningTones {
  private:
   std::vector<UnknownTone> tones_;
   Eigen::VectorXd sine_, cosine_;            // now
-  Eigen::VectorXd turn_sine_, turn_cosine_;  // of a tick
+  Eigen::VectorXd turn_;                     // of a tick, in turns
+  Eigen::VectorXd turn_sine_, turn_cosine_;  // and on the circle
 };
 
 }  // namespace mjdiag

@@ -12,6 +12,8 @@ Twin::Twin(const TwinShape& shape, std::vector<TwinGain> gains,
     : theta_(VectorXd::Zero(shape.unknowns)),
       tones_(std::move(tones), sample_time),
       u_(VectorXd::Zero(shape.inputs)),
+      x_(VectorXd::Zero(shape.states)),
+      S_(Eigen::MatrixXd::Zero(shape.states, shape.unknowns)),
       shape_(shape),
       gains_(std::move(gains)) {}
 
@@ -21,10 +23,22 @@ double Twin::Logarithm(const std::vector<Index>& factors) const noexcept {
   return sum;
 }
 
-void Twin::Begin(const VectorXd& theta, bool at_rest) noexcept {
+void Twin::Begin(const VectorXd& theta, bool at_rest, Index tick) noexcept {
   theta_ = theta;
   acting_ = unknowns() - (at_rest ? start_unknowns() : 0);
-  tones_.Start();
+  tones_.Start(tick);
+}
+
+void Twin::Place(const TwinState& state, const Eigen::MatrixXd& directions) noexcept {
+  const Index machine = unknowns() - start_unknowns();
+  x_ = state.x;
+  // What is unknown of this start has no part in that of the other run.
+  for (Index i = 0; i < machine; ++i) {
+    x_ += (theta_[i] - state.theta[i]) * state.S.col(i);
+  }
+  x_.noalias() += directions * theta_.tail(start_unknowns());
+  S_.leftCols(machine) = state.S.leftCols(machine);
+  S_.rightCols(start_unknowns()) = directions;
 }
 
 void Twin::Command(std::span<const double> inputs) noexcept {

@@ -28,6 +28,7 @@ namespace mjdiag {
 struct TwinGain {
   Eigen::MatrixXd L;           ///< nx x ny
   Eigen::MatrixXd covariance;  ///< of e, ny x ny
+  Eigen::MatrixXd P;           ///< of the error of the state, nx x nx
   Eigen::Index settling = 0;   ///< ticks until it has forgotten how the twin began
 };
 
@@ -45,6 +46,17 @@ struct TwinShape {
   /// resonance gets out of step in as many of its periods as its stiffness changes by
   /// parts, a joint that sticks comes loose at another tick at once.
   double curvature = 1.0;
+  /// Whether it answers to where it starts exactly linearly: any start serves to find
+  /// the right one from. Else one that is nearly right is needed.
+  bool linear = true;
+};
+
+/// The state of a twin at a tick of its run, to start it from again, about any theta: it
+/// goes with theta as it did in the run that it comes from.
+struct TwinState {
+  Eigen::VectorXd x;      ///< nx
+  Eigen::VectorXd theta;  ///< of that run, p
+  Eigen::MatrixXd S;      ///< d x / d theta, nx x p; 0 if it was measured
 };
 
 class Twin {
@@ -58,12 +70,18 @@ class Twin {
   Eigen::Index start_unknowns() const { return shape_.start_unknowns; }
   Eigen::Index block() const { return shape_.block; }
   double curvature() const { return shape_.curvature; }
+  bool linear() const { return shape_.linear; }
   /// The first of those of tones.
   Eigen::Index first_tone() const {
     return unknowns() - start_unknowns() - 2 * tones_.count();
   }
   /// From that of the force noise that is assumed to ever stiffer ones; at least one.
   const std::vector<TwinGain>& gains() const { return gains_; }
+
+  virtual TwinState MakeState() const {
+    return {Eigen::VectorXd::Zero(states()), Eigen::VectorXd::Zero(unknowns()),
+            Eigen::MatrixXd::Zero(states(), unknowns())};
+  }
 
   // Nothing below allocates, locks, throws or does I/O.
 
@@ -72,15 +90,19 @@ class Twin {
   /// To the start of a run at rest. What theta says of the start is left out of account.
   /// @param theta  p
   virtual void Start(const Eigen::VectorXd& theta) noexcept = 0;
-  /// To the start of one in that state, and what theta says beside it.
-  /// @param state  nx
-  virtual void Start(const Eigen::VectorXd& theta,
-                     const Eigen::VectorXd& state) noexcept = 0;
-  /// The state that reads that, at rest and deflected as little as can be, nx.
-  virtual void StateAt(const Eigen::VectorXd& reading,
-                       Eigen::VectorXd& state) noexcept = 0;
-  /// As it is now, nx.
-  virtual void ReadState(Eigen::VectorXd& state) const noexcept = 0;
+  /// To that tick of a run in motion, in that state and what theta says beside it.
+  /// @param tick   tones have phase 0 at tick 0
+  virtual void Start(const Eigen::VectorXd& theta, const TwinState& state,
+                     Eigen::Index tick) noexcept = 0;
+  /// The state that reads that, at rest and deflected as little as can be.
+  /// @param state  of MakeState
+  virtual void StateAt(const Eigen::VectorXd& reading, TwinState& state) noexcept = 0;
+  /// As it is now, between blocks.
+  virtual void ReadState(TwinState& state) const noexcept {
+    state.x = x_;
+    state.theta = theta_;
+    state.S = S_;
+  }
   /// yp of this tick into `reading`, ny.
   virtual void Predict(Eigen::VectorXd& reading) noexcept = 0;
   /// One tick.
@@ -104,8 +126,11 @@ class Twin {
   Eigen::Index acting() const { return acting_; }
   /// Logarithm of a product of factors.
   double Logarithm(const std::vector<Eigen::Index>& factors) const noexcept;
-  /// theta at the first tick of a run.
-  void Begin(const Eigen::VectorXd& theta, bool at_rest) noexcept;
+  /// theta at a tick of a run.
+  void Begin(const Eigen::VectorXd& theta, bool at_rest, Eigen::Index tick) noexcept;
+  /// x_ and S_ in that state of a run in motion.
+  /// @param directions  of the start, nx x start_unknowns
+  void Place(const TwinState& state, const Eigen::MatrixXd& directions) noexcept;
   /// u_: those commands, and the tones.
   void Command(std::span<const double> inputs) noexcept;
 
@@ -113,6 +138,8 @@ class Twin {
   Eigen::VectorXd theta_;  // p
   RunningTones tones_;
   Eigen::VectorXd u_;
+  Eigen::VectorXd x_;  // nx
+  Eigen::MatrixXd S_;  // nx x p
 
  private:
   TwinShape shape_;

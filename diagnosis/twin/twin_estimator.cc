@@ -46,7 +46,6 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
 
 TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
     : faults_(std::move(machine.faults)),
-      sample_time_(machine.sample_time),
       estimator_(std::move(machine.twin), std::move(machine.unknowns),
                  machine.sample_time, options) {}
 
@@ -67,15 +66,7 @@ void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
 
 void TwinEstimator::ReadTones(const TwinFault& fault,
                               Eigen::Ref<VectorXd> parts) const noexcept {
-  const double since = static_cast<double>(estimator_.phase_origin()) * sample_time_;
-  for (Index i = 0; i < fault.tones(); ++i) {
-    const double angle =
-        2.0 * std::numbers::pi * fault.frequencies[static_cast<std::size_t>(i)] * since;
-    const double sine = estimator_.theta()[fault.first + 2 * i];
-    const double cosine = estimator_.theta()[fault.first + 2 * i + 1];
-    parts[2 * i] = sine * std::cos(angle) + cosine * std::sin(angle);
-    parts[2 * i + 1] = cosine * std::cos(angle) - sine * std::sin(angle);
-  }
+  parts = estimator_.theta().segment(fault.first, 2 * fault.tones());
 }
 
 TwinReading TwinEstimator::Read() const {

@@ -78,7 +78,6 @@ class TwinEstimator {
 
  private:
   std::vector<TwinFault> faults_;
-  double sample_time_;
   PredictionErrorEstimator estimator_;
 };
 

@@ -10,7 +10,7 @@ using Eigen::VectorXd;
 TwinInCoordinates::TwinInCoordinates(std::unique_ptr<Twin> twin, MatrixXd T,
                                      const std::vector<UnknownTone>& tones)
     : Twin({twin->outputs(), twin->inputs(), twin->states(), T.cols(),
-            twin->start_unknowns(), twin->block(), twin->curvature()},
+            twin->start_unknowns(), twin->block(), twin->curvature(), twin->linear()},
            twin->gains(), tones, 1.0),
       twin_(std::move(twin)),
       T_(std::move(T)),
@@ -22,9 +22,10 @@ void TwinInCoordinates::Start(const VectorXd& z) noexcept {
   twin_->Start(of_twin_);
 }
 
-void TwinInCoordinates::Start(const VectorXd& z, const VectorXd& state) noexcept {
+void TwinInCoordinates::Start(const VectorXd& z, const TwinState& state,
+                              Eigen::Index tick) noexcept {
   of_twin_.noalias() = T_ * z;
-  twin_->Start(of_twin_, state);
+  twin_->Start(of_twin_, state, tick);
 }
 
 const MatrixXd& TwinInCoordinates::EndBlock() noexcept {

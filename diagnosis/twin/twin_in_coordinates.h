@@ -20,14 +20,13 @@ class TwinInCoordinates final : public Twin {
 
   void UseGain(std::size_t gain) noexcept override { twin_->UseGain(gain); }
   void Start(const Eigen::VectorXd& z) noexcept override;
-  void Start(const Eigen::VectorXd& z, const Eigen::VectorXd& state) noexcept override;
-  void StateAt(const Eigen::VectorXd& reading,
-               Eigen::VectorXd& state) noexcept override {
+  void Start(const Eigen::VectorXd& z, const TwinState& state,
+             Eigen::Index tick) noexcept override;
+  TwinState MakeState() const override { return twin_->MakeState(); }
+  void StateAt(const Eigen::VectorXd& reading, TwinState& state) noexcept override {
     twin_->StateAt(reading, state);
   }
-  void ReadState(Eigen::VectorXd& state) const noexcept override {
-    twin_->ReadState(state);
-  }
+  void ReadState(TwinState& state) const noexcept override { twin_->ReadState(state); }
   void Predict(Eigen::VectorXd& reading) noexcept override { twin_->Predict(reading); }
   void Step(std::span<const double> inputs,
             const Eigen::VectorXd& innovation) noexcept override {

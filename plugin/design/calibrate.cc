@@ -140,11 +140,6 @@ class Learner {
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   const std::vector<RunInformation>& said() const { return said_; }
   std::size_t stiffest() const { return gains_.size() - 1; }
-  std::size_t finest() const {
-    std::size_t finest = 0;
-    for (const auto& pass : passes_) finest = std::max(finest, pass->Finest());
-    return finest;
-  }
 
   /// The method of Gauss and Newton with that gain, from where it is.
   /// @param rough  it is followed by another one
@@ -238,7 +233,6 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   const auto progress = [&](double part) {
     if (options.progress) options.progress(part);
   };
-  const VectorXd none = VectorXd::Zero(uncertain.known);
   VectorXd noise = FirstNoise(machine, runs);
   // The machine is linearised anew about where it rests with what is learned.
   const auto about = [&](const VectorXd& theta) {
@@ -265,7 +259,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   progress(0.4);
   // The softest with which nothing is a surprise: at once, or step by step.
   std::size_t gain = learner.stiffest();
-  for (std::size_t next = learner.finest(); gain > learner.finest(); next = gain - 1) {
+  for (std::size_t next = 0; gain > 0; next = gain - 1) {
     Learner softer = about(learner.theta());
     softer.Learn(next, true);
     if (softer.Explains()) {

@@ -1,5 +1,6 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -19,10 +20,6 @@ using Eigen::VectorXd;
 
 /// Ticks of a block at 8 kHz; what varies faster than it is seen by its mean.
 constexpr Index kBlock = 8;
-/// A linear machine answers to where it started exactly linearly. One with friction
-/// that sticks does not: to the first order it is not told.
-constexpr double kStartEnergy = 1.0;  // J
-
 /// Noise and the steps of a coarse reading.
 VectorXd ReadingNoise(const Channels& channels) {
   VectorXd sd(static_cast<Index>(channels.sensors.size()));
@@ -40,17 +37,18 @@ TwinGain GainOf(const Machine& machine, const VectorXd& noise, double bandwidth)
                                            machine.rates().substeps, noise, bandwidth);
   const auto settling =
       static_cast<Index>(kSettling * machine.rates().control / bandwidth);
-  return {observer.L, observer.innovation_covariance, settling};
+  return {observer.L, observer.innovation_covariance, observer.P, settling};
 }
 
 std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
                               double force_noise) {
   std::vector<TwinGain> gains;
+  const Index nx = 2 * machine.linear().M.rows();
   if (force_noise > 0.0) {
     gains.push_back(GainOf(machine, noise, force_noise));
   } else {
-    gains.push_back({MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
-                     noise.cwiseAbs2().asDiagonal(), 0});
+    gains.push_back({MatrixXd::Zero(nx, noise.size()), noise.cwiseAbs2().asDiagonal(),
+                     MatrixXd::Zero(nx, nx), 0});
   }
   for (const double part : kTwinBandwidths) {
     const double bandwidth = part * machine.rates().control;
@@ -64,6 +62,16 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
   gains.back().settling =
       static_cast<Index>(std::ceil(std::log(kForgotten) / std::log(radius)));
   return gains;
+}
+
+/// A root of a covariance of whatever units.
+MatrixXd RootOf(const MatrixXd& covariance) {
+  const VectorXd scale = covariance.diagonal().cwiseSqrt();
+  const VectorXd unit = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(
+      MatrixXd(unit.asDiagonal() * covariance * unit.asDiagonal()));
+  return scale.asDiagonal() * modes.eigenvectors() *
+         modes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 /// Fault parameters are the first unknowns.
@@ -90,13 +98,13 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
     throw InputError("twin", "a sensor without noise", "a noise on every sensor");
   }
   options.friction = !linear;
-  options.start_energy = linear ? kStartEnergy : 0.0;
-  const UncertainMachine uncertain = MakeUncertainMachine(machine, options);
+  UncertainMachine uncertain = MakeUncertainMachine(machine, options);
   MachineTwin twin;
   twin.sample_time = machine.rates().tick();
   const auto& calibration = machine.setup().calibration;
   const double force_noise = calibration ? calibration->force_noise : 0.0;
   std::vector<TwinGain> gains = GainsOf(machine, noise, force_noise);
+  if (!linear) uncertain.start = RootOf(gains.back().P);
   if (linear) {
     twin.twin = std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
                                              std::move(gains), kBlock);

@@ -82,6 +82,7 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
       "sensor");
   const MatrixXd S = C * P * C.transpose() + MatrixXd::Identity(C.rows(), C.rows());
   const MatrixXd gain = Solve(S, C * P * A.transpose()).transpose();
+  observer.P = scale.asDiagonal() * P * scale.asDiagonal();
   observer.L = scale.asDiagonal() * gain * noise_sd.cwiseInverse().asDiagonal();
   const double radius = SpectralRadius(observer.tick.A - observer.L * observer.tick.C);
   if (!(radius < 1.0)) {

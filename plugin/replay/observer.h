@@ -29,6 +29,7 @@ namespace mjdiag {
 struct Observer {
   StateSpace tick;           ///< A, B, C of the linear tick, x = [q; v]
   Eigen::MatrixXd L;         ///< 2 nq x ny
+  Eigen::MatrixXd P;         ///< of the predicted state, 2 nq x 2 nq
   Eigen::VectorXd noise_sd;  ///< r of every sensor [unit]
   /// Standard deviation of e if sensor noise is all there is, ny.
   Eigen::VectorXd innovation_sd;

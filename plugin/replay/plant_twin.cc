@@ -6,7 +6,6 @@
 
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/tangent.h"
-#include "mjdiag/plugin/replay/tracking.h"
 
 namespace mjdiag {
 
@@ -16,8 +15,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Any change may be one too many for a joint that sticks.
-constexpr double kCurvature = 1e6;
+/// A joint that comes loose a tick too late is off by much more than its force was.
+constexpr double kCurvature = 12.0;
 
 std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
   std::vector<ModelPart> parts;
@@ -32,7 +31,7 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
     : Twin(
           {machine.linear().b.cols(), machine.linear().Gamma.cols(),
            2 * machine.linear().M.rows(), static_cast<Index>(uncertain.unknowns.size()),
-           uncertain.start.cols(), block, kCurvature},
+           uncertain.start.cols(), block, kCurvature, false},
           std::move(gains), uncertain.tones, machine.rates().tick()),
       machine_(machine),
       uncertain_(std::move(uncertain)),
@@ -41,7 +40,6 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
   data_ = std::move(plant.data);
-  ChooseSolver(*model_);
   start_ = VectorXd::Map(data_->qpos, model_->nq);
   const MechanicalModel& linear = machine.linear();
   const Index nv = model_->nv;
@@ -86,7 +84,6 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   stick_rb_ = stick_r_;
   tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
-  S_ = MatrixXd::Zero(2 * nv, p);
   drive_ = drive_work_ = force_ = MatrixXd::Zero(nv, p);
   read_ = sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
   UseGain(0);
@@ -157,40 +154,42 @@ void PlantTwin::Reset() noexcept {
 }
 
 void PlantTwin::Start(const VectorXd& theta) noexcept {
-  Begin(theta, true);
+  Begin(theta, true, 0);
   Reset();
   moved_rest_.Find(theta_);
   VectorXd::Map(data_->qpos, model_->nv) += moved_rest_.position();
   S_.topRows(model_->nv) = moved_rest_.sensitivity();
 }
 
-void PlantTwin::Start(const VectorXd& theta, const VectorXd& state) noexcept {
-  Begin(theta, false);
+void PlantTwin::Start(const VectorXd& theta, const TwinState& state,
+                      Index tick) noexcept {
+  Begin(theta, false, tick);
   Reset();
+  time_ = data_->time = static_cast<double>(tick) * machine_.rates().tick();
   const Index nv = model_->nv;
-  state_ = state;
-  state_.noalias() += uncertain_.start * theta_.tail(start_unknowns());
-  VectorXd::Map(data_->qpos, nv) += state_.head(nv);
-  VectorXd::Map(data_->qvel, nv) = state_.tail(nv);
-  S_.rightCols(start_unknowns()) = uncertain_.start;
+  Place(state, uncertain_.start);
+  VectorXd::Map(data_->qpos, nv) += x_.head(nv);
+  VectorXd::Map(data_->qvel, nv) = x_.tail(nv);
 }
 
-void PlantTwin::StateAt(const VectorXd& reading, VectorXd& state) noexcept {
+void PlantTwin::StateAt(const VectorXd& reading, TwinState& state) noexcept {
   VectorXd::Map(data_->qpos, start_.size()) = start_;
   VectorXd::Map(data_->qvel, model_->nv).setZero();
   mj_step1(model_.get(), data_.get());
-  state.setZero();
+  state.S.setZero();
+  state.x.setZero();
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const double rest = data_->sensordata[machine_.sensor_addresses()[i]];
     const auto at = static_cast<Index>(i);
-    state.head(model_->nv) += (reading[at] - rest) * place_.col(at);
+    state.x.head(model_->nv) += (reading[at] - rest) * place_.col(at);
   }
 }
 
-void PlantTwin::ReadState(VectorXd& state) const noexcept {
+void PlantTwin::ReadState(TwinState& state) const noexcept {
+  Twin::ReadState(state);
   const Index nv = model_->nv;
-  state.head(nv) = VectorXd::Map(data_->qpos, nv) - start_;
-  state.tail(nv) = VectorXd::Map(data_->qvel, nv);
+  state.x.head(nv) = VectorXd::Map(data_->qpos, nv) - start_;
+  state.x.tail(nv) = VectorXd::Map(data_->qvel, nv);
 }
 
 void PlantTwin::Predict(VectorXd& reading) noexcept {

@@ -41,11 +41,10 @@ class PlantTwin final : public Twin {
     pulled_ = !this->gain().L.isZero(0.0);
   }
   void Start(const Eigen::VectorXd& theta) noexcept override;
-  void Start(const Eigen::VectorXd& theta,
-             const Eigen::VectorXd& state) noexcept override;
-  void StateAt(const Eigen::VectorXd& reading,
-               Eigen::VectorXd& state) noexcept override;
-  void ReadState(Eigen::VectorXd& state) const noexcept override;
+  void Start(const Eigen::VectorXd& theta, const TwinState& state,
+             Eigen::Index tick) noexcept override;
+  void StateAt(const Eigen::VectorXd& reading, TwinState& state) noexcept override;
+  void ReadState(TwinState& state) const noexcept override;
   void Predict(Eigen::VectorXd& reading) noexcept override;
   void Step(std::span<const double> inputs,
             const Eigen::VectorXd& innovation) noexcept override;
@@ -106,7 +105,7 @@ class PlantTwin final : public Twin {
   double time_ = 0.0;
   Eigen::VectorXd tone_, before_, acceleration_, inertial_;
   std::vector<double> outputs_;
-  Eigen::MatrixXd S_, drive_, drive_work_, force_, read_, sensitivity_, sum_;
+  Eigen::MatrixXd drive_, drive_work_, force_, read_, sensitivity_, sum_;
 };
 
 }  // namespace mjdiag

@@ -25,7 +25,7 @@ VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
   if (at_rest) {
     twin.Start(theta);
   } else {
-    twin.Start(theta, VectorXd::Zero(twin.states()));
+    twin.Start(theta, twin.MakeState(), 0);
   }
   for (Index k = 0; k < kTicks; ++k) {
     const Index block = k / test::kBlock;

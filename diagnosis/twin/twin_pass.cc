@@ -1,0 +1,153 @@
+#include "mjdiag/diagnosis/twin/twin_pass.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// While the twin is pulled along, a block that is more surprising counts less, in
+/// inverse proportion: a joint came loose a little sooner than the twin's.
+constexpr double kRobust = 4.0;
+/// So it does on average.
+constexpr double kMostSurprising = 32.0;
+
+}  // namespace
+
+TwinPass::TwinPass(std::unique_ptr<Twin> twin)
+    : twin_(std::move(twin)),
+      information_(twin_->unknowns(), twin_->outputs()),
+      surprise_(twin_->outputs()) {
+  theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
+  reading_ = innovation_ = sum_ = VectorXd::Zero(twin_->outputs());
+  covariance_ = twin_->gains().front().covariance;
+}
+
+void TwinPass::StartMeasured(const KeptReadings& run, Index tick,
+                             PassStart& start) noexcept {
+  start.at_rest = false;
+  start.origin = start.settles_from = tick;
+  reading_ = run.outputs(tick);
+  twin_->StateAt(reading_, start.state);
+  start.known = true;
+}
+
+void TwinPass::StartSettling(const KeptReadings& run, Index tick,
+                             PassStart& start) noexcept {
+  StartMeasured(run, tick, start);
+  const Index block = twin_->block();
+  start.settling = start.state;
+  start.origin += (twin_->gains().back().settling + block - 1) / block * block;
+  start.known = false;
+}
+
+void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
+                     const MatrixXd& prior, const VectorXd& nominal) noexcept {
+  start_ = &start;
+  prior_ = &prior;
+  gain_ = pull_ = gain;
+  theta0_ = theta0;
+  settling_ = false;
+  const Index machine = twin_->unknowns() - twin_->start_unknowns();
+  Index active = machine;
+  if (start.at_rest) {
+    twin_->UseGain(gain);
+    twin_->Start(theta0_);
+    seen_ = start.origin;
+  } else if (gain == 0 && start.known) {
+    active = twin_->unknowns();
+    StartInState();
+  } else {
+    theta0_.tail(twin_->start_unknowns()).setZero();
+    settling_ = true;
+    pull_ = stiffest();
+    twin_->UseGain(pull_);
+    twin_->Start(theta0_, start.settling, start.settles_from);
+    seen_ = start.settles_from;
+    if (gain == 0) active = twin_->unknowns();
+  }
+  theta_ = theta0_;
+  away_ = nominal - theta0_;
+  information_.Start(active, prior, away_);
+  surprise_.Start();
+  softer_at_ = start.origin + twin_->gains()[pull_].settling;
+  sum_.setZero();
+  in_block_ = blocks_ = 0;
+  squares_ = worst_block_ = worst_stretch_ = 0.0;
+}
+
+void TwinPass::StartInState() noexcept {
+  twin_->UseGain(0);
+  twin_->Start(theta0_, start_->state, start_->origin);
+  seen_ = start_->origin;
+}
+
+bool TwinPass::Step(const KeptReadings& run) noexcept {
+  twin_->Predict(reading_);
+  innovation_ = run.outputs(seen_) - reading_;
+  twin_->Step(run.inputs(seen_), innovation_);
+  ++seen_;
+  sum_ += innovation_;
+  if (++in_block_ < twin_->block()) return false;
+  in_block_ = 0;
+  const MatrixXd& psi = twin_->EndBlock();
+  sum_ /= static_cast<double>(twin_->block());
+  const bool counts = !settling_;
+  if (counts) Count(psi);
+  sum_.setZero();
+  if (settling_ && seen_ >= start_->origin) Settle();
+  if (!settling_ && pull_ > gain_ && seen_ >= softer_at_) {
+    twin_->UseGain(--pull_);
+    softer_at_ = seen_ + twin_->gains()[pull_].settling;
+  }
+  return counts;
+}
+
+void TwinPass::Settle() noexcept {
+  settling_ = false;
+  twin_->ReadState(start_->state);
+  start_->known = true;
+  if (gain_ > 0) return;
+  pull_ = 0;
+  StartInState();
+}
+
+void TwinPass::Count(const MatrixXd& psi) noexcept {
+  covariance_ = twin_->gains()[pull_].covariance / static_cast<double>(twin_->block());
+  double squares = information_.Surprise(psi, sum_, covariance_);
+  ++blocks_;
+  squares_ += squares;
+  if (gain_ > 0) {
+    covariance_ *= std::max(1.0, squares / kRobust);
+    squares = std::min(squares, kMostSurprising);
+  }
+  surprise_.Add(squares);
+  worst_block_ = std::max(worst_block_, squares);
+  worst_stretch_ = std::max(worst_stretch_, surprise_.recent());
+  information_.Add(psi, sum_, covariance_);
+  theta_ = theta0_ + information_.change();
+}
+
+void TwinPass::Shift() noexcept {
+  theta0_ += information_.change();
+  theta_ = theta0_;
+  twin_->Shift(information_.change());
+  information_.Recentre();
+}
+
+void TwinPass::Soften(std::size_t gain) noexcept {
+  gain_ = pull_ = gain;
+  twin_->UseGain(gain);
+}
+
+const VectorXd& TwinPass::DiscountedChange() noexcept {
+  information_.Discount(*prior_, away_, std::max(1.0, misfit()));
+  return information_.change();
+}
+
+}  // namespace mjdiag

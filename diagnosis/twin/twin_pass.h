@@ -1,0 +1,116 @@
+#pragma once
+// One pass of a twin over readings of its machine: the least squares of information.h on
+// its innovations, averaged over blocks, about a theta0 that is given. Where the twin is
+// true they are white, which makes the estimate the best there is. A pass begins
+//
+// - at rest: nothing of the start is unknown but what the numbers of the machine move;
+// - in motion, with a gain that pulls the twin along: after it has forgotten, by the
+//   stiffest gain and then by ever softer ones as a Kalman filter would, how it began;
+// - in motion, with the gain of the force noise that is assumed: with its state among
+//   the unknowns, about one that was measured, or that a twin had which has settled.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "mjdiag/diagnosis/twin/information.h"
+#include "mjdiag/diagnosis/twin/kept_readings.h"
+#include "mjdiag/diagnosis/twin/surprise.h"
+#include "mjdiag/diagnosis/twin/twin.h"
+
+namespace mjdiag {
+
+/// Where passes begin. Ticks from the first to the first that counts are whole blocks.
+struct PassStart {
+  Eigen::Index origin = 0;  ///< first tick that counts
+  bool at_rest = true;
+  /// Where a twin that is pulled along begins, to have settled at the origin.
+  Eigen::Index settles_from = 0;
+  TwinState settling;
+  /// At the origin, if it is known: measured, or that of the last pass that has settled.
+  bool known = false;
+  TwinState state;
+
+  Eigen::Index first() const { return at_rest || known ? origin : settles_from; }
+};
+
+class TwinPass {
+ public:
+  explicit TwinPass(std::unique_ptr<Twin> twin);
+
+  const Twin& twin() const { return *twin_; }
+  Twin& twin() { return *twin_; }
+  std::size_t stiffest() const { return twin_->gains().size() - 1; }
+
+  // Nothing below allocates, locks or throws.
+
+  /// In motion from that tick on, in the state that its readings say.
+  void StartMeasured(const KeptReadings& run, Eigen::Index tick,
+                     PassStart& start) noexcept;
+  /// The same, settling from there first.
+  void StartSettling(const KeptReadings& run, Eigen::Index tick,
+                     PassStart& start) noexcept;
+  /// Anew. What theta0 says of the start is left out of account where it is not unknown.
+  /// @param start  gets the state of a twin that has settled
+  /// @param prior  P0^-1, p x p
+  /// @param nominal  p
+  void Begin(PassStart& start, const Eigen::VectorXd& theta0, std::size_t gain,
+             const Eigen::MatrixXd& prior, const Eigen::VectorXd& nominal) noexcept;
+  /// The reading of the tick that it has come to. @return whether a block is added
+  bool Step(const KeptReadings& run) noexcept;
+  /// Where the estimate is too far from theta0: theta0 becomes theta, and the state goes
+  /// with it to first order.
+  void Shift() noexcept;
+  /// From now on with that gain.
+  void Soften(std::size_t gain) noexcept;
+  /// theta - theta0 if the errors that are left count as noise: far from the solution
+  /// what is hardly known must not be bent to explain them. In place of the estimate.
+  const Eigen::VectorXd& DiscountedChange() noexcept;
+
+  bool began() const { return information_.active() > 0; }
+  /// The next tick.
+  Eigen::Index seen() const { return seen_; }
+  Eigen::Index counts_from() const { return start_->origin; }
+  Eigen::Index blocks() const { return blocks_; }
+  std::size_t gain() const { return gain_; }
+  const Eigen::VectorXd& theta0() const { return theta0_; }
+  const Eigen::VectorXd& theta() const { return theta_; }
+  const Information& information() const { return information_; }
+  Information& information() { return information_; }
+  const Surprise& surprise() const { return surprise_; }
+  /// Of the tick before.
+  const Eigen::VectorXd& innovation() const { return innovation_; }
+  /// Mean square of the innovations so far over what was expected of them.
+  double misfit() const {
+    return blocks_ > 0 ? squares_ / static_cast<double>(blocks_) : 1.0;
+  }
+  /// The largest of a block, and of the mean over recent ones.
+  double worst_block() const { return worst_block_; }
+  double worst_stretch() const { return worst_stretch_; }
+
+ private:
+  void Settle() noexcept;
+  void StartInState() noexcept;
+  void Count(const Eigen::MatrixXd& psi) noexcept;
+
+  std::unique_ptr<Twin> twin_;
+  PassStart* start_ = nullptr;
+  const Eigen::MatrixXd* prior_ = nullptr;
+  std::size_t gain_ = 0;
+  std::size_t pull_ = 0;        // gain now, gain_ when it has settled
+  Eigen::Index softer_at_ = 0;  // tick of the next softer one
+  bool settling_ = false;
+  Eigen::Index seen_ = 0;
+  Eigen::Index blocks_ = 0;
+  Eigen::Index in_block_ = 0;
+  double squares_ = 0.0;
+  double worst_block_ = 0.0, worst_stretch_ = 0.0;
+  Information information_;
+  Surprise surprise_;
+  Eigen::VectorXd theta0_, theta_, away_;
+  Eigen::VectorXd reading_, innovation_, sum_;
+  Eigen::MatrixXd covariance_;  // of a block's innovation
+};
+
+}  // namespace mjdiag
