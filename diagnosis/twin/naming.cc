@@ -49,24 +49,37 @@ std::vector<bool> NameFaults(const VectorXd& deviations, const MatrixXd& covaria
     }
     return sum;
   };
-  // From all of them, one is taken out or put back as long as that is better.
-  std::vector<bool> named(groups.size(), true);
-  double best = criterion(named);
-  for (bool better = true; better;) {
-    better = false;
-    std::size_t change = 0;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      std::vector<bool> other = named;
-      other[i] = !other[i];
-      if (const double value = criterion(other); value < best) {
-        best = value;
-        change = i;
-        better = true;
+  // From all and from none, one is taken out, put in or exchanged for another as long as
+  // that is better.
+  const std::size_t n = groups.size();
+  std::vector<bool> best(n, false);
+  double least = criterion(best);
+  for (const bool all : {true, false}) {
+    std::vector<bool> named(n, all);
+    double now = criterion(named);
+    std::vector<bool> next = named;
+    for (bool better = true; better; named = next) {
+      better = false;
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = i; k < n; ++k) {
+          if (k > i && named[i] == named[k]) continue;
+          std::vector<bool> other = named;
+          other[i] = !other[i];
+          if (k > i) other[k] = !other[k];
+          if (const double value = criterion(other); value < now) {
+            now = value;
+            next = other;
+            better = true;
+          }
+        }
       }
     }
-    if (better) named[change] = !named[change];
+    if (now < least) {
+      least = now;
+      best = named;
+    }
   }
-  return named;
+  return best;
 }
 
 }  // namespace mjdiag

@@ -152,7 +152,7 @@ void PredictionErrorEstimator::Unexplained() noexcept {
 
 void PredictionErrorEstimator::PullAlong() noexcept {
   const PassStart& first = segment_.first;
-  const bool again = segment_.windowed;
+  const bool again = segment_.attempts++ > 0;
   if (!again && first.at_rest && segment_.explained < kAtOnce) return StartInMotion();
   Retract();
   exhausted_ = returns_ >= kMostReturns;
@@ -183,6 +183,7 @@ bool PredictionErrorEstimator::TryChange() noexcept {
   first.settling = from->state;
   first.origin = pass_.seen() - kNoticed * pass_.twin().block();
   segment_.windowed = !pass_.twin().linear();
+  segment_.attempts = 0;
   if (pass_.twin().linear()) {
     pass_.StartMeasured(kept_, first.origin, first);
   } else {

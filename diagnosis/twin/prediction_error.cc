@@ -139,8 +139,8 @@ void PredictionErrorEstimator::ProcessKept() noexcept {
 void PredictionErrorEstimator::Say() noexcept {
   const bool same = said_.began && said_.since == segment_.first.origin;
   const bool sure = Bias() < 1.0;
-  const bool less = gain() > said_.gain || pass_.seen() < said_.until ||
-                    (said_.sure && !sure);
+  const bool less =
+      gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
   if (pass_.blocks() == 0 || (same && less && !exhausted_)) return;
   said_.began = true;
   said_.sure = sure;

@@ -97,6 +97,7 @@ class PredictionErrorEstimator {
     /// Of passes over the last readings, with a gain that pulls at first.
     PassStart window;
     bool windowed = false;       ///< passes begin there
+    int attempts = 0;            ///< of passes that are pulled along
     Eigen::Index explained = 0;  ///< longest horizon so far
     Eigen::Index surprised = 0;  ///< horizon of the last pass
     int stuck = 0;               ///< passes without a longer one
