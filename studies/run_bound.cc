@@ -38,9 +38,7 @@ std::unique_ptr<Twin> MakeFreeTwin(const Machine& machine,
                                    const UncertainMachine& uncertain,
                                    const VectorXd& noise, bool linear) {
   std::vector<TwinGain> none = {{MatrixXd::Zero(2 * machine.plant().nv, noise.size()),
-                                 noise.cwiseAbs2().asDiagonal(),
-                                 {},
-                                 0}};
+                                 noise.cwiseAbs2().asDiagonal(), 0}};
   if (linear) {
     return std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
                                         std::move(none), 1);

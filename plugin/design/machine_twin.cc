@@ -37,7 +37,7 @@ TwinGain GainOf(const Machine& machine, const VectorXd& noise, double bandwidth)
                                            machine.rates().substeps, noise, bandwidth);
   const auto settling =
       static_cast<Index>(kSettling * machine.rates().control / bandwidth);
-  return {observer.L, observer.innovation_covariance, observer.P, settling};
+  return {observer.L, observer.innovation_covariance, settling, observer.P};
 }
 
 std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
@@ -48,7 +48,7 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
     gains.push_back(GainOf(machine, noise, force_noise));
   } else {
     gains.push_back({MatrixXd::Zero(nx, noise.size()), noise.cwiseAbs2().asDiagonal(),
-                     MatrixXd::Zero(nx, nx), 0});
+                     0, MatrixXd::Zero(nx, nx)});
   }
   for (const double part : kTwinBandwidths) {
     const double bandwidth = part * machine.rates().control;
