@@ -104,10 +104,12 @@ void PredictionErrorEstimator::Approach() noexcept {
 
 std::size_t PredictionErrorEstimator::Softer(std::size_t gain,
                                              Index ticks) const noexcept {
-  // One that does not settle in that time is as good as none.
-  while (gain > 0 && pass_.twin().gains()[--gain].settling > ticks) {
+  // One that a pass does not come to in that time is as good as none.
+  Index until = 0;
+  for (std::size_t i = gain; i < pass_.stiffest(); ++i) {
+    until += pass_.twin().gains()[i].settling;
   }
-  return gain;
+  return until > ticks ? 0 : gain - 1;
 }
 
 void PredictionErrorEstimator::MoveWindow() noexcept {
@@ -116,9 +118,7 @@ void PredictionErrorEstimator::MoveWindow() noexcept {
                                              pass_.seen() - kLook - kUnnoticed);
   if (from == nullptr) return;
   PassStart& window = segment_.window;
-  window.at_rest = window.known = false;
-  window.settles_from = from->tick;
-  window.settling = from->state;
+  window.SettleFrom(from->tick, from->state);
   window.origin = from->tick + kUnnoticed;
 }
 
@@ -178,15 +178,18 @@ bool PredictionErrorEstimator::TryChange() noexcept {
                                              pass_.seen() - kUnnoticed);
   if (from == nullptr) return false;
   PassStart& first = segment_.first;
-  first.at_rest = first.known = false;
-  first.settles_from = from->tick;
-  first.settling = from->state;
-  first.origin = pass_.seen() - kNoticed * pass_.twin().block();
+  const Index block = pass_.twin().block();
+  segment_.since = pass_.seen() - kNoticed * block;
   segment_.windowed = !pass_.twin().linear();
   segment_.attempts = 0;
   if (pass_.twin().linear()) {
-    pass_.StartMeasured(kept_, first.origin, first);
+    pass_.StartMeasured(kept_, segment_.since, first);
   } else {
+    // Until the change it was another machine: half of the forgetting, for its state was
+    // known there.
+    first.SettleFrom(from->tick, from->state);
+    const Index settling = pass_.twin().gains().back().settling / 2;
+    first.origin = segment_.since + (settling + block - 1) / block * block;
     segment_.window = first;
   }
   returns_ = 0;

@@ -133,11 +133,11 @@ void PredictionErrorEstimator::ProcessKept() noexcept {
   } else if (!exhausted_) {
     Reconsider();
   }
-  learned_ = !WorthGoingBack();
+  learned_ = Bias() < 1.0;
 }
 
 void PredictionErrorEstimator::Say() noexcept {
-  const bool same = said_.began && said_.since == segment_.first.origin;
+  const bool same = said_.began && said_.since == segment_.since;
   const bool sure = Bias() < 1.0;
   const bool less =
       gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
@@ -148,7 +148,7 @@ void PredictionErrorEstimator::Say() noexcept {
   said_.theta = pass_.theta();
   said_.prior = prior_;
   said_.surprise = pass_.surprise().recent();
-  said_.since = segment_.first.origin;
+  said_.since = segment_.since;
   said_.until = pass_.seen();
   said_.gain = gain();
 }

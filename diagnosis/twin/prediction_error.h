@@ -82,7 +82,7 @@ class PredictionErrorEstimator {
   /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
   double surprise() const { return said_.surprise; }
   /// Whether what it says is of the machine as it is now: it knows of no change since.
-  bool current() const { return sure() && said_.since == segment_.first.origin; }
+  bool current() const { return sure() && said_.since == segment_.since; }
   /// Whether the twin ran so near to it that the first order tells it, as its standard
   /// deviation takes for granted.
   bool sure() const { return said_.sure; }
@@ -93,6 +93,7 @@ class PredictionErrorEstimator {
  private:
   /// A stretch of the run in which the machine does not change.
   struct Segment {
+    Eigen::Index since = 0;  ///< its first tick
     PassStart first;
     /// Of passes over the last readings, with a gain that pulls at first.
     PassStart window;
@@ -182,7 +183,7 @@ class PredictionErrorEstimator {
   Eigen::Index next_look_;
   Eigen::Index look_ = 0;  // ticks of a pass that is pulled along
   int pulled_passes_ = 0;  // with this gain
-  bool learned_ = false;   // all there was, before this block
+  bool learned_ = false;   // nearly all there was, before this block
   int returns_ = 0;
   bool exhausted_ = false;  // of returns
   Eigen::MatrixXd prior_;

@@ -14,6 +14,8 @@ namespace {
 /// While the twin is pulled along, a block that is more surprising counts less, in
 /// inverse proportion: a joint came loose a little sooner than the twin's.
 constexpr double kRobust = 4.0;
+/// Blocks in which a twin that had nearly the state of its machine has it again.
+constexpr Index kResettle = 32;
 /// So it does on average.
 constexpr double kMostSurprising = 32.0;
 
@@ -53,29 +55,27 @@ void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
   gain_ = pull_ = gain;
   theta0_ = theta0;
   settling_ = false;
-  const Index machine = twin_->unknowns() - twin_->start_unknowns();
-  Index active = machine;
+  const bool with_start = !start.at_rest && gain == 0;
+  const Index started = twin_->start_unknowns();
+  if (!with_start || !start.known) theta0_.tail(started).setZero();
   if (start.at_rest) {
     twin_->UseGain(gain);
     twin_->Start(theta0_);
     seen_ = start.origin;
-  } else if (gain == 0 && start.known) {
-    active = twin_->unknowns();
+  } else if (start.known && with_start) {
     StartInState();
   } else {
-    theta0_.tail(twin_->start_unknowns()).setZero();
     settling_ = true;
     pull_ = stiffest();
     twin_->UseGain(pull_);
     twin_->Start(theta0_, start.settling, start.settles_from);
     seen_ = start.settles_from;
-    if (gain == 0) active = twin_->unknowns();
   }
   theta_ = theta0_;
   away_ = nominal - theta0_;
-  information_.Start(active, prior, away_);
+  information_.Start(twin_->unknowns() - (with_start ? 0 : started), prior, away_);
   surprise_.Start();
-  softer_at_ = start.origin + twin_->gains()[pull_].settling;
+  softer_at_ = start.origin;
   sum_.setZero();
   in_block_ = blocks_ = 0;
   squares_ = worst_block_ = worst_stretch_ = 0.0;
@@ -100,6 +100,11 @@ bool TwinPass::Step(const KeptReadings& run) noexcept {
   const bool counts = !settling_;
   if (counts) Count(psi);
   sum_.setZero();
+  if (settling_ && seen_ == start_->origin - kResettle * twin_->block()) {
+    // From here the next pass is there sooner.
+    twin_->ReadState(start_->state);
+    start_->SettleFrom(seen_, start_->state);
+  }
   if (settling_ && seen_ >= start_->origin) Settle();
   if (!settling_ && pull_ > gain_ && seen_ >= softer_at_) {
     twin_->UseGain(--pull_);

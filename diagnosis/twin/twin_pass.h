@@ -25,13 +25,21 @@ namespace mjdiag {
 struct PassStart {
   Eigen::Index origin = 0;  ///< first tick that counts
   bool at_rest = true;
-  /// Where a twin that is pulled along begins, to have settled at the origin.
+  /// Where a twin that is pulled along begins, to have settled at the origin: in a state
+  /// that its machine had, nearly, whatever theta is.
   Eigen::Index settles_from = 0;
   TwinState settling;
   /// At the origin, if it is known: measured, or that of the last pass that has settled.
   bool known = false;
   TwinState state;
 
+  /// To settle from there.
+  void SettleFrom(Eigen::Index tick, const TwinState& near) noexcept {
+    settles_from = tick;
+    settling.x = near.x;
+    settling.S.setZero();
+    at_rest = known = false;
+  }
   Eigen::Index first() const { return at_rest || known ? origin : settles_from; }
 };
 
