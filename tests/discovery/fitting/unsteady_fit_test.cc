@@ -33,16 +33,16 @@ TEST(UnsteadyFit, ASmoothMachineIsSteadyAndItsSolutionTheBestPlace) {
   EXPECT_NEAR(better->causes[0].value[0], 20.0, 0.1);
 }
 
-// A gap of a nanoradian in a stiff guide: no change is too small to change the course.
+// A gap of nanoradians in a stiff guide: no change is too small to change the course.
 TEST(UnsteadyFit, SeesThatACourseDependsOnTheLastDigit) {
   const Machine machine = test::Bonder();
   const Trajectories& motions = machine.setup().trajectories;
   const Record measured =
-      Simulate(machine.With(test::With({"backlash@u4:gap=8.9e-10"})),
+      Simulate(machine.With(test::With({"backlash@u4:gap=1.5e-9"})),
                FollowTrajectory(machine.setup(), motions.Find(motions.fallback)), {});
   const DiscoveryProblem problem = PoseProblem(machine, measured, 0.7, 0.0);
   const auto candidates = ListCandidates(machine);
-  const CauseFit truth = FitAt(problem, candidates, "backlash@u4", 8.9e-10);
+  const CauseFit truth = FitAt(problem, candidates, "backlash@u4", 1.5e-9);
   EXPECT_GT(Unsteadiness(problem, candidates, truth), 30.0);
 }
 

@@ -164,11 +164,11 @@ TEST_F(Tolerance, ActsOnWhatAppearsMidway) {
   options.late_faults = {
       {{"eta_x", 0.7}, 0.5}, {{"zeta_x", 2.0}, 0.5}, {{"gamma", 1.0}, 0.5}};
   for (const bool linear : {true, false}) {
-    const Record healthy = Run({}, linear, 2.0);
-    const Record run = RunWatched(options, linear, 2.0);
+    const Record healthy = Run({}, linear, 2.5);
+    const Record run = RunWatched(options, linear, 2.5);
     EXPECT_EQ(summary_.size(), 3u);
     for (const char* axis : {"x", "y", "z"}) {
-      EXPECT_LT(Rms(run, axis, 1.5), 1.1 * Rms(healthy, axis, 1.5)) << axis;
+      EXPECT_LT(Rms(run, axis, 2.0), 1.1 * Rms(healthy, axis, 2.0)) << axis;
     }
   }
 }
