@@ -20,6 +20,8 @@ constexpr double kWidestStart = 1e3;
 /// Standard deviations.
 constexpr double kSure = 5.0;
 constexpr Index kFirstLook = 256;
+/// Ticks that are little more than a joint that has just come loose.
+constexpr Index kBrief = 128;
 /// Blocks between two steps of the walk while it follows.
 constexpr Index kWalkEvery = 64;
 
@@ -138,7 +140,9 @@ void PredictionErrorEstimator::ProcessKept() noexcept {
 
 void PredictionErrorEstimator::Say() noexcept {
   const bool same = said_.began && said_.since == segment_.since;
-  const bool sure = Bias() < 1.0;
+  const bool brief =
+      !pass_.twin().linear() && pass_.blocks() * pass_.twin().block() < kBrief;
+  const bool sure = !brief && Bias() < 1.0;
   const bool less =
       gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
   if (pass_.blocks() == 0 || (same && less && !exhausted_)) return;

@@ -16,8 +16,6 @@ namespace {
 constexpr double kRobust = 4.0;
 /// Blocks in which a twin that had nearly the state of its machine has it again.
 constexpr Index kResettle = 32;
-/// So it does on average.
-constexpr double kMostSurprising = 32.0;
 
 }  // namespace
 
@@ -124,12 +122,11 @@ void TwinPass::Settle() noexcept {
 
 void TwinPass::Count(const MatrixXd& psi) noexcept {
   covariance_ = twin_->gains()[pull_].covariance / static_cast<double>(twin_->block());
-  double squares = information_.Surprise(psi, sum_, covariance_);
+  const double squares = information_.Surprise(psi, sum_, covariance_);
   ++blocks_;
   squares_ += squares;
   if (gain_ > 0) {
     covariance_ *= std::max(1.0, squares / kRobust);
-    squares = std::min(squares, kMostSurprising);
   }
   surprise_.Add(squares);
   worst_block_ = std::max(worst_block_, squares);

@@ -271,6 +271,7 @@ MatrixXd Signals(const DiagnosisDesign& design, const Record& record) {
 Record LinearRun(const Machine& machine) {
   RunOptions options;
   options.noise_scale = 0.0;
+  options.linear_part = true;
   return SimulateLinear(machine, DefaultExcitation(machine.setup()), options);
 }
 

@@ -112,9 +112,11 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
                      "faults only, or the nonlinear plant");
   }
   const std::vector<PlacedEffect> carried = machine.effects();
-  if (std::any_of(carried.begin(), carried.end(), [](const PlacedEffect& placed) {
+  const bool beside =
+      std::any_of(carried.begin(), carried.end(), [](const PlacedEffect& placed) {
         return placed.effect->form() != Form::kAttributes;
-      })) {
+      });
+  if (beside && !options.linear_part) {
     throw InputError(machine.plant().names,
                      "the plant carries effects, which are not linear",
                      "a plant without, or the nonlinear plant");

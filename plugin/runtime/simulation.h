@@ -73,6 +73,9 @@ struct RunOptions {
   std::map<std::string, double> disturbances;
   std::vector<LateFault> late_faults;
   double noise_scale = 1.0;  ///< times every sensor's noise; 0: none
+  /// The linear plant without the effects that the plant carries beside: else they are
+  /// refused.
+  bool linear_part = false;
   std::uint64_t seed = 1;
   bool log_joints = false;
   TickObserver* observer = nullptr;  ///< not owned
