@@ -53,11 +53,22 @@ RunInformation RunPass::About(const VectorXd& numbers, std::size_t gain) {
   pass_.Begin(start, theta, gain, known_, VectorXd::Zero(theta.size()));
   RunInformation said;
   said.innovations.resize(run_.outputs(0).size(), run_.added());
+  const Index n = numbers.size();
+  const Index part = (run_.added() - start.origin) / kRunParts;
+  MatrixXd H_before = known_.topLeftCorner(n, n);
+  VectorXd g_before = -H_before * numbers;
   Index counted = 0;
   while (pass_.seen() < run_.added()) {
     const bool counts = pass_.seen() >= start.origin;
     pass_.Step(run_);
-    if (counts) said.innovations.col(counted++) = pass_.innovation();
+    if (!counts) continue;
+    said.innovations.col(counted++) = pass_.innovation();
+    if (part == 0 || counted % part != 0) continue;
+    const Information& all = pass_.information();
+    said.parts.push_back(
+        {all.H().topLeftCorner(n, n) - H_before, all.g().head(n) - g_before});
+    H_before += said.parts.back().H;
+    g_before += said.parts.back().g;
   }
   said.innovations.conservativeResize(Eigen::NoChange, counted);
   said.misfit = pass_.misfit();

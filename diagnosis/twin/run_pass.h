@@ -13,14 +13,24 @@
 
 namespace mjdiag {
 
+/// Of a part of a run: what it adds to H and g.
+struct PartInformation {
+  Eigen::MatrixXd H;  ///< n x n
+  Eigen::VectorXd g;  ///< n
+};
+
 struct RunInformation {
   Eigen::MatrixXd H;           ///< of the numbers, n x n, without any prior
   Eigen::VectorXd g;           ///< n: H^-1 g is the change that it asks for
   double misfit = 1.0;         ///< mean square of the innovations over what is expected
   double worst_block = 1.0;    ///< the largest of a block,
   double worst_stretch = 1.0;  ///< and of the mean over recent ones (Surprise)
+  /// Of kRunParts stretches of about one length, its start as it is estimated.
+  std::vector<PartInformation> parts;
   Eigen::MatrixXd innovations;  ///< ny x ticks from the first that counts
 };
+
+inline constexpr Eigen::Index kRunParts = 8;
 
 class RunPass {
  public:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/run_pass.h"
 #include "mjdiag/plugin/design/machine_twin.h"
@@ -168,6 +169,7 @@ class Learner {
       VectorXd change = CovarianceOf(H) * g;
       diverged_ = !change.allFinite();
       if (diverged_) return;
+      last_ = change;
       const double squared = change.dot(g);
       const double farthest = change.cwiseAbs().maxCoeff();
       if (farthest > kLongest) change *= kLongest / farthest;
@@ -192,6 +194,35 @@ class Learner {
     return excess;
   }
 
+  /// How far parts of the runs contradict all of them together: the mean square of what
+  /// each would move, over what noise lets expect. Errors of a model are alike from one
+  /// tick to the next, and the parts see what no single innovation shows. 1 where chance
+  /// explains it.
+  double Contradiction() const {
+    constexpr double kTold = 1e-6;    // of what a part tells best
+    constexpr double kChance = 1e-3;  // probability
+    double squares = 0.0;
+    double freedom = -static_cast<double>(own_.size());
+    for (const RunInformation& said : said_) {
+      for (const PartInformation& part : said.parts) {
+        const VectorXd unit =
+            part.H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(
+            MatrixXd(unit.asDiagonal() * part.H * unit.asDiagonal()));
+        const VectorXd pull = modes.eigenvectors().transpose() *
+                              unit.cwiseProduct(part.g - part.H * last_);
+        const VectorXd& told = modes.eigenvalues();
+        for (Index i = 0; i < told.size(); ++i) {
+          if (!(told[i] > kTold * told.maxCoeff())) continue;
+          squares += pull[i] * pull[i] / told[i] / std::max(1.0, said.misfit);
+          freedom += 1.0;
+        }
+      }
+    }
+    if (!(freedom >= 1.0)) return 1.0;
+    return squares > ChiSquaredQuantile(kChance, freedom) ? squares / freedom : 1.0;
+  }
+
   /// Of the readings, by what changes from one innovation to the next.
   VectorXd Noise() const {
     VectorXd noise = VectorXd::Zero(gains_.front().covariance.rows());
@@ -211,6 +242,7 @@ class Learner {
   MatrixXd known_;
   VectorXd before_, own_;
   MatrixXd H_;
+  VectorXd last_;  // change that the last passes asked for
   std::vector<RunInformation> said_;
   bool diverged_ = false;
 };
@@ -274,6 +306,11 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   if (!inflated) noise = noise.cwiseMin(learner.Noise());
   learner = about(learner.theta());
   learner.Learn(gain, false);
+  if (const double contradiction = learner.Contradiction(); contradiction > 1.0) {
+    noise *= std::sqrt(contradiction);
+    learner = about(learner.theta());
+    learner.Learn(gain, false);
+  }
 
   CalibrationReport report;
   Calibration& calibration = report.calibration;

@@ -12,6 +12,8 @@
 //   (kTwinBandwidths) with which no block of any run is more of a surprise than chance
 //   lets expect, for that is what the estimator goes by. Where there is none, the noise
 //   of the sensors is taken as so much larger.
+// - So it is where parts of the runs contradict all of them together by more than chance:
+//   errors of a model are alike from one tick to the next, which no innovation shows.
 // - Limits of residuals are those of the measured runs, and of simulated ones of plants
 //   drawn from what is known.
 
