@@ -82,6 +82,39 @@ TEST(LinearTwin, KnowsHowItsPredictionsChangeWithEveryUnknown) {
   }
 }
 
+TEST(LinearTwin, GoesOnFromAStateOfItsRunAboutAnyTheta) {
+  LinearTwin twin = Twin();
+  const MatrixXd inputs = test::Drive(kTicks);
+  const VectorXd none = VectorXd::Zero(2);
+  constexpr Index kFrom = kTicks / 2;
+  VectorXd theta = VectorXd::Zero(twin.unknowns());
+  theta.head(test::kOfTheMachine) << 0.2, -0.1, 0.05, 0.01, -0.02;
+  VectorXd change = VectorXd::Zero(twin.unknowns());
+  change.head(test::kOfTheMachine) << 1e-5, -1e-5, 1e-5, 1e-5, 1e-5;
+  TwinState state = twin.MakeState();
+  const auto go_on = [&](Index from) {
+    MatrixXd readings(2, kTicks - kFrom);
+    VectorXd reading(2);
+    for (Index k = from; k < kTicks; ++k) {
+      if (k == kFrom && from == 0) twin.ReadState(state);
+      twin.Predict(reading);
+      if (k >= kFrom) readings.col(k - kFrom) = reading;
+      twin.Step({inputs.col(k).data(), 2}, none);
+      if ((k + 1) % test::kBlock == 0) twin.EndBlock();
+    }
+    return readings;
+  };
+  twin.Start(theta + change);
+  const MatrixXd elsewhere = go_on(0);
+  twin.Start(theta);
+  const MatrixXd whole = go_on(0);
+  // The tones of theta, too, go on from where they were.
+  twin.Start(theta, state, kFrom);
+  EXPECT_LT((go_on(kFrom) - whole).norm(), 1e-12 * whole.norm());
+  twin.Start(theta + change, state, kFrom);
+  EXPECT_LT((go_on(kFrom) - elsewhere).norm(), 1e-3 * (elsewhere - whole).norm());
+}
+
 TEST(LinearTwin, GoesToWhereAShiftTakesItToFirstOrder) {
   LinearTwin twin = Twin();
   const MatrixXd inputs = test::Drive(kTicks);

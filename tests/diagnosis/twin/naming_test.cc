@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <random>
 
@@ -35,6 +36,19 @@ TEST(NameFaults, NamesBothWhereOneDoesNotExplainTheOther) {
   const VectorXd deviations = (VectorXd(3) << 9.0, -9.0, 0.0).finished();
   EXPECT_THAT(NameFaults(deviations, Covariance(0.9), kSingles, 1e-4),
               ElementsAre(true, true, false));
+}
+
+TEST(NameFaults, NamesOneFaultInsteadOfTwoThatTogetherDoTheSame) {
+  // The first does what the others do together but for one part in a hundred, and noise
+  // has turned it into them.
+  const MatrixXd does = (MatrixXd(3, 3) << 1.0, 1.0, 0.0,  //
+                         1.0, 0.0, 1.0,                    //
+                         0.01, 0.0, 0.0)
+                            .finished();
+  const MatrixXd covariance = 0.01 * (does.transpose() * does).inverse();
+  const VectorXd deviations = (VectorXd(3) << 0.1, 4.9, 4.9).finished();
+  EXPECT_THAT(NameFaults(deviations, covariance, kSingles, 1e-4),
+              ElementsAre(true, false, false));
 }
 
 TEST(NameFaults, JudgesTheTonesOfADisturbanceTogether) {
