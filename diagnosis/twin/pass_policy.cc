@@ -104,6 +104,7 @@ void PredictionErrorEstimator::Approach() noexcept {
 
 std::size_t PredictionErrorEstimator::Softer(std::size_t gain,
                                              Index ticks) const noexcept {
+  if (gain == 0) return 0;
   // One that a pass does not come to in that time is as good as none.
   Index until = 0;
   for (std::size_t i = gain; i < pass_.stiffest(); ++i) {
@@ -210,6 +211,7 @@ bool PredictionErrorEstimator::Explained() const noexcept {
 }
 
 void PredictionErrorEstimator::ApproachWhole() noexcept {
+  if (segment_.first.first() < kept_.first()) segment_.first = segment_.window;
   segment_.windowed = true;
   if (segment_.first.at_rest) {
     segment_.window = segment_.first;
