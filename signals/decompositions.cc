@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <limits>
+#include <utility>
 
 #include "mjdiag/signals/error.h"
 
@@ -60,6 +62,16 @@ double SpectralRadius(const MatrixXd& A) {
 SymmetricEigenPairs SymmetricEigenDecomposition(const MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+ScaledEigenPairs ScaledEigenDecomposition(const MatrixXd& A) {
+  // A quantity that nothing tells has a scale all the same.
+  const Eigen::VectorXd scale =
+      A.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  const Eigen::VectorXd unit = scale.cwiseInverse();
+  SymmetricEigenPairs pairs =
+      SymmetricEigenDecomposition(unit.asDiagonal() * A * unit.asDiagonal());
+  return {scale, std::move(pairs.values), std::move(pairs.vectors)};
 }
 
 SingularValues SingularValueDecomposition(const MatrixXd& A) {

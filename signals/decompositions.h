@@ -44,6 +44,16 @@ struct SymmetricEigenPairs {
 };
 SymmetricEigenPairs SymmetricEigenDecomposition(const Eigen::MatrixXd& A);
 
+/// A = diag(scale) V diag(values) V^T diag(scale), scale the root of the diagonal of A:
+/// of a covariance or an information of quantities of any units.
+struct ScaledEigenPairs {
+  Eigen::VectorXd scale;
+  Eigen::VectorXd values;  ///< increasing
+  Eigen::MatrixXd vectors;
+};
+/// @param A  symmetric, its diagonal not negative
+ScaledEigenPairs ScaledEigenDecomposition(const Eigen::MatrixXd& A);
+
 /// A = U S V^T.
 struct SingularValues {
   Eigen::VectorXd values;  ///< decreasing, as many as the shorter side of A

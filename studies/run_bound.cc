@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include "mjdiag/plugin/replay/plant_twin.h"

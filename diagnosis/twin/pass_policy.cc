@@ -113,18 +113,25 @@ std::size_t PredictionErrorEstimator::Softer(std::size_t gain,
   return until > ticks ? 0 : gain - 1;
 }
 
+const Checkpoint* PredictionErrorEstimator::LastCheckpoint(Index until) const noexcept {
+  return checkpoints_.Last(std::max(now().origin, kept_.first() + 1), until);
+}
+
 void PredictionErrorEstimator::MoveWindow() noexcept {
   if (!CaughtUp()) return;
-  const Checkpoint* from = checkpoints_.Last(std::max(now().origin, kept_.first() + 1),
-                                             pass_.seen() - kLook - kUnnoticed);
+  const Checkpoint* from = LastCheckpoint(pass_.seen() - kLook - kUnnoticed);
   if (from == nullptr) return;
   PassStart& window = segment_.window;
   window.SettleFrom(from->tick, from->state);
   window.origin = from->tick + kUnnoticed;
 }
 
-void PredictionErrorEstimator::WidenHorizon() noexcept {
+void PredictionErrorEstimator::ForgetLostStart() noexcept {
   if (segment_.first.first() < kept_.first()) segment_.first = segment_.window;
+}
+
+void PredictionErrorEstimator::WidenHorizon() noexcept {
+  ForgetLostStart();
   segment_.windowed = false;
   segment_.explained = pulled_passes_ = 0;
   next_look_ = 0;
@@ -175,12 +182,10 @@ void PredictionErrorEstimator::PullAlong() noexcept {
 bool PredictionErrorEstimator::TryChange() noexcept {
   if (gain() > 0 && !following()) return false;
   if (pass_.seen() - now().origin < kLongExplained) return false;
-  const Checkpoint* from = checkpoints_.Last(std::max(now().origin, kept_.first() + 1),
-                                             pass_.seen() - kUnnoticed);
+  const Checkpoint* from = LastCheckpoint(pass_.seen() - kUnnoticed);
   if (from == nullptr) return false;
   PassStart& first = segment_.first;
-  const Index block = pass_.twin().block();
-  segment_.since = pass_.seen() - kNoticed * block;
+  segment_.since = pass_.seen() - kNoticed * pass_.twin().block();
   segment_.windowed = !pass_.twin().linear();
   segment_.attempts = 0;
   if (pass_.twin().linear()) {
@@ -189,14 +194,13 @@ bool PredictionErrorEstimator::TryChange() noexcept {
     // Until the change it was another machine: half of the forgetting, for its state was
     // known there.
     first.SettleFrom(from->tick, from->state);
-    const Index settling = pass_.twin().gains().back().settling / 2;
-    first.origin = segment_.since + (settling + block - 1) / block * block;
+    first.origin =
+        segment_.since + pass_.WholeBlocks(pass_.twin().gains().back().settling / 2);
     segment_.window = first;
   }
   returns_ = 0;
   variance_ = pass_.information().Variance();
-  work_ = pass_.theta();
-  StartOver(segment_.windowed ? pass_.stiffest() : 0, work_);
+  StartOver(segment_.windowed ? pass_.stiffest() : 0, pass_.theta());
   return true;
 }
 
@@ -211,7 +215,7 @@ bool PredictionErrorEstimator::Explained() const noexcept {
 }
 
 void PredictionErrorEstimator::ApproachWhole() noexcept {
-  if (segment_.first.first() < kept_.first()) segment_.first = segment_.window;
+  ForgetLostStart();
   segment_.windowed = true;
   if (segment_.first.at_rest) {
     segment_.window = segment_.first;

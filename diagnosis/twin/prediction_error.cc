@@ -62,7 +62,7 @@ PredictionErrorEstimator::PredictionErrorEstimator(
   said_.theta = nominal_;
   said_.variance = variance_;
   said_.prior = prior_;
-  said_.information.Start(p, prior_, work_);
+  said_.information.Start(p, prior_, VectorXd::Zero(p));
 }
 
 void PredictionErrorEstimator::WidenPrior() noexcept {
@@ -82,7 +82,6 @@ void PredictionErrorEstimator::WidenPrior() noexcept {
   prior_.setIdentity();
   factor.solveInPlace(prior_);
   prior_ = work_.asDiagonal() * prior_ * work_.asDiagonal();
-  work_.setZero();
 }
 
 const VectorXd& PredictionErrorEstimator::NextTheta() noexcept {

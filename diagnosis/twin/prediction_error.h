@@ -152,7 +152,10 @@ class PredictionErrorEstimator {
   bool TryChange() noexcept;
   /// The window becomes the last readings.
   void MoveWindow() noexcept;
-  /// From the first tick of the segment on, if it is still kept, about next_.
+  const Checkpoint* LastCheckpoint(Eigen::Index until) const noexcept;
+  /// Of a segment whose first readings are not kept any more, the window is what is left.
+  void ForgetLostStart() noexcept;
+  /// From the first tick of the segment on, about next_.
   void WidenHorizon() noexcept;
   std::size_t Softer(std::size_t gain, Eigen::Index ticks) const noexcept;
 

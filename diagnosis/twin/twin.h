@@ -29,7 +29,7 @@ struct TwinGain {
   Eigen::MatrixXd L;           ///< nx x ny
   Eigen::MatrixXd covariance;  ///< of e, ny x ny
   Eigen::Index settling = 0;   ///< ticks until it has forgotten how the twin began
-  Eigen::MatrixXd P = {};      ///< of the error of the state, nx x nx
+  Eigen::MatrixXd P = {};      ///< of the error of the state if L pulls, nx x nx
 };
 
 /// How large a twin is.

@@ -40,9 +40,8 @@ void TwinPass::StartMeasured(const KeptReadings& run, Index tick,
 void TwinPass::StartSettling(const KeptReadings& run, Index tick,
                              PassStart& start) noexcept {
   StartMeasured(run, tick, start);
-  const Index block = twin_->block();
   start.settling = start.state;
-  start.origin += (twin_->gains().back().settling + block - 1) / block * block;
+  start.origin += WholeBlocks(twin_->gains().back().settling);
   start.known = false;
 }
 
@@ -125,9 +124,7 @@ void TwinPass::Count(const MatrixXd& psi) noexcept {
   const double squares = information_.Surprise(psi, sum_, covariance_);
   ++blocks_;
   squares_ += squares;
-  if (gain_ > 0) {
-    covariance_ *= std::max(1.0, squares / kRobust);
-  }
+  if (gain_ > 0) covariance_ *= std::max(1.0, squares / kRobust);
   surprise_.Add(squares);
   worst_block_ = std::max(worst_block_, squares);
   worst_stretch_ = std::max(worst_stretch_, surprise_.recent());

@@ -12,7 +12,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
-#include <span>
 
 #include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/kept_readings.h"
@@ -50,6 +49,10 @@ class TwinPass {
   const Twin& twin() const { return *twin_; }
   Twin& twin() { return *twin_; }
   std::size_t stiffest() const { return twin_->gains().size() - 1; }
+  /// So many ticks or a few more, up to the end of a block.
+  Eigen::Index WholeBlocks(Eigen::Index ticks) const {
+    return (ticks + twin_->block() - 1) / twin_->block() * twin_->block();
+  }
 
   // Nothing below allocates, locks or throws.
 
@@ -79,7 +82,6 @@ class TwinPass {
   bool began() const { return information_.active() > 0; }
   /// The next tick.
   Eigen::Index seen() const { return seen_; }
-  Eigen::Index counts_from() const { return start_->origin; }
   Eigen::Index blocks() const { return blocks_; }
   std::size_t gain() const { return gain_; }
   const Eigen::VectorXd& theta0() const { return theta0_; }

@@ -1,6 +1,5 @@
 #include "mjdiag/plugin/design/calibrate.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +10,9 @@
 #include "mjdiag/diagnosis/twin/run_pass.h"
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/noise_level.h"
 
 namespace mjdiag {
 namespace {
@@ -44,23 +45,6 @@ Samples SamplesOf(const Machine& machine, const Record& record) {
           mjdiag::SamplesOf(record, ChannelsOf(machine.channels().actuators))};
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Of a signal whose n-th difference is noise, of which the squared weights sum up to
-/// `squares`.
-double NoiseOf(VectorXd signal, int differences, double squares) {
-  constexpr double kNormal = 1.4826;  // sd of a normal distribution over its median |.|
-  for (int i = 0; i < differences; ++i) {
-    signal = (signal.tail(signal.size() - 1) - signal.head(signal.size() - 1)).eval();
-  }
-  const VectorXd size = signal.cwiseAbs();
-  return kNormal * Median({size.begin(), size.end()}) / std::sqrt(squares);
-}
-
 /// Of sensors that the setup gives none: from readings alone, which move little from
 /// one to the next.
 VectorXd FirstNoise(const Machine& machine, const std::vector<Samples>& runs) {
@@ -71,7 +55,7 @@ VectorXd FirstNoise(const Machine& machine, const std::vector<Samples>& runs) {
     noise[i] = sensor.noise_sd;
     if (noise[i] > 0.0) continue;
     for (const Samples& run : runs) {
-      noise[i] = std::max(noise[i], NoiseOf(run.outputs.row(i), 3, 20.0));
+      noise[i] = std::max(noise[i], NoiseLevel(run.outputs.row(i), 3));
     }
     // A coarse reading does not show noise below its step.
     noise[i] = std::max(noise[i], sensor.resolution / std::sqrt(12.0));
@@ -128,14 +112,12 @@ class Learner {
   VectorXd theta() const { return before_ + own_; }
   /// A root of their covariance.
   MatrixXd Root() const {
-    // By the modes of H in units of its diagonal: those that hardly anything is known of
-    // are as well found as the others.
-    const VectorXd scale = H_.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(
-        MatrixXd(scale.asDiagonal() * H_ * scale.asDiagonal()));
+    // By its modes in units of its diagonal: those that hardly anything is known of are
+    // as well found as the others.
+    const ScaledEigenPairs modes = ScaledEigenDecomposition(H_);
     const VectorXd information =
-        modes.eigenvalues().cwiseMax(kRounding * modes.eigenvalues().maxCoeff());
-    return scale.asDiagonal() * modes.eigenvectors() *
+        modes.values.cwiseMax(kRounding * modes.values.maxCoeff());
+    return modes.scale.cwiseInverse().asDiagonal() * modes.vectors *
            information.cwiseSqrt().cwiseInverse().asDiagonal();
   }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
@@ -205,13 +187,10 @@ class Learner {
     double freedom = -static_cast<double>(own_.size());
     for (const RunInformation& said : said_) {
       for (const PartInformation& part : said.parts) {
-        const VectorXd unit =
-            part.H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(
-            MatrixXd(unit.asDiagonal() * part.H * unit.asDiagonal()));
-        const VectorXd pull = modes.eigenvectors().transpose() *
-                              unit.cwiseProduct(part.g - part.H * last_);
-        const VectorXd& told = modes.eigenvalues();
+        const ScaledEigenPairs modes = ScaledEigenDecomposition(part.H);
+        const VectorXd pull = modes.vectors.transpose() *
+                              (part.g - part.H * last_).cwiseQuotient(modes.scale);
+        const VectorXd& told = modes.values;
         for (Index i = 0; i < told.size(); ++i) {
           if (!(told[i] > kTold * told.maxCoeff())) continue;
           squares += pull[i] * pull[i] / told[i] / std::max(1.0, said.misfit);
@@ -228,8 +207,8 @@ class Learner {
     VectorXd noise = VectorXd::Zero(gains_.front().covariance.rows());
     for (const RunInformation& said : said_) {
       for (Index i = 0; i < noise.size(); ++i) {
-        noise[i] += NoiseOf(said.innovations.row(i), 1, 2.0) /
-                    static_cast<double>(said_.size());
+        noise[i] +=
+            NoiseLevel(said.innovations.row(i), 1) / static_cast<double>(said_.size());
       }
     }
     return noise;

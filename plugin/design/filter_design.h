@@ -21,8 +21,8 @@ SynthesisOptions SynthesisOf(const Machine& machine);
 /// z = [y; u] of a record as deviations from rest, nz x samples.
 Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);
 
-/// A healthy run of the plant's linear part without noise: the default trajectory, or random
-/// inputs where the setup has no controllers.
+/// A healthy run of the plant's linear part without noise: the default trajectory, or
+/// random inputs where the setup has no controllers.
 Record LinearRun(const Machine& machine);
 
 /// Of which order the residuals are, and how many there are.

@@ -1,6 +1,5 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -20,6 +19,7 @@ using Eigen::VectorXd;
 
 /// Ticks of a block at 8 kHz; what varies faster than it is seen by its mean.
 constexpr Index kBlock = 8;
+
 /// Noise and the steps of a coarse reading.
 VectorXd ReadingNoise(const Channels& channels) {
   VectorXd sd(static_cast<Index>(channels.sensors.size()));
@@ -43,12 +43,11 @@ TwinGain GainOf(const Machine& machine, const VectorXd& noise, double bandwidth)
 std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
                               double force_noise) {
   std::vector<TwinGain> gains;
-  const Index nx = 2 * machine.linear().M.rows();
   if (force_noise > 0.0) {
     gains.push_back(GainOf(machine, noise, force_noise));
   } else {
-    gains.push_back({MatrixXd::Zero(nx, noise.size()), noise.cwiseAbs2().asDiagonal(),
-                     0, MatrixXd::Zero(nx, nx)});
+    gains.push_back({MatrixXd::Zero(2 * machine.linear().M.rows(), noise.size()),
+                     noise.cwiseAbs2().asDiagonal(), 0});
   }
   for (const double part : kTwinBandwidths) {
     const double bandwidth = part * machine.rates().control;
@@ -66,12 +65,9 @@ std::vector<TwinGain> GainsOf(const Machine& machine, const VectorXd& noise,
 
 /// A root of a covariance of whatever units.
 MatrixXd RootOf(const MatrixXd& covariance) {
-  const VectorXd scale = covariance.diagonal().cwiseSqrt();
-  const VectorXd unit = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(
-      MatrixXd(unit.asDiagonal() * covariance * unit.asDiagonal()));
-  return scale.asDiagonal() * modes.eigenvectors() *
-         modes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const ScaledEigenPairs modes = ScaledEigenDecomposition(covariance);
+  return modes.scale.asDiagonal() * modes.vectors *
+         modes.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 /// Fault parameters are the first unknowns.

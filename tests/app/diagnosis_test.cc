@@ -285,7 +285,6 @@ TEST_F(Diagnosis, RefusesHalfAFileOfFilters) {
   }
 }
 
-// The estimate that becomes certain first is 2 % off: waits for a better one.
 TEST(Tolerate, SaysWhatWasCorrectedAndSinceWhen) {
   const std::string run =
       "simulate --setup mjcf/ab383 --linear --fault eta_x=0.7 --duration 0.3 "

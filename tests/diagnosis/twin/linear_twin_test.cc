@@ -11,7 +11,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kTicks = 1600;
+// Longer runs round more: the stage slides away on a spring of 5e6 N/m.
+constexpr Index kTicks = 800;
 
 /// Means of the predicted readings over blocks, stacked, for that theta.
 VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
@@ -72,12 +73,13 @@ TEST(LinearTwin, KnowsHowItsPredictionsChangeWithEveryUnknown) {
   MatrixXd sensitivities;
   Predicted(twin, theta, false, &sensitivities);
   for (Index i = 0; i < theta.size(); ++i) {
-    constexpr double kStep = 1e-5;
-    const VectorXd step = kStep * VectorXd::Unit(theta.size(), i);
+    // In tones and start the predictions are linear, so that large steps round less.
+    const double size = i < 3 ? 1e-5 : 1e-3;
+    const VectorXd step = size * VectorXd::Unit(theta.size(), i);
     const VectorXd difference =
         (Predicted(twin, theta + step, false) - Predicted(twin, theta - step, false)) /
-        (2.0 * kStep);
-    EXPECT_LT((sensitivities.col(i) - difference).norm(), 1e-6 * difference.norm())
+        (2.0 * size);
+    EXPECT_LT((sensitivities.col(i) - difference).norm(), 1e-7 * difference.norm())
         << test::UncertainStage().unknowns[static_cast<std::size_t>(i)].name;
   }
 }
