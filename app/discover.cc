@@ -115,6 +115,16 @@ void AddDiscover(CLI::App& app) {
   command
       ->add_option("--causes", options->search.most_causes, "Most causes to look for")
       ->check(CLI::Range(1, kMostCauses));
+  CLI::Option* doubt =
+      command->add_flag("--doubt", options->search.doubt,
+                        "Fit the numbers of the plant with every cause, as far as they "
+                        "are not known beforehand, instead of taking them as true");
+  command
+      ->add_option(
+          "--known", options->search.known,
+          "Beside --doubt: what is as the plant says, a kind of numbers such as "
+          "mass, or one such as mass@stage; may be repeated")
+      ->needs(doubt);
   command->add_option("--seed", options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);

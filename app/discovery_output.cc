@@ -1,5 +1,6 @@
 #include "app/discovery_output.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/format.h"
@@ -33,6 +34,7 @@ std::string NotesText(const std::vector<std::string>& notes) {
 
 std::string Describe(const Discovery& discovery) {
   return DiscoveryAnswer(discovery) + "\n" + Section("Causes", CauseTable(discovery)) +
+         Section("Numbers of the plant", CalibrationTable(discovery)) +
          Section("After each cause", LadderTable(discovery)) +
          Section("After each cause, on the validation record",
                  ValidationLadderTable(discovery)) +
@@ -43,13 +45,15 @@ std::string Describe(const Discovery& discovery) {
 
 std::string WriteExtendedPlant(const std::string& folder, const std::string& setup,
                                const Machine& machine, const Discovery& discovery) {
-  if (discovery.causes.empty()) return "";
+  const bool changed =
+      std::ranges::any_of(discovery.calibration, IsOff) || !discovery.causes.empty();
+  if (!changed) return "";
   const fs::path extended = fs::path(folder) / "extended";
   MakeOutputFolder(extended);
   const Changes changes = ChangesOf(discovery);
   // Both texts first: neither file is written if one of them cannot be made.
-  const std::string plant = ExtendMjcf(machine.setup().plant, machine.plant(),
-                                       changes.faults, changes.effects, extended);
+  const std::string plant =
+      ExtendMjcf(machine.setup().plant, machine.plant(), changes, extended);
   const std::string text =
       ExtendSetup(setup, machine.setup(), changes.effects, extended);
   WriteTextFile(extended / "plant.xml", plant);

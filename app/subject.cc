@@ -190,7 +190,7 @@ Record Run(const Machine& machine, const MotionOptions& motion,
 }
 
 std::string Describe(const Subject& subject) {
-  const auto& [faults, effects] = subject.machine.changes();
+  const auto& [faults, effects, numbers] = subject.machine.changes();
   std::string text;
   const auto append = [&text](const std::string& item) {
     text += (text.empty() ? "" : ", ") + item;

@@ -36,6 +36,9 @@ class Discoverer {
   }
   bool IsColoured(const CauseFit& fit) const;
   void Search(SearchOptions options, bool down_to_noise);
+  void SearchBehindObservers(SearchOptions options);
+  std::vector<PlantNumber> KnownNumbers() const;
+  void SearchAll();
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
                                                  const Eigen::MatrixXd& covariance,
@@ -43,6 +46,7 @@ class Discoverer {
                                                  Eigen::Index first) const;
   std::vector<Alternative> AlternativesOf(const FittedCause& fitted,
                                           const std::vector<Hypothesis>& rivals) const;
+  void NameNumbers(const Eigen::MatrixXd& covariance);
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
   void NoteQuietAxes(const ObservedMotion& motion);

@@ -76,12 +76,12 @@ bool Discoverer::IsColoured(const CauseFit& fit) const {
 void Discoverer::Search(SearchOptions options, bool down_to_noise) {
   const auto before = static_cast<int>(search_.fit().causes.size());
   if (const auto coarse =
-          Coarsen(problem_, ChangesOf(candidates_, search_.fit().causes))) {
+          Coarsen(problem_, ChangesOf(problem_, candidates_, search_.fit()))) {
     SearchOptions rough = options;
     rough.last_fit = false;
     rough.serves = [&](const CauseFit& fit) {
       return !down_to_noise ||
-             IsNear(*coarse, problem_, ChangesOf(candidates_, fit.causes));
+             IsNear(*coarse, problem_, ChangesOf(problem_, candidates_, fit));
     };
     search_ = SearchCauses(*coarse, candidates_, rough, &search_);
     if (search_.served && options.preliminary && options.preliminary(search_.fit())) {
@@ -94,8 +94,13 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
 
 void Discoverer::NameCauses() {
   const CauseFit& fit = search_.fit();
+  if (fit.jacobian.cols() == 0) return;
+  const MatrixXd of_all = ParameterCovariance(problem_, fit);
+  const Index numbers = fit.numbers.size();
+  NameNumbers(of_all.topLeftCorner(numbers, numbers));
   if (fit.causes.empty()) return;
-  const MatrixXd covariance = ParameterCovariance(problem_, fit);
+  const Index parameters = of_all.rows() - numbers;
+  const MatrixXd covariance = of_all.bottomRightCorner(parameters, parameters);
   Report("intervals", 0.7);
   const std::vector<Interval> intervals =
       ParameterIntervals(problem_, candidates_, fit, covariance);
@@ -117,6 +122,19 @@ void Discoverer::NameCauses() {
                                 {twin, found.probability, true});
     }
     discovery_.causes.push_back(std::move(found));
+  }
+}
+
+void Discoverer::NameNumbers(const MatrixXd& covariance) {
+  const double normal = TwoSidedNormalQuantile(0.05);
+  const VectorXd& z = search_.fit().numbers;
+  for (Index i = 0; i < z.size(); ++i) {
+    const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
+    const double half = normal * std::sqrt(covariance(i, i));
+    discovery_.calibration.push_back(
+        {PlantNumberName(machine_.plant(), doubted.number), doubted.number,
+         std::exp(doubted.spread * z[i]), std::exp(doubted.spread * (z[i] - half)),
+         std::exp(doubted.spread * (z[i] + half)), doubted.spread});
   }
 }
 
@@ -154,6 +172,7 @@ void Discoverer::Judge() {
     discovery_.notes.push_back("not named, for too much of the mismatch is left: " +
                                tried);
     discovery_.causes.clear();
+    discovery_.calibration.clear();
   }
   changes_ = ChangesOf(discovery_);
 }
@@ -212,33 +231,57 @@ void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& riv
   }
 }
 
+/// Behind the observer of the problem, and a fast one where it leaves what is coloured.
+void Discoverer::SearchBehindObservers(SearchOptions options) {
+  options.preliminary = [this](const CauseFit& fit) {
+    return options_.bandwidth == 0.0 && IsColoured(fit);
+  };
+  Search(options, true);
+  if (!options.preliminary(search_.fit())) return;
+  std::vector<DoubtedNumber> numbers = problem_.numbers();
+  problem_ = PoseProblem(machine_, measured_, options_.train_share,
+                         kFastShare * machine_.rates().control)
+                 .Doubting(std::move(numbers));
+  // Every further one takes longer than all before it.
+  options.most_causes = std::min(options.most_causes, kFurtherCauses);
+  options.preliminary = nullptr;
+  Search(options, false);
+}
+
+std::vector<PlantNumber> Discoverer::KnownNumbers() const {
+  std::vector<PlantNumber> known;
+  for (const std::string& text : options_.known) {
+    for (const PlantNumber& number : PlantNumbersOf(machine_.plant(), text)) {
+      known.push_back(number);
+    }
+  }
+  return known;
+}
+
+void Discoverer::SearchAll() {
+  SearchOptions options;
+  options.most_causes = options_.most_causes;
+  options.progress = options_.progress;
+  std::optional<MeasuredRun> unseen;
+  if (validation_ != nullptr) {
+    unseen = ToMeasuredRun(machine_.setup(), *validation_);
+    options.unseen = &*unseen;
+  }
+  if (options_.doubt) {
+    Report("numbers of the plant", 0.0);
+    problem_ = WithDoubts(problem_, KnownNumbers());
+  }
+  SearchBehindObservers(options);
+}
+
 Discovery Discoverer::Run() {
   discovery_.setup = machine_.setup().name;
   discovery_.train_share = options_.train_share;
   discovery_.sample_time = machine_.rates().tick();
   BoundByRecord(candidates_, problem_.MotionOf(problem_.Nominal()));
-  SearchOptions search;
-  search.most_causes = options_.most_causes;
-  search.progress = options_.progress;
-  std::optional<MeasuredRun> unseen;
-  if (validation_ != nullptr) {
-    unseen = ToMeasuredRun(machine_.setup(), *validation_);
-    search.unseen = &*unseen;
-  }
-  search.preliminary = [this](const CauseFit& fit) {
-    return options_.bandwidth == 0.0 && IsColoured(fit);
-  };
-  Search(search, true);
-  if (search.preliminary(search_.fit())) {
-    problem_ = PoseProblem(machine_, measured_, options_.train_share,
-                           kFastShare * machine_.rates().control);
-    // Every further one takes longer than all before it.
-    search.most_causes = std::min(search.most_causes, kFurtherCauses);
-    search.preliminary = nullptr;
-    Search(search, false);
-  }
+  SearchAll();
   NameCauses();
-  const std::array plants{Changes{}, ChangesOf(candidates_, search_.fit().causes)};
+  const std::array plants{Changes{}, ChangesOf(problem_, candidates_, search_.fit())};
   std::array<Track, 2> tracks;
   ParallelFor(2, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
@@ -292,7 +335,20 @@ Discovery Discover(const Machine& machine, const Record& measured,
 Changes ChangesOf(const Discovery& discovery) {
   std::vector<Cause> causes;
   for (const FoundCause& found : discovery.causes) causes.push_back(found.cause);
-  return ChangesOf(causes);
+  Changes changes = ChangesOf(causes);
+  for (const CalibratedNumber& number : discovery.calibration) {
+    if (number.factor == 1.0) continue;
+    changes.numbers.emplace_back(number.number, number.factor);
+  }
+  return changes;
+}
+
+bool IsOff(const CalibratedNumber& number) {
+  // Data have to say more than what was known before, and something else.
+  constexpr double kLearned = 0.5;
+  const double width = std::log(number.high / number.low);
+  const double known = 2.0 * TwoSidedNormalQuantile(0.05) * number.doubt;
+  return width < kLearned * known && (number.low > 1.0 || number.high < 1.0);
 }
 
 }  // namespace mjdiag

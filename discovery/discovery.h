@@ -18,6 +18,7 @@
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
 #include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -29,6 +30,17 @@ struct CauseParameter {
   double sd = 0.0;
   double low = 0.0;  ///< 95 % interval
   double high = 0.0;
+};
+
+/// A number of the plant as the record has it.
+struct CalibratedNumber {
+  std::string name;  ///< "mass@stage"
+  PlantNumber number;
+  double factor = 1.0;  ///< of what the model says
+  double low = 1.0;     ///< 95 % interval
+  double high = 1.0;
+  /// Standard deviation of its logarithm as far as was known before the record.
+  double doubt = 0.0;
 };
 
 struct Alternative {
@@ -79,6 +91,8 @@ struct Discovery {
   std::string setup;  ///< its name
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
+  /// All numbers of the plant that were in doubt, as they are beside the causes.
+  std::vector<CalibratedNumber> calibration;
   std::optional<Signature> unexplained;  ///< of what is left, if anything is
   std::string unexplained_site;
   /// What cannot be judged, what cannot be told apart and which experiment would,
@@ -120,6 +134,12 @@ struct DiscoverOptions {
   double train_share = 0.7;
   double bandwidth = 0.0;  ///< of the observer [Hz]; 0: from the record
   int most_causes = 8;
+  /// Numbers of the plant are not taken as true but fitted with every hypothesis, as far
+  /// as they are not known beforehand (DoubtOf).
+  bool doubt = false;
+  /// Those that are as the plant says all the same: "all", a kind ("mass") or one
+  /// ("mass@stage").
+  std::vector<std::string> known;
   bool figures = true;  ///< comparisons, ladder, laws and limits, not only causes
   std::uint64_t seed = 1;
   std::function<void(const std::string& what, double fraction)> progress;
@@ -131,7 +151,10 @@ struct DiscoverOptions {
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 
-/// The causes as changes to a plant, for Simulate and ExtendMjcf.
+/// Whether the record says of a number that it is another one than the model has.
+bool IsOff(const CalibratedNumber& number);
+
+/// The causes and the numbers as changes to a plant, for Simulate and ExtendMjcf.
 Changes ChangesOf(const Discovery& discovery);
 
 }  // namespace mjdiag

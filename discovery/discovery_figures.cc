@@ -141,7 +141,8 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   const std::vector<FittedCause> others = Without(search_.fit().causes, cause);
   const auto forces =
       others.empty() ? discovery_.forces_before
-                     : UnexplainedIn(problem_.Follow(ChangesOf(candidates_, others)));
+                     : UnexplainedIn(problem_.Follow(ChangesOf(
+                           problem_, candidates_, {others, search_.fit().numbers})));
   const UnknownSignal& without = *at(forces);
   const VectorXd explained = without.value - at(discovery_.forces_after)->value;
 
@@ -184,9 +185,13 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
 void Discoverer::AddLadder() {
   const Index channels = problem_.run().outputs.rows();
   std::vector<std::pair<std::string, Changes>> steps = {{"nothing", {}}};
-  for (const std::vector<FittedCause>& causes : search_.ladder) {
-    steps.emplace_back(Describe(candidates_[causes.back().candidate]),
-                       ChangesOf(candidates_, causes));
+  if (search_.numbers_alone.size() > 0) {
+    steps.emplace_back("numbers of the plant",
+                       problem_.WithNumbers({}, search_.numbers_alone));
+  }
+  for (const FittedModel& step : search_.ladder) {
+    steps.emplace_back(Describe(candidates_[step.causes.back().candidate]),
+                       ChangesOf(problem_, candidates_, step));
   }
   if (!discovery_.causes.empty()) steps.emplace_back("all, fitted together", changes_);
   discovery_.ladder.resize(steps.size());

@@ -56,6 +56,18 @@ json CausesOf(const Discovery& discovery) {
   return causes;
 }
 
+json CalibrationOf(const Discovery& discovery) {
+  json numbers = json::array();
+  for (const CalibratedNumber& number : discovery.calibration) {
+    numbers.push_back({{"number", number.name},
+                       {"factor", Finite(number.factor)},
+                       {"ci95", {Finite(number.low), Finite(number.high)}},
+                       {"known", Finite(number.doubt)},
+                       {"off", IsOff(number)}});
+  }
+  return numbers;
+}
+
 json FiguresOf(const Discovery::Figures& figures) {
   return {{"train", Finite(figures.train)}, {"validation", Finite(figures.validation)}};
 }
@@ -118,6 +130,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
           {"causes", CausesOf(discovery)},
+          {"calibration", CalibrationOf(discovery)},
           {"mismatch",
            {{"before", FiguresOf(discovery.mismatch_before)},
             {"after", FiguresOf(discovery.mismatch_after)}}},

@@ -63,6 +63,18 @@ void AddCauses(Page& page, const Discovery& discovery) {
   page.AddParagraph(kHowToReadCauses);
 }
 
+void AddCalibration(Page& page, const Discovery& discovery) {
+  const Table table = CalibrationTable(discovery);
+  if (table.rows.empty()) return;
+  page.AddHeading("Numbers of the plant");
+  page.AddTable(table);
+  page.AddParagraph(
+      "Fitted with the causes and written into the extended plant. Numbers that the "
+      "record does not tell better than they were known, or that are as the model "
+      "says, "
+      "are not listed.");
+}
+
 void AddNotes(Page& page, const Discovery& discovery) {
   if (discovery.notes.empty()) return;
   page.AddHeading("Notes");
@@ -192,6 +204,7 @@ Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   page.SetVerdict(ToneOf(discovery.verdict), DiscoveryAnswer(discovery));
   AddDiscoveryFacts(page, discovery, run);
   AddCauses(page, discovery);
+  AddCalibration(page, discovery);
   AddNotes(page, discovery);
   AddLadder(page, discovery);
   AddMismatch(page, discovery);

@@ -199,6 +199,10 @@ std::optional<double> TimesFloor(const Errors& rms, const Errors& floor) {
 std::string DiscoveryAnswer(const Discovery& discovery) {
   switch (discovery.verdict) {
     case DiscoveryVerdict::kNoDiscrepancy:
+      if (std::ranges::any_of(discovery.calibration, IsOff)) {
+        return "Nothing is wrong but numbers of the plant: with them as they are noise "
+               "explains the mismatch.";
+      }
       return "Nothing is wrong that this record shows: noise explains the mismatch.";
     case DiscoveryVerdict::kExplained:
       return FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
@@ -240,6 +244,22 @@ Table CauseTable(const Discovery& discovery) {
       row[4] = IntervalText(parameter);
       table.rows.push_back(row);
     }
+  }
+  return table;
+}
+
+Table CalibrationTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Number of the plant"},
+                   {"Times what the model says", true},
+                   {"95 % interval", true},
+                   {"Known beforehand to", true}};
+  for (const CalibratedNumber& number : discovery.calibration) {
+    if (!IsOff(number)) continue;
+    const CauseParameter factor{"factor", "1",        number.factor,
+                                0.0,      number.low, number.high};
+    table.rows.push_back({number.name, ValueText(factor), IntervalText(factor),
+                          Percent(100.0 * number.doubt)});
   }
   return table;
 }

@@ -35,15 +35,17 @@ void AddIfChanged(Attributes& attributes, const char* name,
 /// The plant with everything in it that MJCF can say in attributes. What the model
 /// holds of effects that it carries as numerics leaves, for the whole of them comes back
 /// from there.
-ModelPtr WithNativeChanges(const mjModel& plant, const std::vector<Fault>& faults,
-                           const std::vector<PlacedEffect>& effects) {
+ModelPtr WithNativeChanges(const mjModel& plant, const Changes& changes) {
   ModelPtr extended = CopyModel(plant);
   for (const PlacedEffect& carried : EffectsOf(plant)) {
     if (carried.effect->form() == Form::kAttributes) continue;
     carried.effect->Retract(*extended, CheckEffect(*extended, carried), carried.values);
   }
-  for (const Fault& fault : faults) ApplyFault(*extended, fault);
-  for (const PlacedEffect& placed : effects) {
+  for (const auto& [number, factor] : changes.numbers) {
+    Scale(*extended, number, factor);
+  }
+  for (const Fault& fault : changes.faults) ApplyFault(*extended, fault);
+  for (const PlacedEffect& placed : changes.effects) {
     if (placed.effect->form() == Form::kAttributes) {
       ApplyEffect(*extended, placed);
     } else {
@@ -183,22 +185,34 @@ void MjcfEditor::RequireOwnMasses(int body) const {
 }
 
 void MjcfEditor::EditMass(int body) {
-  const mjtNum mass = after_.body_mass[body];
-  if (before_.body_mass[body] == mass) return;
+  Attributes changed;
+  AddIfChanged(changed, "mass", Row(before_.body_mass, body),
+               Row(after_.body_mass, body));
+  AddIfChanged(changed, "diaginertia", Row(before_.body_inertia, body, 3),
+               Row(after_.body_inertia, body, 3));
+  if (changed.empty()) return;
   RequireOwnMasses(body);
-  const int joint = FindOrFail("body", mjOBJ_JOINT, before_.body_jntadr[body]);
-  const int element = xml_.At(joint).parent;
+  const int joint = before_.body_jntadr[body];
+  const int element = joint < 0
+                          ? FindOrFail("body", mjOBJ_BODY, body, "body")
+                          : xml_.At(FindOrFail("body", mjOBJ_JOINT, joint)).parent;
   for (std::size_t i = 0; i < xml_.elements().size(); ++i) {
     const XmlElement& child = xml_.elements()[i];
     if (child.parent != element || child.tag != "inertial") continue;
-    xml_.SetAttribute(static_cast<int>(i), "mass", AllDigits(mass));
+    if (changed.back().first == "diaginertia" && child.Find("fullinertia") != nullptr) {
+      throw InputError(where_,
+                       "an inertia that is given by fullinertia cannot be scaled",
+                       "diaginertia");
+    }
+    Set(static_cast<int>(i), changed);
     return;
   }
-  xml_.InsertFirst(element,
-                   "<inertial pos=\"" + AllDigits(Row(after_.body_ipos, body, 3)) +
-                       "\" quat=\"" + AllDigits(Row(after_.body_iquat, body, 4)) +
-                       "\" mass=\"" + AllDigits(mass) + "\" diaginertia=\"" +
-                       AllDigits(Row(after_.body_inertia, body, 3)) + "\"/>");
+  xml_.InsertFirst(
+      element, "<inertial pos=\"" + AllDigits(Row(after_.body_ipos, body, 3)) +
+                   "\" quat=\"" + AllDigits(Row(after_.body_iquat, body, 4)) +
+                   "\" mass=\"" + AllDigits(after_.body_mass[body]) +
+                   "\" diaginertia=\"" + AllDigits(Row(after_.body_inertia, body, 3)) +
+                   "\"/>");
 }
 
 void MjcfEditor::EditActuator(int actuator) {
@@ -263,18 +277,16 @@ void MjcfEditor::WriteNumerics(const std::vector<PlacedEffect>& carried,
 }  // namespace
 
 std::string ExtendMjcf(const fs::path& mjcf, const mjModel& plant,
-                       const std::vector<Fault>& faults,
-                       const std::vector<PlacedEffect>& effects,
-                       const fs::path& folder) {
+                       const Changes& changes, const fs::path& folder) {
   std::error_code ignored;
   if (fs::equivalent(mjcf, folder / "plant.xml", ignored)) {
     throw InputError(folder.string(), "holds the nominal plant", "another folder");
   }
   const ModelPtr before = LoadModel(mjcf);
-  const ModelPtr after = WithNativeChanges(plant, faults, effects);
+  const ModelPtr after = WithNativeChanges(plant, changes);
   MjcfEditor editor(mjcf, folder, *before, *after);
   editor.WriteAttributes();
-  editor.WriteNumerics(EffectsOf(plant), effects);
+  editor.WriteNumerics(EffectsOf(plant), changes.effects);
   return editor.Text();
 }
 

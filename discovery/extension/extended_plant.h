@@ -15,13 +15,12 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/effects/placed_effect.h"
-#include "mjdiag/plugin/plant/fault.h"
+#include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
 
-/// The MJCF file with faults and effects in it, to be written into `folder`. Includes
+/// The MJCF file with numbers, faults and effects in it, to be written into `folder`. Includes
 /// are written out in place; folders of meshes and textures are given from there.
 /// @param mjcf   the nominal plant
 /// @param plant  what LoadPlant makes of it; its values are what changes. Static
@@ -30,9 +29,7 @@ namespace mjdiag {
 /// own name; if masses are derived in a way that a single one cannot be changed; or if
 /// the text would replace the nominal plant.
 std::string ExtendMjcf(const std::filesystem::path& mjcf, const mjModel& plant,
-                       const std::vector<Fault>& faults,
-                       const std::vector<PlacedEffect>& effects,
-                       const std::filesystem::path& folder);
+                       const Changes& changes, const std::filesystem::path& folder);
 
 /// The setup file for that plant, with plant = "plant.xml" and " (extended)" behind the
 /// name. `analytic` and `published` describe the old plant and are left out, and static

@@ -17,6 +17,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Standard deviations that a number may be from where it is expected: further away it
+/// is another machine.
+constexpr double kFarthest = 10.0;
+
 /// What a parameter is compared with: steps of differences are small beside it.
 double ScaleOf(const FitParameter& parameter, double value, double duration) {
   switch (parameter.role) {
@@ -41,9 +45,15 @@ class Simulator {
       : problem_(problem),
         candidates_(candidates),
         causes_(causes),
+        numbers_(static_cast<Index>(problem.numbers().size())),
         initial_jacobian_(options.initial_jacobian),
         secant_(options.secant),
-        parameters_(ParametersOf(candidates, causes)) {}
+        parameters_(problem.numbers().size(),
+                    {"number", Role::kFactor, -kFarthest, kFarthest}) {
+    for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
+      parameters_.push_back(parameter);
+    }
+  }
   const std::vector<FitParameter>& parameters() const { return parameters_; }
 
   const VectorXd& Residual(const VectorXd& theta) {
@@ -57,8 +67,8 @@ class Simulator {
   /// J at theta for a step of the fit, all samples.
   const MatrixXd& StepJacobian(const VectorXd& theta) {
     if (jacobian_.size() == 0) {
-      jacobian_ = Differences(theta, initial_jacobian_);
-      NoteJacobian(theta, initial_jacobian_ == nullptr);
+      jacobian_ = Differences(theta, initial_jacobian_, true);
+      NoteJacobian(theta, initial_jacobian_ == nullptr && numbers_ == 0);
     } else if (theta != jacobian_theta_ && secant_) {
       Broyden(theta);
       NoteJacobian(theta, false);
@@ -74,7 +84,7 @@ class Simulator {
   /// J at theta by differences, all samples.
   const MatrixXd& Jacobian(const VectorXd& theta) {
     if (!exact_ || theta != jacobian_theta_) {
-      jacobian_ = Differences(theta, nullptr);
+      jacobian_ = Differences(theta, nullptr, false);
       NoteJacobian(theta, true);
     }
     return jacobian_;
@@ -88,13 +98,22 @@ class Simulator {
   }
 
   /// J with its first columns from `initial`, if any.
-  MatrixXd Differences(const VectorXd& theta, const MatrixXd* initial) {
+  /// @param rough  by z
+  MatrixXd Differences(const VectorXd& theta, const MatrixXd* initial, bool rough) {
     const VectorXd base = Residual(theta);
     const double duration =
         static_cast<double>(problem_.run().samples()) * problem_.run().sample_time;
     MatrixXd J(base.size(), theta.size());
-    const Index kept = initial != nullptr ? initial->cols() : 0;
-    if (kept > 0) J.leftCols(kept) = initial->topRows(base.size());
+    Index kept = initial != nullptr ? initial->cols() : 0;
+    if (kept > 0) {
+      J.leftCols(kept) = initial->topRows(base.size());
+    } else if (numbers_ > 0) {
+      kept = numbers_;
+      const Changes causes = CausesAt(theta);
+      const VectorXd z = theta.head(numbers_);
+      J.leftCols(kept) = rough ? problem_.RoughNumberJacobian(causes, z)
+                               : problem_.NumberJacobian(causes, z);
+    }
     ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
       const Index i = kept + number;
       J.col(i) = Difference(theta, base, i, duration);
@@ -119,7 +138,7 @@ class Simulator {
   /// not raise. Then only large steps show the derivative.
   VectorXd Difference(const VectorXd& theta, const VectorXd& base, Index i,
                       double duration) const {
-    constexpr double kFirst = 1e-4;
+    constexpr double kFirst = 1e-6;
     constexpr double kLast = 0.1;
     constexpr double kNoticed = 10.0;  // standard deviations of the noise
     constexpr double kGrows = 5.0;
@@ -146,13 +165,19 @@ class Simulator {
     }
     return found;
   }
+  Changes CausesAt(const VectorXd& theta) const {
+    return ChangesOf(candidates_,
+                     WithValues(causes_, theta.tail(theta.size() - numbers_)));
+  }
   VectorXd RunAt(const VectorXd& theta) const {
-    return problem_.Residual(ChangesOf(candidates_, WithValues(causes_, theta)));
+    return problem_.Residual(
+        problem_.WithNumbers(CausesAt(theta), theta.head(numbers_)));
   }
 
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const std::vector<FittedCause>& causes_;
+  Index numbers_;
   const MatrixXd* initial_jacobian_;
   bool secant_;
   std::vector<FitParameter> parameters_;
@@ -202,6 +227,24 @@ class InnovationCost final : public ceres::CostFunction {
   Index count_;
 };
 
+/// z of the first parameters.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  PriorCost(Index numbers, Index parameters) {
+    set_num_residuals(static_cast<int>(numbers));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
+  }
+  bool Evaluate(const double* const* blocks, double* residuals,
+                double** jacobians) const override {
+    std::copy_n(blocks[0], num_residuals(), residuals);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    const int size = parameter_block_sizes()[0];
+    std::fill_n(jacobians[0], num_residuals() * size, 0.0);
+    for (int i = 0; i < num_residuals(); ++i) jacobians[0][i * size + i] = 1.0;
+    return true;
+  }
+};
+
 void SetBounds(ceres::Problem& problem, double* theta,
                const std::vector<FitParameter>& parameters) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -223,18 +266,23 @@ double FittedValues(const DiscoveryProblem& problem) {
 }
 
 CauseFit FitCauses(const DiscoveryProblem& problem,
-                   const std::vector<Candidate>& candidates,
-                   const std::vector<FittedCause>& start, const FitOptions& options) {
+                   const std::vector<Candidate>& candidates, const FittedModel& start,
+                   const FitOptions& options) {
   const Index channels = problem.run().outputs.rows();
   const Index first = channels * problem.skip();
   const Index count = channels * (problem.train() - problem.skip());
   CauseFit fit;
-  fit.causes = start;
+  const auto numbers = static_cast<Index>(problem.numbers().size());
+  fit.causes = start.causes;
+  fit.numbers = start.numbers.size() > 0 ? start.numbers : VectorXd::Zero(numbers);
   // What is held out need not be run while the fit goes on.
   const DiscoveryProblem seen = problem.TrainPart();
-  Simulator simulator(seen, candidates, start, options);
-  VectorXd theta = Flatten(start);
-  if (theta.size() > 0) {
+  Simulator simulator(seen, candidates, start.causes, options);
+  const VectorXd values = Flatten(start.causes);
+  VectorXd theta(numbers + values.size());
+  theta << fit.numbers, values;
+  const bool moves = theta.size() > 0 && (options.iterations > 0 || options.jacobian);
+  if (moves) {
     // Throws where the first values cannot be run; Ceres would write to stderr.
     if (!simulator.StepJacobian(theta).allFinite()) {
       throw NumericalError("fit: the run with the first values diverges");
@@ -245,11 +293,14 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     ceres::Problem least_squares(ownership);
     least_squares.AddResidualBlock(&cost, nullptr, theta.data());
     SetBounds(least_squares, theta.data(), simulator.parameters());
+    // What is known of the numbers beforehand.
+    PriorCost prior(numbers, theta.size());
+    if (numbers > 0) least_squares.AddResidualBlock(&prior, nullptr, theta.data());
     const int size = static_cast<int>(theta.size());
     if (options.held && size == 1) {
       least_squares.SetParameterBlockConstant(theta.data());
     } else if (options.held) {
-      const int held = static_cast<int>(*options.held);
+      const int held = static_cast<int>(numbers + *options.held);
       least_squares.SetManifold(theta.data(), new ceres::SubsetManifold(size, {held}));
     }
     ceres::Solver::Options solver;
@@ -258,6 +309,9 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     solver.function_tolerance = options.tolerance;
     solver.parameter_tolerance = 1e-9;
     solver.logging_type = ceres::SILENT;
+    // What the data tell of single numbers would hold back those combinations that only
+    // what is known beforehand tells.
+    if (numbers > 0) solver.initial_trust_region_radius = 1e14;
     // With bounds Ceres searches along every step; a cubic would ask for J there.
     solver.line_search_interpolation_type = ceres::BISECTION;
     solver.max_num_line_search_step_size_iterations = 3;
@@ -266,18 +320,37 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     if (!summary.IsSolutionUsable()) {
       throw NumericalError("fit: the run with the first values diverges");
     }
-    fit.causes = WithValues(start, theta);
+    fit.numbers = theta.head(numbers);
+    fit.causes = WithValues(start.causes, theta.tail(values.size()));
   }
-  if (theta.size() > 0) {
+  if (moves) {
     fit.exact = options.jacobian;
     fit.jacobian = options.jacobian ? simulator.Jacobian(theta) : simulator.jacobian();
   }
   const Index samples = problem.run().samples();
   fit.residual = problem.train() == samples
                      ? simulator.Residual(theta)
-                     : problem.Residual(ChangesOf(candidates, fit.causes));
+                     : problem.Residual(ChangesOf(problem, candidates, fit));
   fit.train = MeanSquare(fit.residual, channels, problem.skip(), problem.train());
   fit.held_out = MeanSquare(fit.residual, channels, problem.train(), samples);
+  return fit;
+}
+
+/// Mean square at which noise is all that is left.
+constexpr double kNoiseOnly = 1.2;
+
+CauseFit FitNumbers(const DiscoveryProblem& problem,
+                    const std::vector<Candidate>& candidates) {
+  if (problem.numbers().empty()) return FitCauses(problem, candidates, {}, {});
+  constexpr int kAnew = 2;  // derivatives, for the plant may be far off
+  CauseFit fit;
+  for (int i = 0; i < kAnew; ++i) {
+    CauseFit next = FitCauses(problem, candidates, fit,
+                              {.iterations = 10, .jacobian = false, .secant = true});
+    const bool done = i > 0 && FittedValues(problem) * (fit.train - next.train) < 1.0;
+    fit = std::move(next);
+    if (done || fit.train < kNoiseOnly) break;
+  }
   return fit;
 }
 
@@ -292,8 +365,7 @@ FitOptions CompareFrom(const MatrixXd* initial_jacobian, int iterations,
 
 std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const std::vector<Candidate>& candidates,
-                               const std::vector<FittedCause>& start,
-                               const FitOptions& options) {
+                               const FittedModel& start, const FitOptions& options) {
   try {
     return FitCauses(problem, candidates, start, options);
   } catch (const NumericalError&) {
@@ -303,9 +375,13 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
   }
 }
 
+FittedModel ModelWithout(const CauseFit& fit, std::size_t i) {
+  return {Without(fit.causes, i), fit.numbers};
+}
+
 MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i) {
   const MatrixXd& all = fit.jacobian;
-  Index first = 0;
+  Index first = fit.numbers.size();
   for (std::size_t k = 0; k < i; ++k) first += fit.causes[k].value.size();
   const Index count = fit.causes[i].value.size();
   MatrixXd rest(all.rows(), all.cols() - count);
@@ -338,7 +414,12 @@ MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fi
         1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
     B += weight * (product + product.transpose());
   }
-  const Eigen::FullPivLU<MatrixXd> information(scaled.transpose() * scaled);
+  // What is known of the numbers beforehand: independent measurements.
+  MatrixXd all = scaled.transpose() * scaled;
+  const VectorXd known = scale.head(fit.numbers.size()).cwiseAbs2();
+  all.diagonal().head(known.size()) += known;
+  B.diagonal().head(known.size()) += known;
+  const Eigen::FullPivLU<MatrixXd> information(all);
   if (!information.isInvertible()) {
     return MatrixXd::Identity(parameters, parameters) *
            std::numeric_limits<double>::infinity();

@@ -5,7 +5,10 @@
 //   min over theta of  sum over train samples of |e_k(theta)|^2,   bounds on theta
 //
 // by Levenberg and Marquardt (Ceres), with e scaled to unit variance under sensor noise
-// alone. Derivatives are forward differences of whole runs, side by side.
+// alone. The numbers of the plant that are in doubt are fitted with them, theta = (z,
+// parameters of the causes), and what is known of them beforehand counts as so many
+// measurements, + |z|^2. Derivatives by parameters of causes are forward differences of
+// whole runs, side by side; see DiscoveryProblem::NumberJacobian for those by z.
 //
 // The covariance of theta holds for innovations of any colour (the "sandwich" of Huber
 // and White with the lags of Newey and West):
@@ -17,13 +20,12 @@
 #include <optional>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/fitted_cause.h"
+#include "mjdiag/discovery/hypotheses/fitted_model.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 
 namespace mjdiag {
 
-struct CauseFit {
-  std::vector<FittedCause> causes;
+struct CauseFit : FittedModel {
   Eigen::VectorXd residual;  ///< scaled innovations of all samples
   Eigen::MatrixXd jacobian;  ///< J = d residual / d theta of the train part
   bool exact = false;        ///< J by differences at theta, not by secants
@@ -43,7 +45,7 @@ struct FitOptions {
   /// J from differences at the start only, then by Broyden's updates: one run a step
   /// instead of one for every parameter. Near enough to compare causes.
   bool secant = false;
-  /// Place of a parameter that keeps its value.
+  /// Place of a parameter of the causes that keeps its value.
   std::optional<Eigen::Index> held = std::nullopt;
 };
 
@@ -51,11 +53,15 @@ struct FitOptions {
 /// a fit over its mean square `train`.
 double FittedValues(const DiscoveryProblem& problem);
 
-/// @param start  causes with values to start from, within their bounds
+/// @param start  causes with values to start from, within their bounds, and numbers
 /// NumericalError if the run with the start diverges.
 CauseFit FitCauses(const DiscoveryProblem& problem,
-                   const std::vector<Candidate>& candidates,
-                   const std::vector<FittedCause>& start, const FitOptions& options);
+                   const std::vector<Candidate>& candidates, const FittedModel& start,
+                   const FitOptions& options);
+
+/// Of the numbers of the plant alone; without numbers nothing is fitted.
+CauseFit FitNumbers(const DiscoveryProblem& problem,
+                    const std::vector<Candidate>& candidates);
 
 /// For fits that are compared: by secants, from a J of the first parameters (or null),
 /// none computed at the end.
@@ -65,14 +71,13 @@ FitOptions CompareFrom(const Eigen::MatrixXd* initial_jacobian, int iterations,
 /// The same; none where the start diverges or takes away more than there is.
 std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const std::vector<Candidate>& candidates,
-                               const std::vector<FittedCause>& start,
-                               const FitOptions& options);
+                               const FittedModel& start, const FitOptions& options);
 
-/// J of a fit but for cause i.
+/// A fit but for its cause i: the rest, and J of it.
+FittedModel ModelWithout(const CauseFit& fit, std::size_t i);
 Eigen::MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i);
 
-/// Covariance of all parameters of the fit, in order of the causes; infinite variance
-/// where the data say nothing.
+/// Covariance of theta; infinite variance where the data say nothing.
 Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
                                     const CauseFit& fit);
 

@@ -64,10 +64,11 @@ double Profile::Lost(double step) const {
   const double tolerance = 0.1 * crossing_ / (FittedValues(problem_) * fit_.train);
   FitOptions options = CompareFrom(&fit_.jacobian, 4, tolerance);
   options.held = index_;
-  const auto held =
-      TryFit(problem_, candidates_, WithValues(fit_.causes, theta), options);
+  const auto held = TryFit(problem_, candidates_,
+                           {WithValues(fit_.causes, theta), fit_.numbers}, options);
   if (!held) return std::numeric_limits<double>::infinity();
-  const double lost = FittedValues(problem_) * (held->train - fit_.train);
+  const double lost = FittedValues(problem_) * (held->train - fit_.train) +
+                      held->numbers.squaredNorm() - fit_.numbers.squaredNorm();
   return std::sqrt(std::max(lost, 0.0) / crossing_);
 }
 
@@ -142,8 +143,11 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
       channels * problem.skip(), channels * (problem.train() - problem.skip()));
   const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = J * scale.asDiagonal();
-  const MatrixXd C =
-      scale.asDiagonal() * Inverse(scaled.transpose() * scaled) * scale.asDiagonal();
+  MatrixXd information = scaled.transpose() * scaled;
+  const Index numbers = fit.numbers.size();
+  information.diagonal().head(numbers) += scale.head(numbers).cwiseAbs2();
+  const MatrixXd all = scale.asDiagonal() * Inverse(information) * scale.asDiagonal();
+  const MatrixXd C = all.bottomRightCorner(theta.size(), theta.size());
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
   const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
   const DiscoveryProblem seen = problem.TrainPart();

@@ -14,9 +14,9 @@ using Eigen::VectorXd;
 
 /// Mean square of the train part with those values; infinite where they cannot be run.
 double Left(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
-            const std::vector<FittedCause>& causes) {
+            const FittedModel& model) {
   const auto fit =
-      TryFit(problem, candidates, causes, {.iterations = 0, .jacobian = false});
+      TryFit(problem, candidates, model, {.iterations = 0, .jacobian = false});
   return fit ? fit->train : std::numeric_limits<double>::infinity();
 }
 
@@ -31,8 +31,9 @@ double Unsteadiness(const DiscoveryProblem& problem,
   std::array<double, 2> left{};
   ParallelFor(2, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    left[i] = Left(seen, candidates,
-                   WithValues(fit.causes, kChanges[i] * Flatten(fit.causes)));
+    left[i] =
+        Left(seen, candidates,
+             {WithValues(fit.causes, kChanges[i] * Flatten(fit.causes)), fit.numbers});
   });
   const auto [least, most] = std::minmax({left[0], left[1], fit.train});
   return kSpreads * FittedValues(problem) * (most - least);
@@ -55,12 +56,13 @@ std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
     double& value = places[k][static_cast<Index>(k / kSteps.size())];
     value = std::clamp(value * (1.0 + kSteps[k % kSteps.size()]), parameter.lower,
                        parameter.upper);
-    left[k] = Left(seen, candidates, WithValues(fit.causes, places[k]));
+    left[k] = Left(seen, candidates, {WithValues(fit.causes, places[k]), fit.numbers});
   });
   const auto best = std::ranges::min_element(left);
   if (FittedValues(problem) * (fit.train - *best) <= least_gain) return std::nullopt;
   const auto place = static_cast<std::size_t>(best - left.begin());
-  return FitCauses(problem, candidates, WithValues(fit.causes, places[place]),
+  return FitCauses(problem, candidates,
+                   {WithValues(fit.causes, places[place]), fit.numbers},
                    {.iterations = 0});
 }
 

@@ -36,13 +36,14 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   const double present = causes[i].value[PeriodPlace(wave)];
   causes[i].value[PlaceOf(wave, Role::kAmplitude)] *= 1.0 + kStep;
   const VectorXd left = fit.residual.head(seen.run().outputs.size());
-  const VectorXd moved = seen.Residual(ChangesOf(candidates, causes));
-  const auto run = seen.Linearised(ChangesOf(candidates, fit.causes));
+  const VectorXd moved =
+      seen.Residual(ChangesOf(seen, candidates, {causes, fit.numbers}));
+  const auto run = seen.Linearised(ChangesOf(seen, candidates, fit));
   const auto& [track, dynamics] = *run;
   std::vector<FittedCause> others;
   for (Start& start : BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
                                   left - (moved - left) / kStep,
-                                  JacobianWithout(fit, i), kMostPeriods)) {
+                                  JacobianWithout(fit, i), fit.numbers, kMostPeriods)) {
     start.cause.candidate = causes[i].candidate;
     others.push_back(Bounded(candidates, std::move(start.cause)));
   }

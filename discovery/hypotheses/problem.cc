@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
@@ -85,6 +86,47 @@ std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
   return derived_->linearised;
 }
 
+Changes DiscoveryProblem::WithNumbers(Changes changes, const VectorXd& z) const {
+  for (Index i = 0; i < z.size(); ++i) {
+    if (z[i] == 0.0) continue;
+    const DoubtedNumber& doubted = numbers_[static_cast<std::size_t>(i)];
+    changes.numbers.emplace_back(doubted.number, std::exp(doubted.spread * z[i]));
+  }
+  return changes;
+}
+
+Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
+                                                 const VectorXd& z) const {
+  // Of the nonlinear part of the residual 1e-6 is left, of rounding 1e-9: numbers that
+  // act alike together, as a mass and the motor that moves it, must not seem to differ.
+  constexpr double kStep = 1e-6;
+  const auto p = static_cast<Index>(numbers_.size());
+  const VectorXd about = z.size() > 0 ? z : VectorXd::Zero(p);
+  std::vector<VectorXd> run(numbers_.size() + 1);
+  ParallelFor(static_cast<int>(run.size()), [&](int number) {
+    VectorXd moved = about;
+    if (number < p) moved[number] += kStep;
+    run[static_cast<std::size_t>(number)] = Residual(WithNumbers(changes, moved));
+  });
+  Eigen::MatrixXd J(run.back().size(), p);
+  for (Index i = 0; i < p; ++i) {
+    J.col(i) = (run[static_cast<std::size_t>(i)] - run.back()) / kStep;
+  }
+  return J;
+}
+
+Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
+                                                      const VectorXd& z) const {
+  for (int fewer = 1; fewer < std::min(machine_.rates().substeps, 3); ++fewer) {
+    try {
+      return WithSubsteps(fewer).NumberJacobian(changes, z);
+    } catch (const NumericalError&) {
+      // Steps that long are too long for it.
+    }
+  }
+  return NumberJacobian(changes, z);
+}
+
 ObservedMotion DiscoveryProblem::MotionOf(const Track& track) const {
   return ObserveMotion(machine_, *run_, track);
 }
@@ -110,7 +152,34 @@ DiscoveryProblem DiscoveryProblem::WithSubsteps(int substeps) const {
 }
 
 DiscoveryProblem DiscoveryProblem::WithRun(MeasuredRun run) const {
-  return {machine_, observer_, std::move(run), skip_, train_};
+  return DiscoveryProblem(machine_, observer_, std::move(run), skip_, train_)
+      .Doubting(numbers_);
+}
+
+DiscoveryProblem DiscoveryProblem::Doubting(std::vector<DoubtedNumber> numbers) const {
+  DiscoveryProblem changed = *this;
+  changed.numbers_ = std::move(numbers);
+  changed.derived_ = std::make_shared<Derived>();
+  return changed;
+}
+
+DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
+                            const std::vector<PlantNumber>& known) {
+  constexpr double kShows = 0.1;  // standard deviations of all innovations together
+  const mjModel& plant = problem.machine().plant();
+  std::vector<DoubtedNumber> numbers;
+  for (const PlantNumber& number : PlantNumbers(plant)) {
+    if (std::ranges::find(known, number) != known.end()) continue;
+    numbers.push_back({number, DoubtOf(plant, number)});
+  }
+  if (numbers.empty()) return problem;
+  const DiscoveryProblem all = problem.Doubting(numbers);
+  const Eigen::MatrixXd J = all.RoughNumberJacobian({}, {});
+  std::vector<DoubtedNumber> shown;
+  for (Index i = 0; i < J.cols(); ++i) {
+    if (J.col(i).norm() > kShows) shown.push_back(numbers[static_cast<std::size_t>(i)]);
+  }
+  return problem.Doubting(std::move(shown));
 }
 
 VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
@@ -150,14 +219,13 @@ DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
 
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
   const MeasuredRun& all = problem.run();
-  return {problem.machine(),
-          problem.observer(),
-          {.sample_time = all.sample_time,
-           .outputs = all.outputs.leftCols(samples),
-           .inputs = all.inputs.leftCols(samples),
-           .start = all.start},
-          problem.skip(),
-          samples};
+  MeasuredRun beginning{.sample_time = all.sample_time,
+                        .outputs = all.outputs.leftCols(samples),
+                        .inputs = all.inputs.leftCols(samples),
+                        .start = all.start};
+  return DiscoveryProblem(problem.machine(), problem.observer(), std::move(beginning),
+                          problem.skip(), samples)
+      .Doubting(problem.numbers());
 }
 
 double MeanSquare(const VectorXd& residual, Index channels, Index first, Index last) {

@@ -8,9 +8,11 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/replay/observer.h"
 #include "mjdiag/plugin/replay/tracking.h"
 
@@ -21,6 +23,13 @@ namespace mjdiag {
 struct LinearisedRun {
   Track track;
   ErrorDynamics dynamics;
+};
+
+/// A number of the plant that may be another one than the model has, exp(spread z) times
+/// it, with z of mean 0 and variance 1 as far as is known beforehand.
+struct DoubtedNumber {
+  PlantNumber number;
+  double spread = 0.0;
 };
 
 class DiscoveryProblem {
@@ -37,6 +46,8 @@ class DiscoveryProblem {
   Eigen::Index skip() const { return skip_; }
   Eigen::Index train() const { return train_; }
   double step() const { return machine_.plant().opt.timestep; }  ///< of physics [s]
+  /// Numbers of the plant that are fitted with every hypothesis.
+  const std::vector<DoubtedNumber>& numbers() const { return numbers_; }
 
   /// The run beside the nominal machine, with the trajectory of the joints; found when
   /// first asked for. This and what follows: NumericalError if a run diverges.
@@ -51,6 +62,15 @@ class DiscoveryProblem {
   /// The run with those changes and its first order; of the nominal machine found when
   /// first asked for.
   std::shared_ptr<const LinearisedRun> Linearised(const Changes& changes) const;
+  /// Changes with the numbers at z, which may be empty: all at 0.
+  Changes WithNumbers(Changes changes, const Eigen::VectorXd& z) const;
+  /// d residual / dz at z beside those changes, (ny samples) x numbers, by differences.
+  Eigen::MatrixXd NumberJacobian(const Changes& changes,
+                                 const Eigen::VectorXd& z) const;
+  /// The same of runs with as few physics steps a control tick as it is stable with:
+  /// near enough to tell where a fit has to go, in a fraction of the time.
+  Eigen::MatrixXd RoughNumberJacobian(const Changes& changes,
+                                      const Eigen::VectorXd& z) const;
   /// What the joints of a track did, with what was measured beside it.
   ObservedMotion MotionOf(const Track& track) const;
   /// Speed of every joint below which dry friction holds it: a fiftieth of the sensor
@@ -64,6 +84,8 @@ class DiscoveryProblem {
   DiscoveryProblem WithSubsteps(int substeps) const;
   /// With another run of the machine behind the same observer.
   DiscoveryProblem WithRun(MeasuredRun run) const;
+  /// With doubts about those numbers.
+  DiscoveryProblem Doubting(std::vector<DoubtedNumber> numbers) const;
 
  private:
   struct Derived;
@@ -73,8 +95,14 @@ class DiscoveryProblem {
   std::shared_ptr<const MeasuredRun> run_;
   Eigen::Index skip_;
   Eigen::Index train_;
+  std::vector<DoubtedNumber> numbers_;
   std::shared_ptr<Derived> derived_;
 };
+
+/// The problem with doubts about all numbers of its plant but the known ones, as far as
+/// the record says anything of them.
+DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
+                            const std::vector<PlantNumber>& known);
 
 /// Noise of the sensors from the record and from the innovations of the nominal plant,
 /// whichever is lower: what moves in a record is not noise. [unit of each sensor]

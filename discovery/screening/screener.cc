@@ -19,10 +19,18 @@ using Eigen::VectorXd;
 // stay in memory.
 constexpr Index kBatch = 48;
 
+/// What is measured over what is known of the numbers beforehand.
+MatrixXd WithNumbers(const MatrixXd& measured, const MatrixXd& numbers) {
+  MatrixXd all(measured.rows() + numbers.rows(), measured.cols());
+  all << measured, numbers;
+  return all;
+}
+
 }  // namespace
 
 Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
-                   const VectorXd& residual, const MatrixXd& jacobian)
+                   const VectorXd& residual, const MatrixXd& jacobian,
+                   const VectorXd& numbers)
     : problem_(problem),
       dynamics_(dynamics),
       channels_(problem.run().outputs.rows()),
@@ -31,17 +39,23 @@ Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamic
       blocks_(problem.train() / block_ - skip_),
       full_(
           residual.segment(channels_ * block_ * skip_, channels_ * block_ * blocks_)) {
+  VectorXd left = WithNumbers(full_, numbers);
   if (jacobian.cols() > 0) {
     const MatrixXd J =
         jacobian.middleRows(channels_ * block_ * skip_, channels_ * block_ * blocks_);
-    const MatrixXd all = OrthonormalColumns(J);
-    full_ -= all * (all.transpose() * full_);
-    found_ = OrthonormalColumns(Averaged(J, channels_, block_));
+    const MatrixXd known = MatrixXd::Identity(numbers.size(), J.cols());
+    const MatrixXd all = OrthonormalColumns(WithNumbers(J, known));
+    left -= all * (all.transpose() * left);
+    found_ = OrthonormalColumns(WithNumbers(Averaged(J, channels_, block_), known));
   }
-  residual_ = Averaged(full_, channels_, block_);
+  rest_ = left.squaredNorm();
+  full_ = left.head(full_.size());
+  residual_ =
+      WithNumbers(Averaged(full_, channels_, block_), left.tail(numbers.size()));
   if (found_.cols() > 0) residual_ -= found_ * (found_.transpose() * residual_);
-  VectorXd padded = VectorXd::Zero(channels_ * (skip_ + blocks_));
-  padded.tail(residual_.size()) = residual_;
+  const Index measured = channels_ * blocks_;
+  VectorXd padded = VectorXd::Zero(channels_ * skip_ + measured);
+  padded.tail(measured) = residual_.head(measured);
   adjoint_ = dynamics_.AdjointOf(padded);
 }
 
@@ -74,6 +88,9 @@ MatrixXd Screener::Fast(const Trial& trial, const Candidate& candidate) const {
 std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& response,
                                        const VectorXd& residual) const {
   MatrixXd phi = trial.summed ? MatrixXd(response.rowwise().sum()) : response;
+  if (!trial.fast) {
+    phi = WithNumbers(phi, MatrixXd::Zero(residual.size() - phi.rows(), phi.cols()));
+  }
   const VectorXd size = phi.colwise().squaredNorm();
   if (found_.cols() > 0 && !trial.fast) phi -= found_ * (found_.transpose() * phi);
   MatrixXd G = phi.transpose() * phi;

@@ -20,11 +20,13 @@ class Screener {
   /// @param dynamics     of the samples of the problem that are for fits, in blocks
   /// @param residual     scaled innovations
   /// @param jacobian     J of what has been found; may be empty
+  /// @param numbers      z of the numbers of the plant, of the first columns of J
   Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
-           const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian);
+           const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
+           const Eigen::VectorXd& numbers);
 
   /// Squared residual, as far as what has been found cannot take it away.
-  double Rest() const { return full_.squaredNorm(); }
+  double Rest() const { return rest_; }
   /// The start that every trial of one candidate gives; those that are not physical or
   /// do not show give none.
   std::vector<std::optional<Start>> Judge(const std::vector<Trial>& trials,
@@ -63,12 +65,13 @@ class Screener {
   const DiscoveryProblem& problem_;
   const ErrorDynamics& dynamics_;
   Eigen::Index channels_;
-  Eigen::Index block_;              // samples
-  Eigen::Index skip_;               // blocks
-  Eigen::Index blocks_;             // after them
-  Eigen::VectorXd full_;            // residual of every sample
-  Eigen::VectorXd residual_;        // of every block
-  Eigen::MatrixXd found_;           // orthonormal, of every block
+  Eigen::Index block_;    // samples
+  Eigen::Index skip_;     // blocks
+  Eigen::Index blocks_;   // after them
+  Eigen::VectorXd full_;  // residual of every sample
+  double rest_ = 0.0;
+  Eigen::VectorXd residual_;        // of every block, then of the numbers
+  Eigen::MatrixXd found_;           // orthonormal, the same rows
   ErrorDynamics::Adjoint adjoint_;  // of residual_, blocks from the start on
 };
 

@@ -26,8 +26,8 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const VectorXd& residual,
-                 const MatrixXd& jacobian, int starts_each) {
-  const Screener screener(problem, dynamics, residual, jacobian);
+                 const MatrixXd& jacobian, const VectorXd& numbers, int starts_each) {
+  const Screener screener(problem, dynamics, residual, jacobian, numbers);
   std::vector<std::vector<Start>> found(candidates.size());
   std::vector<int> tried(candidates.size());
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
@@ -62,22 +62,23 @@ Screening Screen(const DiscoveryProblem& problem,
 
 Screening ScreenBeside(const DiscoveryProblem& problem,
                        const std::vector<Candidate>& candidates,
-                       const std::vector<FittedCause>& causes, const MatrixXd& jacobian,
+                       const FittedModel& present, const MatrixXd& jacobian,
                        int starts_each) {
   const DiscoveryProblem seen = problem.TrainPart();
-  const auto run = seen.Linearised(ChangesOf(candidates, causes));
+  const auto run = seen.Linearised(ChangesOf(seen, candidates, present));
   const auto& [track, dynamics] = *run;
   return Screen(seen, candidates, seen.MotionOf(track), dynamics, seen.Scaled(track),
-                jacobian, starts_each);
+                jacobian, present.numbers, starts_each);
 }
 
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
                                double present, const ObservedMotion& motion,
                                const ErrorDynamics& dynamics, const VectorXd& residual,
-                               const MatrixXd& jacobian, int most) {
+                               const MatrixXd& jacobian, const VectorXd& numbers,
+                               int most) {
   const double duration =
       static_cast<double>(problem.train() - problem.skip()) * problem.run().sample_time;
-  const Screener screener(problem, dynamics, residual, jacobian);
+  const Screener screener(problem, dynamics, residual, jacobian, numbers);
   double gain = 0.0;
   std::vector<Trial> trials;
   if (const auto sweep = MakeSweep(problem.machine(), wave, motion, duration)) {

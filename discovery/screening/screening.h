@@ -6,15 +6,18 @@
 //   gain = b^T G^-1 b,   G = Phi^T Phi,   b = Phi^T e
 //
 // with Phi its response, orthogonal to the Jacobian J of what has been found
-// already, for those are fitted again together with it. With noise alone a gain is
-// chi-squared distributed with as many degrees of freedom as the trial has amplitudes.
+// already, for those are fitted again together with it. What is known beforehand of the
+// numbers of the plant counts as measurements: rows z of the residual, of which J has
+// the identity, so that only what leaves the plausible is left to a trial that acts as a
+// number does. With noise alone a gain is chi-squared distributed with as many degrees
+// of freedom as the trial has amplitudes.
 
 #include <Eigen/Core>
 #include <functional>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/discovery/hypotheses/fitted_cause.h"
+#include "mjdiag/discovery/hypotheses/fitted_model.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/screening/trial.h"
 #include "mjdiag/plugin/replay/error_dynamics.h"
@@ -38,20 +41,22 @@ struct Screening {
 
 /// @param dynamics       of the train part at least, in blocks
 /// @param residual       scaled innovations, only the train part is used
-/// @param jacobian       J of what has been found, (ny samples) x parameters; may be
-///                       empty
+/// @param jacobian       J of what has been found, (ny samples) x (numbers of the
+///                       plant, then parameters); may be empty
+/// @param numbers        z, of the first columns of J
 /// @param starts_each    how many starts of one candidate to keep at most
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
-                 const Eigen::MatrixXd& jacobian, int starts_each);
+                 const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& numbers,
+                 int starts_each);
 
-/// The same beside the plant with those causes in it, on what they leave.
-/// @param jacobian  of the causes
+/// The same beside the plant as that model has it, on what it leaves.
+/// @param jacobian  of the model
 Screening ScreenBeside(const DiscoveryProblem& problem,
                        const std::vector<Candidate>& candidates,
-                       const std::vector<FittedCause>& causes,
-                       const Eigen::MatrixXd& jacobian, int starts_each);
+                       const FittedModel& present, const Eigen::MatrixXd& jacobian,
+                       int starts_each);
 
 /// Starts of one wave (a candidate with a sweep) that promise more than its present
 /// period or frequency, best first. Every value of the sweep is judged exactly: Screen,
@@ -62,6 +67,7 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
                                double present, const ObservedMotion& motion,
                                const ErrorDynamics& dynamics,
                                const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& jacobian, int most);
+                               const Eigen::MatrixXd& jacobian,
+                               const Eigen::VectorXd& numbers, int most);
 
 }  // namespace mjdiag

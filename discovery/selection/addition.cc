@@ -38,8 +38,7 @@ double MostRest(const Evidence& present, const Screening& screening) {
 }
 
 /// The present causes and a new one, with how promising that is.
-struct Entry {
-  std::vector<FittedCause> causes;
+struct Entry : FittedModel {
   double criterion = std::numeric_limits<double>::infinity();
 };
 
@@ -73,7 +72,7 @@ void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   std::vector<std::optional<CauseFit>> fits(entries.size());
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] = TryFit(data_.beginning, data_.candidates, entries[i].causes,
+    fits[i] = TryFit(data_.beginning, data_.candidates, entries[i],
                      CompareFrom(FoundJacobian(), iterations, 1e-3));
   });
   // On more data a difference grows in proportion.
@@ -83,7 +82,10 @@ void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
   const std::vector<double> criteria = Criteria(data_.beginning, fits);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     entries[i].criterion = growth * criteria[i];
-    if (fits[i]) entries[i].causes = fits[i]->causes;
+    if (fits[i]) {
+      entries[i].causes = fits[i]->causes;
+      entries[i].numbers = fits[i]->numbers;
+    }
   }
   std::erase_if(entries, [](const Entry& e) { return !std::isfinite(e.criterion); });
   std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
@@ -96,7 +98,7 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   constexpr double kSmall = 1.5;  // times the power of the noise
   std::vector<Entry> entries;
   for (const Start& start : shortlist) {
-    Entry entry{present_.fit().causes};
+    Entry entry{{present_.fit().causes, present_.fit().numbers}};
     entry.causes.push_back(Bounded(data_.candidates, start.cause));
     const double n =
         static_cast<double>(data_.problem.train()) * present_.independent().sum();
@@ -118,7 +120,7 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
   std::vector<std::optional<CauseFit>> fits(entries.size());
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] = TryFit(data_.problem, data_.candidates, entries[i].causes,
+    fits[i] = TryFit(data_.problem, data_.candidates, entries[i],
                      CompareFrom(FoundJacobian(), 8, 1e-4));
   });
   return fits;

@@ -21,9 +21,9 @@ EvidenceData DataOf(const DiscoveryProblem& problem,
   data.samples = problem.run().samples();
   if (unseen == nullptr) return data;
   const auto other = std::make_shared<const DiscoveryProblem>(problem.WithRun(*unseen));
-  data.replay = [other, &candidates](const std::vector<FittedCause>& causes) {
+  data.replay = [other, &candidates](const FittedModel& model) {
     try {
-      return other->Residual(ChangesOf(candidates, causes));
+      return other->Residual(ChangesOf(*other, candidates, model));
     } catch (const NumericalError&) {
       return VectorXd();
     }
@@ -41,7 +41,7 @@ double Evidence::Unseen(const VectorXd& independent) const {
           ? Deviance(fit_.residual, independent, data_.train, data_.samples)
           : 0.0;
   if (!data_.replay) return held_out;
-  if (!replayed_) replayed_ = data_.replay(fit_.causes);
+  if (!replayed_) replayed_ = data_.replay(fit_);
   if (replayed_->size() == 0) return std::numeric_limits<double>::infinity();
   return held_out + Deviance(*replayed_, independent, data_.skip,
                              replayed_->size() / independent.size());
@@ -63,7 +63,8 @@ Significance Evidence::SignificanceOf(double gain, int freedom, const Chance& ch
 
 Significance Evidence::SignificanceOf(const CauseFit& after, const Chance& chance,
                                       const VectorXd& independent) const {
-  return SignificanceOf(Noise() * (fit_.train - after.train),
+  return SignificanceOf(Noise() * (fit_.train - after.train) +
+                            fit_.numbers.squaredNorm() - after.numbers.squaredNorm(),
                         ParameterCount({after.causes.back()}), chance, independent);
 }
 

@@ -2,7 +2,8 @@
 // What is known about a set of hypotheses with fitted values:
 //
 //   criterion  Bayesian information criterion of the fitted part of the record,
-//              deviance + parameters log n, n independent values (model_choice.h)
+//              deviance + |z|^2 + parameters log n, n independent values, z the numbers
+//              of the plant in their standard deviations (model_choice.h)
 //   unseen     deviance of what the fit did not see: the part held out, and other
 //              records, which are replayed when first asked for
 //   addition   how much more than chance the hypothesis that came last explains
@@ -31,9 +32,9 @@ struct EvidenceData {
   Eigen::Index skip = 0;
   Eigen::Index train = 0;
   Eigen::Index samples = 0;
-  /// Scaled innovations of another record with those causes, stacked sample by sample;
+  /// Scaled innovations of another record beside it, stacked sample by sample;
   /// of no size where it cannot be run. May be empty: there is no other record.
-  std::function<Eigen::VectorXd(const std::vector<FittedCause>& causes)> replay;
+  std::function<Eigen::VectorXd(const FittedModel& model)> replay;
 };
 
 /// @param unseen  another record of the machine, or null

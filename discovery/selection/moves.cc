@@ -32,7 +32,7 @@ void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
 /// @param jacobian  of the first of the causes
 std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                                          const Evidence& present,
-                                         const std::vector<FittedCause>& causes,
+                                         const FittedModel& model,
                                          const MatrixXd& jacobian) {
   constexpr double kFar = 60.0;  // in units of the deviance
   const MatrixXd* initial = jacobian.cols() > 0 ? &jacobian : nullptr;
@@ -41,10 +41,10 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                     data.beginning.train());
   };
   const auto rough =
-      TryFit(data.beginning, data.candidates, causes, CompareFrom(initial, 8, 1e-3));
+      TryFit(data.beginning, data.candidates, model, CompareFrom(initial, 8, 1e-3));
   if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
   auto fit =
-      TryFit(data.problem, data.candidates, causes, CompareFrom(initial, 8, 1e-5));
+      TryFit(data.problem, data.candidates, model, CompareFrom(initial, 8, 1e-5));
   if (!fit) return std::nullopt;
   return present.Changed(std::move(*fit));
 }
@@ -53,14 +53,14 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
 /// before it is known.
 Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::size_t i,
                          const std::vector<FittedCause>& others) {
-  const std::vector<FittedCause> rest = Without(present.fit().causes, i);
+  const FittedModel rest = ModelWithout(present.fit(), i);
   const MatrixXd jacobian = JacobianWithout(present.fit(), i);
   Proposals proposals(others.size());
   ParallelFor(static_cast<int>(others.size()), [&](int number) {
     const auto k = static_cast<std::size_t>(number);
-    std::vector<FittedCause> causes = rest;
-    causes.push_back(others[k]);
-    proposals[k] = ProposeUnlessFar(data, present, causes, jacobian);
+    FittedModel other = rest;
+    other.causes.push_back(others[k]);
+    proposals[k] = ProposeUnlessFar(data, present, other, jacobian);
   });
   return proposals;
 }
@@ -71,8 +71,8 @@ Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
   Proposals proposals(fit.causes.size());
   ParallelFor(static_cast<int>(proposals.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    proposals[i] = ProposeUnlessFar(data, present, Without(fit.causes, i),
-                                    JacobianWithout(fit, i));
+    proposals[i] =
+        ProposeUnlessFar(data, present, ModelWithout(fit, i), JacobianWithout(fit, i));
   });
   return proposals;
 }
@@ -97,9 +97,8 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   const auto simpler =
       SimplerLaw(data.problem.machine().plant(), data.candidates, fit.causes[i]);
   if (simpler) consider(*simpler);
-  const Screening without =
-      ScreenBeside(data.problem, data.candidates, Without(fit.causes, i),
-                   JacobianWithout(fit, i), 1);
+  const Screening without = ScreenBeside(
+      data.problem, data.candidates, ModelWithout(fit, i), JacobianWithout(fit, i), 1);
   const double explained = without.rest - FittedValues(data.problem) * fit.train;
   for (const Start& start : without.starts) {
     if (start.gain < kNearly * explained - kChance) break;
@@ -167,7 +166,7 @@ void ChangePeriods(const SearchData& data, HypothesisSet& set) {
 }
 
 bool Drop(const SearchData& data, HypothesisSet& set) {
-  if (set.fit().causes.size() < 2) return false;
+  if (set.fit().causes.empty()) return false;
   Proposals proposals = ProposeDrops(data, set.evidence);
   const auto dropped = BestOf(set.evidence, proposals);
   if (!dropped) return false;

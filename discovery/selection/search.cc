@@ -33,9 +33,10 @@ class Search {
               DataOf(problem, candidates, options.unseen)},
         options_(options) {
     if (before == nullptr) return;
-    found_before_ = before->fit().causes;
+    found_before_ = before->fit();
     result_.rivals = before->rivals;
     result_.ladder = before->ladder;
+    result_.numbers_alone = before->numbers_alone;
     result_.refuted = before->refuted;
     result_.exchanged = before->exchanged;
   }
@@ -60,7 +61,7 @@ class Search {
 
   const SearchData data_;
   const SearchOptions& options_;
-  std::vector<FittedCause> found_before_;
+  FittedModel found_before_;
   SearchResult result_;
   double unsteadiness_ = 0.0;
   int rounds_ = 0;
@@ -68,8 +69,11 @@ class Search {
 
 void Search::FitCausesFoundBefore() {
   Report("fit of the causes found before", 0.0);
-  CauseFit fit = FitCauses(data_.problem, data_.candidates, found_before_,
-                           {.iterations = 10, .tolerance = 1e-5, .secant = true});
+  CauseFit fit = found_before_.causes.empty()
+                     ? FitNumbers(data_.problem, data_.candidates)
+                     : FitCauses(data_.problem, data_.candidates, found_before_,
+                                 {.iterations = 10, .tolerance = 1e-5, .secant = true});
+  if (fit.causes.empty()) result_.numbers_alone = fit.numbers;
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
   VectorXd independent = fit.causes.empty()
@@ -94,7 +98,7 @@ bool Search::Keep(Additions additions, const Chance& chance) {
     rivals.erase(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(i));
     Rank(rivals);
     result_.rivals.push_back(std::move(rivals));
-    result_.ladder.push_back(proposed.fit().causes);
+    result_.ladder.push_back(proposed.fit());
     result_.evidence = std::move(proposed);
     return true;
   }
@@ -121,9 +125,8 @@ bool Search::AddCause() {
   Report("screening", 0.0);
   constexpr int kStarts = 6;
   const Evidence& present = result_.evidence;
-  const Screening screening =
-      ScreenBeside(data_.problem, data_.candidates, present.fit().causes,
-                   present.fit().jacobian, kStarts);
+  const Screening screening = ScreenBeside(
+      data_.problem, data_.candidates, present.fit(), present.fit().jacobian, kStarts);
   const Chance chance = ChanceOf(screening.trials);
   const std::vector<Start> shortlist =
       Shortlist(present, screening, chance, options_.shortlist);
@@ -174,7 +177,7 @@ void Search::FitClosely() {
   Report("last fit", 0.9);
   const CauseFit& fit = result_.fit();
   result_.evidence = result_.evidence.Changed(
-      FitCauses(data_.problem, data_.candidates, fit.causes,
+      FitCauses(data_.problem, data_.candidates, fit,
                 {.iterations = 8,
                  .tolerance = 1e-8,
                  .initial_jacobian = fit.exact ? &fit.jacobian : nullptr}));
@@ -182,6 +185,9 @@ void Search::FitClosely() {
 
 SearchResult Search::Run() {
   FitCausesFoundBefore();
+  // Behind another observer or with other steps one of them may be nothing.
+  while (Drop(data_, result_)) {
+  }
   AddCauses();
   if (!result_.served) return std::move(result_);
   if (options_.preliminary && options_.preliminary(result_.fit())) {
@@ -196,7 +202,7 @@ SearchResult Search::Run() {
       result_.exchanged = true;
     }
   }
-  if (options_.last_fit && !result_.fit().causes.empty()) FitClosely();
+  if (options_.last_fit && result_.fit().jacobian.cols() > 0) FitClosely();
   return std::move(result_);
 }
 

@@ -49,7 +49,9 @@ struct SearchOptions {
 
 struct SearchResult : HypothesisSet {
   /// The causes after each that was added; it is their last.
-  std::vector<std::vector<FittedCause>> ladder;
+  std::vector<FittedModel> ladder;
+  /// The numbers of the plant without any cause.
+  Eigen::VectorXd numbers_alone;
   /// Those that explained the train part best but not what a fit did not see.
   std::vector<FittedCause> refuted;
   /// Whether the problem served to the end (SearchOptions::serves).

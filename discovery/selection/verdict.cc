@@ -8,7 +8,10 @@ DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nomina
   constexpr double kNamedShare = 0.9;
   const double left = search.fit().train;
   if (!named) {
-    const bool something = !search.ladder.empty() || search.significant_rest;
+    // Numbers may hide that something is there, but not from the noise.
+    const bool left_over = search.fit().numbers.size() > 0 && left > kFarAboveNoise;
+    const bool something =
+        !search.ladder.empty() || search.significant_rest || left_over;
     return something ? DiscoveryVerdict::kUnexplained
                      : DiscoveryVerdict::kNoDiscrepancy;
   }

@@ -3,11 +3,12 @@
 // innovations of the fitted part over sensor noise, m_0 the same of the plant as it was
 // given:
 //
-//   no discrepancy    nothing was named, and nothing significant was found
+//   no discrepancy    nothing was named, nothing significant was found, and numbers of
+//                     the plant, where they are in doubt, leave m <= 4
 //   explained         causes are named, nothing significant is left, m <= 4
 //   partly explained  else, if they take away 1 - (m - 1) / (m_0 - 1) >= 0.9
 //   unexplained       else: below that share of the excess over noise causes are not an
-//                     explanation but the best of the wrong ones
+//                     model but the best of the wrong ones
 
 #include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/selection/search.h"

@@ -75,7 +75,7 @@ Machine WithNumbers(const Machine& machine, UncertaintyOptions options, bool lin
                     const VectorXd& theta) {
   options.friction = !linear;
   const UncertainMachine uncertain = MakeUncertainMachine(machine, options);
-  std::vector<std::pair<PlantNumber, double>> factors;
+  NumberFactors factors;
   for (Index i = 0; i < theta.size(); ++i) {
     factors.emplace_back(
         FindPlantNumber(machine.plant(),

@@ -167,7 +167,7 @@ Machine DrawnPlant(const Machine& machine, std::uint64_t seed) {
   VectorXd normal(static_cast<Index>(calibration->numbers.size()));
   for (double& value : normal) value = drawn(generator);
   const VectorXd moved = calibration->root * normal;
-  std::vector<std::pair<PlantNumber, double>> factors;
+  NumberFactors factors;
   for (Index i = 0; i < moved.size(); ++i) {
     factors.emplace_back(
         FindPlantNumber(machine.plant(),

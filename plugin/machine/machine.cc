@@ -26,8 +26,8 @@ struct Machine::Derived {
 
 namespace {
 
-void ScaleNumbers(mjModel& model,
-                  const std::vector<std::pair<PlantNumber, double>>& factors) {
+void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
+  if (factors.empty()) return;
   for (const auto& [number, factor] : factors) Scale(model, number, factor);
   DeriveConstants(model);
 }
@@ -41,7 +41,7 @@ void ApplyCalibration(const Setup& setup, mjModel& model) {
         "it is of " + std::to_string(calibration.sensor_noise.size()) + " sensors",
         "one of this setup");
   }
-  std::vector<std::pair<PlantNumber, double>> factors;
+  NumberFactors factors;
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     factors.emplace_back(FindPlantNumber(model, calibration.numbers[i]),
                          calibration.factors[static_cast<Eigen::Index>(i)]);
@@ -116,18 +116,19 @@ Machine Machine::With(const Changes& changes) const {
   Machine changed = *this;
   if (changes == Changes{}) return changed;
   ModelPtr model = CopyModel(*plant_);
+  ScaleNumbers(*model, changes.numbers);
   for (const Fault& fault : changes.faults) ApplyFault(*model, fault);
   for (const PlacedEffect& effect : changes.effects) ApplyEffect(*model, effect);
   changed.setup_ = std::make_shared<Setup>(WithNoiseOf(*setup_, changes.effects));
   changed.Adopt(std::move(model));
-  auto& [faults, effects] = changed.changes_;
+  auto& [faults, effects, numbers] = changed.changes_;
   faults.insert(faults.end(), changes.faults.begin(), changes.faults.end());
   effects.insert(effects.end(), changes.effects.begin(), changes.effects.end());
+  numbers.insert(numbers.end(), changes.numbers.begin(), changes.numbers.end());
   return changed;
 }
 
-Machine Machine::WithNumbers(
-    const std::vector<std::pair<PlantNumber, double>>& factors) const {
+Machine Machine::WithNumbers(const NumberFactors& factors) const {
   Machine changed = *this;
   ModelPtr model = CopyModel(*plant_);
   ScaleNumbers(*model, factors);

@@ -54,11 +54,11 @@ class Machine {
   const MechanicalModel& linear() const&;
   MechanicalModel linear() const&& { return std::as_const(*this).linear(); }
 
-  /// This machine with faults and effects besides those that it has. InputError names
+  /// This machine with numbers, faults and effects besides those that it has. InputError names
   /// a fault parameter, effect, site or value that the plant does not allow.
   Machine With(const Changes& changes) const;
   /// With numbers of the plant that many times what they are.
-  Machine WithNumbers(const std::vector<std::pair<PlantNumber, double>>& factors) const;
+  Machine WithNumbers(const NumberFactors& factors) const;
   /// The same physics in that many steps a control tick.
   Machine WithSubsteps(int substeps) const;
   /// The same plant under another setup that names the same channels.

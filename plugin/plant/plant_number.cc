@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <string_view>
 
@@ -17,16 +18,20 @@ constexpr std::string_view kDeclaration = "known";
 struct KindOfNumber {
   std::string_view name;
   mjtObj element;
-  double spread;
+  double spread;  ///< UsualSpread
+  double doubt;   ///< DoubtOf
 };
 
+constexpr double kFactorOfTwo = std::numbers::ln2;
+
 /// In the order of PlantNumberKind.
-constexpr std::array<KindOfNumber, 6> kKinds = {{{"mass", mjOBJ_BODY, 0.01},
-                                                 {"inertia", mjOBJ_BODY, 0.03},
-                                                 {"stiffness", mjOBJ_JOINT, 0.05},
-                                                 {"damping", mjOBJ_JOINT, 0.2},
-                                                 {"friction", mjOBJ_JOINT, 0.2},
-                                                 {"gear", mjOBJ_ACTUATOR, 0.01}}};
+constexpr std::array<KindOfNumber, 6> kKinds = {
+    {{"mass", mjOBJ_BODY, 0.01, 0.05},
+     {"inertia", mjOBJ_BODY, 0.03, 0.1},
+     {"stiffness", mjOBJ_JOINT, 0.05, 0.1},
+     {"damping", mjOBJ_JOINT, 0.2, kFactorOfTwo},
+     {"friction", mjOBJ_JOINT, 0.2, kFactorOfTwo},
+     {"gear", mjOBJ_ACTUATOR, 0.01, 0.05}}};
 
 const KindOfNumber& Of(PlantNumberKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];
@@ -121,6 +126,21 @@ std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
   return numbers;
 }
 
+std::vector<PlantNumber> PlantNumbersOf(const mjModel& model,
+                                        const std::string& text) {
+  std::vector<PlantNumber> meant = PlantNumbers(model);
+  std::erase_if(meant, [&](const PlantNumber& number) {
+    return text != "all" && text != Of(number.kind).name &&
+           text != PlantNumberName(model, number);
+  });
+  if (meant.empty()) {
+    throw InputError("number of the plant '" + text + "'", "there is none",
+                     "all, a kind (mass, inertia, stiffness, damping, friction, gear) or "
+                     "one of an element, as mass@<body>");
+  }
+  return meant;
+}
+
 double UsualSpread(PlantNumberKind kind) { return Of(kind).spread; }
 
 double SpreadOf(const mjModel& model, const PlantNumber& number) {
@@ -129,6 +149,14 @@ double SpreadOf(const mjModel& model, const PlantNumber& number) {
   if (own >= 0.0) return own;
   const double of_all = Declared(model, name);
   return of_all >= 0.0 ? of_all : UsualSpread(number.kind);
+}
+
+double DoubtOf(const mjModel& model, const PlantNumber& number) {
+  const std::string name(kDeclaration);
+  const double own = Declared(model, name + "." + PlantNumberName(model, number));
+  if (own > 0.0) return own;
+  const double of_all = Declared(model, name);
+  return of_all > 0.0 ? of_all : Of(number.kind).doubt;
 }
 
 bool IsExact(const mjModel& model) {

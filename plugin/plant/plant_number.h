@@ -34,6 +34,9 @@ PlantNumber FindPlantNumber(const mjModel& model, const std::string& name);
 
 /// All that are not 0, of bodies that move.
 std::vector<PlantNumber> PlantNumbers(const mjModel& model);
+/// Those of them that a text means: "all", a kind ("mass") or one ("mass@stage").
+/// InputError if it means none.
+std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string& text);
 
 /// Relative standard deviation with which such a number is known without measuring it:
 /// masses by weighing 1 %, inertias from drawings 3 %, mounts and springs 5 %, damping
@@ -42,6 +45,11 @@ double UsualSpread(PlantNumberKind kind);
 /// As the plant declares it, else UsualSpread. InputError on a declaration that names
 /// nothing or is not a number >= 0.
 double SpreadOf(const mjModel& model, const PlantNumber& number);
+/// Standard deviation of the logarithm of a number that nobody has measured on the
+/// machine itself, when a record of it is explained: as the plant declares it above 0,
+/// else masses 5 %, inertias and springs 10 %, motor constants 5 %, damping and dry
+/// friction a factor of 2.
+double DoubtOf(const mjModel& model, const PlantNumber& number);
 /// Whether the plant says of itself that it is what it says (`known` 0).
 bool IsExact(const mjModel& model);
 

@@ -8,7 +8,9 @@
 
 #include "discovery/stage_under_test.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -32,6 +34,16 @@ const CauseParameter& Parameter(const Discovery& discovery, const std::string& n
     if (parameter.name == name) return parameter;
   }
   throw std::out_of_range(name);
+}
+
+/// What the mass of the machine is of what its model says.
+constexpr double kLight = 0.99;
+
+Record MeasureLight(const test::StageUnderTest& stage,
+                    const std::vector<std::string>& effects) {
+  const Machine light = stage.machine.WithNumbers(
+      {{FindPlantNumber(stage.machine.plant(), "mass@load"), kLight}});
+  return Simulate(light.With(test::With(effects)), stage.Motion(), {});
 }
 
 TEST(Discovery, SaysNothingOfNoise) {
@@ -186,6 +198,57 @@ TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {
   ASSERT_TRUE(answer.unexplained.has_value());
   EXPECT_NE(answer.unexplained->text.find("time"), std::string::npos)
       << answer.unexplained->text;
+}
+
+// With a mass, a motor and a damper that are all in doubt only their ratios are known.
+TEST(DiscoveryInDoubt, TakesAWrongMassAsANumberOfThePlantAndNotAsACause) {
+  const test::StageUnderTest stage;
+  DiscoverOptions options = CausesOnly();
+  options.doubt = true;
+  const Discovery answer =
+      Discover(stage.machine, MeasureLight(stage, {}), nullptr, options);
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kNoDiscrepancy);
+  EXPECT_EQ(Named(answer), "");
+  ASSERT_EQ(answer.calibration.size(), 3u);
+  EXPECT_EQ(answer.calibration[0].name, "mass@load");
+  EXPECT_EQ(answer.calibration[2].name, "gear@drive");
+  EXPECT_NEAR(answer.calibration[0].factor / answer.calibration[2].factor, kLight,
+              1e-5);
+  for (const CalibratedNumber& number : answer.calibration) {
+    EXPECT_FALSE(IsOff(number)) << number.name;
+  }
+}
+
+TEST(DiscoveryInDoubt, SaysWhichNumberIsOffWhereTheOthersAreKnown) {
+  const test::StageUnderTest stage;
+  DiscoverOptions options = CausesOnly();
+  options.doubt = true;
+  options.known = {"gear@drive", "damping"};
+  const Discovery answer =
+      Discover(stage.machine, MeasureLight(stage, {}), nullptr, options);
+  EXPECT_EQ(Named(answer), "");
+  ASSERT_EQ(answer.calibration.size(), 1u);
+  EXPECT_TRUE(IsOff(answer.calibration[0]));
+  EXPECT_LE(answer.calibration[0].low, kLight);
+  EXPECT_GE(answer.calibration[0].high, kLight);
+  options.known = {"mas"};
+  EXPECT_THROW(Discover(stage.machine, MeasureLight(stage, {}), nullptr, options),
+               InputError);
+}
+
+TEST(DiscoveryInDoubt, FindsDryFrictionBesideAWrongMass) {
+  const test::StageUnderTest stage;
+  DiscoverOptions options = CausesOnly();
+  options.doubt = true;
+  options.known = {"gear"};
+  const Discovery answer =
+      Discover(stage.machine, MeasureLight(stage, {"coulomb_friction@load:force=18"}),
+               nullptr, options);
+  EXPECT_EQ(Named(answer), "coulomb_friction@load");
+  const CauseParameter& force = Parameter(answer, "force");
+  EXPECT_NEAR(force.value, 18.0, 4.0 * force.sd);
+  const CalibratedNumber& mass = answer.calibration.at(0);
+  EXPECT_NEAR(mass.factor, kLight, 1e-4);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
       {test::Place(candidates, "force_offset@load"),
        Eigen::VectorXd::Constant(1, 0.1)}};
   const CauseFit fit =
-      FitCauses(problem, candidates, start, {.iterations = 30, .tolerance = 1e-8});
+      FitCauses(problem, candidates, {start}, {.iterations = 30, .tolerance = 1e-8});
   Eigen::VectorXd authors(5);
   authors << 0.5 * (20.1440 + 20.6277), 166.7061 - plant.dof_damping[0],
       240.4236 - plant.dof_damping[0],

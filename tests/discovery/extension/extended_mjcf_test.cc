@@ -29,7 +29,7 @@ class ExtendedMjcf : public ::testing::Test {
       specs.push_back(ParseEffect(effect));
       ApplyEffect(*expected_, specs.back());
     }
-    std::string text = ExtendMjcf(file, *plant, faults, specs, extended_.path());
+    std::string text = ExtendMjcf(file, *plant, {faults, specs}, extended_.path());
     model_ = LoadModel(extended_.Write("plant.xml", text));
     return text;
   }

@@ -54,9 +54,8 @@ class Extension {
       : nominal_(folder), machine_(ReadSetup(folder, overrides)) {}
 
   void Write(const Changes& causes) const {
-    temporary_.Write("plant.xml",
-                     ExtendMjcf(setup().plant, machine_.plant(), causes.faults,
-                                causes.effects, temporary_.path()));
+    temporary_.Write("plant.xml", ExtendMjcf(setup().plant, machine_.plant(), causes,
+                                             temporary_.path()));
     temporary_.Write("setup.toml", ExtendSetup(nominal_ / "setup.toml", setup(),
                                                causes.effects, temporary_.path()));
   }
@@ -236,7 +235,7 @@ TEST(ExtendedPlant, HasASetupThatIsKeptLineByLine) {
 TEST(ExtendedPlant, RefusesToReplaceTheNominalOne) {
   const Extension extension(Folder("emps"));
   const auto mjcf = [&] {
-    ExtendMjcf(extension.setup().plant, extension.machine().plant(), {}, {},
+    ExtendMjcf(extension.setup().plant, extension.machine().plant(), {},
                Folder("emps"));
   };
   EXPECT_THAT(test::MessageOf<InputError>(mjcf), HasSubstr("holds the nominal plant"));

@@ -22,7 +22,7 @@ TEST(CauseFit, HasIntervalsThatHold) {
     const auto candidates = ListCandidates(stage.machine);
     const std::size_t place = Place(candidates, "quadratic_drag@load");
     const CauseFit fit = FitCauses(problem, candidates,
-                                   {{place, Eigen::VectorXd::Constant(1, 0.4)}}, {});
+                                   {{{place, Eigen::VectorXd::Constant(1, 0.4)}}}, {});
     const double sd = std::sqrt(ParameterCovariance(problem, fit)(0, 0));
     covered += std::abs(fit.causes[0].value[0] - 0.5) < 1.96 * sd;
   }
@@ -36,7 +36,7 @@ TEST(CauseFit, FindsSeveralParametersOfAStrongEffectFromAPoorStart) {
   const auto candidates = ListCandidates(stage.machine);
   const std::size_t place = Place(candidates, "stribeck_friction@load");
   const CauseFit fit =
-      FitCauses(problem, candidates, {{place, Eigen::Vector3d(8.0, 4.0, 0.02)}},
+      FitCauses(problem, candidates, {{{place, Eigen::Vector3d(8.0, 4.0, 0.02)}}},
                 {30, 1e-8, true, nullptr});
   EXPECT_NEAR(fit.causes[0].value[0], 12.0, 0.05);
   EXPECT_NEAR(fit.causes[0].value[1], 8.0, 0.1);
@@ -50,8 +50,8 @@ TEST(CauseFit, BySecantsFindsTheSamePlace) {
   const DiscoveryProblem problem = stage.Pose(
       stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
   const auto candidates = ListCandidates(stage.machine);
-  const std::vector<FittedCause> start = {
-      {Place(candidates, "stribeck_friction@load"), Eigen::Vector3d(11.0, 7.0, 0.012)}};
+  const FittedModel start = {{{Place(candidates, "stribeck_friction@load"),
+                               Eigen::Vector3d(11.0, 7.0, 0.012)}}};
   const CauseFit full =
       FitCauses(problem, candidates, start, {30, 1e-10, true, nullptr, false});
   const CauseFit secant =
@@ -69,8 +69,8 @@ TEST(CauseFit, StaysWithinItsBounds) {
   const DiscoveryProblem problem = stage.Pose(stage.Measure({}, {{"zeta", 0.0}}));
   const auto candidates = ListCandidates(stage.machine);
   const std::size_t place = Place(candidates, "coulomb_friction@load");
-  const CauseFit fit =
-      FitCauses(problem, candidates, {{place, Eigen::VectorXd::Constant(1, 5.0)}}, {});
+  const CauseFit fit = FitCauses(problem, candidates,
+                                 {{{place, Eigen::VectorXd::Constant(1, 5.0)}}}, {});
   EXPECT_GE(fit.causes[0].value[0], 0.0);
 }
 

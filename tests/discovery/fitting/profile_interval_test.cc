@@ -26,7 +26,7 @@ Fitted FitOf(const test::StageUnderTest& stage, const std::string& effect,
   Fitted f{.problem = stage.Pose(stage.Measure({effect})),
            .candidates = ListCandidates(stage.machine)};
   const std::size_t place = test::Place(f.candidates, site);
-  f.fit = FitCauses(f.problem, f.candidates, {{place, start}},
+  f.fit = FitCauses(f.problem, f.candidates, {{{place, start}}},
                     {.iterations = 30, .tolerance = 1e-10});
   f.covariance = ParameterCovariance(f.problem, f.fit);
   f.intervals = ParameterIntervals(f.problem, f.candidates, f.fit, f.covariance);
@@ -57,7 +57,7 @@ TEST(ProfileInterval, EndsWhereTheProfileOfTheLikelihoodCrosses) {
     std::vector<FittedCause> causes = f.fit.causes;
     causes[0].value[2] = end;
     const CauseFit held =
-        FitCauses(seen, f.candidates, causes,
+        FitCauses(seen, f.candidates, {causes},
                   {.iterations = 30, .tolerance = 1e-10, .held = Eigen::Index{2}});
     const double colour = f.covariance(2, 2) / C(2, 2);
     EXPECT_NEAR(n * (held.train - f.fit.train), 3.841 * colour, 0.5 * colour) << end;

@@ -15,7 +15,7 @@ CauseFit FitAt(const DiscoveryProblem& problem,
                double value) {
   return FitCauses(
       problem, candidates,
-      {{test::Place(candidates, site), Eigen::VectorXd::Constant(1, value)}},
+      {{{test::Place(candidates, site), Eigen::VectorXd::Constant(1, value)}}},
       {.iterations = 0, .jacobian = false});
 }
 

@@ -18,14 +18,14 @@ TEST(WavePeriod, LeavesAWrongPeriodThatAFitCannotLeave) {
   const std::size_t place = test::Place(candidates, "force_ripple@load");
   ASSERT_TRUE(HasPeriod(candidates[place]));
   ASSERT_EQ(candidates[place].parameters[1].name, "period");
-  const CauseFit wrong =
-      FitCauses(problem, candidates, {{place, Eigen::Vector3d(0.05, 0.012, 0.0)}}, {});
+  const CauseFit wrong = FitCauses(problem, candidates,
+                                   {{{place, Eigen::Vector3d(0.05, 0.012, 0.0)}}}, {});
   ASSERT_GT(std::abs(wrong.causes[0].value[1] - 0.02), 0.002);
   double least = wrong.train;
   double period = wrong.causes[0].value[1];
   for (const FittedCause& other : OtherPeriods(problem, candidates, wrong, 0)) {
     const CauseFit fit =
-        FitCauses(problem, candidates, {other}, {.jacobian = false, .secant = true});
+        FitCauses(problem, candidates, {{other}}, {.jacobian = false, .secant = true});
     if (fit.train > least) continue;
     least = fit.train;
     period = fit.causes[0].value[1];

@@ -29,7 +29,7 @@ struct Screened {
   /// Beside the causes, which have these sensitivities.
   Screening Beside(const std::vector<FittedCause>& causes = {},
                    const MatrixXd& sensitivities = {}) const {
-    return ScreenBeside(problem, candidates, causes, sensitivities, 1);
+    return ScreenBeside(problem, candidates, {causes}, sensitivities, 1);
   }
   const Start& StartOf(const Screening& screening, const std::string& name) const {
     const std::size_t place = test::Place(candidates, name);
@@ -133,17 +133,17 @@ struct Bench {
 TEST(Screener, HasARestThatIsOrthogonalToWhatHasBeenFound) {
   const Screened screened({"quadratic_drag@load:coefficient=20"});
   const Bench bench{screened.problem.TrainPart()};
-  const Screener all(bench.problem, bench.run->dynamics, bench.residual, {});
+  const Screener all(bench.problem, bench.run->dynamics, bench.residual, {}, {});
   EXPECT_NEAR(all.Rest(), bench.residual.squaredNorm(),
               1e-9 * bench.residual.squaredNorm());
   // What has been found spans the residual itself: nothing is left. Half of it and
   // something else: what is orthogonal to both.
   MatrixXd found(bench.residual.size(), 1);
   found.col(0) = 3.0 * bench.residual;
-  const Screener none(bench.problem, bench.run->dynamics, bench.residual, found);
+  const Screener none(bench.problem, bench.run->dynamics, bench.residual, found, {});
   EXPECT_LT(none.Rest(), 1e-9 * all.Rest());
   found.col(0) = VectorXd::Ones(found.rows());
-  const Screener mean(bench.problem, bench.run->dynamics, bench.residual, found);
+  const Screener mean(bench.problem, bench.run->dynamics, bench.residual, found, {});
   const double sum = bench.residual.sum();
   EXPECT_NEAR(mean.Rest(), all.Rest() - sum * sum / static_cast<double>(found.rows()),
               1e-9 * all.Rest());
@@ -158,7 +158,7 @@ TEST(BetterWaves, FindThePeriodThatAWrongOneMisses) {
       screened.candidates[test::Place(screened.candidates, "force_ripple@load")];
   const auto better = [&](double present) {
     return BetterWaves(bench.problem, ripple, present, motion, bench.run->dynamics,
-                       bench.residual, {}, 3);
+                       bench.residual, {}, {}, 3);
   };
   const std::vector<Start> starts = better(0.015);
   ASSERT_FALSE(starts.empty());

@@ -56,9 +56,9 @@ double Less(double deviance, Index samples) {
 /// says; counts how often it is replayed.
 EvidenceData WithOtherRecord(const std::vector<double>& left, int& replays) {
   EvidenceData data = kRecord;
-  data.replay = [left, &replays](const std::vector<FittedCause>& causes) -> VectorXd {
+  data.replay = [left, &replays](const FittedModel& model) -> VectorXd {
     ++replays;
-    return VectorXd::Constant(500, left[causes.size()]);
+    return VectorXd::Constant(500, left[model.causes.size()]);
   };
   return data;
 }
@@ -84,7 +84,7 @@ TEST(Evidence, OfUnseenDataIsOfThePartHeldOutAndOfOtherRecords) {
 
 TEST(Evidence, IsInfinitelyBadWhereAnotherRecordCannotBeRun) {
   EvidenceData data = kRecord;
-  data.replay = [](const std::vector<FittedCause>&) { return VectorXd(); };
+  data.replay = [](const FittedModel&) { return VectorXd(); };
   EXPECT_TRUE(std::isinf(Present({0}, 1.0, 1.0, data).Unseen(VectorXd::Ones(1))));
 }
 
@@ -152,7 +152,7 @@ TEST(Comparator, RejectsAnAdditionThatSpoilsAnotherRecord) {
 
 TEST(Comparator, LearnsNothingFromARecordThatNeitherSetCanBeRunOn) {
   EvidenceData data = kRecord;
-  data.replay = [](const std::vector<FittedCause>&) { return VectorXd(); };
+  data.replay = [](const FittedModel&) { return VectorXd(); };
   const Evidence present = Present({}, 2.0, 2.0, data);
   EXPECT_EQ(Judge(present, Adding(present, FitOf({0}, 1.2, 9.0))),
             Judgement::kAccepted);

@@ -37,16 +37,16 @@ struct Found {
   }
   /// Another record, which speaks against sets that begin with this cause.
   void SpeakAgainst(const std::string& name) {
-    data.evidence.replay = [place = test::Place(candidates, name)](
-                               const std::vector<FittedCause>& causes) -> VectorXd {
-      return VectorXd::Constant(1000, causes[0].candidate == place ? 100.0 : 0.0);
+    data.evidence.replay =
+        [place = test::Place(candidates, name)](const FittedModel& model) -> VectorXd {
+      return VectorXd::Constant(1000, model.causes[0].candidate == place ? 100.0 : 0.0);
     };
     Judge(set.fit().causes);
   }
   /// Another record, which speaks against sets of one cause.
   void SpeakAgainstOne() {
-    data.evidence.replay = [](const std::vector<FittedCause>& causes) -> VectorXd {
-      return VectorXd::Constant(1000, causes.size() == 1 ? 100.0 : 0.0);
+    data.evidence.replay = [](const FittedModel& model) -> VectorXd {
+      return VectorXd::Constant(1000, model.causes.size() == 1 ? 100.0 : 0.0);
     };
     Judge(set.fit().causes);
   }
@@ -56,7 +56,7 @@ struct Found {
 
  private:
   void Judge(const std::vector<FittedCause>& causes) {
-    set.evidence = {data.evidence, FitCauses(problem, candidates, causes, {}),
+    set.evidence = {data.evidence, FitCauses(problem, candidates, {causes}, {}),
                     VectorXd::Ones(1)};
   }
 };

@@ -57,7 +57,7 @@ TEST(SearchCauses, GoOnFromWhatASearchBeforeThemFound) {
   SearchResult before;
   before.evidence = {{}, rough, Eigen::VectorXd::Ones(1)};
   before.rivals = {{{drag, 0.0, 1.0}}};
-  before.ladder = {{drag}};
+  before.ladder = {FittedModel({drag})};
   before.refuted = {refuted};
   before.exchanged = true;
   SearchOptions options;

@@ -26,6 +26,18 @@ TEST(Verdict, IsUnexplainedWhereSomethingIsThereAndNothingIsNamed) {
   EXPECT_EQ(VerdictOf(dropped, false, 3.0), DiscoveryVerdict::kUnexplained);
 }
 
+TEST(Verdict, IsUnexplainedWhereNumbersOfThePlantLeaveMoreThanNoise) {
+  const auto beside = [](double left) {
+    CauseFit fit = Left(left, false).fit();
+    fit.numbers = Eigen::VectorXd::Zero(1);
+    SearchResult result;
+    result.evidence = {{}, fit, Eigen::VectorXd::Ones(1)};
+    return VerdictOf(result, false, 50.0);
+  };
+  EXPECT_EQ(beside(3.9), DiscoveryVerdict::kNoDiscrepancy);
+  EXPECT_EQ(beside(4.1), DiscoveryVerdict::kUnexplained);
+}
+
 TEST(Verdict, IsExplainedWhereCausesLeaveNoise) {
   EXPECT_EQ(VerdictOf(Left(1.1, false), true, 50.0), DiscoveryVerdict::kExplained);
 }
