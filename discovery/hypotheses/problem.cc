@@ -155,7 +155,8 @@ DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
           {.sample_time = all.sample_time,
            .outputs = all.outputs.leftCols(samples),
            .inputs = all.inputs.leftCols(samples),
-           .start = all.start},
+           .start = all.start,
+           .on = all.on.leftCols(std::min(samples, all.on.cols()))},
           problem.skip(),
           samples};
 }

@@ -5,34 +5,15 @@
 // springs, dampers, velocity products, other effects), as the bound of MuJoCo's own
 // friction constraint, so that it sticks exactly. [Duclusaud 2024]
 
-#include <algorithm>
 #include <cmath>
 
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 
 namespace mjdiag {
 namespace {
-
-/// Force of a motor as MuJoCo is going to compute it from the command of this step.
-double MotorForce(const mjModel& model, const mjData& data, int motor) {
-  const auto clamped = [motor](double value, const mjtByte* limited,
-                               const mjtNum* ranges) {
-    const mjtNum* range = RowOf(ranges, 2, motor);
-    return limited[motor] == 0 ? value : std::clamp(value, range[0], range[1]);
-  };
-  const mjtNum* gain = RowOf(model.actuator_gainprm, mjNGAIN, motor);
-  const mjtNum* bias = RowOf(model.actuator_biasprm, mjNBIAS, motor);
-  double force = gain[0] * clamped(data.ctrl[motor], model.actuator_ctrllimited,
-                                   model.actuator_ctrlrange);
-  if (model.actuator_biastype[motor] == mjBIAS_AFFINE) {
-    force += bias[0] + bias[1] * data.actuator_length[motor] +
-             bias[2] * data.actuator_velocity[motor];
-  }
-  return clamped(force, model.actuator_forcelimited, model.actuator_forcerange);
-}
 
 class BoundByLoad final : public VaryingBound {
  public:
