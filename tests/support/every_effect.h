@@ -59,7 +59,7 @@ inline const std::vector<std::string>& EveryEffectOfAb383() {
        "encoder_periodic_error@y_encoder:amplitude=3.1e-8,period=2e-5",
        "encoder_drift@z_encoder:rate=1.7e-5"},
       {.stroke = 4e-3, .speed = 0.3, .force = 250.0, .mass = 1.0, .duration = 1.0},
-      {"X", "r2", "x_motor", "x_encoder"});
+      {"X", "r2", "x_motor", "x_encoder", "Z"});
   return effects;
 }
 
@@ -89,8 +89,8 @@ inline const std::vector<std::string>& EveryEffectOfEmps() {
        "encoder_periodic_error@load_encoder:amplitude=3.1e-6,period=2e-3",
        "encoder_drift@load_encoder:rate=1.7e-5"},
       {.stroke = 0.2, .speed = 0.2, .force = 2.0, .mass = 95.0, .duration = 1.0},
-      // Nothing in EMPS is held by a spring.
-      {"load", "", "drive", "load_encoder"});
+      // Nothing in EMPS is held by a spring, and nothing turns.
+      {"load", "", "drive", "load_encoder", ""});
   return effects;
 }
 

@@ -7,10 +7,10 @@
 
 #include <cmath>
 
+#include "mjdiag/plugin/effects/friction/drive_load.h"
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
-#include "mjdiag/plugin/plant/motor_force.h"
 
 namespace mjdiag {
 namespace {
@@ -22,13 +22,8 @@ class BoundByLoad final : public VaryingBound {
 
  private:
   double Added(const mjModel& model, mjData& data) noexcept override {
-    double load =
-        data.qfrc_bias[dof()] - data.qfrc_passive[dof()] - data.qfrc_applied[dof()];
-    for (int motor = 0; motor < model.nu; ++motor) {
-      const double arm = data.actuator_moment[motor * model.nv + dof()];
-      if (arm != 0.0) load += arm * MotorForce(model, data, motor);
-    }
-    return coefficient_ * std::abs(load);
+    const DriveLoad load = DriveLoadOf(model, data, dof());
+    return coefficient_ * std::abs(load.motor - load.rest);
   }
 
   double coefficient_;
@@ -55,16 +50,11 @@ class LoadFrictionEffect final : public Effect {
     return std::make_unique<BoundByLoad>(model.jnt_dofadr[joint], values[0]);
   }
 
-  // Along a motion the rest is what accelerates the joint beside its motors, to first
-  // order without this friction: M a - motor, so that the load is 2 motor - M a.
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    const Eigen::VectorXd motor =
-        at.motion.inputs.transpose() * at.model.Gamma.row(at.site.joint).transpose();
-    const Eigen::VectorXd inertial =
-        at.motion.acceleration.transpose() * at.model.M.row(at.site.joint).transpose();
-    const Eigen::VectorXd load = (2.0 * motor - inertial).cwiseAbs();
-    return {
-        LinearTrial(-load.cwiseProduct(Direction(at.v())), at.JointEntry(), 0.0, true)};
+    const ObservedLoad load(at);
+    const Eigen::VectorXd bound = (load.motor - load.rest).cwiseAbs();
+    return {LinearTrial(-bound.cwiseProduct(Direction(at.v())), at.JointEntry(), 0.0,
+                        true)};
   }
   Sized Draw(const Scales&, Random&) const override { return Proportional(0.2); }
 };
