@@ -58,11 +58,12 @@ class PositionDependentFrictionEffect final : public Effect {
     parts.col(1) = parts.col(0).cwiseProduct(q);
     return {LinearTrial(parts, at.JointEntry(2))};
   }
-  // A machine rubs by a few per cent of what its motor does, here or there.
+  // A machine rubs by a few per cent of what its motor does, here or there; by itself the
+  // law has to be positive at one end of the stroke at least.
   Sized Draw(const Scales& k, Random& r) const override {
-    const double slope = r.Sign() * k.SmallForce() / k.stroke;
+    const double slope = r.Sign() * 0.5 * k.SmallForce() / k.stroke;
     const double curvature =
-        r.Uniform(0.2, 1.0) * k.SmallForce() / (k.stroke * k.stroke);
+        r.Uniform(1.0, 2.0) * k.SmallForce() / (k.stroke * k.stroke);
     return [=](double s) { return ValuesOf({s * slope, s * curvature}); };
   }
 };
