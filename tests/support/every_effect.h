@@ -78,6 +78,7 @@ inline const std::vector<std::string>& EveryEffectOfEmps() {
            "stribeck_friction@load:coulomb=13.1,breakaway=7.7,velocity=0.0013",
            "viscous_friction@load:coefficient=-17.3",
            "asymmetric_viscous_friction@load:positive=13.3,negative=-7.1",
+           "position_dependent_friction@load:slope=313.7,curvature=117.1",
            "quadratic_drag@load:coefficient=31.7",
            "presliding_hysteresis@load:force=7.1,stiffness=230000",
            "hysteretic_stiffness@load:stiffness=1700,loss=0.3,length=0.0011",
