@@ -20,13 +20,16 @@ struct CompareOptions {
   OutputOptions output;
   std::string record;
   std::uint64_t seed = 1;
+  bool open_loop = false;
 };
 
 std::string ChannelTable(const Comparison& comparison) {
-  Table table({"channel", "rms mismatch", "relative error", "noise floor",
-               "above noise", "worst window"});
+  Table table({"channel", "rms mismatch", "mean absolute", "fit", "relative error",
+               "noise floor", "above noise", "worst window"});
   for (const ChannelMismatch& channel : comparison.channels) {
     table.Add({channel.name, FormatQuantity(channel.rms, channel.unit),
+               FormatQuantity(channel.mae, channel.unit),
+               Short(channel.fit_percent) + " %",
                Short(channel.relative_error_percent) + " %",
                FormatQuantity(channel.noise_floor.rms, channel.unit),
                channel.exceeds_noise ? "yes" : "no",
@@ -49,6 +52,10 @@ void Compare(const CompareOptions& options) {
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
   const Record measured = ReadRecord(options.record, subject.setup().record);
+  if (options.open_loop) {
+    subject.machine =
+        subject.machine.WithSetup(WithoutControllers(subject.machine.setup()));
+  }
   PrepareOutput(options.output);
   Comparison comparison;
   {
@@ -78,6 +85,10 @@ void AddCompare(CLI::App& app) {
   AddMachineOptions(*command, options->machine);
   command->add_option("--record", options->record, "Measured record, CSV or MAT")
       ->required();
+  command->add_flag(
+      "--open-loop", options->open_loop,
+      "Drive the actuators with the measured signals, whatever controllers "
+      "the setup has");
   command->add_option("--seed", options->seed, "Seed of the noise floor's simulation");
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);

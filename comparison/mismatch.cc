@@ -79,6 +79,16 @@ double RelativeErrorPercent(const Eigen::VectorXd& measured,
   return 100.0 * error / size;
 }
 
+double FitPercent(const Eigen::VectorXd& measured, const Eigen::VectorXd& simulated,
+                  Eigen::Index skip) {
+  const Eigen::Index count = measured.size() - skip;
+  const double error = (measured - simulated).tail(count).norm();
+  if (error == 0.0) return 100.0;
+  const auto y = measured.tail(count);
+  const double spread = (y.array() - y.mean()).matrix().norm();
+  return 100.0 * (1.0 - error / spread);
+}
+
 WorstWindow FindWorstWindow(const Eigen::VectorXd& mismatch, double sample_time,
                             double start_time, Eigen::Index length) {
   double energy = mismatch.head(length).squaredNorm();
@@ -123,6 +133,8 @@ ChannelMismatch MeasureMismatch(const Record& measured, const Record& simulated,
   result.name = name;
   result.unit = y.unit;
   result.rms = Rms(error);
+  result.mae = error.cwiseAbs().mean();
+  result.fit_percent = FitPercent(y.samples, yhat.samples, skip);
   result.peak = error.cwiseAbs().maxCoeff();
   result.relative_error_percent = RelativeErrorPercent(y.samples, yhat.samples, skip);
   result.worst = FindWorstWindow(

@@ -4,6 +4,9 @@
 //
 //   mismatch        e_k = y_k - yhat_k
 //   rms             sqrt(mean e^2)
+//   mae             mean |e|
+//   fit             100 (1 - ||e|| / ||y - mean y||) [%], 100 where nothing is wrong, 0
+//                   where the mean of y would do as well, negative beyond
 //   relative error  100 ||y - yhat|| / ||y|| [%], as Janot, Gautier and Brunot compute
 //                   it for EMPS ("Data Set and Reference Models of EMPS", 2019)
 //
@@ -53,9 +56,11 @@ struct WorstWindow {
 
 struct ChannelMismatch {
   std::string name;
-  std::string unit;  ///< SI, of rms, peak, worst.rms and noise_floor.rms
+  std::string unit;  ///< SI, of rms, mae, peak, worst.rms and noise_floor.rms
   double rms = 0.0;
+  double mae = 0.0;   ///< mean |e|
   double peak = 0.0;  ///< max |e|
+  double fit_percent = 0.0;
   double relative_error_percent = 0.0;
   WorstWindow worst;
   Spectrum spectrum;  ///< one-sided power spectral density of e [unit^2/Hz]
@@ -75,6 +80,11 @@ Spectrum PowerSpectrum(const Eigen::VectorXd& x, double sample_time);
 /// 0 if both are zero, infinite if only `measured` is.
 double RelativeErrorPercent(const Eigen::VectorXd& measured,
                             const Eigen::VectorXd& simulated, Eigen::Index skip);
+
+/// 100 (1 - ||measured - simulated|| / ||measured - mean of measured||) after the first
+/// `skip` samples [%]. 100 if both norms are zero, minus infinity if only the second is.
+double FitPercent(const Eigen::VectorXd& measured, const Eigen::VectorXd& simulated,
+                  Eigen::Index skip);
 
 /// The window of `length` samples with the largest rms of `mismatch`, which is sampled
 /// at start_time + k * sample_time.

@@ -13,6 +13,8 @@ nlohmann::json FiniteOrNull(double value) {
 nlohmann::json ToJson(const ChannelMismatch& channel) {
   return {{"rms", channel.rms},
           {"unit", channel.unit},
+          {"mae", channel.mae},
+          {"fit_percent", FiniteOrNull(channel.fit_percent)},
           {"relative_error_percent", FiniteOrNull(channel.relative_error_percent)},
           {"noise_floor", channel.noise_floor.rms},
           {"exceeds_noise", channel.exceeds_noise},

@@ -50,21 +50,28 @@ constexpr const char* kHowToRead =
 
 void AddChannelTable(Page& page, const Comparison& comparison) {
   Table table;
-  table.columns = {{"Channel"},           {"Mismatch, rms", true},
-                   {"Peak", true},        {"Relative error", true},
-                   {"Noise floor", true}, {"Times the floor", true},
-                   {"Beyond noise"},      {"Worst window", true},
+  table.columns = {{"Channel"},
+                   {"Mismatch, rms", true},
+                   {"Mean absolute", true},
+                   {"Fit", true},
+                   {"Peak", true},
+                   {"Relative error", true},
+                   {"Noise floor", true},
+                   {"Times the floor", true},
+                   {"Beyond noise"},
+                   {"Worst window", true},
                    {"Its rms", true}};
   for (const ChannelMismatch& channel : comparison.channels) {
     const WorstWindow& worst = channel.worst;
     const std::string end = Seconds(worst.start + worst.duration) + " s";
-    table.rows.push_back({channel.name, FormatQuantity(channel.rms, channel.unit),
-                          FormatQuantity(channel.peak, channel.unit),
-                          PercentText(channel.relative_error_percent),
-                          FormatQuantity(channel.noise_floor.rms, channel.unit),
-                          Ratio(channel), channel.exceeds_noise ? "yes" : "no",
-                          Seconds(worst.start) + " to " + end,
-                          FormatQuantity(worst.rms, channel.unit)});
+    table.rows.push_back(
+        {channel.name, FormatQuantity(channel.rms, channel.unit),
+         FormatQuantity(channel.mae, channel.unit), PercentText(channel.fit_percent),
+         FormatQuantity(channel.peak, channel.unit),
+         PercentText(channel.relative_error_percent),
+         FormatQuantity(channel.noise_floor.rms, channel.unit), Ratio(channel),
+         channel.exceeds_noise ? "yes" : "no", Seconds(worst.start) + " to " + end,
+         FormatQuantity(worst.rms, channel.unit)});
   }
   page.AddTable(table);
   const double level = 100.0 * comparison.options.level;

@@ -222,7 +222,8 @@ DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
   MeasuredRun beginning{.sample_time = all.sample_time,
                         .outputs = all.outputs.leftCols(samples),
                         .inputs = all.inputs.leftCols(samples),
-                        .start = all.start};
+                        .start = all.start,
+                        .on = all.on.leftCols(std::min(samples, all.on.cols()))};
   return DiscoveryProblem(problem.machine(), problem.observer(), std::move(beginning),
                           problem.skip(), samples)
       .Doubting(problem.numbers());

@@ -8,7 +8,7 @@
 //   explained         causes are named, nothing significant is left, m <= 4
 //   partly explained  else, if they take away 1 - (m - 1) / (m_0 - 1) >= 0.9
 //   unexplained       else: below that share of the excess over noise causes are not an
-//                     model but the best of the wrong ones
+//                     explanation but the best of the wrong ones
 
 #include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/selection/search.h"

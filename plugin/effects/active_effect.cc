@@ -2,6 +2,7 @@
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 
 namespace mjdiag {
 
@@ -22,9 +23,11 @@ void ActiveEffects::Distort(std::span<double> readings, double time) noexcept {
   for (const auto& effect : effects_) effect->Distort(readings, time);
 }
 
-void ActiveEffects::Act(const mjModel& model, mjData& data) noexcept {
+void ActiveEffects::Act(const mjModel& model, mjData& data,
+                        std::span<const int> off) noexcept {
   Release(data);
   for (const auto& effect : effects_) effect->Drive(model, data);
+  for (const int motor : off) data.ctrl[motor] = OpenCircuitCommand(model, data, motor);
   for (const auto& effect : effects_) effect->Push(model, data);
   for (const auto& effect : effects_) effect->Bind(model, data);
 }

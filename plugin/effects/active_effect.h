@@ -46,7 +46,8 @@ class ActiveEffects {
   /// Once a physics step, after positions and velocities and before accelerations,
   /// with the commands of the tick in data.ctrl: changes them and sets
   /// data.qfrc_applied of the joints that have such effects.
-  void Act(const mjModel& model, mjData& data) noexcept;
+  /// @param off  actuators that are an open circuit, whatever their command
+  void Act(const mjModel& model, mjData& data, std::span<const int> off = {}) noexcept;
   /// Takes the forces off again.
   void Release(mjData& data) noexcept;
 

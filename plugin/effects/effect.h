@@ -41,7 +41,8 @@ enum class SiteKind {
   kJoint,      ///< any slide or hinge
   kHeldJoint,  ///< one with a spring
   kActuator,
-  kSensor
+  kSensor,
+  kHinge  ///< any hinge
 };
 
 /// How an extended plant carries an effect.

@@ -56,11 +56,14 @@ void CheckValue(const std::string& where, const EffectParameter& parameter,
 }
 
 void CheckSite(const mjModel& model, const std::string& where, SiteKind site, int id) {
-  if (site != SiteKind::kJoint && site != SiteKind::kHeldJoint) return;
+  if (site == SiteKind::kActuator || site == SiteKind::kSensor) return;
   const int type = model.jnt_type[id];
   if (type != mjJNT_SLIDE && type != mjJNT_HINGE) {
     throw InputError(where, "a joint of several degrees of freedom",
                      "a slide or hinge");
+  }
+  if (site == SiteKind::kHinge && type != mjJNT_HINGE) {
+    throw InputError(where, "the joint is a slide", "a hinge");
   }
   if (site == SiteKind::kHeldJoint && model.jnt_stiffness[id] == 0.0) {
     throw InputError(where, "the joint has no spring", "a joint with stiffness");
@@ -70,10 +73,19 @@ void CheckSite(const mjModel& model, const std::string& where, SiteKind site, in
 /// Of a hinge, for a unit of a slide.
 std::string HingeUnit(const std::string& unit) {
   static const std::map<std::string, std::string> kUnits{
-      {"N", "N m"},           {"m", "rad"},
-      {"m/s", "rad/s"},       {"kg", "kg m^2"},
-      {"N/m", "N m/rad"},     {"N/m^3", "N m/rad^3"},
-      {"N s/m", "N m s/rad"}, {"N s^2/m^2", "N m s^2/rad^2"}};
+      {"N", "N m"},
+      {"m", "rad"},
+      {"m/s", "rad/s"},
+      {"kg", "kg m^2"},
+      {"N/m", "N m/rad"},
+      {"N/m^3", "N m/rad^3"},
+      {"1/m", "1/rad"},
+      {"1/N", "1/N/m"},
+      {"N/m^2", "N m/rad^2"},
+      {"N s/m^2", "N m s/rad^2"},
+      {"N s/m^3", "N m s/rad^3"},
+      {"N s/m", "N m s/rad"},
+      {"N s^2/m^2", "N m s^2/rad^2"}};
   const auto found = kUnits.find(unit);
   return found == kUnits.end() ? unit : found->second;
 }

@@ -18,7 +18,8 @@ enum class Role {
   kLimit,      ///< of a command
   kGap,        ///< width within which something does not act
   kSteepness,  ///< with which a law begins
-  kRatio       ///< of one part of a law to another
+  kRatio,      ///< of one part of a law to another
+  kDuration    ///< over which something changes with time [s]
 };
 
 /// Whether it says where or how a law bends, and not only how large its parts are:

@@ -2,11 +2,23 @@
 
 #include <utility>
 
+#include "mjdiag/plugin/plant/motor_force.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+VectorXd SiteMotion::motor() const {
+  const DataPtr data = MakeData(plant);
+  mj_fwdPosition(&plant, data.get());
+  const MotorBias bias = MotorBiasOf(plant, *data, {});
+  return motion.inputs.transpose() * model.Gamma.row(site.joint).transpose() -
+         motion.position.transpose() * bias.stiffness.row(site.joint).transpose() -
+         motion.velocity.transpose() * bias.damping.row(site.joint).transpose();
+}
 
 MatrixXd SiteMotion::JointEntry(Index columns) const {
   return VectorXd::Unit(model.M.rows(), site.joint).replicate(1, columns);

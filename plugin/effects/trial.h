@@ -55,6 +55,8 @@ struct SiteMotion {
   Eigen::VectorXd a() const { return motion.acceleration.row(site.joint); }
   Eigen::VectorXd u() const { return motion.inputs.row(site.channel); }
   Eigen::VectorXd y() const { return motion.outputs.row(site.channel); }
+  /// The force of all motors on the joint, to first order in what they are driven by.
+  Eigen::VectorXd motor() const;
   /// Of `columns` forces on the joint, or commands of the actuator.
   Eigen::MatrixXd JointEntry(Eigen::Index columns = 1) const;
   Eigen::MatrixXd MotorEntry(Eigen::Index columns = 1) const;

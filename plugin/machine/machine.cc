@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/time_step.h"
 #include "mjdiag/signals/error.h"
@@ -91,6 +92,10 @@ void Machine::Adopt(std::shared_ptr<const mjModel> plant) {
   plant_ = std::move(plant);
   sensor_addresses_ = SensorAddresses(channels(), *plant_);
   actuator_addresses_ = ActuatorAddresses(channels(), *plant_);
+  for (std::size_t i = 0; i < actuator_addresses_.size(); ++i) {
+    if (channels().actuators[i].enabled_by.empty()) continue;
+    CheckOpenCircuit(*plant_, actuator_addresses_[i]);
+  }
   derived_ = std::make_shared<Derived>();
 }
 

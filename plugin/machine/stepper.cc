@@ -14,7 +14,9 @@ Stepper::Stepper(const Machine& machine)
       sensors_(machine.sensor_addresses()),
       actuators_(machine.actuator_addresses()),
       outputs_(sensors_.size()),
-      inputs_(actuators_.size()) {}
+      inputs_(actuators_.size()) {
+  off_.reserve(actuators_.size());
+}
 
 void Stepper::OnStep(const mjModel& model, mjData& data,
                      TickControl& control) noexcept {
@@ -25,12 +27,16 @@ void Stepper::OnStep(const mjModel& model, mjData& data,
     effects_.Distort(outputs_, static_cast<double>(ticks_) * tick_);
     control.Tick(outputs_, inputs_);
     ++ticks_;
+    off_.clear();
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      if (!control.IsOn(i)) off_.push_back(actuators_[i]);
+    }
+  }
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    data.ctrl[actuators_[i]] = inputs_[i] + control.Above(i, substep_);
   }
   if (++substep_ == substeps_) substep_ = 0;
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    data.ctrl[actuators_[i]] = inputs_[i];
-  }
-  effects_.Act(model, data);
+  effects_.Act(model, data, off_);
 }
 
 void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,

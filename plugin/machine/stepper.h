@@ -30,6 +30,13 @@ class TickControl {
   /// @param inputs   receives the signals of the actuator channels until the next tick
   virtual void Tick(std::span<const double> outputs,
                     std::span<double> inputs) noexcept = 0;
+  /// What the signal of an actuator is in a physics step of the tick, above the one
+  /// that Tick gave: recorded inputs may go on between their samples.
+  virtual double Above(std::size_t /*actuator*/, int /*substep*/) const noexcept {
+    return 0.0;
+  }
+  /// Whether an actuator is on in this tick; one that is off is an open circuit.
+  virtual bool IsOn(std::size_t /*actuator*/) const noexcept { return true; }
 };
 
 class Stepper {
@@ -45,6 +52,8 @@ class Stepper {
                const std::function<void()>& after_step = {});
   /// Whether the next physics step is the first of a tick.
   bool AtTickStart() const { return substep_ == 0; }
+  /// Actuators that are an open circuit in this tick, by their place in the model.
+  std::span<const int> off() const { return off_; }
   /// Sets the actuators and the forces of effects to zero.
   void Release(mjData& data) noexcept;
 
@@ -56,6 +65,7 @@ class Stepper {
   std::int64_t ticks_ = 0;
   std::vector<int> sensors_;    // addresses
   std::vector<int> actuators_;  // addresses
+  std::vector<int> off_;
   std::vector<double> outputs_;
   std::vector<double> inputs_;
 };

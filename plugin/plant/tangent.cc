@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
@@ -23,6 +25,13 @@ VectorXd DampingOf(const mjModel& plant) {
   return Eigen::Map<const VectorXd>(plant.dof_damping, plant.nv);
 }
 
+/// A motor's arm on the joints does not change with them, or by little.
+MotorBias MotorBiasAtQpos0(const mjModel& plant) {
+  const DataPtr data = MakeData(plant);
+  mj_fwdPosition(&plant, data.get());
+  return MotorBiasOf(plant, *data, {});
+}
+
 TickTangent NoTime(Index nv) {
   return {MatrixXd::Identity(2 * nv, 2 * nv), MatrixXd::Zero(2 * nv, nv)};
 }
@@ -32,8 +41,12 @@ TickTangent NoTime(Index nv) {
 TangentRecorder::TangentRecorder(const mjModel& plant, const MechanicalModel& model)
     : stiffness_(model.K - MatrixXd(JointStiffness(plant).asDiagonal())),
       damping_(model.D - MatrixXd(DampingOf(plant).asDiagonal())),
+      motors_(MotorBiasAtQpos0(plant)),
       mass_(plant.nv, plant.nv),
-      tick_(NoTime(plant.nv)) {}
+      tick_(NoTime(plant.nv)) {
+  stiffness_ -= motors_.stiffness;
+  damping_ -= motors_.damping;
+}
 
 bool TangentRecorder::MassChanged(const mjModel& plant, const mjData& data) {
   const mjtNum* begin = data.qM;
@@ -49,8 +62,10 @@ const TangentRecorder::Map& TangentRecorder::MapOf(const mjModel& plant,
   const auto [entry, is_new] = known_.try_emplace(held);
   if (!is_new) return entry->second;
   const double h = plant.opt.timestep;
-  const MatrixXd D = damping_ + MatrixXd(DampingOf(plant).asDiagonal());
-  const MatrixXd K = stiffness_ + MatrixXd(JointStiffness(plant).asDiagonal());
+  const MatrixXd D =
+      damping_ + motors_.damping + MatrixXd(DampingOf(plant).asDiagonal());
+  const MatrixXd K =
+      stiffness_ + motors_.stiffness + MatrixXd(JointStiffness(plant).asDiagonal());
   MatrixXd inertia = mass_;
   MatrixXd against = D;
   for (const auto& [joint, friction] : held) {
@@ -66,8 +81,19 @@ const TangentRecorder::Map& TangentRecorder::MapOf(const mjModel& plant,
   return map;
 }
 
-void TangentRecorder::Substep(const mjModel& plant, const mjData& data) {
+void TangentRecorder::Switch(const mjModel& plant, const mjData& data,
+                             std::span<const int> off) {
+  if (known_.empty() || !std::ranges::equal(off, off_)) {
+    off_.assign(off.begin(), off.end());
+    motors_ = MotorBiasOf(plant, data, off);
+    known_.clear();
+  }
+}
+
+void TangentRecorder::Substep(const mjModel& plant, const mjData& data,
+                              std::span<const int> off) {
   if (MassChanged(plant, data)) known_.clear();
+  Switch(plant, data, off);
   Held held;
   for (int row = 0; row < data.nefc; ++row) {
     if (data.efc_type[row] != mjCNSTR_FRICTION_DOF) continue;

@@ -10,16 +10,19 @@
 // a stiff damper in MuJoCo: a force r (a + b v) against its motion, and B_s holds r b.
 // A joint that slides has a constant friction force, which the first order does not
 // see. M and which joints stick are those of every single substep: a machine whose
-// guides stick half of the time is another machine then.
+// guides stick half of the time is another machine then. So is one whose motors are off:
+// K and D lack the motors' own part.
 
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "mjdiag/diagnosis/model/mechanical_model.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 
 namespace mjdiag {
 
@@ -38,7 +41,8 @@ class TangentRecorder {
   TangentRecorder(const mjModel& plant, const MechanicalModel& model);
 
   /// After every substep. @param plant  of the run, changes and all
-  void Substep(const mjModel& plant, const mjData& data);
+  /// @param off  actuators that are an open circuit in it
+  void Substep(const mjModel& plant, const mjData& data, std::span<const int> off = {});
   /// The tick that the substeps since the last call make.
   TickTangent EndTick();
 
@@ -51,9 +55,13 @@ class TangentRecorder {
   };
   bool MassChanged(const mjModel& plant, const mjData& data);
   const Map& MapOf(const mjModel& plant, const Held& held);
+  /// Puts the part of the motors that are on into K and D.
+  void Switch(const mjModel& plant, const mjData& data, std::span<const int> off);
 
-  Eigen::MatrixXd stiffness_;  // what is not of springs in the joints
-  Eigen::MatrixXd damping_;    // what is not of dampers in the joints
+  Eigen::MatrixXd stiffness_;  // what is not of springs in the joints nor of motors
+  Eigen::MatrixXd damping_;    // what is not of dampers in the joints nor of motors
+  MotorBias motors_;           // of those that are on
+  std::vector<int> off_;
   std::vector<mjtNum> packed_mass_;
   Eigen::MatrixXd mass_;
   std::map<Held, Map> known_;  // with that mass

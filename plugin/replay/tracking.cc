@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/plugin/setup/measured_channel.h"
@@ -27,11 +29,17 @@ Eigen::MatrixXd MeasuredBy(const std::vector<Element>& elements,
   return SamplesOf(measured, ChannelsOf(elements));
 }
 
-/// Holds what was recorded, and keeps what the machine reads.
+/// Gives what was recorded, and keeps what the machine reads.
 class RecordedInputs final : public TickControl {
  public:
-  explicit RecordedInputs(const MeasuredRun& run)
-      : run_(run), reading_(run.outputs.rows()) {}
+  RecordedInputs(const Machine& machine, const MeasuredRun& run)
+      : run_(run), reading_(run.outputs.rows()) {
+    Index i = 0;
+    for (const ActuatorSetup& actuator : machine.channels().actuators) {
+      courses_.emplace_back(actuator.hold, run.inputs.row(i++).transpose(),
+                            machine.rates().substeps);
+    }
+  }
 
   void Tick(std::span<const double> outputs,
             std::span<double> inputs) noexcept override {
@@ -41,17 +49,25 @@ class RecordedInputs final : public TickControl {
     }
     ++tick_;
   }
+  double Above(std::size_t actuator, int substep) const noexcept override {
+    return courses_[actuator].Above(tick_ - 1, substep);
+  }
+  bool IsOn(std::size_t actuator) const noexcept override {
+    return run_.on.size() == 0 ||
+           run_.on(static_cast<Index>(actuator), tick_ - 1) != 0.0;
+  }
   const VectorXd& reading() const { return reading_; }
 
  private:
   const MeasuredRun& run_;
   VectorXd reading_;
+  std::vector<InputCourse> courses_;
   Index tick_ = 0;
 };
 
 /// Called after every physics step and every tick.
 struct Watch {
-  std::function<void(const mjModel&, const mjData&)> step;
+  std::function<void(const mjModel&, const mjData&, std::span<const int> off)> step;
   std::function<void()> tick;
 };
 
@@ -63,9 +79,9 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
   mjData& data = *plant.data;
   ChooseSolver(model);
   Stepper stepper(machine);
-  RecordedInputs control(run);
+  RecordedInputs control(machine, run);
   std::function<void()> after_step;
-  if (watch.step) after_step = [&] { watch.step(model, data); };
+  if (watch.step) after_step = [&] { watch.step(model, data, stepper.off()); };
 
   const Index n = run.samples();
   const Index nv = model.nv;
@@ -98,6 +114,24 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
   return track;
 }
 
+/// Puts in what the ends of open circuits show.
+void OpenCircuits(const Machine& machine, const MeasuredRun& run, const Track& track,
+                  Eigen::MatrixXd& inputs) {
+  const mjModel& model = machine.plant();
+  const DataPtr data = MakeData(model);
+  for (Index k = 0; k < run.samples(); ++k) {
+    if ((run.on.col(k).array() != 0.0).all()) continue;
+    VectorXd::Map(data->qpos, model.nq) = track.position.col(k);
+    VectorXd::Map(data->qvel, model.nv) = track.velocity.col(k);
+    mj_fwdPosition(&model, data.get());
+    mj_fwdVelocity(&model, data.get());
+    for (Index i = 0; i < inputs.rows(); ++i) {
+      const int motor = machine.actuator_addresses()[static_cast<std::size_t>(i)];
+      if (run.on(i, k) == 0.0) inputs(i, k) = OpenCircuitCommand(model, *data, motor);
+    }
+  }
+}
+
 }  // namespace
 
 void ChooseSolver(mjModel& model) {
@@ -115,6 +149,15 @@ MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   run.start = Replay(setup, measured).start;
   run.outputs = MeasuredBy(setup.channels.sensors, measured);
   run.inputs = MeasuredBy(setup.channels.actuators, measured);
+  if (!setup.channels.Switches().empty()) {
+    run.on = Eigen::MatrixXd::Ones(run.inputs.rows(), run.samples());
+    Index i = 0;
+    for (const ActuatorSetup& actuator : setup.channels.actuators) {
+      const Channel* known = measured.Find(actuator.enabled_by);
+      if (known != nullptr) run.on.row(i) = known->samples.transpose();
+      ++i;
+    }
+  }
   return run;
 }
 
@@ -126,10 +169,10 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
 Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
                 const Observer& observer, ErrorDynamics& dynamics) {
   TangentRecorder recorder(machine.plant(), machine.linear());
-  const Watch watch{[&recorder](const mjModel& changed, const mjData& data) {
-                      recorder.Substep(changed, data);
-                    },
-                    [&] { dynamics.Add(recorder.EndTick()); }};
+  const Watch watch{
+      [&recorder](const mjModel& changed, const mjData& data,
+                  std::span<const int> off) { recorder.Substep(changed, data, off); },
+      [&] { dynamics.Add(recorder.EndTick()); }};
   return Follow(machine, changes, run, observer, true, watch);
 }
 
@@ -142,6 +185,7 @@ ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
   motion.velocity = track.velocity;
   motion.acceleration = CentralDifferences(track.velocity, run.sample_time);
   motion.inputs = run.inputs;
+  if (run.on.size() > 0) OpenCircuits(machine, run, track, motion.inputs);
   motion.outputs = run.outputs;
   return motion;
 }

@@ -27,6 +27,8 @@ struct MeasuredRun {
   Eigen::MatrixXd outputs;              ///< sensors x samples
   Eigen::MatrixXd inputs;               ///< actuators x samples
   std::map<std::string, double> start;  ///< readings at rest before the first sample
+  /// Actuators x samples, 0: an open circuit; empty: all on.
+  Eigen::MatrixXd on{};
   Eigen::Index samples() const { return outputs.cols(); }
 };
 
@@ -52,7 +54,9 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
 Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
                 const Observer& observer, ErrorDynamics& dynamics);
 
-/// The motion that the joints of a track made, with what was measured beside it.
+/// The motion that the joints of a track made, with what was measured beside it. The
+/// input of an actuator that is off is that of an open circuit, so that the force of
+/// every motor is the same function of input and motion at all times.
 ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
                              const Track& track);
 

@@ -63,6 +63,10 @@ Excitation Replay(const Setup& setup, const Record& measured) {
   CheckSampleTime(setup, measured);
   Excitation excitation;
   excitation.inputs = Record(setup.rates.tick(), measured.start_time());
+  for (const std::string& name : setup.channels.Switches()) {
+    if (measured.Find(name) == nullptr) continue;
+    excitation.inputs.Add(MeasuredChannel(measured, name, "1"));
+  }
   if (setup.control.axes.empty()) {
     for (const ActuatorSetup& actuator : setup.channels.actuators) {
       excitation.inputs.Add(MeasuredChannel(measured, actuator.channel, actuator.unit));
@@ -88,6 +92,11 @@ Excitation Replay(const Setup& setup, const Record& measured) {
     }
   }
   return excitation;
+}
+
+Setup WithoutControllers(Setup setup) {
+  setup.control.axes.clear();
+  return setup;
 }
 
 }  // namespace mjdiag

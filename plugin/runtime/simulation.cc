@@ -58,6 +58,27 @@ LinearPlant LinearPlantOf(const Machine& machine) {
           SensorReadings(machine.channels(), machine.plant(), machine.rest())};
 }
 
+/// The linear plant has the motors in it as they are when they are on.
+void CheckAlwaysOn(const Setup& setup, const Excitation& excitation) {
+  for (const std::string& name : setup.channels.Switches()) {
+    const Channel* on = excitation.inputs.Find(name);
+    if (on == nullptr || (on->samples.array() != 0.0).all()) continue;
+    throw InputError("channel '" + name + "'", "switches actuators off",
+                     "actuators that stay on, or the nonlinear plant");
+  }
+}
+
+/// The map of a tick takes what the inputs are on average.
+void AddMeanCourse(const TickLoop& loop, int substeps, Eigen::VectorXd& inputs) {
+  for (Eigen::Index i = 0; i < inputs.size(); ++i) {
+    double sum = 0.0;
+    for (int step = 0; step < substeps; ++step) {
+      sum += loop.Above(static_cast<std::size_t>(i), step);
+    }
+    inputs[i] += sum / substeps;
+  }
+}
+
 void CheckNotEmpty(const Excitation& excitation) {
   if (excitation.samples() == 0) {
     throw InputError("excitation", "no samples", "at least one control tick");
@@ -121,6 +142,7 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
                      "the plant carries effects, which are not linear",
                      "a plant without, or the nonlinear plant");
   }
+  CheckAlwaysOn(machine.setup(), excitation);
   const std::vector<MachineStage> stages = StagesOf(machine, options.late_faults);
   auto stage = stages.begin();
   LinearPlant plant = LinearPlantOf(machine);
@@ -148,6 +170,7 @@ Record SimulateLinear(const Machine& machine, const Excitation& excitation,
     if (options.log_joints) joints.col(tick) = plant.rest + x.head(nq);
     loop.Tick({y.data(), static_cast<std::size_t>(y.size())},
               {u.data(), static_cast<std::size_t>(u.size())});
+    AddMeanCourse(loop, machine.rates().substeps, u);
     next.noalias() = plant.tick.A * x;
     next.noalias() += plant.tick.B * u;
     x.swap(next);

@@ -27,7 +27,8 @@ namespace mjdiag {
 /// What moves the machine in a run.
 struct Excitation {
   Reference reference;  ///< of every axis in the setup's order; no axes: open loop
-  /// Open loop: the actuator channels. Closed loop: known disturbances, if any.
+  /// Open loop: the actuator channels. Closed loop: known disturbances, if any. Both:
+  /// the switches of actuators, if any; without them the actuators are on.
   Record inputs;
   /// Sensor channel -> reading at rest before the first sample (left out: 0).
   std::map<std::string, double> start;
@@ -44,8 +45,12 @@ Excitation DefaultMotion(const Setup& setup);
 /// The same motion or input as in a measured record: closed loop if the setup has
 /// controllers ("<axis>_ref" and known disturbances; logged derivatives are used if the
 /// record has them, else differences), open loop otherwise (actuator channels).
+/// Switches of actuators that the record lacks are on.
 /// InputError names a missing channel or a sample time that is not the control tick.
 Excitation Replay(const Setup& setup, const Record& measured);
+/// The setup without its controllers: a replay on it drives the actuators with what was
+/// measured.
+Setup WithoutControllers(Setup setup);
 
 /// Sees every control tick, inside the control callback, after the sensors are read
 /// and the commands computed. Nothing in it may allocate, lock, throw or do I/O.

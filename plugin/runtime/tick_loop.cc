@@ -35,6 +35,9 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
       reference_(excitation.reference),
       inputs_(excitation.inputs),
       feedthrough_(setup.channels.actuators.size(), nullptr),
+      courses_(setup.channels.actuators.size()),
+      switch_names_(setup.channels.Switches()),
+      on_(setup.channels.actuators.size(), true),
       sample_time_(setup.rates.tick()),
       noise_scale_(options.noise_scale),
       generator_(options.seed),
@@ -44,10 +47,11 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
       command_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators_.size()))),
       readings_(reading_.size(), excitation.samples()),
       commands_(command_.size(), excitation.samples()) {
+  for (const ActuatorSetup& actuator : actuators_) {
+    switches_.push_back(inputs_.Find(actuator.enabled_by));
+  }
   if (reference_.axes.empty()) {
-    for (std::size_t i = 0; i < actuators_.size(); ++i) {
-      feedthrough_[i] = &inputs_.At(actuators_[i].channel);
-    }
+    AddFeedthrough(setup);
   } else {
     AddAxes(setup, excitation, options.mode);
   }
@@ -57,6 +61,18 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
     throw InputError("reconfiguration",
                      std::to_string(reconfiguration_->axes().size()) + " axes",
                      std::to_string(axes_.size()) + ", those of the run");
+  }
+}
+
+void TickLoop::AddFeedthrough(const Setup& setup) {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const ActuatorSetup& actuator = actuators_[i];
+    feedthrough_[i] = &inputs_.At(actuator.channel);
+    courses_[i] =
+        InputCourse(actuator.hold, feedthrough_[i]->samples.unaryExpr([&](double u) {
+          return Clamp(u, actuator.limit);
+        }),
+                    setup.rates.substeps);
   }
 }
 
@@ -156,7 +172,8 @@ void TickLoop::Command(Eigen::Index k) noexcept {
   }
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     double& command = command_[static_cast<Eigen::Index>(i)];
-    command = Clamp(command, actuators_[i].limit);
+    on_[i] = switches_[i] == nullptr || switches_[i]->samples[k] != 0.0;
+    command = on_[i] ? Clamp(command, actuators_[i].limit) : 0.0;
   }
 }
 
@@ -203,6 +220,12 @@ Record TickLoop::ToRecord() const {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     record.Add({actuators_[i].channel, actuators_[i].unit,
                 commands_.row(static_cast<Eigen::Index>(i)).head(n)});
+  }
+  for (const std::string& name : switch_names_) {
+    const Channel* known = inputs_.Find(name);
+    Eigen::VectorXd on = Eigen::VectorXd::Ones(n);
+    if (known != nullptr) on = known->samples.head(n);
+    record.Add({name, "1", on});
   }
   for (const Axis& axis : axes_) {
     if (axis.disturbance == nullptr) continue;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mjdiag/controllers/axis_controller.h"
+#include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
@@ -26,11 +27,15 @@ class TickLoop : public TickControl {
   /// @param inputs   receives the actuator signals to hold until the next tick
   void Tick(std::span<const double> outputs,
             std::span<double> inputs) noexcept override;
+  double Above(std::size_t actuator, int substep) const noexcept override {
+    return courses_[actuator].Above(tick_ - 1, substep);
+  }
+  bool IsOn(std::size_t actuator) const noexcept override { return on_[actuator]; }
 
   Eigen::Index ticks_done() const { return tick_; }
   Eigen::Index ticks() const { return readings_.cols(); }
 
-  /// Sensors, actuators and references of the ticks so far.
+  /// Sensors, actuators, their switches and references of the ticks so far.
   Record ToRecord() const;
 
  private:
@@ -50,6 +55,7 @@ class TickLoop : public TickControl {
     Eigen::Index until = std::numeric_limits<Eigen::Index>::max();
   };
 
+  void AddFeedthrough(const Setup& setup);
   void AddAxes(const Setup& setup, const Excitation& excitation, ControlMode mode);
   void AddSines(const Setup& setup, const RunOptions& options);
   void AddSines(const Setup& setup, const LateFault& disturbance);
@@ -63,6 +69,10 @@ class TickLoop : public TickControl {
   Reference reference_;
   Record inputs_;
   std::vector<const Channel*> feedthrough_;  // per actuator: driven from inputs_
+  std::vector<InputCourse> courses_;         // per actuator, of what is fed through
+  std::vector<const Channel*> switches_;     // per actuator; null: always on
+  std::vector<std::string> switch_names_;
+  std::vector<bool> on_;  // per actuator, this tick
   std::vector<Axis> axes_;
   std::vector<Sine> sines_;
   double sample_time_;

@@ -43,6 +43,13 @@ std::ptrdiff_t Channels::ActuatorIndex(std::string_view channel) const {
   return &Actuator(channel) - actuators.data();
 }
 
+std::vector<std::string> Channels::Switches() const {
+  std::set<std::string> names;
+  for (const ActuatorSetup& actuator : actuators) names.insert(actuator.enabled_by);
+  names.erase("");
+  return {names.begin(), names.end()};
+}
+
 Eigen::VectorXd Channels::AmplitudeOf(const MultisineSetup& source) const {
   Eigen::VectorXd amplitude =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators.size()));

@@ -29,12 +29,21 @@ struct SensorSetup {
   double resolution = 0.0;  ///< quantisation step [unit]; 0: none
 };
 
-/// [actuators.<channel>]: an MJCF actuator, held over the substeps of a tick.
+/// What a recorded input does between its samples.
+enum class Hold {
+  kZero,        ///< keeps its sample, as the output of a digital controller does
+  kLinear,      ///< goes straight to the next one
+  kBandLimited  ///< has nothing above half the sampling rate
+};
+
+/// [actuators.<channel>]: an MJCF actuator, driven once a control tick.
 struct ActuatorSetup {
   std::string channel;
-  std::string element;  ///< MJCF actuator
-  std::string unit;     ///< SI unit of its control signal
-  double limit = 0.0;   ///< |u| is clamped to it; 0: not
+  std::string element;      ///< MJCF actuator
+  std::string unit;         ///< SI unit of its control signal
+  double limit = 0.0;       ///< |u| is clamped to it; 0: not
+  std::string enabled_by;   ///< record channel, 0: an open circuit; empty: always on
+  Hold hold = Hold::kZero;  ///< of recorded inputs; commands of a controller are held
 };
 
 /// [axes.<name>]: one controlled axis.
@@ -107,6 +116,8 @@ struct Channels {
   /// Its place in `sensors` and `actuators`; InputError as above.
   std::ptrdiff_t SensorIndex(std::string_view channel) const;
   std::ptrdiff_t ActuatorIndex(std::string_view channel) const;
+  /// Channels that say whether actuators are on, each once.
+  std::vector<std::string> Switches() const;
   /// A of a disturbance, of every command.
   Eigen::VectorXd AmplitudeOf(const MultisineSetup& source) const;
 };

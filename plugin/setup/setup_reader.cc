@@ -98,6 +98,16 @@ void ReadSensors(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
     root.Fail("sensors", "is empty", "a sensor at least");
 }
 
+Hold ReadHold(const TomlTable& actuator) {
+  const std::string hold = actuator.Text("hold", "zero");
+  if (hold == "linear") return Hold::kLinear;
+  if (hold == "band_limited") return Hold::kBandLimited;
+  if (hold != "zero") {
+    actuator.Fail("hold", "is '" + hold + "'", R"("zero", "linear" or "band_limited")");
+  }
+  return Hold::kZero;
+}
+
 void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
   for (const TomlTable& table : root.NamedTables("actuators", "<channel>")) {
     ActuatorSetup actuator;
@@ -105,8 +115,14 @@ void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) 
     actuator.element = table.Text("element");
     actuator.unit = SiUnit(table, "unit");
     actuator.limit = table.Number("limit", kNonNegative, 0.0);
+    actuator.hold = ReadHold(table);
+    actuator.enabled_by = table.Text("enabled_by", "");
     DeclareChannel(table, actuator.channel, actuator.unit, channels);
     setup.channels.actuators.push_back(actuator);
+  }
+  // One switch may be that of several actuators.
+  for (const std::string& channel : setup.channels.Switches()) {
+    DeclareChannel(root.Table("actuators"), channel, "1", channels);
   }
   if (setup.channels.actuators.empty()) {
     root.Fail("actuators", "is empty", "an actuator at least");

@@ -44,6 +44,8 @@ TEST(Mismatch, IsNothingBetweenEqualRecords) {
     EXPECT_EQ(result.rms, 0.0);
     EXPECT_EQ(result.peak, 0.0);
     EXPECT_EQ(result.relative_error_percent, 0.0);
+    EXPECT_EQ(result.mae, 0.0);
+    EXPECT_EQ(result.fit_percent, 100.0);
     EXPECT_EQ(result.spectrum.density.maxCoeff(), 0.0);
     EXPECT_FALSE(result.exceeds_noise);
   }
@@ -61,6 +63,22 @@ TEST(Mismatch, FindsAnOffset) {
       1e-6 * result.relative_error_percent);
   EXPECT_EQ(result.unit, "m");
   EXPECT_TRUE(result.exceeds_noise);
+}
+
+TEST(Mismatch, HasTheFiguresOfOtherTools) {
+  const Eigen::VectorXd measured = Motion();
+  Eigen::VectorXd simulated = measured;
+  simulated.tail(kSamples / 4).array() -= 2e-3;
+  const ChannelMismatch result = Measure(measured, simulated, FloorOf(1e-8, kSamples));
+  EXPECT_NEAR(result.mae, 0.5e-3, 1e-9);
+  EXPECT_NEAR(result.rms, 1e-3, 1e-9);
+  const Eigen::VectorXd spread = measured.array() - measured.mean();
+  EXPECT_NEAR(result.fit_percent,
+              100.0 * (1.0 - (measured - simulated).norm() / spread.norm()), 1e-9);
+  // The mean of what was measured explains nothing.
+  simulated.setConstant(measured.mean());
+  EXPECT_NEAR(Measure(measured, simulated, FloorOf(1e-8, kSamples)).fit_percent, 0.0,
+              1e-9);
 }
 
 TEST(Mismatch, LeavesOutTheStart) {

@@ -59,38 +59,49 @@ inline const std::vector<std::string>& EveryEffectOfAb383() {
        "encoder_periodic_error@y_encoder:amplitude=3.1e-8,period=2e-5",
        "encoder_drift@z_encoder:rate=1.7e-5"},
       {.stroke = 4e-3, .speed = 0.3, .force = 250.0, .mass = 1.0, .duration = 1.0},
-      {"X", "r2", "x_motor", "x_encoder"});
+      {"X", "r2", "x_motor", "x_encoder", "Z"});
+  return effects;
+}
+
+inline std::vector<std::string> Without(std::vector<std::string> effects,
+                                        const std::string& name) {
+  std::erase_if(effects,
+                [&](const auto& text) { return text.starts_with(name + "@"); });
   return effects;
 }
 
 inline const std::vector<std::string>& EveryEffectOfEmps() {
-  static const std::vector<std::string> effects = WithDrawn(
-      {"coulomb_friction@load:force=20.3",
-       "stribeck_friction@load:coulomb=13.1,breakaway=7.7,velocity=0.0013",
-       "viscous_friction@load:coefficient=-17.3",
-       "asymmetric_viscous_friction@load:positive=13.3,negative=-7.1",
-       "quadratic_drag@load:coefficient=31.7",
-       "presliding_hysteresis@load:force=7.1,stiffness=230000",
-       "hysteretic_stiffness@load:stiffness=1700,loss=0.3,length=0.0011",
-       "force_offset@load:force=-3.1648",
-       "force_ripple@load:amplitude=1.7,period=0.0241,phase=0.3",
-       "motor_constant@drive:factor=0.971",
-       "position_dependent_motor_constant@drive:slope=0.37,curvature=-1.3",
-       "force_saturation@drive:limit=1.3",
-       "input_delay@drive:delay=1.37e-3",
-       "amplifier_lag@drive:time_constant=7.3e-4",
-       "linear_stiffness@load:stiffness=313.7",
-       "cubic_stiffness@load:coefficient=1.1e4",
-       "added_mass@load:mass=-1.71",
-       "flexible_mode@load:mass=3.1,frequency=31.3,damping_ratio=0.017",
-       "end_stop@load:position=0.0017,stiffness=1.3e4",
-       "floor_vibration@load:amplitude=3.1,frequency=33.3,phase=0.7",
-       "encoder_scale@load_encoder:factor=1.00013",
-       "encoder_periodic_error@load_encoder:amplitude=3.1e-6,period=2e-3",
-       "encoder_drift@load_encoder:rate=1.7e-5"},
-      {.stroke = 0.2, .speed = 0.2, .force = 2.0, .mass = 95.0, .duration = 1.0},
-      // Nothing in EMPS is held by a spring.
-      {"load", "", "drive", "load_encoder"});
+  // Its motor has no other to be coupled to.
+  static const std::vector<std::string> effects = Without(
+      WithDrawn(
+          {"coulomb_friction@load:force=20.3",
+           "stribeck_friction@load:coulomb=13.1,breakaway=7.7,velocity=0.0013",
+           "viscous_friction@load:coefficient=-17.3",
+           "asymmetric_viscous_friction@load:positive=13.3,negative=-7.1",
+           "position_dependent_friction@load:slope=313.7,curvature=117.1",
+           "quadratic_drag@load:coefficient=31.7",
+           "presliding_hysteresis@load:force=7.1,stiffness=230000",
+           "hysteretic_stiffness@load:stiffness=1700,loss=0.3,length=0.0011",
+           "force_offset@load:force=-3.1648",
+           "force_ripple@load:amplitude=1.7,period=0.0241,phase=0.3",
+           "motor_constant@drive:factor=0.971",
+           "position_dependent_motor_constant@drive:slope=0.37,curvature=-1.3",
+           "force_saturation@drive:limit=1.3",
+           "input_delay@drive:delay=1.37e-3",
+           "amplifier_lag@drive:time_constant=7.3e-4",
+           "linear_stiffness@load:stiffness=313.7",
+           "cubic_stiffness@load:coefficient=1.1e4",
+           "added_mass@load:mass=-1.71",
+           "flexible_mode@load:mass=3.1,frequency=31.3,damping_ratio=0.017",
+           "end_stop@load:position=0.0017,stiffness=1.3e4",
+           "floor_vibration@load:amplitude=3.1,frequency=33.3,phase=0.7",
+           "encoder_scale@load_encoder:factor=1.00013",
+           "encoder_periodic_error@load_encoder:amplitude=3.1e-6,period=2e-3",
+           "encoder_drift@load_encoder:rate=1.7e-5"},
+          {.stroke = 0.2, .speed = 0.2, .force = 2.0, .mass = 95.0, .duration = 1.0},
+          // Nothing in EMPS is held by a spring, and nothing turns.
+          {"load", "", "drive", "load_encoder", ""}),
+      "force_coupling");
   return effects;
 }
 

@@ -33,7 +33,8 @@ void VaryingBound::Bind(const mjModel& model, mjData& data) noexcept {
   const double added = Added(model, data);
   for (int i = 0; i < data.nefc; ++i) {
     if (data.efc_type[i] != mjCNSTR_FRICTION_DOF || data.efc_id[i] != dof_) continue;
-    data.efc_frictionloss[i] += added;
+    mjtNum& bound = data.efc_frictionloss[i];
+    bound = std::max(bound + added, kLeastBound);
   }
 }
 

@@ -28,7 +28,8 @@ class VaryingBound : public ActiveEffect {
   int dof() const { return dof_; }
 
  private:
-  /// What is added to the bound in this step [N, N m].
+  /// What is added to the bound in this step [N, N m]; less than nothing takes off what
+  /// other friction of the joint has, as far as there is any.
   virtual double Added(const mjModel& model, mjData& data) noexcept = 0;
 
   int dof_;

@@ -5,34 +5,15 @@
 // springs, dampers, velocity products, other effects), as the bound of MuJoCo's own
 // friction constraint, so that it sticks exactly. [Duclusaud 2024]
 
-#include <algorithm>
 #include <cmath>
 
+#include "mjdiag/plugin/effects/friction/drive_load.h"
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {
-
-/// Force of a motor as MuJoCo is going to compute it from the command of this step.
-double MotorForce(const mjModel& model, const mjData& data, int motor) {
-  const auto clamped = [motor](double value, const mjtByte* limited,
-                               const mjtNum* ranges) {
-    const mjtNum* range = RowOf(ranges, 2, motor);
-    return limited[motor] == 0 ? value : std::clamp(value, range[0], range[1]);
-  };
-  const mjtNum* gain = RowOf(model.actuator_gainprm, mjNGAIN, motor);
-  const mjtNum* bias = RowOf(model.actuator_biasprm, mjNBIAS, motor);
-  double force = gain[0] * clamped(data.ctrl[motor], model.actuator_ctrllimited,
-                                   model.actuator_ctrlrange);
-  if (model.actuator_biastype[motor] == mjBIAS_AFFINE) {
-    force += bias[0] + bias[1] * data.actuator_length[motor] +
-             bias[2] * data.actuator_velocity[motor];
-  }
-  return clamped(force, model.actuator_forcelimited, model.actuator_forcerange);
-}
 
 class BoundByLoad final : public VaryingBound {
  public:
@@ -41,13 +22,8 @@ class BoundByLoad final : public VaryingBound {
 
  private:
   double Added(const mjModel& model, mjData& data) noexcept override {
-    double load =
-        data.qfrc_bias[dof()] - data.qfrc_passive[dof()] - data.qfrc_applied[dof()];
-    for (int motor = 0; motor < model.nu; ++motor) {
-      const double arm = data.actuator_moment[motor * model.nv + dof()];
-      if (arm != 0.0) load += arm * MotorForce(model, data, motor);
-    }
-    return coefficient_ * std::abs(load);
+    const DriveLoad load = DriveLoadOf(model, data, dof());
+    return coefficient_ * std::abs(load.motor - load.rest);
   }
 
   double coefficient_;
@@ -74,16 +50,11 @@ class LoadFrictionEffect final : public Effect {
     return std::make_unique<BoundByLoad>(model.jnt_dofadr[joint], values[0]);
   }
 
-  // Along a motion the rest is what accelerates the joint beside its motors, to first
-  // order without this friction: M a - motor, so that the load is 2 motor - M a.
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    const Eigen::VectorXd motor =
-        at.motion.inputs.transpose() * at.model.Gamma.row(at.site.joint).transpose();
-    const Eigen::VectorXd inertial =
-        at.motion.acceleration.transpose() * at.model.M.row(at.site.joint).transpose();
-    const Eigen::VectorXd load = (2.0 * motor - inertial).cwiseAbs();
-    return {
-        LinearTrial(-load.cwiseProduct(Direction(at.v())), at.JointEntry(), 0.0, true)};
+    const ObservedLoad load(at);
+    const Eigen::VectorXd bound = (load.motor - load.rest).cwiseAbs();
+    return {LinearTrial(-bound.cwiseProduct(Direction(at.v())), at.JointEntry(), 0.0,
+                        true)};
   }
   Sized Draw(const Scales&, Random&) const override { return Proportional(0.2); }
 };

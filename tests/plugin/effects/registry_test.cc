@@ -49,6 +49,8 @@ std::string SiteOf(const Effect& effect, const char* joint) {
       return "y_encoder";
     case SiteKind::kHeldJoint:
       return "r2";
+    case SiteKind::kHinge:
+      return "Z";
     default:
       return joint;
   }
@@ -147,6 +149,11 @@ TEST_F(CheckedEffect, NeedsASpringWhereItActsOnOne) {
        {"backlash@X:gap=1e-6", "structural_stiffness@X:factor=1"}) {
     EXPECT_THAT(Refusal(ParseEffect(effect)), HasSubstr("the joint has no spring"));
   }
+}
+
+TEST_F(CheckedEffect, NeedsAHingeWhereItTurns) {
+  EXPECT_THAT(Refusal(ParseEffect("zero_offset@X:offset=0.1")),
+              HasSubstr("the joint is a slide; expected a hinge"));
 }
 
 /// What Place and, with the same values, CheckEffect say.

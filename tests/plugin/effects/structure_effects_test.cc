@@ -32,6 +32,12 @@ double Period(EffectBench& bench, double position) {
   return 2.0 * (bench.time() - kStep * bench.v() / (bench.v() - before));
 }
 
+TEST(QuadraticStiffness, PushesTheSameWayOnBothSides) {
+  test::EffectBench bench({"quadratic_stiffness@q:coefficient=300"});
+  EXPECT_NEAR(bench.ForceAt(0.02, 0.0), -300.0 * 4e-4, 1e-12);
+  EXPECT_NEAR(bench.ForceAt(-0.02, 0.0), -300.0 * 4e-4, 1e-12);
+}
+
 TEST(StructureEffects, LinearStiffnessSwingsAboutTheRestPosition) {
   EffectBench bench({"linear_stiffness@q:stiffness=800"}, R"(type="slide" ref="0.3")");
   EXPECT_NEAR(Period(bench, 0.31), kTurn * std::sqrt(kMass / 800.0), 1e-5);

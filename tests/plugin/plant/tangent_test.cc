@@ -88,6 +88,37 @@ double Difference(const MatrixXd& a, const MatrixXd& b) {
   return (rows.cwiseInverse().asDiagonal() * (a - b)).cwiseAbs().maxCoeff();
 }
 
+// A tick of the servo with its motor off is one of the servo without a motor.
+TEST(Tangent, LacksTheBackEmfOfAMotorThatIsOff) {
+  const Machine servo(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo"));
+  const ModelPtr bare = CopyModel(servo.plant());
+  bare->actuator_biastype[0] = mjBIAS_NONE;
+  const Machine without(servo.setup(), *bare);
+  const VectorXd state = Eigen::Vector2d(1e-3, 0.1);
+  const VectorXd force = VectorXd::Zero(1);
+  const TickTangent expected = OneTick(without).Recorded(without, state, force);
+
+  TangentRecorder recorder(servo.plant(), servo.linear());
+  const StartedPlant plant = StartPlant(servo, {});
+  Stepper stepper(servo);
+  NoInput control;
+  const std::vector<int> off{0};
+  stepper.Advance(*plant.model, *plant.data, control,
+                  [&] { recorder.Substep(*plant.model, *plant.data, off); });
+  EXPECT_LT(Difference(recorder.EndTick().A, expected.A), 1e-9);
+}
+
+TEST(Tangent, HasTheBackEmfOfTheMotorThatRuns) {
+  const Machine servo(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo"));
+  const Machine weak = servo.With(test::With({"motor_constant@motor:factor=0.5"}));
+  const VectorXd state = Eigen::Vector2d(1e-3, 0.1);
+  const VectorXd force = VectorXd::Zero(1);
+  const OneTick tick(weak);
+  const MatrixXd expected = tick.Recorded(weak, state, force).A;
+  EXPECT_LT(Difference(tick.Recorded(servo, state, force).A, expected), 1e-9);
+  EXPECT_GT(Difference(OneTick(servo).Recorded(servo, state, force).A, expected), 1e-3);
+}
+
 /// The stage with 20 N of dry friction, which its model lacks.
 struct RubbingStage {
   Machine nominal = test::Stage().machine;

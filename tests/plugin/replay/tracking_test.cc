@@ -110,6 +110,48 @@ TEST(ObserveMotion, IsOffQpos0WithAccelerationsByDifferences) {
               1e-9);
 }
 
+/// The servo after half a second of 2 V, which then swings with its torque off; beside
+/// the machine itself, which nothing pulls to the record.
+struct SwitchedServo {
+  Machine machine{WithoutControllers(
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo", {"sensors.q.resolution=0"}))};
+  MeasuredRun run = ToMeasuredRun(machine.setup(), Recorded());
+  Track Follow(const MeasuredRun& of) const {
+    Observer idle;
+    idle.L = MatrixXd::Zero(2, 1);
+    return FollowRun(machine, {}, of, idle, true);
+  }
+
+ private:
+  Record Recorded() const {
+    Eigen::VectorXd on = Eigen::VectorXd::Zero(300);
+    on.head(100).setOnes();
+    Record asked(machine.rates().tick());
+    asked.Add({"q", "rad", Eigen::VectorXd::Zero(300)});
+    asked.Add({"volts", "V", 2.0 * on});
+    asked.Add({"torque_enable", "1", on});
+    return Simulate(machine, Replay(machine.setup(), asked), {});
+  }
+};
+
+TEST(FollowRun, SwitchesActuatorsAsTheRecordSays) {
+  const SwitchedServo servo;
+  EXPECT_EQ(servo.run.on.row(0).sum(), 100.0);
+  EXPECT_LT(servo.Follow(servo.run).innovations.cwiseAbs().maxCoeff(), 1e-12);
+  MeasuredRun always_on = servo.run;
+  always_on.on.resize(0, 0);
+  EXPECT_GT(servo.Follow(always_on).innovations.cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(ObserveMotion, HasTheBackEmfAtTheEndsOfAnOpenCircuit) {
+  const SwitchedServo servo;
+  const ObservedMotion motion =
+      ObserveMotion(servo.machine, servo.run, servo.Follow(servo.run));
+  EXPECT_EQ(motion.inputs(0, 50), 2.0);
+  EXPECT_NEAR(motion.inputs(0, 150), 0.387 * motion.velocity(0, 150), 1e-12);
+  EXPECT_GT(std::abs(motion.velocity(0, 150)), 0.1);
+}
+
 /// A record of the stage with what is asked for.
 Record Sampled(const std::string& input_unit, double sample_time) {
   Record record(sample_time);

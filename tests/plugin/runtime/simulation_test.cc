@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <thread>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
@@ -229,6 +230,80 @@ TEST(Replay, DrivesTheActuatorsOfASetupWithoutControllers) {
   const double rate = 203.5 / 95.1089;
   const double expected = f / 203.5 * (2.0 - (1.0 - std::exp(-rate * 2.0)) / rate);
   EXPECT_NEAR(simulated.At("q").samples[2000], expected, 2e-4 * expected);
+}
+
+// A ramp of the input, on the plant and on its linear model, which has the mean of a
+// tick. Held, it is half a sample late.
+TEST(Replay, GoesOnBetweenTheSamplesOfALinearInput) {
+  std::map<Hold, double> end;
+  for (const Hold hold : {Hold::kZero, Hold::kLinear}) {
+    const Machine machine = Emps([&](mjdiag::Setup& file) {
+      file.control.axes.clear();
+      file.channels.actuators[0].hold = hold;
+    });
+    Record measured(machine.rates().tick());
+    measured.Add({"q", "m", Eigen::VectorXd::Zero(401)});
+    measured.Add({"u", "V", Eigen::VectorXd::LinSpaced(401, 0.0, 4.0)});
+    const Excitation ramp = Replay(machine.setup(), measured);
+    const double plant = Simulate(machine, ramp, {}).At("q").samples[400];
+    const double linear = SimulateLinear(machine, ramp, {}).At("q").samples[400];
+    EXPECT_NEAR(plant, linear, 1e-5 * plant);
+    end[hold] = plant;
+  }
+  // By v times half a millisecond, of M v' + F v = g u with u = 10 t.
+  const double rate = 203.5 / 95.1;
+  const double slope = 35.15 / 95.1 * 10.0;
+  const double v = slope / rate * (0.4 - (1.0 - std::exp(-rate * 0.4)) / rate);
+  EXPECT_NEAR(end[Hold::kLinear] - end[Hold::kZero], 0.5e-3 * v, 0.02 * 0.5e-3 * v);
+}
+
+/// The servo from 1 rad, with these volts and its torque off from a sample on.
+Record SwungOut(const Machine& machine, double volts, Eigen::Index off) {
+  const Eigen::Index n = 400;
+  Record measured(machine.rates().tick());
+  Eigen::VectorXd on = Eigen::VectorXd::Ones(n);
+  on.tail(n - off).setZero();
+  measured.Add({"q", "rad", Eigen::VectorXd::Constant(n, 1.0)});
+  measured.Add({"volts", "V", Eigen::VectorXd::Constant(n, volts)});
+  measured.Add({"torque_enable", "1", on});
+  return Simulate(machine, Replay(machine.setup(), measured), {});
+}
+
+Machine ServoInOpenLoop() {
+  return Machine(WithoutControllers(
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo", {"sensors.q.resolution=0"})));
+}
+
+// On a pendulum the torque that is left shows in the height that it comes back to.
+TEST(Replay, LeavesAnActuatorThatIsOffWithoutForceAndBackEmf) {
+  const Machine machine = ServoInOpenLoop();
+  for (const double volts : {0.0, 5.0}) {
+    const Record off = SwungOut(machine, volts, 0);
+    EXPECT_NEAR(off.At("q").samples.maxCoeff(), 1.0, 2e-3);
+    EXPECT_NEAR(off.At("q").samples.minCoeff(), -1.0, 2e-3);
+    EXPECT_EQ(off.At("volts").samples.maxCoeff(), 0.0);
+    EXPECT_EQ(off.At("torque_enable").samples.maxCoeff(), 0.0);
+  }
+  // A short circuit brakes.
+  EXPECT_GT(SwungOut(machine, 0.0, 400).At("q").samples.minCoeff(), -0.5);
+}
+
+TEST(Replay, TakesActuatorsAsOnWithoutTheirSwitch) {
+  const Machine machine = ServoInOpenLoop();
+  const Record on = SwungOut(machine, 1.0, 400);
+  Record without(machine.rates().tick());
+  without.Add(on.At("q"));
+  without.Add(on.At("volts"));
+  const Record again = Simulate(machine, Replay(machine.setup(), without), {});
+  EXPECT_LT((again.At("q").samples - on.At("q").samples).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(again.At("torque_enable").samples.minCoeff(), 1.0);
+}
+
+TEST(SimulateLinear, RefusesAnActuatorThatIsOff) {
+  const Machine machine = ServoInOpenLoop();
+  const Record off = SwungOut(machine, 1.0, 100);
+  const Excitation excitation = Replay(machine.setup(), off);
+  EXPECT_THROW(SimulateLinear(machine, excitation, {}), InputError);
 }
 
 TEST(Replay, NamesAMissingChannelAndAWrongSampleTime) {

@@ -32,6 +32,13 @@ TEST_F(SetupErrors, RefusesBadOverridesByTheirText) {
   EXPECT_THAT(Message({""}), StartsWith("override '': is empty"));
 }
 
+TEST_F(SetupErrors, RefusesAnUnknownHoldAndASwitchThatIsAnotherChannel) {
+  EXPECT_THAT(Message({R"(actuators.u.hold="cubic")"}),
+              HasSubstr(R"(is 'cubic'; expected "zero", "linear" or "band_limited")"));
+  EXPECT_THAT(Message({R"(actuators.u.enabled_by="q")"}),
+              HasSubstr("the channel 'q' exists already"));
+}
+
 TEST_F(SetupErrors, RefusesAMissingFile) {
   fs::remove(folder_ / "setup.toml");
   EXPECT_THAT(Message({}), HasSubstr((folder_ / "setup.toml").string()));
@@ -68,7 +75,9 @@ TEST_F(SetupErrors, RefusesBadValuesInOneLine) {
       {"static_friction = false", "friction = false", 12,
        "physics.friction: unknown key; expected one of gravity, static_friction"},
       {"limit = 50.0", "limits = 50.0", 26,
-       "actuators.u.limits: unknown key; expected one of element, limit, unit"},
+       "actuators.u.limits: unknown key; expected one of element, enabled_by, hold, "
+       "limit, "
+       "unit"},
       {"velocity = 0.5 }\nfeedback", "speed = 0.5 }\nfeedback", 35,
        "axes.s.feedforward.speed: unknown key; expected one of acceleration, snap, "
        "velocity"},

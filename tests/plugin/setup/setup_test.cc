@@ -68,6 +68,21 @@ TEST_F(SetupFile, FillsTheChannelsInTheOrderOfTheFile) {
   EXPECT_EQ(setup.channels.Actuator("t").limit, 0.0);
 }
 
+TEST_F(SetupFile, FillsWhatSwitchesActuatorsAndHowInputsGoOnBetweenSamples) {
+  const auto plain = ReadSetup(folder_);
+  EXPECT_EQ(plain.channels.Actuator("u").enabled_by, "");
+  EXPECT_EQ(plain.channels.Actuator("u").hold, Hold::kZero);
+  EXPECT_THAT(plain.channels.Switches(), IsEmpty());
+  const auto setup = ReadSetup(
+      folder_, {R"(actuators.u.enabled_by="on")", R"(actuators.u.hold="linear")",
+                R"(actuators.t.enabled_by="on")", R"(actuators.t.hold="band_limited")",
+                R"(record.channels.on.column="torque on")"});
+  EXPECT_EQ(setup.channels.Actuator("u").enabled_by, "on");
+  EXPECT_EQ(setup.channels.Actuator("u").hold, Hold::kLinear);
+  EXPECT_EQ(setup.channels.Actuator("t").hold, Hold::kBandLimited);
+  EXPECT_THAT(setup.channels.Switches(), ElementsAre("on"));
+}
+
 TEST_F(SetupFile, FillsTheAxes) {
   const auto setup = ReadSetup(folder_);
   ASSERT_EQ(setup.control.axes.size(), 2u);
@@ -309,7 +324,8 @@ TEST_P(ShippedSetup, HasTrajectoriesThatItsAxesCanFollow) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Mjcf, ShippedSetup, ::testing::Values("ab383", "emps"),
+INSTANTIATE_TEST_SUITE_P(Mjcf, ShippedSetup,
+                         ::testing::Values("ab383", "emps", "servo"),
                          [](const auto& param_info) { return param_info.param; });
 
 TEST(Ab383Setup, HasTheRatesNoiseAndIntegratorsOfTheSeed) {

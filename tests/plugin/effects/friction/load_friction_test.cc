@@ -63,7 +63,7 @@ TEST(LoadFriction, ShowsAlongAMotionAsItsBoundWithTheSignOfTheVelocity) {
   model.Gamma = Eigen::MatrixXd::Ones(1, 1);
   ObservedMotion motion;
   motion.sample_time = 1e-3;
-  motion.position = motion.velocity = motion.acceleration = Eigen::MatrixXd(1, 3);
+  motion.position = motion.velocity = motion.acceleration = Eigen::MatrixXd::Zero(1, 3);
   motion.velocity << 1.0, -1.0, 1.0;
   motion.acceleration << 1.0, 2.0, -1.0;
   motion.inputs = Eigen::MatrixXd(1, 3);
@@ -76,6 +76,67 @@ TEST(LoadFriction, ShowsAlongAMotionAsItsBoundWithTheSignOfTheVelocity) {
   EXPECT_LT((trials[0].signals.col(0) - expected).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ((*trials[0].values(Eigen::VectorXd::Constant(1, 0.1)))[0], 0.1);
   EXPECT_FALSE(trials[0].values(Eigen::VectorXd::Constant(1, -0.1)));
+}
+
+// The load of a spring at q against that of the motor, which has to overcome a friction of
+// |motor_share u - load_share (-k q)| to leave where it is.
+TEST(DirectionalLoadFriction, IsLessWhereTheMotorTurnsTheLoad) {
+  const double q = 0.01;
+  const double spring = kStiff * q;
+  const auto moves = [&](double u) {
+    EffectBench bench({"directional_load_friction@q:motor_share=0.05,load_share=0.4"},
+                      R"(type="slide" stiffness="1000")");
+    bench.q() = q;
+    bench.StepUntil(0.02, u);
+    return bench.q() - q;
+  };
+  // The spring wins below u = spring (1 - 0.4) / (1 + 0.05), the motor above
+  // spring (1 + 0.4) / (1 - 0.05).
+  const double down = spring * 0.6 / 1.05;
+  const double up = spring * 1.4 / 0.95;
+  EXPECT_LT(moves(0.9 * down), -2e-5);
+  EXPECT_NEAR(moves(1.1 * down), 0.0, 1e-5);
+  EXPECT_NEAR(moves(0.9 * up), 0.0, 1e-5);
+  EXPECT_GT(moves(1.1 * up), 2e-5);
+}
+
+TEST(DirectionalLoadFriction, IsThatOfBothSidesWhereTheirSharesAreEqual) {
+  const auto end = [](const char* effect) {
+    EffectBench bench({effect}, R"(type="slide" stiffness="1000")");
+    bench.q() = 0.02;
+    bench.StepUntil(0.05, 3.0);
+    return bench.q();
+  };
+  const double both = end("directional_load_friction@q:motor_share=0.2,load_share=0.2");
+  EXPECT_EQ(both, end("load_friction@q:coefficient=0.2"));
+  const auto simpler = DirectionalLoadFriction().Simpler(
+      ParseEffect("directional_load_friction@q:motor_share=0.1,load_share=0.3"));
+  EXPECT_EQ(FormatEffect(*simpler), "load_friction@q:coefficient=0.2");
+}
+
+TEST(QuadraticLoadFriction, LeavesAMotorThatMovesAFreeMassLessTheMoreItGives) {
+  for (const double u : {1.0, 3.0}) {
+    EffectBench bench({"quadratic_load_friction@q:coefficient=0.1"});
+    bench.StepUntil(0.1, u);
+    EXPECT_NEAR(bench.v(), (u - 0.1 * u * u) / EffectBench::kMass * 0.1, 1e-4);
+  }
+  EffectBench held({"quadratic_load_friction@q:coefficient=0.1"});
+  held.StepUntil(0.1, 11.0);
+  EXPECT_LT(std::abs(held.q()), 1e-4);
+}
+
+TEST(StribeckLoadFriction, FallsWithSpeed) {
+  // Deceleration under a load that the motor makes: (1 - share) u accelerates.
+  const auto gained = [](double speed) {
+    EffectBench bench(
+        {"stribeck_load_friction@q:coefficient=0.1,breakaway=0.4,velocity=0.5"});
+    bench.v() = speed;
+    bench.StepUntil(0.01, 1.0);
+    return (bench.v() - speed) * EffectBench::kMass / 0.01;
+  };
+  EXPECT_NEAR(gained(5.0), 1.0 - 0.1, 1e-3);
+  EXPECT_NEAR(gained(0.5), 1.0 - 0.1 - 0.4 * std::exp(-1.0), 5e-3);
+  EXPECT_NEAR(gained(0.02), 1.0 - 0.5, 5e-3);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// -(slope q + curvature q^2) v, beside a damper that is there. With a negative damper and a
+// positive curvature it is van der Pol's.
+
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+class PositionDependentDampingEffect final : public JointForceEffect {
+ public:
+  PositionDependentDampingEffect()
+      : JointForceEffect(
+            {.name = "position_dependent_damping",
+             .variable = LawVariable::kPosition,
+             .parameters = {Free("slope", Role::kAmplitude, "N s/m^2"),
+                            Free("curvature", Role::kAmplitude, "N s/m^3")},
+             .meaning = "-(slope q + curvature q^2) v"}) {}
+
+  double Force(double q, double v, double,
+               const EffectValues& values) const noexcept override {
+    return -(values[0] + values[1] * q) * q * v;
+  }
+  // Of two variables.
+  std::optional<double> Law(double, const EffectValues&) const override {
+    return std::nullopt;
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    const Eigen::VectorXd q = at.q();
+    Eigen::MatrixXd parts(q.size(), 2);
+    parts.col(0) = -q.cwiseProduct(at.v());
+    parts.col(1) = parts.col(0).cwiseProduct(q);
+    return {LinearTrial(parts, at.JointEntry(2))};
+  }
+  Sized Draw(const Scales& k, Random& r) const override {
+    const double damping = k.SmallForce() / k.speed;
+    const double slope = r.Sign() * damping / k.stroke;
+    const double curvature = r.Uniform(0.2, 1.0) * damping / (k.stroke * k.stroke);
+    return [=](double s) { return ValuesOf({s * slope, s * curvature}); };
+  }
+};
+
+}  // namespace
+
+const Effect& PositionDependentDamping() {
+  static const PositionDependentDampingEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag

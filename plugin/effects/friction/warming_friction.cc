@@ -1,0 +1,84 @@
+// Dry friction that goes away as grease warms up:
+//   F = force exp(-t / time_constant)
+// beside the friction that is left then, as the bound of MuJoCo's own friction constraint;
+// t since the start of the run.
+
+#include <cmath>
+
+#include "mjdiag/plugin/effects/friction/dry_friction.h"
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
+
+namespace mjdiag {
+namespace {
+
+class BoundByTime final : public VaryingBound {
+ public:
+  BoundByTime(int dof, const EffectValues& values)
+      : VaryingBound(dof), force_(values[0]), rate_(1.0 / values[1]) {}
+
+ private:
+  double Added(const mjModel&, mjData& data) noexcept override {
+    return force_ * std::exp(-data.time * rate_);
+  }
+
+  double force_;
+  double rate_;
+};
+
+class WarmingFrictionEffect final : public Effect {
+ public:
+  WarmingFrictionEffect()
+      : Effect({.name = "warming_friction",
+                .variable = LawVariable::kTime,
+                .parameters = {NotNegative("force", Role::kAmplitude, "N"),
+                               Positive("time_constant", Role::kDuration, "s")},
+                .meaning =
+                    "dry friction that goes away: force exp(-t / time_constant)"}) {}
+
+  void Apply(mjModel& model, int joint, const EffectValues&) const override {
+    AddDryFriction(model, joint, kLeastBound);
+  }
+  void Retract(mjModel& model, int joint, const EffectValues&) const override {
+    TakeDryFriction(model, joint, kLeastBound);
+  }
+  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
+                                         int joint,
+                                         const EffectValues& values) const override {
+    return std::make_unique<BoundByTime>(model.jnt_dofadr[joint], values);
+  }
+  std::vector<Trial> Trials(const SiteMotion& at) const override {
+    const Eigen::VectorXd s = Direction(at.v());
+    const auto n = static_cast<double>(s.size());
+    const Eigen::ArrayXd time = Eigen::ArrayXd::LinSpaced(s.size(), 0.0, n - 1.0);
+    std::vector<Trial> trials;
+    for (const double samples : LogGrid(0.05 * n, 2.0 * n, 4)) {
+      trials.push_back({-s.array() * (-time / samples).exp(), at.JointEntry(),
+                        [constant = samples * at.motion.sample_time](
+                            const Amplitudes& a) -> TrialValues {
+                          if (a[0] <= 0.0) return std::nullopt;
+                          return ValuesOf({a[0], constant});
+                        }});
+    }
+    return trials;
+  }
+  std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
+    return PlacedEffect{Lasting(CoulombFriction()), self.site, self.values.head(1)};
+  }
+  // Within the run, or nobody could see it.
+  Sized Draw(const Scales& k, Random& r) const override {
+    const double constant = k.duration * r.Log(0.1, 0.5);
+    return [=, force = k.SmallForce()](double s) {
+      return ValuesOf({s * force, constant});
+    };
+  }
+};
+
+}  // namespace
+
+const Effect& WarmingFriction() {
+  static const WarmingFrictionEffect effect;
+  return effect;
+}
+
+}  // namespace mjdiag
