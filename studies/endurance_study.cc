@@ -57,16 +57,13 @@ class Watcher final : public TickObserver {
 
   void OnTick(std::span<const double> outputs,
               std::span<const double> inputs) noexcept override {
-    const Clock::time_point start = Clock::now();
     monitor_.Add(outputs, inputs);
-    longest_ = std::max(longest_, Seconds(start));
     alarms_ += monitor_.residual_alarm() ? 1 : 0;
   }
 
   const TwinEstimator& twin() const { return *monitor_.twin(); }
-  /// Ticks with the residual outside its limits, and the longest tick [s], since asked.
+  /// Ticks with the residual outside its limits since asked.
   Index TakeAlarms() { return std::exchange(alarms_, 0); }
-  double TakeLongest() { return std::exchange(longest_, 0.0); }
 
  private:
   static DiagnosisDesign DesignOf(const Machine& machine, bool linear) {
@@ -77,7 +74,6 @@ class Watcher final : public TickObserver {
 
   DiagnosisMonitor monitor_;
   Index alarms_ = 0;
-  double longest_ = 0.0;
 };
 
 /// The truth of a machine that wears.
@@ -151,13 +147,12 @@ StudyTable EmptyRows(const Machine& machine, const StudyOptions& options,
       "Endurance of " + machine.setup().name + ", " +
           (options.linear ? "linear plant" : "nonlinear plant"),
       {"time [s]", "named", "looks", "with names", "false", "alarms [ticks]",
-       "since [s]", "passes", "misfit", "error / sd", "memory [MB]", "wall [s/s]",
-       "longest tick [us]"},
+       "since [s]", "passes", "misfit", "error / sd", "memory [MB]", "wall [s/s]"},
       {},
-      {"Looks, names, alarms of the residual, the largest misfit, the "
-       "largest error over its standard deviation and the longest tick of "
-       "the diagnosis are those since the row before; estimates (deviations "
-       "from healthy) and their standard deviations are those at its end."}};
+      {"Looks, names, alarms of the residual, the largest misfit and the largest "
+       "error over its standard deviation are those since the row before; estimates "
+       "(deviations from healthy) and their standard deviations are those at its "
+       "end."}};
   for (const std::string& name : names) {
     table.columns.push_back(name);
     table.columns.push_back("sd " + name);
@@ -228,8 +223,6 @@ class LongRun {
     const double seconds = Seconds(row_start_);
     row_start_ = Clock::now();
     wall_ += seconds;
-    const double longest = watcher_.TakeLongest();
-    longest_ = std::max(longest_, longest);
     const Index alarms = watcher_.TakeAlarms();
     alarms_ += alarms;
     std::vector<Cell> row = {Cell(TimeOf(done)),
@@ -243,8 +236,7 @@ class LongRun {
                              Cell(recent_.misfit),
                              Cell(recent_.largest.maxCoeff()),
                              Cell(ResidentMemory()),
-                             Cell(seconds / TimeOf(done - row_end_)),
-                             Cell(1e6 * longest)};
+                             Cell(seconds / TimeOf(done - row_end_))};
     for (Index i = 0; i < reading_.deviation.size(); ++i) {
       row.emplace_back(reading_.deviation[i]);
       row.emplace_back(reading_.sd[i]);
@@ -266,8 +258,7 @@ class LongRun {
              {"largest misfit", Cell(whole_.misfit)},
              {"memory at the start [MB]", Cell(memory_)},
              {"memory at the end [MB]", Cell(ResidentMemory())},
-             {"wall time a simulated second [s]", Cell(wall_ / TimeOf(row_end_))},
-             {"longest tick of the diagnosis [us]", Cell(1e6 * longest_)}},
+             {"wall time a simulated second [s]", Cell(wall_ / TimeOf(row_end_))}},
             {}};
   }
 
@@ -298,7 +289,6 @@ class LongRun {
   Index row_end_ = 0;
   Index alarms_ = 0;
   double wall_ = 0.0;
-  double longest_ = 0.0;
   double memory_ = 0.0;
 };
 

@@ -1,5 +1,6 @@
 #include "mjdiag/diagnosis/twin/linear_twin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -73,8 +74,7 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);
   seen_ = MatrixXd::Zero(ny, 2 * nq);
   const auto ticks = static_cast<std::size_t>(block);
-  of_tick_.carried.assign(ticks, pulse_);
-  of_tick_.seen.assign(ticks, MatrixXd::Zero(ny, nq));
+  of_tick_.assign(ticks, MatrixXd::Zero(2 * nq + ny, nq));
   of_step_.assign(static_cast<std::size_t>(model_.timing.substeps), of_tick_);
   pulses_.assign(of_step_.size(), pulse_);
   x_ = next_ = driven_ = constant_ = VectorXd::Zero(2 * nq);
@@ -85,10 +85,23 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
     AddEntries(i, Motion::kVelocity, part.D);
     AddEntries(i, Motion::kPosition, part.K);
   }
-  moving_ = MatrixXd::Zero(nq, numbers);
-  held_ = MatrixXd::Zero(nq, numbers + 2 * tones_.count());
-  carried_ = MatrixXd::Zero(2 * nq, held_.cols());
-  of_block_ = MatrixXd::Zero(ny, held_.cols());
+  // Forces of a number on the same coordinate are added up before they push.
+  std::ranges::stable_sort(entries_, {}, [](const Entry& entry) {
+    return std::pair(entry.number, entry.on);
+  });
+  const MatrixXd left = MatrixXd::Zero(2 * nq + ny, block);
+  for (Index i = 0; i < numbers; ++i) {
+    const ModelPart& part = model_.parts[static_cast<std::size_t>(i)];
+    for (Index input = 0; input < part.Gamma.cols(); ++input) {
+      if (part.Gamma.col(input).isZero(0.0)) continue;
+      held_.push_back({i, part.Gamma.col(input), left, input});
+    }
+    if (part.force.size() > 0) held_.push_back({i, part.force, left, kNoInput});
+  }
+  for (Index i = 0; i < tones_.count(); ++i) {
+    tone_held_.push_back({numbers + 2 * i, VectorXd::Zero(nq), left, kNoInput});
+  }
+  block_ = MatrixXd::Zero(2 * nq + ny, numbers + 2 * tones_.count());
   S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
   sensitivity_ = MatrixXd::Zero(ny, p);
   MakeMaps();
@@ -172,16 +185,31 @@ void LinearTwin::LiftSensitivities() noexcept {
   for (std::size_t s = 0; s < pulses_.size() && !entries_.empty(); ++s) {
     Lift(pulses_[s], of_step_[s]);
   }
+  for (Held& held : held_) Lift(held);
+  for (std::size_t i = 0; i < tone_held_.size(); ++i) {
+    tone_held_[i].direction.noalias() =
+        Gamma_ * tones_.amplitude(static_cast<Index>(i));
+    Lift(tone_held_[i]);
+  }
 }
 
 void LinearTwin::Lift(const MatrixXd& pulse, Response& response) noexcept {
-  response.carried.back() = pulse;
-  response.seen.back().setZero();
-  for (auto j = static_cast<std::size_t>(block() - 1); j > 0; --j) {
-    response.carried[j - 1].noalias() = F_ * response.carried[j];
+  const Index nx = states();
+  response.back().topRows(nx) = pulse;
+  response.back().bottomRows(outputs()).setZero();
+  for (std::size_t j = response.size() - 1; j > 0; --j) {
+    const auto later = response[j].topRows(nx);
+    response[j - 1].topRows(nx).noalias() = F_ * later;
     // What is carried from the end of tick j - 1 is seen from the next one on.
-    response.seen[j - 1] = response.seen[j];
-    response.seen[j - 1].noalias() += mean_ * response.carried[j];
+    auto seen = response[j - 1].bottomRows(outputs());
+    seen = response[j].bottomRows(outputs());
+    seen.noalias() += mean_ * later;
+  }
+}
+
+void LinearTwin::Lift(Held& held) const noexcept {
+  for (std::size_t j = 0; j < of_tick_.size(); ++j) {
+    held.left.col(static_cast<Index>(j)).noalias() = of_tick_[j] * held.direction;
   }
 }
 
@@ -204,8 +232,7 @@ void LinearTwin::Reset() noexcept {
   in_block_ = 0;
   x_.setZero();
   S_.setZero();
-  carried_.setZero();
-  of_block_.setZero();
+  block_.setZero();
   MakeMaps();
 }
 
@@ -221,56 +248,50 @@ void LinearTwin::Predict(VectorXd& reading) noexcept {
   reading.noalias() += C_ * x_;
 }
 
-void LinearTwin::Push(const MatrixXd& forces, const Response& response) noexcept {
-  const auto tick = static_cast<std::size_t>(in_block_);
-  carried_.leftCols(forces.cols()).noalias() += response.carried[tick] * forces;
-  of_block_.leftCols(forces.cols()).noalias() += response.seen[tick] * forces;
-}
-
-void LinearTwin::AddHeldForces() noexcept {
-  held_.setZero();
-  Index column = 0;
-  for (const ModelPart& part : model_.parts) {
-    auto force = held_.col(column++);
-    if (part.Gamma.size() > 0) force.noalias() += part.Gamma * u_;
-    if (part.force.size() > 0) force += part.force;
+void LinearTwin::PushHeld() noexcept {
+  for (const Held& held : held_) {
+    const double force = held.input == kNoInput ? 1.0 : u_[held.input];
+    block_.col(held.column) += force * held.left.col(in_block_);
   }
   for (Index i = 0; i < tones_.count(); ++i) {
-    auto cosine = held_.col(column + 1);
-    cosine.noalias() = Gamma_ * tones_.amplitude(i);
-    held_.col(column) = tones_.sine(i) * cosine;
-    cosine *= tones_.cosine(i);
-    column += 2;
+    const Held& held = tone_held_[static_cast<std::size_t>(i)];
+    const auto left = held.left.col(in_block_);
+    block_.col(held.column) += tones_.sine(i) * left;
+    block_.col(held.column + 1) += tones_.cosine(i) * left;
   }
 }
 
-void LinearTwin::AddMovingForces() noexcept {
+void LinearTwin::PushMoving(const Response& response) noexcept {
   const Index nq = M_.rows();
-  moving_.setZero();
-  for (const Entry& entry : entries_) {
+  const MatrixXd& left = response[static_cast<std::size_t>(in_block_)];
+  double force = 0.0;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry& entry = entries_[i];
     double signal = x_[entry.of];
     if (entry.motion == Motion::kVelocity) signal = next_[nq + entry.of];
     if (entry.motion == Motion::kAcceleration) {
       signal = (next_[nq + entry.of] - x_[nq + entry.of]) / model_.timing.step;
     }
-    moving_(entry.on, entry.number) += entry.coefficient * signal;
+    force += entry.coefficient * signal;
+    if (i + 1 < entries_.size() && entries_[i + 1].number == entry.number &&
+        entries_[i + 1].on == entry.on) {
+      continue;
+    }
+    block_.col(entry.number) += force * left.col(entry.on);
+    force = 0.0;
   }
 }
 
 void LinearTwin::Step(std::span<const double> inputs,
                       const VectorXd& innovation) noexcept {
   Command(inputs);
-  AddHeldForces();
-  Push(held_, of_tick_);
+  PushHeld();
   driven_ = constant_;
   driven_.noalias() += B_step_ * u_;
   for (const Response& response : of_step_) {
     next_ = driven_;
     next_.noalias() += A_step_ * x_;
-    if (!entries_.empty()) {
-      AddMovingForces();
-      Push(moving_, response);
-    }
+    PushMoving(response);
     x_.swap(next_);
   }
   x_.noalias() += gain().L * innovation;
@@ -281,23 +302,24 @@ void LinearTwin::Step(std::span<const double> inputs,
 const MatrixXd& LinearTwin::EndBlock() noexcept {
   sensitivity_.setZero();
   S_next_.setZero();
+  const auto carried = block_.topRows(states());
+  const auto seen = block_.bottomRows(outputs());
   Index column = 0;
   for (const ModelPart& part : model_.parts) {
     const double value = values_[column];
     for (const Index factor : part.factors) {
-      S_next_.col(factor) += value * carried_.col(column);
-      sensitivity_.col(factor) += value * of_block_.col(column);
+      S_next_.col(factor) += value * carried.col(column);
+      sensitivity_.col(factor) += value * seen.col(column);
     }
     ++column;
   }
   const Index of_tones = 2 * tones_.count();
-  S_next_.middleCols(first_tone(), of_tones) = carried_.rightCols(of_tones);
-  sensitivity_.middleCols(first_tone(), of_tones) = of_block_.rightCols(of_tones);
+  S_next_.middleCols(first_tone(), of_tones) = carried.rightCols(of_tones);
+  sensitivity_.middleCols(first_tone(), of_tones) = seen.rightCols(of_tones);
   sensitivity_.leftCols(acting()).noalias() += seen_ * S_.leftCols(acting());
   S_next_.leftCols(acting()).noalias() += power_ * S_.leftCols(acting());
   S_.swap(S_next_);
-  carried_.setZero();
-  of_block_.setZero();
+  block_.setZero();
   in_block_ = 0;
   return sensitivity_;
 }

@@ -73,11 +73,17 @@ class LinearTwin final : public Twin {
 
  private:
   /// Of a force on every coordinate in a tick j of a block: what it moves, F^(d-1-j) P,
-  /// and what of that the mean of the block sees.
-  struct Response {
-    std::vector<Eigen::MatrixXd> carried;  // 2 nq x nq
-    std::vector<Eigen::MatrixXd> seen;     // ny x nq
+  /// above what of that the mean of the block sees, (2 nq + ny) x nq.
+  using Response = std::vector<Eigen::MatrixXd>;
+  /// A direction in which forces of a unit of a number, or of a tone, push all through a
+  /// tick, and what each tick's leaves of a unit of it.
+  struct Held {
+    Eigen::Index column;  ///< of block_
+    Eigen::VectorXd direction;
+    Eigen::MatrixXd left;    ///< (2 nq + ny) x d
+    Eigen::Index input = 0;  ///< times that command; none: a force for itself
   };
+  static constexpr Eigen::Index kNoInput = -1;
   /// One entry of M, D or K of a number: a force on a coordinate, proportional to what
   /// another one does.
   enum class Motion { kAcceleration, kVelocity, kPosition };
@@ -95,11 +101,11 @@ class LinearTwin final : public Twin {
   void LiftSensitivities() noexcept;
   /// Of one of these forces a tick.
   void Lift(const Eigen::MatrixXd& pulse, Response& response) noexcept;
-  void Push(const Eigen::MatrixXd& forces, const Response& response) noexcept;
+  void Lift(Held& held) const noexcept;
   /// Of what a tick holds: commands, constants, tones.
-  void AddHeldForces() noexcept;
-  /// Of what moves, in the step from x_ to next_.
-  void AddMovingForces() noexcept;
+  void PushHeld() noexcept;
+  /// Of what moves, in that step of a tick, from x_ to next_.
+  void PushMoving(const Response& response) noexcept;
 
   UncertainModel model_;
   Eigen::MatrixXd C_;       // ny x 2 nq
@@ -108,7 +114,8 @@ class LinearTwin final : public Twin {
   Eigen::VectorXd values_;  // of the numbers
 
   MovedRest moved_rest_;
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  // of a number on a coordinate in a row
+  std::vector<Held> held_, tone_held_;
 
   // Maps at theta_.
   Eigen::MatrixXd M_, D_, K_, Gamma_, left_;
@@ -128,8 +135,9 @@ class LinearTwin final : public Twin {
   // The run.
   Eigen::Index in_block_ = 0;
   Eigen::VectorXd next_, driven_;
-  Eigen::MatrixXd held_, moving_;       // forces of a unit of every number, and tone
-  Eigen::MatrixXd carried_, of_block_;  // of those of a block: at its end, in its mean
+  /// What a unit of every number, and tone, has left in a block: at its end, and below
+  /// that in its mean.
+  Eigen::MatrixXd block_;
   Eigen::MatrixXd S_next_, sensitivity_;
 };
 

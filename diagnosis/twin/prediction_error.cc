@@ -141,10 +141,11 @@ void PredictionErrorEstimator::Say() noexcept {
   const bool same = said_.began && said_.since == segment_.since;
   const bool brief =
       !pass_.twin().linear() && pass_.blocks() * pass_.twin().block() < kBrief;
-  const bool sure = !brief && Bias() < 1.0;
+  const bool sure = !brief && !WorthGoingBack();
   const bool less =
       gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
-  if (pass_.blocks() == 0 || (same && less && !exhausted_)) return;
+  // While it follows there is nothing finer that could stand.
+  if (pass_.blocks() == 0 || (same && less && !exhausted_ && !following())) return;
   said_.began = true;
   said_.sure = sure;
   said_.information = pass_.information();
@@ -200,7 +201,7 @@ double PredictionErrorEstimator::Bias() const noexcept {
 }
 
 bool PredictionErrorEstimator::Surprised() const noexcept {
-  return gain() == 0 && pass_.surprise().NoChance();
+  return (gain() == 0 || following()) && pass_.surprise().NoChance();
 }
 
 }  // namespace mjdiag
