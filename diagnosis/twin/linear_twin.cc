@@ -65,46 +65,59 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   mean_ = C_ / static_cast<double>(block);
   place_ = PlacementOf(nominal);
   values_ = VectorXd::Ones(static_cast<Index>(model_.parts.size()));
-  M_ = D_ = K_ = left_ = nominal.M;
+  M_ = D_ = K_ = left_side_ = nominal.M;
   Gamma_ = nominal.Gamma;
   f_ = VectorXd::Zero(nq);
   factor_ = Eigen::LLT<MatrixXd>(nq);
-  A_step_ = A_ = F_ = power_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
+  A_step_ = F_ = power_ = base_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_step_ = MatrixXd::Zero(2 * nq, nu);
   pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);
-  seen_ = MatrixXd::Zero(ny, 2 * nq);
-  const auto ticks = static_cast<std::size_t>(block);
-  of_tick_.assign(ticks, MatrixXd::Zero(2 * nq + ny, nq));
-  of_step_.assign(static_cast<std::size_t>(model_.timing.substeps), of_tick_);
-  pulses_.assign(of_step_.size(), pulse_);
-  x_ = next_ = driven_ = constant_ = VectorXd::Zero(2 * nq);
+  row_ = row_next_ = seen_ = MatrixXd::Zero(ny, 2 * nq);
+  pulses_.assign(static_cast<std::size_t>(model_.timing.substeps), pulse_);
+  before_ = after_ = MatrixXd::Zero(2 * nq, 2 * nq + nu + 1);
+  x_ = constant_ = VectorXd::Zero(2 * nq);
+  AddSources();
+  S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
+  sensitivity_ = MatrixXd::Zero(ny, p);
+  MakeMaps();
+}
+
+void LinearTwin::AddSources() {
+  const Index nx = states();
   const auto numbers = static_cast<Index>(model_.parts.size());
+  const Index columns = numbers + 2 * tones_.count();
   for (Index i = 0; i < numbers; ++i) {
     const ModelPart& part = model_.parts[static_cast<std::size_t>(i)];
     AddEntries(i, Motion::kAcceleration, part.M);
     AddEntries(i, Motion::kVelocity, part.D);
     AddEntries(i, Motion::kPosition, part.K);
-  }
-  // Forces of a number on the same coordinate are added up before they push.
-  std::ranges::stable_sort(entries_, {}, [](const Entry& entry) {
-    return std::pair(entry.number, entry.on);
-  });
-  const MatrixXd left = MatrixXd::Zero(2 * nq + ny, block);
-  for (Index i = 0; i < numbers; ++i) {
-    const ModelPart& part = model_.parts[static_cast<std::size_t>(i)];
     for (Index input = 0; input < part.Gamma.cols(); ++input) {
       if (part.Gamma.col(input).isZero(0.0)) continue;
-      held_.push_back({i, part.Gamma.col(input), left, input});
+      held_.push_back({i, part.Gamma.col(input), input});
     }
-    if (part.force.size() > 0) held_.push_back({i, part.force, left, kNoInput});
+    if (part.force.size() > 0) held_.push_back({i, part.force, kNoInput});
   }
   for (Index i = 0; i < tones_.count(); ++i) {
-    tone_held_.push_back({numbers + 2 * i, VectorXd::Zero(nq), left, kNoInput});
+    tone_held_.push_back({numbers + 2 * i, VectorXd::Zero(nx / 2), kNoInput});
   }
-  block_ = MatrixXd::Zero(2 * nq + ny, numbers + 2 * tones_.count());
-  S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
-  sensitivity_ = MatrixXd::Zero(ny, p);
-  MakeMaps();
+  const auto place = [](const Entry& entry) {
+    return std::pair(entry.number, entry.on);
+  };
+  std::ranges::stable_sort(entries_, {}, place);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (i == 0 || place(entries_[i]) != place(entries_[i - 1]))
+      moving_.push_back({i, i});
+    moving_.back().end = i + 1;
+  }
+  const auto forces = static_cast<Index>(moving_.size() * pulses_.size());
+  tick_ = MatrixXd::Zero(nx + forces, before_.cols());
+  start_ = VectorXd::Ones(before_.cols());
+  end_ = VectorXd::Zero(tick_.rows());
+  sources_ =
+      MatrixXd::Zero(nx, forces + static_cast<Index>(held_.size() + tone_held_.size()));
+  left_.assign(static_cast<std::size_t>(block()),
+               MatrixXd::Zero(nx + outputs(), sources_.cols()));
+  block_ = MatrixXd::Zero(nx + outputs(), columns);
 }
 
 void LinearTwin::AddEntries(Index number, Motion motion, const MatrixXd& part) {
@@ -118,7 +131,6 @@ void LinearTwin::AddEntries(Index number, Motion motion, const MatrixXd& part) {
 
 void LinearTwin::MakeMaps() noexcept {
   const MechanicalModel& nominal = model_.nominal;
-  const Index nq = M_.rows();
   M_ = nominal.M;
   D_ = nominal.D;
   K_ = nominal.K;
@@ -135,10 +147,17 @@ void LinearTwin::MakeMaps() noexcept {
     if (part.Gamma.size() > 0) Gamma_ += moved * part.Gamma;
     if (part.force.size() > 0) f_ += moved * part.force;
   }
+  MakeStep();
+  MakeTick();
+  LiftSensitivities();
+}
+
+void LinearTwin::MakeStep() noexcept {
   // v' = v + h (M + h D)^-1 (f - K q - D v), q' = q + h v'.
+  const Index nq = M_.rows();
   const double h = model_.timing.step;
-  left_ = M_ + h * D_;
-  factor_.compute(left_);
+  left_side_ = M_ + h * D_;
+  factor_.compute(left_side_);
   const auto into_velocity = [&](auto rows) {
     factor_.solveInPlace(rows);
     rows *= h;
@@ -154,15 +173,59 @@ void LinearTwin::MakeMaps() noexcept {
   A_step_.topLeftCorner(nq, nq).diagonal().array() += 1.0;
   B_step_.noalias() = pulse_step_ * Gamma_;
   constant_.noalias() = pulse_step_ * f_;
-  A_ = A_step_;
   pulses_.back() = pulse_ = pulse_step_;
   for (std::size_t s = pulses_.size() - 1; s > 0; --s) {
     pulses_[s - 1].noalias() = A_step_ * pulses_[s];
     pulse_ += pulses_[s - 1];
-    scratch_.noalias() = A_step_ * A_;
-    A_.swap(scratch_);
   }
-  LiftSensitivities();
+}
+
+void LinearTwin::MakeTick() noexcept {
+  const Index nx = states();
+  before_.setIdentity();
+  Index source = 0;
+  for (const MatrixXd& pulse : pulses_) {
+    after_.noalias() = A_step_ * before_;
+    after_.middleCols(nx, B_step_.cols()) += B_step_;
+    after_.rightCols(1) += constant_;
+    MakeMoving(nx + source, before_, after_);
+    for (const Moving& moving : moving_) {
+      sources_.col(source++) = pulse.col(entries_[moving.first].on);
+    }
+    before_.swap(after_);
+  }
+  tick_.topRows(nx) = before_;
+  for (const Held& held : held_) {
+    sources_.col(source++).noalias() = pulse_ * held.direction;
+  }
+  for (std::size_t i = 0; i < tone_held_.size(); ++i) {
+    Held& held = tone_held_[i];
+    held.direction.noalias() = Gamma_ * tones_.amplitude(static_cast<Index>(i));
+    sources_.col(source++).noalias() = pulse_ * held.direction;
+  }
+}
+
+void LinearTwin::MakeMoving(Index row, const MatrixXd& before,
+                            const MatrixXd& after) noexcept {
+  const Index nq = M_.rows();
+  for (const Moving& moving : moving_) {
+    auto force = tick_.row(row++);
+    force.setZero();
+    for (std::size_t i = moving.first; i < moving.end; ++i) {
+      const Entry& entry = entries_[i];
+      switch (entry.motion) {
+        case Motion::kPosition:
+          force += entry.coefficient * before.row(entry.of);
+          break;
+        case Motion::kVelocity:
+          force += entry.coefficient * after.row(nq + entry.of);
+          break;
+        case Motion::kAcceleration:
+          force += entry.coefficient / model_.timing.step *
+                   (after.row(nq + entry.of) - before.row(nq + entry.of));
+      }
+    }
+  }
 }
 
 void LinearTwin::UseGain(std::size_t gain) noexcept {
@@ -172,44 +235,36 @@ void LinearTwin::UseGain(std::size_t gain) noexcept {
 }
 
 void LinearTwin::LiftSensitivities() noexcept {
-  F_ = A_;
-  F_.noalias() -= gain().L * C_;
-  power_ = F_;
-  seen_ = mean_;
-  for (Index j = 1; j < block(); ++j) {
-    seen_.noalias() += mean_ * power_;
-    scratch_.noalias() = F_ * power_;
-    power_.swap(scratch_);
-  }
-  Lift(pulse_, of_tick_);
-  for (std::size_t s = 0; s < pulses_.size() && !entries_.empty(); ++s) {
-    Lift(pulses_[s], of_step_[s]);
-  }
-  for (Held& held : held_) Lift(held);
-  for (std::size_t i = 0; i < tone_held_.size(); ++i) {
-    tone_held_[i].direction.noalias() =
-        Gamma_ * tones_.amplitude(static_cast<Index>(i));
-    Lift(tone_held_[i]);
-  }
-}
-
-void LinearTwin::Lift(const MatrixXd& pulse, Response& response) noexcept {
   const Index nx = states();
-  response.back().topRows(nx) = pulse;
-  response.back().bottomRows(outputs()).setZero();
-  for (std::size_t j = response.size() - 1; j > 0; --j) {
-    const auto later = response[j].topRows(nx);
-    response[j - 1].topRows(nx).noalias() = F_ * later;
-    // What is carried from the end of tick j - 1 is seen from the next one on.
-    auto seen = response[j - 1].bottomRows(outputs());
-    seen = response[j].bottomRows(outputs());
-    seen.noalias() += mean_ * later;
+  F_ = tick_.topLeftCorner(nx, nx);
+  F_.noalias() -= gain().L * C_;
+  base_ = F_;
+  power_.setIdentity();
+  for (Index left = block(); left > 0; left /= 2) {
+    if (left % 2 != 0) {
+      scratch_.noalias() = base_ * power_;
+      power_.swap(scratch_);
+    }
+    if (left > 1) {
+      scratch_.noalias() = base_ * base_;
+      base_.swap(scratch_);
+    }
   }
-}
-
-void LinearTwin::Lift(Held& held) const noexcept {
-  for (std::size_t j = 0; j < of_tick_.size(); ++j) {
-    held.left.col(static_cast<Index>(j)).noalias() = of_tick_[j] * held.direction;
+  row_ = seen_ = mean_;
+  for (Index j = 1; j < block(); ++j) {
+    row_next_.noalias() = row_ * F_;
+    row_.swap(row_next_);
+    seen_ += row_;
+  }
+  left_.back().topRows(nx) = sources_;
+  left_.back().bottomRows(outputs()).setZero();
+  for (std::size_t j = left_.size() - 1; j > 0; --j) {
+    const auto later = left_[j].topRows(nx);
+    left_[j - 1].topRows(nx).noalias() = F_ * later;
+    // What is carried from the end of tick j - 1 is seen from the next one on.
+    auto seen = left_[j - 1].bottomRows(outputs());
+    seen = left_[j].bottomRows(outputs());
+    seen.noalias() += mean_ * later;
   }
 }
 
@@ -248,52 +303,35 @@ void LinearTwin::Predict(VectorXd& reading) noexcept {
   reading.noalias() += C_ * x_;
 }
 
-void LinearTwin::PushHeld() noexcept {
+void LinearTwin::Push() noexcept {
+  const MatrixXd& left = left_[static_cast<std::size_t>(in_block_)];
+  Index source = 0;
+  Index force = states();
+  for (std::size_t s = 0; s < pulses_.size(); ++s) {
+    for (const Moving& moving : moving_) {
+      block_.col(entries_[moving.first].number) += end_[force++] * left.col(source++);
+    }
+  }
   for (const Held& held : held_) {
-    const double force = held.input == kNoInput ? 1.0 : u_[held.input];
-    block_.col(held.column) += force * held.left.col(in_block_);
+    const double times = held.input == kNoInput ? 1.0 : u_[held.input];
+    block_.col(held.column) += times * left.col(source++);
   }
   for (Index i = 0; i < tones_.count(); ++i) {
-    const Held& held = tone_held_[static_cast<std::size_t>(i)];
-    const auto left = held.left.col(in_block_);
-    block_.col(held.column) += tones_.sine(i) * left;
-    block_.col(held.column + 1) += tones_.cosine(i) * left;
-  }
-}
-
-void LinearTwin::PushMoving(const Response& response) noexcept {
-  const Index nq = M_.rows();
-  const MatrixXd& left = response[static_cast<std::size_t>(in_block_)];
-  double force = 0.0;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const Entry& entry = entries_[i];
-    double signal = x_[entry.of];
-    if (entry.motion == Motion::kVelocity) signal = next_[nq + entry.of];
-    if (entry.motion == Motion::kAcceleration) {
-      signal = (next_[nq + entry.of] - x_[nq + entry.of]) / model_.timing.step;
-    }
-    force += entry.coefficient * signal;
-    if (i + 1 < entries_.size() && entries_[i + 1].number == entry.number &&
-        entries_[i + 1].on == entry.on) {
-      continue;
-    }
-    block_.col(entry.number) += force * left.col(entry.on);
-    force = 0.0;
+    const Index column = tone_held_[static_cast<std::size_t>(i)].column;
+    block_.col(column) += tones_.sine(i) * left.col(source);
+    block_.col(column + 1) += tones_.cosine(i) * left.col(source);
+    ++source;
   }
 }
 
 void LinearTwin::Step(std::span<const double> inputs,
                       const VectorXd& innovation) noexcept {
   Command(inputs);
-  PushHeld();
-  driven_ = constant_;
-  driven_.noalias() += B_step_ * u_;
-  for (const Response& response : of_step_) {
-    next_ = driven_;
-    next_.noalias() += A_step_ * x_;
-    PushMoving(response);
-    x_.swap(next_);
-  }
+  start_.head(x_.size()) = x_;
+  start_.segment(x_.size(), u_.size()) = u_;
+  end_.noalias() = tick_ * start_;
+  Push();
+  x_ = end_.head(x_.size());
   x_.noalias() += gain().L * innovation;
   tones_.Advance();
   ++in_block_;

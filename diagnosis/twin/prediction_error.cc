@@ -148,7 +148,7 @@ void PredictionErrorEstimator::Say() noexcept {
   if (pass_.blocks() == 0 || (same && less && !exhausted_ && !following())) return;
   said_.began = true;
   said_.sure = sure;
-  said_.information = pass_.information();
+  said_.information.Know(pass_.information());
   said_.theta = pass_.theta();
   said_.prior = prior_;
   said_.surprise = pass_.surprise().recent();
