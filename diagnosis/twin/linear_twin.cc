@@ -165,27 +165,30 @@ void LinearTwin::MakeStep() noexcept {
   pulse_step_.bottomRows(nq).setIdentity();
   into_velocity(pulse_step_.bottomRows(nq));
   pulse_step_.topRows(nq) = h * pulse_step_.bottomRows(nq);
+  // Without the identity, whose rounding would be a spring to where x is 0.
   A_step_.bottomLeftCorner(nq, nq) = -K_;
   A_step_.bottomRightCorner(nq, nq) = -D_;
   into_velocity(A_step_.bottomRows(nq));
-  A_step_.bottomRightCorner(nq, nq).diagonal().array() += 1.0;
   A_step_.topRows(nq) = h * A_step_.bottomRows(nq);
-  A_step_.topLeftCorner(nq, nq).diagonal().array() += 1.0;
+  A_step_.topRightCorner(nq, nq).diagonal().array() += h;
   B_step_.noalias() = pulse_step_ * Gamma_;
   constant_.noalias() = pulse_step_ * f_;
   pulses_.back() = pulse_ = pulse_step_;
   for (std::size_t s = pulses_.size() - 1; s > 0; --s) {
-    pulses_[s - 1].noalias() = A_step_ * pulses_[s];
+    pulses_[s - 1] = pulses_[s];
+    pulses_[s - 1].noalias() += A_step_ * pulses_[s];
     pulse_ += pulses_[s - 1];
   }
 }
 
 void LinearTwin::MakeTick() noexcept {
   const Index nx = states();
-  before_.setIdentity();
+  before_.setZero();
   Index source = 0;
   for (const MatrixXd& pulse : pulses_) {
-    after_.noalias() = A_step_ * before_;
+    after_ = before_;
+    after_.noalias() += A_step_ * before_;
+    after_.leftCols(nx) += A_step_;
     after_.middleCols(nx, B_step_.cols()) += B_step_;
     after_.rightCols(1) += constant_;
     MakeMoving(nx + source, before_, after_);
@@ -216,9 +219,11 @@ void LinearTwin::MakeMoving(Index row, const MatrixXd& before,
       switch (entry.motion) {
         case Motion::kPosition:
           force += entry.coefficient * before.row(entry.of);
+          force[entry.of] += entry.coefficient;
           break;
         case Motion::kVelocity:
           force += entry.coefficient * after.row(nq + entry.of);
+          force[nq + entry.of] += entry.coefficient;
           break;
         case Motion::kAcceleration:
           force += entry.coefficient / model_.timing.step *
@@ -237,6 +242,7 @@ void LinearTwin::UseGain(std::size_t gain) noexcept {
 void LinearTwin::LiftSensitivities() noexcept {
   const Index nx = states();
   F_ = tick_.topLeftCorner(nx, nx);
+  F_.diagonal().array() += 1.0;
   F_.noalias() -= gain().L * C_;
   base_ = F_;
   power_.setIdentity();
@@ -331,7 +337,7 @@ void LinearTwin::Step(std::span<const double> inputs,
   start_.segment(x_.size(), u_.size()) = u_;
   end_.noalias() = tick_ * start_;
   Push();
-  x_ = end_.head(x_.size());
+  x_ += end_.head(x_.size());
   x_.noalias() += gain().L * innovation;
   tones_.Advance();
   ++in_block_;

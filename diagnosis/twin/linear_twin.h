@@ -125,11 +125,12 @@ class LinearTwin final : public Twin {
   Eigen::MatrixXd M_, D_, K_, Gamma_, left_side_;
   Eigen::VectorXd f_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
-  Eigen::MatrixXd A_step_, B_step_;  // of a step; of the commands
+  Eigen::MatrixXd A_step_, B_step_;  // of a step, less the identity; of the commands
   Eigen::MatrixXd pulse_step_;       // of forces on every coordinate
   Eigen::VectorXd constant_;         // of f, a step
-  Eigen::MatrixXd before_, after_;   // a step, of [x; u; 1] at the start of its tick
-  Eigen::MatrixXd tick_;             // [x; forces of what moves], of the same
+  // Of [x; u; 1] at the start of a tick: how far x has moved before a step and after it;
+  // how far in the tick, above the forces of what moves.
+  Eigen::MatrixXd before_, after_, tick_;
   Eigen::MatrixXd F_, power_, base_, scratch_;  // A - L C, F^d
   Eigen::MatrixXd row_, row_next_, seen_;       // (1/d) sum_j C F^j
   std::vector<Eigen::MatrixXd> pulses_;         // P_s
