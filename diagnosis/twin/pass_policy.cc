@@ -140,8 +140,6 @@ void PredictionErrorEstimator::WidenHorizon() noexcept {
 }
 
 void PredictionErrorEstimator::Unexplained() noexcept {
-  // What was said of the readings before does not hold for these.
-  said_.sure = false;
   // Beside a machine that it had nothing to learn of any more.
   if (learned_ && TryChange()) return;
   const Index horizon = pass_.seen() - now().origin;

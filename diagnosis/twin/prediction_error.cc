@@ -144,7 +144,7 @@ void PredictionErrorEstimator::Say() noexcept {
   const bool same = said_.began && said_.since == segment_.since;
   const bool brief =
       !pass_.twin().linear() && pass_.blocks() * pass_.twin().block() < kBrief;
-  const bool sure = !brief && !WorthGoingBack();
+  const bool sure = !brief && Bias() < 1.0;
   const bool less =
       gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
   // While it follows there is nothing finer that could stand.
