@@ -59,8 +59,7 @@ class PredictionErrorEstimator {
   void CatchUp() noexcept;
 
   // What it says is what the pass said that has seen most: while it goes back, or is
-  // pulled along, that stands, though not for sure where it goes back because that does
-  // not explain what came next. While it follows it says what it has at every block.
+  // pulled along, that stands. While it follows it says what it has at every block.
 
   /// Whether it has said anything yet.
   bool began() const { return said_.began; }
@@ -85,7 +84,7 @@ class PredictionErrorEstimator {
   /// Whether what it says is of the machine as it is now: it knows of no change since.
   bool current() const { return sure() && said_.since == segment_.since; }
   /// Whether the twin ran so near to it that the first order tells it, as its standard
-  /// deviation takes for granted, and nothing has contradicted it yet.
+  /// deviation takes for granted.
   bool sure() const { return said_.sure; }
   /// Tick from which the machine has been as it is estimated.
   Eigen::Index since() const { return said_.since; }
