@@ -1,5 +1,7 @@
 // mjdiag study: sweeps and Monte-Carlo studies with their tables.
 
+#include <algorithm>
+#include <charconv>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,6 +16,7 @@
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
 #include "mjdiag/studies/disturbance_study.h"
+#include "mjdiag/studies/endurance_study.h"
 #include "mjdiag/studies/estimation_study.h"
 #include "mjdiag/studies/hidden_table.h"
 #include "mjdiag/studies/random_fault_study.h"
@@ -22,6 +25,8 @@
 namespace mjdiag::app {
 namespace {
 
+constexpr double kLongestEndurance = 1e7;  // s
+
 struct StudyCommand {
   MachineOptions machine;
   OutputOptions output;
@@ -29,11 +34,17 @@ struct StudyCommand {
   int runs = 200;
   std::uint64_t seed = 1;
   bool linear = false;
+  double duration = 0.0;
+  double every = 60.0;
+  std::vector<std::string> wear;
 };
+
+/// What a study lets one choose.
+enum class Choice { kNone, kPlant, kPlantAndTime };
 
 struct Study {
   std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)> run;
-  bool either_plant = false;  ///< linear or not, as one wants it
+  Choice choice = Choice::kNone;
 };
 
 template <int causes>
@@ -52,12 +63,19 @@ std::vector<StudyTable> Nonlinear(const Machine& machine, const StudyOptions& op
 /// Preset -> study, and what it is for.
 const std::map<std::string, Study>& Studies() {
   static const std::map<std::string, Study> studies{
-      {"table2", {LinearDetectionStudy}},  {"table3", {Nonlinear<false>}},
-      {"table4", {ClassificationStudy}},   {"table5", {Nonlinear<true>}},
-      {"estimation", {EstimationStudy}},   {"random-faults", {RandomFaultStudy, true}},
-      {"disturbance", {DisturbanceStudy}}, {"bound", {BoundStudy}},
-      {"tolerance", {ToleranceStudy}},     {"hidden", {HiddenEffects<1>}},
-      {"hidden_none", {HiddenEffects<0>}}, {"hidden_two", {HiddenEffects<2>}}};
+      {"table2", {LinearDetectionStudy}},
+      {"table3", {Nonlinear<false>}},
+      {"table4", {ClassificationStudy}},
+      {"table5", {Nonlinear<true>}},
+      {"estimation", {EstimationStudy}},
+      {"random-faults", {RandomFaultStudy, Choice::kPlant}},
+      {"disturbance", {DisturbanceStudy}},
+      {"bound", {BoundStudy}},
+      {"tolerance", {ToleranceStudy}},
+      {"hidden", {HiddenEffects<1>}},
+      {"hidden_none", {HiddenEffects<0>}},
+      {"hidden_two", {HiddenEffects<2>}},
+      {"endurance", {EnduranceStudy, Choice::kPlantAndTime}}};
   return studies;
 }
 
@@ -68,11 +86,34 @@ NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
   return {"study", StudyPage(facts, tables, run)};
 }
 
-void RunStudy(const StudyCommand& command) {
-  const Study& study = Studies().at(command.preset);
-  if (command.linear && !study.either_plant) {
+/// <name>=<value>
+SizedFault ParseWear(const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const std::string value = text.substr(std::min(equals + 1, text.size()));
+  double number = 0.0;
+  const auto [end, error] =
+      std::from_chars(value.data(), value.data() + value.size(), number);
+  if (error != std::errc() || end != value.data() + value.size()) {
+    throw InputError("--wear " + text, "no number behind '='",
+                     "<name>=<growth an hour>");
+  }
+  return {text.substr(0, equals), number};
+}
+
+void CheckChoices(const StudyCommand& command, Choice choice) {
+  if (command.linear && choice == Choice::kNone) {
     throw InputError("--linear", command.preset + " has its own plant", "none");
   }
+  if (choice != Choice::kPlantAndTime &&
+      (command.duration > 0.0 || !command.wear.empty())) {
+    throw InputError("--duration, --wear", command.preset + " is no long run",
+                     "--preset endurance");
+  }
+}
+
+void RunStudy(const StudyCommand& command) {
+  const Study& study = Studies().at(command.preset);
+  CheckChoices(command, study.choice);
   const Machine machine = LoadSubject(command.machine).nominal;
   PrepareOutput(command.output);
   StudyLog log(command.output,
@@ -88,6 +129,9 @@ void RunStudy(const StudyCommand& command) {
   options.runs = command.runs;
   options.seed = command.seed;
   options.linear = command.linear;
+  if (command.duration > 0.0) options.duration = command.duration;
+  options.every = command.every;
+  for (const std::string& text : command.wear) options.wear.push_back(ParseWear(text));
   options.progress = [&log](double fraction) { log.Progress(fraction); };
   options.row = [&log](const StudyTable& table) { log.Show(table); };
   const std::vector<StudyTable> tables = study.run(machine, options);
@@ -113,6 +157,13 @@ void AddStudy(CLI::App& app) {
   command->add_option("--seed", options->seed, "Seed of the first run");
   command->add_flag("--linear", options->linear,
                     "The linear plant, where a study has either");
+  command->add_option("--duration", options->duration, "Of a long run, simulated [s]")
+      ->check(Within(0.0, kLongestEndurance));
+  command->add_option("--every", options->every, "A row of it, simulated [s]")
+      ->check(Within(0.1, kLongestEndurance));
+  command->add_option("--wear", options->wear,
+                      "A fault parameter that grows by that an hour in its course, for "
+                      "example zeta_x=0.01");
   command->callback([options] { RunStudy(*options); });
 }
 

@@ -99,6 +99,7 @@ void DiagnosisMonitor::Follow(std::unique_ptr<TwinEstimator> twin) {
                      "a twin of the machine that the filters are made for");
   }
   twin_ = std::move(twin);
+  filters_.KeepFirst(design_.bank.residuals);
 }
 
 void DiagnosisMonitor::Finish() noexcept {
@@ -135,21 +136,9 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
 
   const VectorXd& filtered = filters_.Step(z_);
   const Index n = design_.bank.residuals;
-  const auto parameters = static_cast<Index>(design_.bank.faults.size());
   residuals_ = filtered.head(n);
   if (samples_ < baseline_.cols()) residuals_ -= baseline_.col(samples_);
-  for (Index i = 0; i < parameters; ++i) {
-    regressors_.row(i) = filtered.segment((i + 1) * n, n).transpose();
-  }
-  if (waveforms_.cols() > 0) {
-    Waveforms(design_.disturbances,
-              static_cast<double>(samples_) * design_.sample_time(), waveforms_);
-    drive_ = waveforms_.reshaped();
-    const VectorXd& response = waveform_filter_.Step(drive_);
-    for (Index i = 0; i < waveforms_.cols(); ++i) {
-      regressors_.row(parameters + i) = response.segment(i * n, n).transpose();
-    }
-  }
+  if (!twin_) MakeRegressors(filtered);
   disturbance_ = high_pass_.Update(disturbance_filter_.Step(z_)[0]);
 
   Detect();
@@ -158,6 +147,22 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
   if (twin_ && samples_ >= first_regressed_) twin_->Add(outputs, inputs);
   if (regressed_) Regress();
   ++samples_;
+}
+
+void DiagnosisMonitor::MakeRegressors(const VectorXd& filtered) noexcept {
+  const Index n = design_.bank.residuals;
+  const auto parameters = static_cast<Index>(design_.bank.faults.size());
+  for (Index i = 0; i < parameters; ++i) {
+    regressors_.row(i) = filtered.segment((i + 1) * n, n).transpose();
+  }
+  if (waveforms_.cols() == 0) return;
+  Waveforms(design_.disturbances, static_cast<double>(samples_) * design_.sample_time(),
+            waveforms_);
+  drive_ = waveforms_.reshaped();
+  const VectorXd& response = waveform_filter_.Step(drive_);
+  for (Index i = 0; i < waveforms_.cols(); ++i) {
+    regressors_.row(parameters + i) = response.segment(i * n, n).transpose();
+  }
 }
 
 void DiagnosisMonitor::Detect() noexcept {

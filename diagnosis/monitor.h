@@ -27,7 +27,7 @@ class DiagnosisMonitor {
                             Eigen::MatrixXd baseline = {});
 
   /// From now on faults are estimated by the twin of the machine, and no more from the
-  /// residuals. InputError if it has other faults than the design.
+  /// residuals, whose prefilters rest. InputError if it has other faults than the design.
   void Follow(std::unique_ptr<TwinEstimator> twin);
   /// Null without one.
   const TwinEstimator* twin() const { return twin_.get(); }
@@ -75,6 +75,8 @@ class DiagnosisMonitor {
 
  private:
   void Start() noexcept;
+  /// What a unit of every fault would leave in the residuals.
+  void MakeRegressors(const Eigen::VectorXd& filtered) noexcept;
   void Detect() noexcept;
   void Regress() noexcept;
 

@@ -13,18 +13,22 @@
 
 namespace mjdiag {
 
+/// A fault parameter or disturbance with its value.
+struct SizedFault {
+  std::string name;
+  double value = 1.0;
+};
+
 struct StudyOptions {
   int runs = 200;          ///< Monte-Carlo runs where a study has any
   std::uint64_t seed = 1;  ///< of the first run
   std::function<void(double fraction)> progress;
   RowSink row;          ///< sees tables grow; may be called from any thread
   bool linear = false;  ///< the linear plant, where a study has either
-};
-
-/// A fault parameter or disturbance with its value.
-struct SizedFault {
-  std::string name;
-  double value = 1.0;
+  // Of one long run:
+  double duration = 60.0;        ///< [s]
+  double every = 60.0;           ///< a row [s]
+  std::vector<SizedFault> wear;  ///< by how much these faults grow an hour
 };
 
 /// A machine with faults of its plant, and how it is run with those of the outside.

@@ -161,6 +161,13 @@ RunningBank::RunningBank(FilterBank bank)
       drive_(bank_.B.rows()),
       output_(bank_.outputs()) {}
 
+void RunningBank::KeepFirst(Index outputs) {
+  bank_ = Outputs(bank_, 0, outputs);
+  states_ = MatrixXd(states_.topRows(outputs));
+  drive_.resize(bank_.B.rows());
+  output_.resize(outputs);
+}
+
 void RunningBank::Settle(const VectorXd& z) noexcept {
   drive_.noalias() = bank_.B * z;
   states_.noalias() = drive_.reshaped(bank_.outputs(), bank_.order()) * settle_;

@@ -67,6 +67,8 @@ class RunningBank {
 
   const FilterBank& bank() const { return bank_; }
   void Reset() noexcept { states_.setZero(); }
+  /// From now on of the first outputs only, which go on as they were.
+  void KeepFirst(Eigen::Index outputs);
   /// Takes the states that a constant z leads to: no transient follows from there.
   /// Does not allocate, lock or throw.
   void Settle(const Eigen::VectorXd& z) noexcept;

@@ -30,6 +30,16 @@ Information::Information(Index p, Index ny) : small_(ny) {
   expected_ = MatrixXd::Zero(ny, ny);
 }
 
+void Information::Know(const Information& other) noexcept {
+  active_ = other.active_;
+  H_.topLeftCorner(active_, active_) = other.H_.topLeftCorner(active_, active_);
+  factor_.topLeftCorner(active_, active_) =
+      other.factor_.topLeftCorner(active_, active_);
+  scale_.head(active_) = other.scale_.head(active_);
+  g_.head(active_) = other.g_.head(active_);
+  change_ = other.change_;
+}
+
 void Information::Start(Index active, const MatrixXd& prior,
                         const VectorXd& away) noexcept {
   active_ = active;

@@ -23,6 +23,8 @@ class Information {
 
   // Nothing below allocates, locks or throws.
 
+  /// What another one of this size knows; its work space stays there.
+  void Know(const Information& other) noexcept;
   /// Anew, with the first `active` unknowns.
   /// @param prior  P0^-1, p x p
   /// @param away   nominal - theta0, p

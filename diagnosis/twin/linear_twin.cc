@@ -1,5 +1,6 @@
 #include "mjdiag/diagnosis/twin/linear_twin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -64,34 +65,59 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   mean_ = C_ / static_cast<double>(block);
   place_ = PlacementOf(nominal);
   values_ = VectorXd::Ones(static_cast<Index>(model_.parts.size()));
-  M_ = D_ = K_ = left_ = nominal.M;
+  M_ = D_ = K_ = left_side_ = nominal.M;
   Gamma_ = nominal.Gamma;
   f_ = VectorXd::Zero(nq);
   factor_ = Eigen::LLT<MatrixXd>(nq);
-  A_step_ = A_ = F_ = power_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
+  A_step_ = F_ = power_ = base_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_step_ = MatrixXd::Zero(2 * nq, nu);
   pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);
-  seen_ = MatrixXd::Zero(ny, 2 * nq);
-  const auto ticks = static_cast<std::size_t>(block);
-  of_tick_.carried.assign(ticks, pulse_);
-  of_tick_.seen.assign(ticks, MatrixXd::Zero(ny, nq));
-  of_step_.assign(static_cast<std::size_t>(model_.timing.substeps), of_tick_);
-  pulses_.assign(of_step_.size(), pulse_);
-  x_ = next_ = driven_ = constant_ = VectorXd::Zero(2 * nq);
+  row_ = row_next_ = seen_ = MatrixXd::Zero(ny, 2 * nq);
+  pulses_.assign(static_cast<std::size_t>(model_.timing.substeps), pulse_);
+  before_ = after_ = MatrixXd::Zero(2 * nq, 2 * nq + nu + 1);
+  x_ = constant_ = VectorXd::Zero(2 * nq);
+  AddSources();
+  S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
+  sensitivity_ = MatrixXd::Zero(ny, p);
+  MakeMaps();
+}
+
+void LinearTwin::AddSources() {
+  const Index nx = states();
   const auto numbers = static_cast<Index>(model_.parts.size());
+  const Index columns = numbers + 2 * tones_.count();
   for (Index i = 0; i < numbers; ++i) {
     const ModelPart& part = model_.parts[static_cast<std::size_t>(i)];
     AddEntries(i, Motion::kAcceleration, part.M);
     AddEntries(i, Motion::kVelocity, part.D);
     AddEntries(i, Motion::kPosition, part.K);
+    for (Index input = 0; input < part.Gamma.cols(); ++input) {
+      if (part.Gamma.col(input).isZero(0.0)) continue;
+      held_.push_back({i, part.Gamma.col(input), input});
+    }
+    if (part.force.size() > 0) held_.push_back({i, part.force, kNoInput});
   }
-  moving_ = MatrixXd::Zero(nq, numbers);
-  held_ = MatrixXd::Zero(nq, numbers + 2 * tones_.count());
-  carried_ = MatrixXd::Zero(2 * nq, held_.cols());
-  of_block_ = MatrixXd::Zero(ny, held_.cols());
-  S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
-  sensitivity_ = MatrixXd::Zero(ny, p);
-  MakeMaps();
+  for (Index i = 0; i < tones_.count(); ++i) {
+    tone_held_.push_back({numbers + 2 * i, VectorXd::Zero(nx / 2), kNoInput});
+  }
+  const auto place = [](const Entry& entry) {
+    return std::pair(entry.number, entry.on);
+  };
+  std::ranges::stable_sort(entries_, {}, place);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (i == 0 || place(entries_[i]) != place(entries_[i - 1]))
+      moving_.push_back({i, i});
+    moving_.back().end = i + 1;
+  }
+  const auto forces = static_cast<Index>(moving_.size() * pulses_.size());
+  tick_ = MatrixXd::Zero(nx + forces, before_.cols());
+  start_ = VectorXd::Ones(before_.cols());
+  end_ = VectorXd::Zero(tick_.rows());
+  sources_ =
+      MatrixXd::Zero(nx, forces + static_cast<Index>(held_.size() + tone_held_.size()));
+  left_.assign(static_cast<std::size_t>(block()),
+               MatrixXd::Zero(nx + outputs(), sources_.cols()));
+  block_ = MatrixXd::Zero(nx + outputs(), columns);
 }
 
 void LinearTwin::AddEntries(Index number, Motion motion, const MatrixXd& part) {
@@ -105,7 +131,6 @@ void LinearTwin::AddEntries(Index number, Motion motion, const MatrixXd& part) {
 
 void LinearTwin::MakeMaps() noexcept {
   const MechanicalModel& nominal = model_.nominal;
-  const Index nq = M_.rows();
   M_ = nominal.M;
   D_ = nominal.D;
   K_ = nominal.K;
@@ -122,10 +147,17 @@ void LinearTwin::MakeMaps() noexcept {
     if (part.Gamma.size() > 0) Gamma_ += moved * part.Gamma;
     if (part.force.size() > 0) f_ += moved * part.force;
   }
+  MakeStep();
+  MakeTick();
+  LiftSensitivities();
+}
+
+void LinearTwin::MakeStep() noexcept {
   // v' = v + h (M + h D)^-1 (f - K q - D v), q' = q + h v'.
+  const Index nq = M_.rows();
   const double h = model_.timing.step;
-  left_ = M_ + h * D_;
-  factor_.compute(left_);
+  left_side_ = M_ + h * D_;
+  factor_.compute(left_side_);
   const auto into_velocity = [&](auto rows) {
     factor_.solveInPlace(rows);
     rows *= h;
@@ -133,23 +165,72 @@ void LinearTwin::MakeMaps() noexcept {
   pulse_step_.bottomRows(nq).setIdentity();
   into_velocity(pulse_step_.bottomRows(nq));
   pulse_step_.topRows(nq) = h * pulse_step_.bottomRows(nq);
+  // Without the identity, whose rounding would be a spring to where x is 0.
   A_step_.bottomLeftCorner(nq, nq) = -K_;
   A_step_.bottomRightCorner(nq, nq) = -D_;
   into_velocity(A_step_.bottomRows(nq));
-  A_step_.bottomRightCorner(nq, nq).diagonal().array() += 1.0;
   A_step_.topRows(nq) = h * A_step_.bottomRows(nq);
-  A_step_.topLeftCorner(nq, nq).diagonal().array() += 1.0;
+  A_step_.topRightCorner(nq, nq).diagonal().array() += h;
   B_step_.noalias() = pulse_step_ * Gamma_;
   constant_.noalias() = pulse_step_ * f_;
-  A_ = A_step_;
   pulses_.back() = pulse_ = pulse_step_;
   for (std::size_t s = pulses_.size() - 1; s > 0; --s) {
-    pulses_[s - 1].noalias() = A_step_ * pulses_[s];
+    pulses_[s - 1] = pulses_[s];
+    pulses_[s - 1].noalias() += A_step_ * pulses_[s];
     pulse_ += pulses_[s - 1];
-    scratch_.noalias() = A_step_ * A_;
-    A_.swap(scratch_);
   }
-  LiftSensitivities();
+}
+
+void LinearTwin::MakeTick() noexcept {
+  const Index nx = states();
+  before_.setZero();
+  Index source = 0;
+  for (const MatrixXd& pulse : pulses_) {
+    after_ = before_;
+    after_.noalias() += A_step_ * before_;
+    after_.leftCols(nx) += A_step_;
+    after_.middleCols(nx, B_step_.cols()) += B_step_;
+    after_.rightCols(1) += constant_;
+    MakeMoving(nx + source, before_, after_);
+    for (const Moving& moving : moving_) {
+      sources_.col(source++) = pulse.col(entries_[moving.first].on);
+    }
+    before_.swap(after_);
+  }
+  tick_.topRows(nx) = before_;
+  for (const Held& held : held_) {
+    sources_.col(source++).noalias() = pulse_ * held.direction;
+  }
+  for (std::size_t i = 0; i < tone_held_.size(); ++i) {
+    Held& held = tone_held_[i];
+    held.direction.noalias() = Gamma_ * tones_.amplitude(static_cast<Index>(i));
+    sources_.col(source++).noalias() = pulse_ * held.direction;
+  }
+}
+
+void LinearTwin::MakeMoving(Index row, const MatrixXd& before,
+                            const MatrixXd& after) noexcept {
+  const Index nq = M_.rows();
+  for (const Moving& moving : moving_) {
+    auto force = tick_.row(row++);
+    force.setZero();
+    for (std::size_t i = moving.first; i < moving.end; ++i) {
+      const Entry& entry = entries_[i];
+      switch (entry.motion) {
+        case Motion::kPosition:
+          force += entry.coefficient * before.row(entry.of);
+          force[entry.of] += entry.coefficient;
+          break;
+        case Motion::kVelocity:
+          force += entry.coefficient * after.row(nq + entry.of);
+          force[nq + entry.of] += entry.coefficient;
+          break;
+        case Motion::kAcceleration:
+          force += entry.coefficient / model_.timing.step *
+                   (after.row(nq + entry.of) - before.row(nq + entry.of));
+      }
+    }
+  }
 }
 
 void LinearTwin::UseGain(std::size_t gain) noexcept {
@@ -159,29 +240,37 @@ void LinearTwin::UseGain(std::size_t gain) noexcept {
 }
 
 void LinearTwin::LiftSensitivities() noexcept {
-  F_ = A_;
+  const Index nx = states();
+  F_ = tick_.topLeftCorner(nx, nx);
+  F_.diagonal().array() += 1.0;
   F_.noalias() -= gain().L * C_;
-  power_ = F_;
-  seen_ = mean_;
+  base_ = F_;
+  power_.setIdentity();
+  for (Index left = block(); left > 0; left /= 2) {
+    if (left % 2 != 0) {
+      scratch_.noalias() = base_ * power_;
+      power_.swap(scratch_);
+    }
+    if (left > 1) {
+      scratch_.noalias() = base_ * base_;
+      base_.swap(scratch_);
+    }
+  }
+  row_ = seen_ = mean_;
   for (Index j = 1; j < block(); ++j) {
-    seen_.noalias() += mean_ * power_;
-    scratch_.noalias() = F_ * power_;
-    power_.swap(scratch_);
+    row_next_.noalias() = row_ * F_;
+    row_.swap(row_next_);
+    seen_ += row_;
   }
-  Lift(pulse_, of_tick_);
-  for (std::size_t s = 0; s < pulses_.size() && !entries_.empty(); ++s) {
-    Lift(pulses_[s], of_step_[s]);
-  }
-}
-
-void LinearTwin::Lift(const MatrixXd& pulse, Response& response) noexcept {
-  response.carried.back() = pulse;
-  response.seen.back().setZero();
-  for (auto j = static_cast<std::size_t>(block() - 1); j > 0; --j) {
-    response.carried[j - 1].noalias() = F_ * response.carried[j];
+  left_.back().topRows(nx) = sources_;
+  left_.back().bottomRows(outputs()).setZero();
+  for (std::size_t j = left_.size() - 1; j > 0; --j) {
+    const auto later = left_[j].topRows(nx);
+    left_[j - 1].topRows(nx).noalias() = F_ * later;
     // What is carried from the end of tick j - 1 is seen from the next one on.
-    response.seen[j - 1] = response.seen[j];
-    response.seen[j - 1].noalias() += mean_ * response.carried[j];
+    auto seen = left_[j - 1].bottomRows(outputs());
+    seen = left_[j].bottomRows(outputs());
+    seen.noalias() += mean_ * later;
   }
 }
 
@@ -204,8 +293,7 @@ void LinearTwin::Reset() noexcept {
   in_block_ = 0;
   x_.setZero();
   S_.setZero();
-  carried_.setZero();
-  of_block_.setZero();
+  block_.setZero();
   MakeMaps();
 }
 
@@ -221,58 +309,35 @@ void LinearTwin::Predict(VectorXd& reading) noexcept {
   reading.noalias() += C_ * x_;
 }
 
-void LinearTwin::Push(const MatrixXd& forces, const Response& response) noexcept {
-  const auto tick = static_cast<std::size_t>(in_block_);
-  carried_.leftCols(forces.cols()).noalias() += response.carried[tick] * forces;
-  of_block_.leftCols(forces.cols()).noalias() += response.seen[tick] * forces;
-}
-
-void LinearTwin::AddHeldForces() noexcept {
-  held_.setZero();
-  Index column = 0;
-  for (const ModelPart& part : model_.parts) {
-    auto force = held_.col(column++);
-    if (part.Gamma.size() > 0) force.noalias() += part.Gamma * u_;
-    if (part.force.size() > 0) force += part.force;
+void LinearTwin::Push() noexcept {
+  const MatrixXd& left = left_[static_cast<std::size_t>(in_block_)];
+  Index source = 0;
+  Index force = states();
+  for (std::size_t s = 0; s < pulses_.size(); ++s) {
+    for (const Moving& moving : moving_) {
+      block_.col(entries_[moving.first].number) += end_[force++] * left.col(source++);
+    }
+  }
+  for (const Held& held : held_) {
+    const double times = held.input == kNoInput ? 1.0 : u_[held.input];
+    block_.col(held.column) += times * left.col(source++);
   }
   for (Index i = 0; i < tones_.count(); ++i) {
-    auto cosine = held_.col(column + 1);
-    cosine.noalias() = Gamma_ * tones_.amplitude(i);
-    held_.col(column) = tones_.sine(i) * cosine;
-    cosine *= tones_.cosine(i);
-    column += 2;
-  }
-}
-
-void LinearTwin::AddMovingForces() noexcept {
-  const Index nq = M_.rows();
-  moving_.setZero();
-  for (const Entry& entry : entries_) {
-    double signal = x_[entry.of];
-    if (entry.motion == Motion::kVelocity) signal = next_[nq + entry.of];
-    if (entry.motion == Motion::kAcceleration) {
-      signal = (next_[nq + entry.of] - x_[nq + entry.of]) / model_.timing.step;
-    }
-    moving_(entry.on, entry.number) += entry.coefficient * signal;
+    const Index column = tone_held_[static_cast<std::size_t>(i)].column;
+    block_.col(column) += tones_.sine(i) * left.col(source);
+    block_.col(column + 1) += tones_.cosine(i) * left.col(source);
+    ++source;
   }
 }
 
 void LinearTwin::Step(std::span<const double> inputs,
                       const VectorXd& innovation) noexcept {
   Command(inputs);
-  AddHeldForces();
-  Push(held_, of_tick_);
-  driven_ = constant_;
-  driven_.noalias() += B_step_ * u_;
-  for (const Response& response : of_step_) {
-    next_ = driven_;
-    next_.noalias() += A_step_ * x_;
-    if (!entries_.empty()) {
-      AddMovingForces();
-      Push(moving_, response);
-    }
-    x_.swap(next_);
-  }
+  start_.head(x_.size()) = x_;
+  start_.segment(x_.size(), u_.size()) = u_;
+  end_.noalias() = tick_ * start_;
+  Push();
+  x_ += end_.head(x_.size());
   x_.noalias() += gain().L * innovation;
   tones_.Advance();
   ++in_block_;
@@ -281,23 +346,24 @@ void LinearTwin::Step(std::span<const double> inputs,
 const MatrixXd& LinearTwin::EndBlock() noexcept {
   sensitivity_.setZero();
   S_next_.setZero();
+  const auto carried = block_.topRows(states());
+  const auto seen = block_.bottomRows(outputs());
   Index column = 0;
   for (const ModelPart& part : model_.parts) {
     const double value = values_[column];
     for (const Index factor : part.factors) {
-      S_next_.col(factor) += value * carried_.col(column);
-      sensitivity_.col(factor) += value * of_block_.col(column);
+      S_next_.col(factor) += value * carried.col(column);
+      sensitivity_.col(factor) += value * seen.col(column);
     }
     ++column;
   }
   const Index of_tones = 2 * tones_.count();
-  S_next_.middleCols(first_tone(), of_tones) = carried_.rightCols(of_tones);
-  sensitivity_.middleCols(first_tone(), of_tones) = of_block_.rightCols(of_tones);
+  S_next_.middleCols(first_tone(), of_tones) = carried.rightCols(of_tones);
+  sensitivity_.middleCols(first_tone(), of_tones) = seen.rightCols(of_tones);
   sensitivity_.leftCols(acting()).noalias() += seen_ * S_.leftCols(acting());
   S_next_.leftCols(acting()).noalias() += power_ * S_.leftCols(acting());
   S_.swap(S_next_);
-  carried_.setZero();
-  of_block_.setZero();
+  block_.setZero();
   in_block_ = 0;
   return sensitivity_;
 }

@@ -72,12 +72,6 @@ class LinearTwin final : public Twin {
   void Shift(const Eigen::VectorXd& change) noexcept override;
 
  private:
-  /// Of a force on every coordinate in a tick j of a block: what it moves, F^(d-1-j) P,
-  /// and what of that the mean of the block sees.
-  struct Response {
-    std::vector<Eigen::MatrixXd> carried;  // 2 nq x nq
-    std::vector<Eigen::MatrixXd> seen;     // ny x nq
-  };
   /// One entry of M, D or K of a number: a force on a coordinate, proportional to what
   /// another one does.
   enum class Motion { kAcceleration, kVelocity, kPosition };
@@ -88,18 +82,31 @@ class LinearTwin final : public Twin {
     Eigen::Index of;
     double coefficient;
   };
+  /// Entries of a number on one coordinate.
+  struct Moving {
+    std::size_t first, end;  ///< of entries_
+  };
+  /// A direction in which a unit of a number, or of a tone, pushes all through a tick,
+  /// times a command or, without one, for itself.
+  struct Held {
+    Eigen::Index column;  ///< of block_
+    Eigen::VectorXd direction;
+    Eigen::Index input;
+  };
+  static constexpr Eigen::Index kNoInput = -1;
 
   void AddEntries(Eigen::Index number, Motion motion, const Eigen::MatrixXd& part);
+  void AddSources();
   void Reset() noexcept;
   void MakeMaps() noexcept;
+  void MakeStep() noexcept;
+  void MakeTick() noexcept;
+  /// Forces of units in the step between those states, as rows of the map of a tick.
+  void MakeMoving(Eigen::Index row, const Eigen::MatrixXd& before,
+                  const Eigen::MatrixXd& after) noexcept;
   void LiftSensitivities() noexcept;
-  /// Of one of these forces a tick.
-  void Lift(const Eigen::MatrixXd& pulse, Response& response) noexcept;
-  void Push(const Eigen::MatrixXd& forces, const Response& response) noexcept;
-  /// Of what a tick holds: commands, constants, tones.
-  void AddHeldForces() noexcept;
-  /// Of what moves, in the step from x_ to next_.
-  void AddMovingForces() noexcept;
+  /// What the forces of this tick leave in the block.
+  void Push() noexcept;
 
   UncertainModel model_;
   Eigen::MatrixXd C_;       // ny x 2 nq
@@ -108,28 +115,37 @@ class LinearTwin final : public Twin {
   Eigen::VectorXd values_;  // of the numbers
 
   MovedRest moved_rest_;
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  // of a Moving in a row
+  // What pushes in a tick, in the order of sources: what moves, step by step, what the
+  // tick holds, then the tones.
+  std::vector<Moving> moving_;
+  std::vector<Held> held_, tone_held_;
 
   // Maps at theta_.
-  Eigen::MatrixXd M_, D_, K_, Gamma_, left_;
+  Eigen::MatrixXd M_, D_, K_, Gamma_, left_side_;
   Eigen::VectorXd f_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
-  Eigen::MatrixXd A_step_, B_step_;      // of a step; of the commands
-  Eigen::MatrixXd pulse_step_;           // of forces on every coordinate
-  Eigen::VectorXd constant_;             // of f, a step
-  Eigen::MatrixXd A_;                    // of a tick
-  Eigen::MatrixXd F_, power_, scratch_;  // A - L C, F^d
-  Eigen::MatrixXd seen_;                 // (1/d) sum_j C F^j
-  std::vector<Eigen::MatrixXd> pulses_;  // P_s
-  Eigen::MatrixXd pulse_;                // their sum
-  std::vector<Response> of_step_;        // of a force in that step of a tick
-  Response of_tick_;                     // of one that a tick holds
+  Eigen::MatrixXd A_step_, B_step_;  // of a step, less the identity; of the commands
+  Eigen::MatrixXd pulse_step_;       // of forces on every coordinate
+  Eigen::VectorXd constant_;         // of f, a step
+  // Of [x; u; 1] at the start of a tick: how far x has moved before a step and after it;
+  // how far in the tick, above the forces of what moves.
+  Eigen::MatrixXd before_, after_, tick_;
+  Eigen::MatrixXd F_, power_, base_, scratch_;  // A - L C, F^d
+  Eigen::MatrixXd row_, row_next_, seen_;       // (1/d) sum_j C F^j
+  std::vector<Eigen::MatrixXd> pulses_;         // P_s
+  Eigen::MatrixXd pulse_;                       // their sum
+  Eigen::MatrixXd sources_;  // what a unit of each leaves in its tick
+  /// In a tick j of a block: what it moves, F^(d-1-j) P, above what of that the mean of
+  /// the block sees, (2 nq + ny) x sources.
+  std::vector<Eigen::MatrixXd> left_;
 
   // The run.
   Eigen::Index in_block_ = 0;
-  Eigen::VectorXd next_, driven_;
-  Eigen::MatrixXd held_, moving_;       // forces of a unit of every number, and tone
-  Eigen::MatrixXd carried_, of_block_;  // of those of a block: at its end, in its mean
+  Eigen::VectorXd start_, end_;  // of a tick: [x; u; 1], tick_ of it
+  /// What a unit of every number, and tone, has left in a block: at its end, and below
+  /// that in its mean.
+  Eigen::MatrixXd block_;
   Eigen::MatrixXd S_next_, sensitivity_;
 };
 

@@ -16,7 +16,8 @@
 
 namespace mjdiag {
 
-/// Probability that a fault is named on a healthy machine.
+/// Probability that a fault is named on a healthy machine: in a run that is judged at its
+/// end, or in the course of a day that it is watched.
 inline constexpr double kFalseFault = 1e-4;
 
 /// @param deviations     d, p

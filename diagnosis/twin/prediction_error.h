@@ -59,7 +59,7 @@ class PredictionErrorEstimator {
   void CatchUp() noexcept;
 
   // What it says is what the pass said that has seen most: while it goes back, or is
-  // pulled along, that stands.
+  // pulled along, that stands. While it follows it says what it has at every block.
 
   /// Whether it has said anything yet.
   bool began() const { return said_.began; }
@@ -89,6 +89,8 @@ class PredictionErrorEstimator {
   /// Tick from which the machine has been as it is estimated.
   Eigen::Index since() const { return said_.since; }
   int returns() const { return returns_; }
+  /// Whether it follows: the readings that it keeps do not reach back any more.
+  bool following() const { return kept_.added() - now().first() > options_.kept; }
 
  private:
   /// A stretch of the run in which the machine does not change.
@@ -122,7 +124,6 @@ class PredictionErrorEstimator {
   }
   PassStart& now() { return segment_.windowed ? segment_.window : segment_.first; }
   std::size_t gain() const { return pass_.gain(); }
-  bool following() const { return kept_.added() - now().first() > options_.kept; }
   bool CaughtUp() const { return pass_.seen() >= kept_.added(); }
 
   void FindStart() noexcept;

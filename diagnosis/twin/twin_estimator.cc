@@ -21,6 +21,7 @@ constexpr double kNothing = 1e-6;
 constexpr double kAlike = 1.0 - 1e-9;
 /// By chance the misfit is not above it: a mean of about a hundred squares.
 constexpr double kExplained = 2.0;
+constexpr double kDay = 86400.0;  // s
 
 /// Deviation of a fault from healthy, and its standard deviation.
 std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& theta,
@@ -45,6 +46,7 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
 
 TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
     : faults_(std::move(machine.faults)),
+      block_time_(machine.sample_time * static_cast<double>(machine.twin->block())),
       estimator_(std::move(machine.twin), std::move(machine.unknowns),
                  machine.sample_time, options) {}
 
@@ -66,6 +68,10 @@ void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
 void TwinEstimator::ReadTones(const TwinFault& fault,
                               Eigen::Ref<VectorXd> parts) const noexcept {
   parts = estimator_.theta().segment(fault.first, 2 * fault.tones());
+}
+
+double TwinEstimator::FalseNaming() const {
+  return estimator_.following() ? kFalseFault * block_time_ / kDay : kFalseFault;
 }
 
 TwinReading TwinEstimator::Read() const {
@@ -110,7 +116,7 @@ TwinReading TwinEstimator::Read() const {
     }
   }
   if (!groups.empty() && estimator_.sure() && reading.misfit < kLargestMisfit) {
-    reading.named = NameFaults(theta.head(active), covariance, groups, kFalseFault);
+    reading.named = NameFaults(theta.head(active), covariance, groups, FalseNaming());
   }
   return reading;
 }

@@ -41,7 +41,10 @@ struct MachineTwin {
 /// explained by any faults, and none is named.
 inline constexpr double kLargestMisfit = 3.0;
 
-/// What a twin says of the faults of its machine.
+/// What a twin says of the faults of its machine. Where it follows, what it says is
+/// another estimate after every block, and each may be looked at: named is what would be
+/// with a probability of kFalseFault over all of a day, however they depend on each
+/// other (Bonferroni).
 struct TwinReading {
   Eigen::VectorXd deviation;  ///< from healthy, nf
   Eigen::VectorXd sd;       ///< nf, larger where the twin does not explain what it sees
@@ -77,7 +80,11 @@ class TwinEstimator {
   const PredictionErrorEstimator& estimator() const { return estimator_; }
 
  private:
+  /// That anything is named on a healthy machine in one look.
+  double FalseNaming() const;
+
   std::vector<TwinFault> faults_;
+  double block_time_;  // [s]
   PredictionErrorEstimator estimator_;
 };
 

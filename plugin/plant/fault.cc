@@ -86,4 +86,13 @@ void CopyFaults(const mjModel& from, mjModel& to) noexcept {
   std::copy_n(from.actuator_gear, 6 * from.nu, to.actuator_gear);
 }
 
+void ApproachFaults(const mjModel& target, double part, mjModel& model) noexcept {
+  const auto approach = [part](const mjtNum* from, int count, mjtNum* to) {
+    for (int i = 0; i < count; ++i) to[i] += part * (from[i] - to[i]);
+  };
+  approach(target.dof_damping, target.nv, model.dof_damping);
+  approach(target.jnt_stiffness, target.njnt, model.jnt_stiffness);
+  approach(target.actuator_gear, 6 * target.nu, model.actuator_gear);
+}
+
 }  // namespace mjdiag

@@ -40,5 +40,7 @@ void ApplyFault(mjModel& model, const Fault& fault);
 /// Gives a model that runs the values that another of the same plant has of everything
 /// that fault parameters scale. Does not allocate.
 void CopyFaults(const mjModel& from, mjModel& to) noexcept;
+/// Moves them that part of the way there.
+void ApproachFaults(const mjModel& target, double part, mjModel& model) noexcept;
 
 }  // namespace mjdiag

@@ -77,6 +77,8 @@ struct RunOptions {
   /// Multisine disturbance -> magnitude (gamma of Eq. 7); left out: 0.
   std::map<std::string, double> disturbances;
   std::vector<LateFault> late_faults;
+  /// When the motion ends it begins again, for ever; what is logged is its first time.
+  bool repeat = false;
   double noise_scale = 1.0;  ///< times every sensor's noise; 0: none
   /// The linear plant without the effects that the plant carries beside: else they are
   /// refused.

@@ -39,6 +39,7 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
       switch_names_(setup.channels.Switches()),
       on_(setup.channels.actuators.size(), true),
       sample_time_(setup.rates.tick()),
+      repeat_(options.repeat),
       noise_scale_(options.noise_scale),
       generator_(options.seed),
       observer_(options.observer),
@@ -56,6 +57,7 @@ TickLoop::TickLoop(const Setup& setup, const Excitation& excitation,
     AddAxes(setup, excitation, options.mode);
   }
   AddSines(setup, options);
+  if (repeat_) CheckRepeatable();
   references_.resize(axes_.size());
   if (reconfiguration_ != nullptr && reconfiguration_->axes().size() != axes_.size()) {
     throw InputError("reconfiguration",
@@ -135,6 +137,18 @@ void TickLoop::AddSines(const Setup& setup, const LateFault& disturbance) {
   }
 }
 
+void TickLoop::CheckRepeatable() const {
+  constexpr double kSamePlace = 1e-12;  // m or rad
+  for (const AxisReference& axis : reference_.axes) {
+    const Eigen::Index last = axis.position.size() - 1;
+    const double away = axis.position[last] - axis.position[0];
+    if (std::abs(away) < kSamePlace && axis.velocity[last] == 0.0) continue;
+    throw InputError("motion of axis '" + axis.axis + "'",
+                     "does not end at rest where it begins",
+                     "one that can be repeated, whole periods of it");
+  }
+}
+
 void TickLoop::ReadSensors(std::span<const double> outputs) noexcept {
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     const double sd = noise_scale_ * sensors_[i].noise_sd;
@@ -179,8 +193,9 @@ void TickLoop::Command(Eigen::Index k) noexcept {
 
 void TickLoop::Tick(std::span<const double> outputs,
                     std::span<double> inputs) noexcept {
-  // Past the end of the excitation its last sample is held and nothing is logged.
-  const Eigen::Index k = std::min(tick_, ticks() - 1);
+  // Past the end of the excitation nothing is logged; its last sample is held, or it
+  // begins again.
+  const Eigen::Index k = repeat_ ? tick_ % ticks() : std::min(tick_, ticks() - 1);
   ReadSensors(outputs);
   Command(k);
   if (tick_ < ticks()) {

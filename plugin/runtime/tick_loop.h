@@ -19,8 +19,9 @@ namespace mjdiag {
 
 class TickLoop : public TickControl {
  public:
-  /// InputError if the excitation lacks an axis or an actuator channel of the setup, or
-  /// options.disturbances names none of its disturbances.
+  /// InputError if the excitation lacks an axis or an actuator channel of the setup,
+  /// options.disturbances names none of its disturbances, or a motion that is to be
+  /// repeated does not end where it begins.
   TickLoop(const Setup& setup, const Excitation& excitation, const RunOptions& options);
 
   /// @param outputs  true sensor readings at the start of the tick, setup order
@@ -59,6 +60,7 @@ class TickLoop : public TickControl {
   void AddAxes(const Setup& setup, const Excitation& excitation, ControlMode mode);
   void AddSines(const Setup& setup, const RunOptions& options);
   void AddSines(const Setup& setup, const LateFault& disturbance);
+  void CheckRepeatable() const;
   void ReadSensors(std::span<const double> outputs) noexcept;
   void Command(Eigen::Index k) noexcept;
   /// What the reconfiguration adds to the command of every axis; its gains are set.
@@ -76,6 +78,7 @@ class TickLoop : public TickControl {
   std::vector<Axis> axes_;
   std::vector<Sine> sines_;
   double sample_time_;
+  bool repeat_;
   double noise_scale_;
   std::mt19937_64 generator_;
   std::normal_distribution<double> normal_;

@@ -1,0 +1,21 @@
+#pragma once
+// One long run: the machine repeats its default motion for hours, with the diagnosis and
+// its twin in the control callback, and nothing is kept of it but a row now and then. A
+// healthy machine must not be named faulty, what wears evenly must be followed, and
+// neither memory nor the time of a tick may grow.
+
+#include <vector>
+
+#include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/study_table.h"
+
+namespace mjdiag {
+
+/// The run of `options.duration` on the plant of `options.linear`, a row every
+/// `options.every`; faults of `options.wear` grow evenly from healthy. What the twin says
+/// is looked at every tenth of a second, and a row says all that it said since the last
+/// one. InputError on a wear of what is no fault parameter of the plant.
+std::vector<StudyTable> EnduranceStudy(const Machine& machine,
+                                       const StudyOptions& options);
+
+}  // namespace mjdiag
