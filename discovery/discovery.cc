@@ -8,6 +8,7 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"

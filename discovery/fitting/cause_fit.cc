@@ -2,10 +2,8 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -387,45 +385,6 @@ MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i) {
   MatrixXd rest(all.rows(), all.cols() - count);
   rest << all.leftCols(first), all.rightCols(all.cols() - first - count);
   return rest;
-}
-
-MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
-  const Index channels = problem.run().outputs.rows();
-  const Index parameters = fit.jacobian.cols();
-  const Index n = problem.train() - problem.skip();
-  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip(), channels * n);
-  const VectorXd e = fit.residual.segment(channels * problem.skip(), channels * n);
-  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXd scaled = J * scale.asDiagonal();
-  MatrixXd scores(n, parameters);
-  for (Index k = 0; k < n; ++k) {
-    scores.row(k) = e.segment(channels * k, channels).transpose() *
-                    scaled.middleRows(channels * k, channels);
-  }
-  // The colour of the innovations reaches over the memory of the observer; more than a
-  // twentieth of the record would be noise itself.
-  const auto lags = static_cast<Index>(std::min(
-      0.05 * static_cast<double>(n), 50.0 + std::sqrt(static_cast<double>(n))));
-  MatrixXd B = scores.transpose() * scores;
-  for (Index lag = 1; lag <= lags; ++lag) {
-    const MatrixXd product =
-        scores.topRows(n - lag).transpose() * scores.bottomRows(n - lag);
-    const double weight =
-        1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
-    B += weight * (product + product.transpose());
-  }
-  // What is known of the numbers beforehand: independent measurements.
-  MatrixXd all = scaled.transpose() * scaled;
-  const VectorXd known = scale.head(fit.numbers.size()).cwiseAbs2();
-  all.diagonal().head(known.size()) += known;
-  B.diagonal().head(known.size()) += known;
-  const Eigen::FullPivLU<MatrixXd> information(all);
-  if (!information.isInvertible()) {
-    return MatrixXd::Identity(parameters, parameters) *
-           std::numeric_limits<double>::infinity();
-  }
-  const MatrixXd inverse = information.inverse();
-  return scale.asDiagonal() * (inverse * B * inverse) * scale.asDiagonal();
 }
 
 }  // namespace mjdiag

@@ -9,12 +9,6 @@
 // parameters of the causes), and what is known of them beforehand counts as so many
 // measurements, + |z|^2. Derivatives by parameters of causes are forward differences of
 // whole runs, side by side; see DiscoveryProblem::NumberJacobian for those by z.
-//
-// The covariance of theta holds for innovations of any colour (the "sandwich" of Huber
-// and White with the lags of Newey and West):
-//
-//   cov = (J^T J)^-1 B (J^T J)^-1,  B = sum over lags l of w_l sum_k s_k s_(k+l)^T,
-//   s_k = J_k^T e_k,   w_l = 1 - |l| / (m + 1)
 
 #include <Eigen/Core>
 #include <optional>
@@ -76,9 +70,5 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
 /// A fit but for its cause i: the rest, and J of it.
 FittedModel ModelWithout(const CauseFit& fit, std::size_t i);
 Eigen::MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i);
-
-/// Covariance of theta; infinite variance where the data say nothing.
-Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
-                                    const CauseFit& fit);
 
 }  // namespace mjdiag

@@ -11,6 +11,7 @@
 #include "discovery/candidate_place.h"
 #include "mjdiag/comparison/comparison.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"

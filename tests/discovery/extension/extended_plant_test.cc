@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -112,6 +115,26 @@ TEST(ExtendedPlant, MovesAsTheMachineWithEveryFault) {
   ExpectSameMotion(Extension(Folder("ab383")), ab383, "AB383");
   ExpectSameMotion(Extension(Folder("emps")),
                    test::With({}, {{"zeta", 1.3}, {"eta", 0.9}}), "EMPS");
+}
+
+TEST(ExtendedPlant, MovesAsTheMachineWithOtherNumbers) {
+  const Extension extension(Folder("ab383"));
+  Changes changes;
+  for (const auto& [name, factor] :
+       std::map<std::string, double>{{"mass@y_stage", 0.99},
+                                     {"inertia@arm", 1.04},
+                                     {"stiffness@u3", 1.1},
+                                     {"damping@X", 0.7},
+                                     {"friction@Y", 1.3},
+                                     {"gear@z_motor", 0.95}}) {
+    changes.numbers.emplace_back(FindPlantNumber(extension.machine().plant(), name),
+                                 factor);
+  }
+  ExpectSameMotion(extension, changes, "all kinds");
+  for (const auto& number : changes.numbers) {
+    EXPECT_GT(extension.Influence({{}, {}, {number}}), 1e-7)
+        << PlantNumberName(extension.machine().plant(), number.first);
+  }
 }
 
 TEST(ExtendedPlant, HoldsSeveralCausesAtOneSite) {

@@ -4,6 +4,7 @@
 
 #include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
+#include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
