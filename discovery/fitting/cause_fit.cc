@@ -136,7 +136,9 @@ class Simulator {
   /// not raise. Then only large steps show the derivative.
   VectorXd Difference(const VectorXd& theta, const VectorXd& base, Index i,
                       double duration) const {
-    constexpr double kFirst = 1e-6;
+    // Beside numbers in doubt, which may act together just as a parameter does, what the
+    // nonlinear part leaves of a step must not seem to tell them apart.
+    const double first = numbers_ > 0 ? 1e-6 : 1e-4;
     constexpr double kLast = 0.1;
     constexpr double kNoticed = 10.0;  // standard deviations of the noise
     constexpr double kGrows = 5.0;
@@ -148,8 +150,8 @@ class Simulator {
       moved[i] += step;
       return VectorXd((RunAt(moved) - base) / step);
     };
-    VectorXd found = quotient(kFirst * scale);
-    for (double part = kFirst; part < kLast; part *= 10.0) {
+    VectorXd found = quotient(first * scale);
+    for (double part = first; part < kLast; part *= 10.0) {
       if (found.norm() * part * scale < kNoticed) break;
       try {
         VectorXd further = quotient(10.0 * part * scale);
