@@ -1,10 +1,10 @@
 // mjdiag study: sweeps and Monte-Carlo studies with their tables.
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
 #include <map>
 #include <memory>
+#include <string_view>
 
 #include "app/command.h"
 #include "app/output.h"
@@ -12,6 +12,7 @@
 #include "app/subject.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
@@ -89,15 +90,13 @@ NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
 /// <name>=<value>
 SizedFault ParseWear(const std::string& text) {
   const std::size_t equals = std::min(text.find('='), text.size());
-  const std::string value = text.substr(std::min(equals + 1, text.size()));
-  double number = 0.0;
-  const auto [end, error] =
-      std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc() || end != value.data() + value.size()) {
+  const auto growth =
+      ParseNumber(std::string_view(text).substr(std::min(equals + 1, text.size())));
+  if (!growth) {
     throw InputError("--wear " + text, "no number behind '='",
                      "<name>=<growth an hour>");
   }
-  return {text.substr(0, equals), number};
+  return {text.substr(0, equals), *growth};
 }
 
 void CheckChoices(const StudyCommand& command, Choice choice) {

@@ -1,7 +1,6 @@
 #include "app/subject.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "app/format.h"
 #include "app/progress.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag::app {
@@ -17,14 +17,6 @@ namespace {
 
 constexpr double kLongestRun = 1e4;  // s
 constexpr double kMostNoise = 1e9;
-
-std::optional<double> ParseNumber(std::string_view text) {
-  double number = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
-}
 
 /// <name>=<value>, or <name>=<value>@<time>.
 LateFault ParseFault(const std::string& text) {
@@ -88,11 +80,8 @@ void AddFault(const std::string& text, Subject& subject) {
 
 CLI::Validator Within(double least, double most) {
   const auto check = [=](const std::string& text) -> std::string {
-    double value = 0.0;
-    const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool number = error == std::errc() && end == text.data() + text.size();
-    if (number && value >= least && value <= most) return "";
+    const auto number = ParseNumber(text);
+    if (number && *number >= least && *number <= most) return "";
     return "'" + text + "' is not a number from " + Short(least) + " to " + Short(most);
   };
   return {check, "FROM " + Short(least) + " TO " + Short(most)};

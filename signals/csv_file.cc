@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
 namespace {
@@ -112,13 +113,12 @@ SourceColumn ParseHeader(std::string_view cell) {
   return column;
 }
 
-/// False if the cell is not exactly one finite number.
-bool ParseNumber(std::string_view cell, double& value) {
+/// None if the cell is not exactly one finite number.
+std::optional<double> ParseCell(std::string_view cell) {
   cell = Unquote(cell);
   if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
-  const char* end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.data(), end, value);
-  return error == std::errc() && stop == end && std::isfinite(value);
+  const auto number = ParseNumber(cell);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 class CsvSource : public RecordSource {
@@ -178,8 +178,7 @@ class CsvSource : public RecordSource {
     }
     separator_ = FindSeparator(line);
     for (const std::string_view cell : SplitCells(line, separator_)) {
-      double number = 0.0;
-      if (ParseNumber(cell, number)) {
+      if (ParseCell(cell)) {
         throw InputError(file_ + ": line " + std::to_string(header_line_),
                          "a number in the header row", "names of columns");
       }
@@ -195,10 +194,12 @@ class CsvSource : public RecordSource {
     for (; column < slots.size() && rest.data() != nullptr; ++column) {
       const std::string_view cell = TakeCell(rest, separator_);
       if (slots[column] == kNotChosen) continue;
-      if (!ParseNumber(cell, values[slots[column]][row])) {
+      const auto number = ParseCell(cell);
+      if (!number) {
         throw InputError(Place(column, row), "\"" + std::string(TrimCell(cell)) + "\"",
                          "a finite number");
       }
+      values[slots[column]][row] = *number;
     }
     if (column < slots.size() || rest.data() != nullptr) {
       throw InputError(file_ + ": line " + std::to_string(lines_.back()),

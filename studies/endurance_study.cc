@@ -14,6 +14,7 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/running_machine.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/twin_listening.h"
 
 namespace mjdiag {
@@ -45,7 +46,9 @@ double Seconds(Clock::time_point from) {
 
 class Watcher final : public TickObserver {
  public:
-  Watcher(const Machine& machine, bool linear) : monitor_(DesignOf(machine, linear)) {
+  Watcher(const Machine& machine, bool linear)
+      : monitor_(
+            (linear ? LinearDiagnosis(machine) : PrepareDiagnosis(machine)).design) {
     auto twin = MakeTwinEstimator(machine, linear);
     if (!twin) {
       throw InputError("setup '" + machine.setup().name + "'",
@@ -66,12 +69,6 @@ class Watcher final : public TickObserver {
   Index TakeAlarms() { return std::exchange(alarms_, 0); }
 
  private:
-  static DiagnosisDesign DesignOf(const Machine& machine, bool linear) {
-    DiagnosisSource source;
-    source.nominal.linear = linear;
-    return PrepareDiagnosis(machine, source).design;
-  }
-
   DiagnosisMonitor monitor_;
   Index alarms_ = 0;
 };

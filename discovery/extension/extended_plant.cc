@@ -41,9 +41,7 @@ ModelPtr WithNativeChanges(const mjModel& plant, const Changes& changes) {
     if (carried.effect->form() == Form::kAttributes) continue;
     carried.effect->Retract(*extended, CheckEffect(*extended, carried), carried.values);
   }
-  for (const auto& [number, factor] : changes.numbers) {
-    Scale(*extended, number, factor);
-  }
+  ScaleNumbers(*extended, changes.numbers);
   for (const Fault& fault : changes.faults) ApplyFault(*extended, fault);
   for (const PlacedEffect& placed : changes.effects) {
     if (placed.effect->form() == Form::kAttributes) {

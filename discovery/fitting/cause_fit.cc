@@ -336,13 +336,11 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   return fit;
 }
 
-/// Mean square at which noise is all that is left.
-constexpr double kNoiseOnly = 1.2;
-
 CauseFit FitNumbers(const DiscoveryProblem& problem,
                     const std::vector<Candidate>& candidates) {
   if (problem.numbers().empty()) return FitCauses(problem, candidates, {}, {});
-  constexpr int kAnew = 2;  // derivatives, for the plant may be far off
+  constexpr int kAnew = 2;            // derivatives, for the plant may be far off
+  constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
   CauseFit fit;
   for (int i = 0; i < kAnew; ++i) {
     CauseFit next = FitCauses(problem, candidates, fit,

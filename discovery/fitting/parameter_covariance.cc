@@ -11,14 +11,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+ScaledInformation InformationOf(const DiscoveryProblem& problem, const CauseFit& fit) {
+  const Index channels = problem.run().outputs.rows();
+  const Index n = problem.train() - problem.skip();
+  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip(), channels * n);
+  ScaledInformation information;
+  information.scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  information.jacobian = J * information.scale.asDiagonal();
+  information.known = information.scale.head(fit.numbers.size()).cwiseAbs2();
+  information.matrix = information.jacobian.transpose() * information.jacobian;
+  information.matrix.diagonal().head(information.known.size()) += information.known;
+  return information;
+}
+
 MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
   const Index channels = problem.run().outputs.rows();
   const Index parameters = fit.jacobian.cols();
   const Index n = problem.train() - problem.skip();
-  const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip(), channels * n);
+  const auto [scaled, scale, known, all] = InformationOf(problem, fit);
   const VectorXd e = fit.residual.segment(channels * problem.skip(), channels * n);
-  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXd scaled = J * scale.asDiagonal();
   MatrixXd scores(n, parameters);
   for (Index k = 0; k < n; ++k) {
     scores.row(k) = e.segment(channels * k, channels).transpose() *
@@ -37,9 +48,6 @@ MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fi
     B += weight * (product + product.transpose());
   }
   // What is known of the numbers beforehand: independent measurements.
-  MatrixXd all = scaled.transpose() * scaled;
-  const VectorXd known = scale.head(fit.numbers.size()).cwiseAbs2();
-  all.diagonal().head(known.size()) += known;
   B.diagonal().head(known.size()) += known;
   const Eigen::FullPivLU<MatrixXd> information(all);
   if (!information.isInvertible()) {

@@ -15,6 +15,16 @@
 
 namespace mjdiag {
 
+/// J^T J of the part that the fit saw, and what is known of the numbers beforehand, with
+/// theta_i = scale_i theta'_i: parameters of all units alike.
+struct ScaledInformation {
+  Eigen::MatrixXd jacobian;  ///< J diag(scale), values of the fit x parameters
+  Eigen::VectorXd scale;
+  Eigen::VectorXd known;  ///< of the numbers, on the diagonal
+  Eigen::MatrixXd matrix;
+};
+ScaledInformation InformationOf(const DiscoveryProblem& problem, const CauseFit& fit);
+
 /// Covariance of theta; infinite variance where the data say nothing.
 Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
                                     const CauseFit& fit);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
 
@@ -137,16 +138,10 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const std::vector<Candidate>& candidates,
                                          const CauseFit& fit,
                                          const MatrixXd& covariance) {
-  const Index channels = problem.run().outputs.rows();
   const VectorXd theta = Flatten(fit.causes);
-  const MatrixXd J = fit.jacobian.middleRows(
-      channels * problem.skip(), channels * (problem.train() - problem.skip()));
-  const VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXd scaled = J * scale.asDiagonal();
-  MatrixXd information = scaled.transpose() * scaled;
-  const Index numbers = fit.numbers.size();
-  information.diagonal().head(numbers) += scale.head(numbers).cwiseAbs2();
-  const MatrixXd all = scale.asDiagonal() * Inverse(information) * scale.asDiagonal();
+  const ScaledInformation information = InformationOf(problem, fit);
+  const MatrixXd all = information.scale.asDiagonal() * Inverse(information.matrix) *
+                       information.scale.asDiagonal();
   const MatrixXd C = all.bottomRightCorner(theta.size(), theta.size());
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
   const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);

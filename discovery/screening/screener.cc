@@ -88,7 +88,7 @@ MatrixXd Screener::Fast(const Trial& trial, const Candidate& candidate) const {
 std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& response,
                                        const VectorXd& residual) const {
   MatrixXd phi = trial.summed ? MatrixXd(response.rowwise().sum()) : response;
-  if (!trial.fast) {
+  if (residual.size() > phi.rows()) {
     phi = WithNumbers(phi, MatrixXd::Zero(residual.size() - phi.rows(), phi.cols()));
   }
   const VectorXd size = phi.colwise().squaredNorm();

@@ -36,10 +36,10 @@ int ParameterCount(const std::vector<FittedCause>& causes);
 double Criterion(const CauseFit& fit, const Eigen::VectorXd& independent,
                  Eigen::Index first, Eigen::Index last);
 
-/// Criteria of competing fits on the train part. How many independent values they are judged by is what
-/// the best of them leaves: beside all models a real machine does what is no white
-/// noise, and a law with many parameters must not win by that. A fit that failed, and
-/// is none, has infinity.
+/// Criteria of competing fits on the train part. How many independent values they are
+/// judged by is what the best of them leaves: beside all models a real machine does what
+/// is no white noise, and a law with many parameters must not win by that. A fit that
+/// failed, and is none, has infinity.
 std::vector<double> Criteria(const DiscoveryProblem& problem,
                              const std::vector<std::optional<CauseFit>>& fits);
 

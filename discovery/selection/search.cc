@@ -55,6 +55,10 @@ class Search {
   void MeetUnsteadiness();
   bool AddCause();
   void AddCauses();
+  void DropSuperfluous() {
+    while (Drop(data_, result_)) {
+    }
+  }
   void Settle();
   bool TryExchange();
   void FitClosely();
@@ -152,8 +156,7 @@ void Search::Settle() {
   Report("other periods", 0.7);
   ChangePeriods(data_, result_);
   Report("whether every cause is needed", 0.8);
-  while (Drop(data_, result_)) {
-  }
+  DropSuperfluous();
   Report("whether runs are repeatable", 0.9);
   MeetUnsteadiness();
 }
@@ -186,8 +189,7 @@ void Search::FitClosely() {
 SearchResult Search::Run() {
   FitCausesFoundBefore();
   // Behind another observer or with other steps one of them may be nothing.
-  while (Drop(data_, result_)) {
-  }
+  DropSuperfluous();
   AddCauses();
   if (!result_.served) return std::move(result_);
   if (options_.preliminary && options_.preliminary(result_.fit())) {

@@ -2,7 +2,6 @@
 // What is put into a plant: numbers of it that are others than the file says, faults of
 // its own parameters, and effects that it lacks.
 
-#include <utility>
 #include <vector>
 
 #include "mjdiag/plugin/effects/placed_effect.h"
@@ -11,13 +10,11 @@
 
 namespace mjdiag {
 
-/// Numbers of a plant with the factors that multiply them.
-using NumberFactors = std::vector<std::pair<PlantNumber, double>>;
-
 struct Changes {
   std::vector<Fault> faults;
   std::vector<PlacedEffect> effects;
-  NumberFactors numbers = {};  ///< first, so that effects add to the numbers as they are
+  NumberFactors numbers =
+      {};  ///< first, so that effects add to the numbers as they are
 
   bool operator==(const Changes&) const = default;
 };

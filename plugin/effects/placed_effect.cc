@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
 namespace {
@@ -24,13 +25,9 @@ constexpr std::string_view kPrefix = "effect.";
 }
 
 double ParseValue(std::string_view text, std::string_view value) {
-  double number = 0.0;
-  const auto [end, error] =
-      std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc() || end != value.data() + value.size()) {
-    FailToParse(text, "'" + std::string(value) + "' is not a number");
-  }
-  return number;
+  const auto number = ParseNumber(value);
+  if (!number) FailToParse(text, "'" + std::string(value) + "' is not a number");
+  return *number;
 }
 
 std::string Names(const std::vector<EffectParameter>& parameters) {

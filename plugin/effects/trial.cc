@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "mjdiag/plugin/plant/motor_force.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 
@@ -12,9 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 VectorXd SiteMotion::motor() const {
-  const DataPtr data = MakeData(plant);
-  mj_fwdPosition(&plant, data.get());
-  const MotorBias bias = MotorBiasOf(plant, *data, {});
+  const MotorBias bias = MotorBiasAtQpos0(plant);
   return motion.inputs.transpose() * model.Gamma.row(site.joint).transpose() -
          motion.position.transpose() * bias.stiffness.row(site.joint).transpose() -
          motion.velocity.transpose() * bias.damping.row(site.joint).transpose();

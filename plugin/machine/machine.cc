@@ -27,12 +27,6 @@ struct Machine::Derived {
 
 namespace {
 
-void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
-  if (factors.empty()) return;
-  for (const auto& [number, factor] : factors) Scale(model, number, factor);
-  DeriveConstants(model);
-}
-
 void ApplyCalibration(const Setup& setup, mjModel& model) {
   const Calibration& calibration = *setup.calibration;
   if (calibration.sensor_noise.size() !=

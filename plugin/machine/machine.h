@@ -54,8 +54,8 @@ class Machine {
   const MechanicalModel& linear() const&;
   MechanicalModel linear() const&& { return std::as_const(*this).linear(); }
 
-  /// This machine with numbers, faults and effects besides those that it has. InputError names
-  /// a fault parameter, effect, site or value that the plant does not allow.
+  /// This machine with numbers, faults and effects besides those that it has. InputError
+  /// names a fault parameter, effect, site or value that the plant does not allow.
   Machine With(const Changes& changes) const;
   /// With numbers of the plant that many times what they are.
   Machine WithNumbers(const NumberFactors& factors) const;

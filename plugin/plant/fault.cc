@@ -55,6 +55,14 @@ FaultParameter FindFaultParameter(const mjModel& model, const std::string& name)
                    known.empty() ? "no fault" : "one of " + known);
 }
 
+/// change(values of one model, how many, those of another) for all that faults are of.
+template <typename Change>
+void ForEachFaultArray(const mjModel& from, mjModel& to, const Change& change) {
+  change(from.dof_damping, from.nv, to.dof_damping);
+  change(from.jnt_stiffness, from.njnt, to.jnt_stiffness);
+  change(from.actuator_gear, 6 * from.nu, to.actuator_gear);
+}
+
 }  // namespace
 
 std::vector<FaultParameter> FaultParameters(const mjModel& model) {
@@ -81,18 +89,17 @@ void ApplyFault(mjModel& model, const Fault& fault) {
 }
 
 void CopyFaults(const mjModel& from, mjModel& to) noexcept {
-  std::copy_n(from.dof_damping, from.nv, to.dof_damping);
-  std::copy_n(from.jnt_stiffness, from.njnt, to.jnt_stiffness);
-  std::copy_n(from.actuator_gear, 6 * from.nu, to.actuator_gear);
+  ForEachFaultArray(from, to, [](const mjtNum* source, int count, mjtNum* values) {
+    std::copy_n(source, count, values);
+  });
 }
 
 void ApproachFaults(const mjModel& target, double part, mjModel& model) noexcept {
-  const auto approach = [part](const mjtNum* from, int count, mjtNum* to) {
-    for (int i = 0; i < count; ++i) to[i] += part * (from[i] - to[i]);
-  };
-  approach(target.dof_damping, target.nv, model.dof_damping);
-  approach(target.jnt_stiffness, target.njnt, model.jnt_stiffness);
-  approach(target.actuator_gear, 6 * target.nu, model.actuator_gear);
+  ForEachFaultArray(target, model,
+                    [part](const mjtNum* aim, int count, mjtNum* values) {
+                      for (int i = 0; i < count; ++i)
+                        values[i] += part * (aim[i] - values[i]);
+                    });
 }
 
 }  // namespace mjdiag

@@ -37,6 +37,10 @@ double MotorForce(const mjModel& model, const mjData& data, int motor) noexcept 
                  model.actuator_forcelimited, model.actuator_forcerange);
 }
 
+double GearOf(const mjModel& model, int motor) noexcept {
+  return mju_norm(RowOf(model.actuator_gear, 6, motor), 6);
+}
+
 double OpenCircuitCommand(const mjModel& model, const mjData& data,
                           int motor) noexcept {
   return -Bias(model, data, motor) / Gain(model, motor);
@@ -66,6 +70,12 @@ MotorBias MotorBiasOf(const mjModel& model, const mjData& data,
     sum.damping -= bias[2] * arm * arm.transpose();
   }
   return sum;
+}
+
+MotorBias MotorBiasAtQpos0(const mjModel& model) {
+  const DataPtr data = MakeData(model);
+  mj_fwdPosition(&model, data.get());
+  return MotorBiasOf(model, *data, {});
 }
 
 }  // namespace mjdiag

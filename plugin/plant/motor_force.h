@@ -15,6 +15,9 @@ namespace mjdiag {
 /// Before the gear, of the command in data.ctrl. After positions and velocities.
 double MotorForce(const mjModel& model, const mjData& data, int motor) noexcept;
 
+/// Force or torque of a unit of its force: length of the six numbers of the gear.
+double GearOf(const mjModel& model, int motor) noexcept;
+
 /// The command at which the motor gives no force: what an open circuit shows at its
 /// ends, which is the back EMF of a DC motor.
 double OpenCircuitCommand(const mjModel& model, const mjData& data, int motor) noexcept;
@@ -30,5 +33,7 @@ struct MotorBias {
 /// After positions. @param off  motors that are left out
 MotorBias MotorBiasOf(const mjModel& model, const mjData& data,
                       std::span<const int> off);
+/// Of all motors at qpos0: their arms on the joints do not change with them, or by little.
+MotorBias MotorBiasAtQpos0(const mjModel& model);
 
 }  // namespace mjdiag

@@ -80,6 +80,18 @@ double Declared(const mjModel& model, const std::string& name) {
   return spread;
 }
 
+/// What a plant declares of a number itself, and of all that it does not.
+struct Declarations {
+  double own = -1.0;
+  double of_all = -1.0;
+};
+
+Declarations DeclarationsOf(const mjModel& model, const PlantNumber& number) {
+  const std::string name(kDeclaration);
+  return {Declared(model, name + "." + PlantNumberName(model, number)),
+          Declared(model, name)};
+}
+
 }  // namespace
 
 std::string PlantNumberName(const mjModel& model, const PlantNumber& number) {
@@ -126,17 +138,17 @@ std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
   return numbers;
 }
 
-std::vector<PlantNumber> PlantNumbersOf(const mjModel& model,
-                                        const std::string& text) {
+std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string& text) {
   std::vector<PlantNumber> meant = PlantNumbers(model);
   std::erase_if(meant, [&](const PlantNumber& number) {
     return text != "all" && text != Of(number.kind).name &&
            text != PlantNumberName(model, number);
   });
   if (meant.empty()) {
-    throw InputError("number of the plant '" + text + "'", "there is none",
-                     "all, a kind (mass, inertia, stiffness, damping, friction, gear) or "
-                     "one of an element, as mass@<body>");
+    throw InputError(
+        "number of the plant '" + text + "'", "there is none",
+        "all, a kind (mass, inertia, stiffness, damping, friction, gear) or "
+        "one of an element, as mass@<body>");
   }
   return meant;
 }
@@ -144,19 +156,15 @@ std::vector<PlantNumber> PlantNumbersOf(const mjModel& model,
 double UsualSpread(PlantNumberKind kind) { return Of(kind).spread; }
 
 double SpreadOf(const mjModel& model, const PlantNumber& number) {
-  const std::string name(kDeclaration);
-  const double own = Declared(model, name + "." + PlantNumberName(model, number));
-  if (own >= 0.0) return own;
-  const double of_all = Declared(model, name);
-  return of_all >= 0.0 ? of_all : UsualSpread(number.kind);
+  const Declarations declared = DeclarationsOf(model, number);
+  if (declared.own >= 0.0) return declared.own;
+  return declared.of_all >= 0.0 ? declared.of_all : UsualSpread(number.kind);
 }
 
 double DoubtOf(const mjModel& model, const PlantNumber& number) {
-  const std::string name(kDeclaration);
-  const double own = Declared(model, name + "." + PlantNumberName(model, number));
-  if (own > 0.0) return own;
-  const double of_all = Declared(model, name);
-  return of_all > 0.0 ? of_all : Of(number.kind).doubt;
+  const Declarations declared = DeclarationsOf(model, number);
+  if (declared.own > 0.0) return declared.own;
+  return declared.of_all > 0.0 ? declared.of_all : Of(number.kind).doubt;
 }
 
 bool IsExact(const mjModel& model) {
@@ -165,6 +173,12 @@ bool IsExact(const mjModel& model) {
 
 void Scale(mjModel& model, const PlantNumber& number, double factor) {
   for (mjtNum& value : NumbersOf(model, number)) value *= factor;
+}
+
+void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
+  if (factors.empty()) return;
+  for (const auto& [number, factor] : factors) Scale(model, number, factor);
+  DeriveConstants(model);
 }
 
 void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,

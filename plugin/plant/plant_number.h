@@ -14,6 +14,7 @@
 #include <mujoco/mujoco.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace mjdiag {
@@ -53,8 +54,13 @@ double DoubtOf(const mjModel& model, const PlantNumber& number);
 /// Whether the plant says of itself that it is what it says (`known` 0).
 bool IsExact(const mjModel& model);
 
+/// Numbers of a plant with the factors that multiply them.
+using NumberFactors = std::vector<std::pair<PlantNumber, double>>;
+
 /// Multiplies it. Masses and inertias ask for mj_setConst afterwards.
 void Scale(mjModel& model, const PlantNumber& number, double factor);
+/// Multiplies them all, with what MuJoCo derives from masses.
+void ScaleNumbers(mjModel& model, const NumberFactors& factors);
 /// Makes it `factor` times what it is in `nominal`.
 void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
                double factor);

@@ -25,13 +25,6 @@ VectorXd DampingOf(const mjModel& plant) {
   return Eigen::Map<const VectorXd>(plant.dof_damping, plant.nv);
 }
 
-/// A motor's arm on the joints does not change with them, or by little.
-MotorBias MotorBiasAtQpos0(const mjModel& plant) {
-  const DataPtr data = MakeData(plant);
-  mj_fwdPosition(&plant, data.get());
-  return MotorBiasOf(plant, *data, {});
-}
-
 TickTangent NoTime(Index nv) {
   return {MatrixXd::Identity(2 * nv, 2 * nv), MatrixXd::Zero(2 * nv, nv)};
 }

@@ -13,8 +13,7 @@ namespace {
 
 /// Behind its gear [N, N m].
 double ForceBehindGear(const mjModel& model, const mjData& data, int motor) {
-  return mju_norm(RowOf(model.actuator_gear, 6, motor), 6) *
-         MotorForce(model, data, motor);
+  return GearOf(model, motor) * MotorForce(model, data, motor);
 }
 
 class CoupledForce final : public ActiveEffect {

@@ -4,15 +4,11 @@
 #include <algorithm>
 
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 namespace {
-
-/// Length of a unit of travel in the actuator's own length.
-double GearOf(const mjModel& model, int actuator) {
-  return mju_norm(RowOf(model.actuator_gear, 6, actuator), 6);
-}
 
 class VaryingMotor final : public ActiveEffect {
  public:
@@ -33,7 +29,7 @@ class VaryingMotor final : public ActiveEffect {
  private:
   double slope_;
   double curvature_;
-  double gear_;
+  double gear_;  // length of a unit of travel in the actuator's own length
   double rest_ = 0.0;
   int actuator_;
 };

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 /// Force of gravity and of the spring on a hinge, over its angle, the others where they
-/// are.
+/// are, without what touches it.
 class StaticForce {
  public:
   explicit StaticForce(const mjModel& plant) : plant_(plant), data_(MakeData(plant)) {}
@@ -25,7 +25,11 @@ class StaticForce {
     VectorXd::Map(data_->qpos, plant_.nq) =
         VectorXd::Map(plant_.qpos0, plant_.nq) + position;
     data_->qpos[joint] += change;
-    mj_fwdPosition(&plant_, data_.get());
+    // Of mj_fwdPosition what these forces need: a screening asks at every sample.
+    mj_kinematics(&plant_, data_.get());
+    mj_comPos(&plant_, data_.get());
+    mj_tendon(&plant_, data_.get());
+    mj_transmission(&plant_, data_.get());
     mj_fwdVelocity(&plant_, data_.get());
     return data_->qfrc_passive[joint] - data_->qfrc_bias[joint];
   }

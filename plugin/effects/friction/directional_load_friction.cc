@@ -16,8 +16,8 @@ namespace {
 
 class BoundBySide final : public VaryingBound {
  public:
-  BoundBySide(int dof, const EffectValues& values)
-      : VaryingBound(dof), motor_share_(values[0]), load_share_(values[1]) {}
+  BoundBySide(const JointOf& joint, const EffectValues& values)
+      : VaryingBound(joint.dof), motor_share_(values[0]), load_share_(values[1]) {}
 
  private:
   double Added(const mjModel& model, mjData& data) noexcept override {
@@ -29,27 +29,16 @@ class BoundBySide final : public VaryingBound {
   double load_share_;
 };
 
-class DirectionalLoadFrictionEffect final : public Effect {
+class DirectionalLoadFrictionEffect final : public VaryingFrictionEffect<BoundBySide> {
  public:
   DirectionalLoadFrictionEffect()
-      : Effect({.name = "directional_load_friction",
-                .variable = LawVariable::kVelocity,
-                .parameters = {NotNegative("motor_share", Role::kAmplitude, "1"),
-                               NotNegative("load_share", Role::kAmplitude, "1")},
-                .meaning = "dry friction of |motor_share motor - load_share rest|: a "
-                           "drive that a load turns less easily than its motor"}) {}
-
-  void Apply(mjModel& model, int joint, const EffectValues&) const override {
-    AddDryFriction(model, joint, kLeastBound);
-  }
-  void Retract(mjModel& model, int joint, const EffectValues&) const override {
-    TakeDryFriction(model, joint, kLeastBound);
-  }
-  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
-                                         int joint,
-                                         const EffectValues& values) const override {
-    return std::make_unique<BoundBySide>(model.jnt_dofadr[joint], values);
-  }
+      : VaryingFrictionEffect(
+            {.name = "directional_load_friction",
+             .variable = LawVariable::kVelocity,
+             .parameters = {NotNegative("motor_share", Role::kAmplitude, "1"),
+                            NotNegative("load_share", Role::kAmplitude, "1")},
+             .meaning = "dry friction of |motor_share motor - load_share rest|: a "
+                        "drive that a load turns less easily than its motor"}) {}
 
   // Motor and rest work against each other nearly all the time, and the bound is the sum
   // of its two parts then.

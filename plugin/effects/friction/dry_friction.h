@@ -3,7 +3,11 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
+#include <memory>
+
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/joint_force.h"
 
 namespace mjdiag {
 
@@ -35,5 +39,27 @@ class VaryingBound : public ActiveEffect {
   int dof_;
 };
 inline constexpr double kLeastBound = 1e-12;  // [N, N m]
+
+/// Dry friction with a bound that the model has and one that changes.
+/// @tparam Bound  VaryingBound, made from a JointOf and the EffectValues
+template <class Bound>
+class VaryingFrictionEffect : public Effect {
+ public:
+  using Effect::Effect;
+  void Apply(mjModel& model, int joint, const EffectValues& values) const final {
+    AddDryFriction(model, joint, std::max(Constant(values), kLeastBound));
+  }
+  void Retract(mjModel& model, int joint, const EffectValues& values) const final {
+    TakeDryFriction(model, joint, std::max(Constant(values), kLeastBound));
+  }
+  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
+                                         int joint,
+                                         const EffectValues& values) const final {
+    return std::make_unique<Bound>(JointOf(model, joint), values);
+  }
+
+ private:
+  virtual double Constant(const EffectValues&) const { return 0.0; }  // [N, N m]
+};
 
 }  // namespace mjdiag

@@ -17,8 +17,8 @@ namespace {
 
 class BoundByLoad final : public VaryingBound {
  public:
-  BoundByLoad(int dof, double coefficient)
-      : VaryingBound(dof), coefficient_(coefficient) {}
+  BoundByLoad(const JointOf& joint, const EffectValues& values)
+      : VaryingBound(joint.dof), coefficient_(values[0]) {}
 
  private:
   double Added(const mjModel& model, mjData& data) noexcept override {
@@ -29,26 +29,15 @@ class BoundByLoad final : public VaryingBound {
   double coefficient_;
 };
 
-class LoadFrictionEffect final : public Effect {
+class LoadFrictionEffect final : public VaryingFrictionEffect<BoundByLoad> {
  public:
   LoadFrictionEffect()
-      : Effect({.name = "load_friction",
-                .variable = LawVariable::kVelocity,
-                .parameters = {NotNegative("coefficient", Role::kAmplitude, "1")},
-                .meaning = "dry friction of coefficient |what the drive transmits|: "
-                           "motor less the rest of the force on the joint"}) {}
-
-  void Apply(mjModel& model, int joint, const EffectValues&) const override {
-    AddDryFriction(model, joint, kLeastBound);
-  }
-  void Retract(mjModel& model, int joint, const EffectValues&) const override {
-    TakeDryFriction(model, joint, kLeastBound);
-  }
-  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
-                                         int joint,
-                                         const EffectValues& values) const override {
-    return std::make_unique<BoundByLoad>(model.jnt_dofadr[joint], values[0]);
-  }
+      : VaryingFrictionEffect(
+            {.name = "load_friction",
+             .variable = LawVariable::kVelocity,
+             .parameters = {NotNegative("coefficient", Role::kAmplitude, "1")},
+             .meaning = "dry friction of coefficient |what the drive transmits|: "
+                        "motor less the rest of the force on the joint"}) {}
 
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const ObservedLoad load(at);

@@ -31,26 +31,17 @@ class BoundByPosition final : public VaryingBound {
   double curvature_;
 };
 
-class PositionDependentFrictionEffect final : public Effect {
+class PositionDependentFrictionEffect final
+    : public VaryingFrictionEffect<BoundByPosition> {
  public:
   PositionDependentFrictionEffect()
-      : Effect({.name = "position_dependent_friction",
-                .variable = LawVariable::kPosition,
-                .parameters = {Free("slope", Role::kAmplitude, "N/m"),
-                               Free("curvature", Role::kAmplitude, "N/m^2")},
-                .meaning = "dry friction that changes by slope q + curvature q^2"}) {}
+      : VaryingFrictionEffect(
+            {.name = "position_dependent_friction",
+             .variable = LawVariable::kPosition,
+             .parameters = {Free("slope", Role::kAmplitude, "N/m"),
+                            Free("curvature", Role::kAmplitude, "N/m^2")},
+             .meaning = "dry friction that changes by slope q + curvature q^2"}) {}
 
-  void Apply(mjModel& model, int joint, const EffectValues&) const override {
-    AddDryFriction(model, joint, kLeastBound);
-  }
-  void Retract(mjModel& model, int joint, const EffectValues&) const override {
-    TakeDryFriction(model, joint, kLeastBound);
-  }
-  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
-                                         int joint,
-                                         const EffectValues& values) const override {
-    return std::make_unique<BoundByPosition>(JointOf(model, joint), values);
-  }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     Eigen::MatrixXd parts(q.size(), 2);

@@ -14,8 +14,8 @@ namespace {
 
 class BoundByLoadSquared final : public VaryingBound {
  public:
-  BoundByLoadSquared(int dof, double coefficient)
-      : VaryingBound(dof), coefficient_(coefficient) {}
+  BoundByLoadSquared(const JointOf& joint, const EffectValues& values)
+      : VaryingBound(joint.dof), coefficient_(values[0]) {}
 
  private:
   double Added(const mjModel& model, mjData& data) noexcept override {
@@ -27,26 +27,16 @@ class BoundByLoadSquared final : public VaryingBound {
   double coefficient_;
 };
 
-class QuadraticLoadFrictionEffect final : public Effect {
+class QuadraticLoadFrictionEffect final
+    : public VaryingFrictionEffect<BoundByLoadSquared> {
  public:
   QuadraticLoadFrictionEffect()
-      : Effect(
+      : VaryingFrictionEffect(
             {.name = "quadratic_load_friction",
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1/N")},
              .meaning = "dry friction of coefficient (what the drive transmits)^2"}) {}
 
-  void Apply(mjModel& model, int joint, const EffectValues&) const override {
-    AddDryFriction(model, joint, kLeastBound);
-  }
-  void Retract(mjModel& model, int joint, const EffectValues&) const override {
-    TakeDryFriction(model, joint, kLeastBound);
-  }
-  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
-                                         int joint,
-                                         const EffectValues& values) const override {
-    return std::make_unique<BoundByLoadSquared>(model.jnt_dofadr[joint], values[0]);
-  }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const ObservedLoad load(at);
     const Eigen::VectorXd bound = (load.motor - load.rest).cwiseAbs2();

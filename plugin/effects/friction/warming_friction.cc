@@ -14,8 +14,8 @@ namespace {
 
 class BoundByTime final : public VaryingBound {
  public:
-  BoundByTime(int dof, const EffectValues& values)
-      : VaryingBound(dof), force_(values[0]), rate_(1.0 / values[1]) {}
+  BoundByTime(const JointOf& joint, const EffectValues& values)
+      : VaryingBound(joint.dof), force_(values[0]), rate_(1.0 / values[1]) {}
 
  private:
   double Added(const mjModel&, mjData& data) noexcept override {
@@ -26,27 +26,17 @@ class BoundByTime final : public VaryingBound {
   double rate_;
 };
 
-class WarmingFrictionEffect final : public Effect {
+class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
  public:
   WarmingFrictionEffect()
-      : Effect({.name = "warming_friction",
-                .variable = LawVariable::kTime,
-                .parameters = {NotNegative("force", Role::kAmplitude, "N"),
-                               Positive("time_constant", Role::kDuration, "s")},
-                .meaning =
-                    "dry friction that goes away: force exp(-t / time_constant)"}) {}
+      : VaryingFrictionEffect(
+            {.name = "warming_friction",
+             .variable = LawVariable::kTime,
+             .parameters = {NotNegative("force", Role::kAmplitude, "N"),
+                            Positive("time_constant", Role::kDuration, "s")},
+             .meaning = "dry friction that goes away: force exp(-t / time_constant)"}) {
+  }
 
-  void Apply(mjModel& model, int joint, const EffectValues&) const override {
-    AddDryFriction(model, joint, kLeastBound);
-  }
-  void Retract(mjModel& model, int joint, const EffectValues&) const override {
-    TakeDryFriction(model, joint, kLeastBound);
-  }
-  std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
-                                         int joint,
-                                         const EffectValues& values) const override {
-    return std::make_unique<BoundByTime>(model.jnt_dofadr[joint], values);
-  }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd s = Direction(at.v());
     const auto n = static_cast<double>(s.size());

@@ -1,0 +1,18 @@
+#pragma once
+// The part of dry friction that goes away with speed [Stribeck 1902]:
+//   exp(-(v / velocity)^2)
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/plugin/effects/trial.h"
+
+namespace mjdiag {
+
+double StribeckShare(double v, double velocity) noexcept;
+
+/// Trials of friction with a constant part and one that goes away with speed.
+/// @param slide  what the constant part makes of a bound of 1, samples
+std::vector<Trial> StribeckTrials(const SiteMotion& at, const Eigen::VectorXd& slide);
+
+}  // namespace mjdiag
