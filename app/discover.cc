@@ -2,11 +2,11 @@
 // what it gains.
 
 #include <memory>
-#include <optional>
 
 #include "app/command.h"
 #include "app/discovery_output.h"
 #include "app/exit_status.h"
+#include "app/measured_records.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
@@ -14,7 +14,6 @@
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/record_file.h"
 
 namespace mjdiag::app {
 namespace {
@@ -26,8 +25,7 @@ constexpr int kMostCauses = 20;
 struct DiscoverCommand {
   MachineOptions machine;
   OutputOptions output;
-  std::string record;
-  std::string validation;
+  MeasurementOptions records;
   DiscoverOptions search;
 };
 
@@ -40,13 +38,13 @@ void RequirePlantOfItsFile(const MachineOptions& options) {
 }
 
 Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
-                       const Record& measured, const std::optional<Record>& unseen) {
+                       const Measurements& measurements) {
   ProgressBar bar("discovering");
   DiscoverOptions options = command.search;
   options.progress = [&bar](const std::string& what, double fraction) {
     bar.Show(what, fraction);
   };
-  return Discover(machine, measured, unseen ? &*unseen : nullptr, options);
+  return Discover(machine, measurements, options);
 }
 
 // A plant that cannot be written must not cost the answer, which took its time.
@@ -65,22 +63,20 @@ std::string Extend(const DiscoverCommand& command, const Machine& machine,
 void Discover(const DiscoverCommand& command) {
   RequirePlantOfItsFile(command.machine);
   const Machine machine = LoadSubject(command.machine).nominal;
-  const Record measured = ReadRecord(command.record, machine.setup().record);
-  std::optional<Record> unseen;
-  if (!command.validation.empty()) {
-    unseen = ReadRecord(command.validation, machine.setup().record);
-  }
+  const Measurements measurements =
+      LoadMeasurements(command.records, command.machine, machine);
   PrepareOutput(command.output);
-  Discovery discovery = RunDiscovery(machine, command, measured, unseen);
+  Discovery discovery = RunDiscovery(machine, command, measurements);
 
-  const DiscoveryRun run{{CommandLine(), command.record, {{"mjdiag", MJDIAG_VERSION}}},
-                         command.validation,
+  const std::string record = Names(measurements.fit);
+  const std::string validation = Names(measurements.unseen);
+  const DiscoveryRun run{{CommandLine(), record, {{"mjdiag", MJDIAG_VERSION}}},
+                         validation,
                          Extend(command, machine, discovery)};
   nlohmann::json document = ToJson(discovery, run.extended_plant);
-  document["record"] = command.record;
-  document["validation"] = command.validation.empty()
-                               ? nlohmann::json()
-                               : nlohmann::json(command.validation);
+  document["record"] = record;
+  document["validation"] =
+      validation.empty() ? nlohmann::json() : nlohmann::json(validation);
   document["seed"] = command.search.seed;
   document["command"] = CommandLine();
   std::string text = Describe(discovery);
@@ -100,10 +96,7 @@ void AddDiscover(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "discover", "Find what the plant lacks on a measured record, and put it in");
   AddMachineOptions(*command, options->machine);
-  command->add_option("--record", options->record, "Measured record, CSV or MAT")
-      ->required();
-  command->add_option("--validation", options->validation,
-                      "Record of another motion, to which nothing is fitted");
+  AddMeasurementOptions(*command, options->records);
   command
       ->add_option("--train-share", options->search.train_share,
                    "Share of the record, from its start, that fits see")

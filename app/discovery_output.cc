@@ -39,6 +39,7 @@ std::string Describe(const Discovery& discovery) {
          Section("After each cause, on the validation record",
                  ValidationLadderTable(discovery)) +
          Section("Mismatch, rms", MismatchTable(discovery)) +
+         Section("Every record, free simulation", RecordTable(discovery)) +
          Section("Smallest faults that are seen", FaultLimitTable(discovery)) +
          NotesText(discovery.notes);
 }

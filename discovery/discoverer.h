@@ -18,14 +18,13 @@ namespace mjdiag {
 /// A discovery under way.
 class Discoverer {
  public:
-  Discoverer(const Machine& machine, const Record& measured, const Record* validation,
+  Discoverer(const Machine& machine, const Measurements& measurements,
              const DiscoverOptions& options)
       : machine_(machine),
-        measured_(measured),
-        validation_(validation),
+        measurements_(measurements),
         options_(options),
-        problem_(
-            PoseProblem(machine, measured, options.train_share, options.bandwidth)),
+        problem_(PoseProblem(machine, RunOf(measurements.fit), options.train_share,
+                             options.bandwidth)),
         candidates_(ListCandidates(machine)) {}
 
   Discovery Run();
@@ -61,8 +60,7 @@ class Discoverer {
   void AddLimits();
 
   const Machine& machine_;
-  const Record& measured_;
-  const Record* validation_;
+  const Measurements& measurements_;
   const DiscoverOptions& options_;
   DiscoveryProblem problem_;
   std::vector<Candidate> candidates_;

@@ -240,7 +240,7 @@ void Discoverer::SearchBehindObservers(SearchOptions options) {
   Search(options, true);
   if (!options.preliminary(search_.fit())) return;
   std::vector<DoubtedNumber> numbers = problem_.numbers();
-  problem_ = PoseProblem(machine_, measured_, options_.train_share,
+  problem_ = PoseProblem(machine_, problem_.run(), options_.train_share,
                          kFastShare * machine_.rates().control)
                  .Doubting(std::move(numbers));
   // Every further one takes longer than all before it.
@@ -264,8 +264,8 @@ void Discoverer::SearchAll() {
   options.most_causes = options_.most_causes;
   options.progress = options_.progress;
   std::optional<MeasuredRun> unseen;
-  if (validation_ != nullptr) {
-    unseen = ToMeasuredRun(machine_.setup(), *validation_);
+  if (!measurements_.unseen.empty()) {
+    unseen = RunOf(measurements_.unseen);
     options.unseen = &*unseen;
   }
   if (options_.doubt) {
@@ -320,17 +320,30 @@ Discovery Discoverer::Run() {
   return std::move(discovery_);
 }
 
-Discovery Discover(const Machine& machine, const Record& measured,
-                   const Record* validation, const DiscoverOptions& options) {
-  std::vector<std::string> notes = CheckRecord(machine, measured);
-  if (validation != nullptr) {
-    for (std::string& note : CheckRecord(machine, *validation)) {
-      notes.push_back("validation record: " + note);
+Discovery Discover(const Machine& machine, const Measurements& measurements,
+                   const DiscoverOptions& options) {
+  const Measurements split = WithUnseen(measurements, options.train_share);
+  std::vector<std::string> notes;
+  const auto check = [&](const std::vector<MeasuredRecord>& records,
+                         const std::string& role) {
+    for (const MeasuredRecord& one : records) {
+      const std::string& where = split.Several() ? one.name : "";
+      const std::string of = where.empty() ? role : where + ": ";
+      for (const std::string& note : CheckRecord(one.machine, one.record)) {
+        notes.push_back(of + note);
+      }
     }
-  }
-  Discovery discovery = Discoverer(machine, measured, validation, options).Run();
+  };
+  check(split.fit, "");
+  check(split.unseen, "validation record: ");
+  Discovery discovery = Discoverer(machine, split, options).Run();
   discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
   return discovery;
+}
+
+Discovery Discover(const Machine& machine, const Record& measured,
+                   const Record* validation, const DiscoverOptions& options) {
+  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
 }
 
 Changes ChangesOf(const Discovery& discovery) {
@@ -342,6 +355,15 @@ Changes ChangesOf(const Discovery& discovery) {
     changes.numbers.emplace_back(number.number, number.factor);
   }
   return changes;
+}
+
+const RecordReplay* Discovery::Fitted() const {
+  return records.empty() ? nullptr : &records.front();
+}
+
+const RecordReplay* Discovery::Unseen() const {
+  const auto first = std::ranges::find(records, false, &RecordReplay::seen);
+  return first == records.end() ? nullptr : &*first;
 }
 
 bool IsOff(const CalibratedNumber& number) {

@@ -12,8 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/comparison/comparison.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/discovery/measurements.h"
+#include "mjdiag/discovery/record_replay.h"
 #include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
@@ -99,13 +100,14 @@ struct Discovery {
   /// what looks odd in the record.
   std::vector<std::string> notes;
 
-  double train_share = 0.0;                     ///< of the record that fits saw
-  Comparison before;                            ///< of the record, plant as given
-  Comparison after;                             ///< extended plant
-  std::optional<Comparison> validation_before;  ///< of the validation record
-  std::optional<Comparison> validation_after;
-  /// rms of the mismatch per channel: on the part of the record that fits saw, and on
-  /// what they did not see (the validation record if there is one, else the rest).
+  double train_share = 0.0;  ///< of one record that fits saw
+  /// Of every record; those that fits saw first.
+  std::vector<RecordReplay> records;
+  /// The first that they saw, and the first that they did not; null if there is none.
+  const RecordReplay* Fitted() const;
+  const RecordReplay* Unseen() const;
+  /// rms of the mismatch per channel: on what fits saw, and on what they did not see (the
+  /// validation records if there are any, else the rest of the record).
   struct Figures {
     std::map<std::string, double> train;
     std::map<std::string, double> validation;
@@ -145,9 +147,12 @@ struct DiscoverOptions {
   std::function<void(const std::string& what, double fraction)> progress;
 };
 
-/// @param validation  a record of another motion that nothing is fitted to, or null
+/// @param machine  the nominal one
 /// InputError if the record lacks what the replay needs or cannot be judged (see
 /// data_check.h).
+Discovery Discover(const Machine& machine, const Measurements& measurements,
+                   const DiscoverOptions& options);
+/// @param validation  a record of another motion that nothing is fitted to, or null
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 

@@ -3,7 +3,6 @@
 #include <set>
 #include <utility>
 
-#include "mjdiag/comparison/replay_error.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
@@ -30,16 +29,23 @@ std::vector<std::string> DrivenNames(const MechanicalModel& model) {
   return names;
 }
 
-/// rms of measured minus simulated, samples first .. last - 1.
-std::map<std::string, double> MismatchRms(const Comparison& comparison, Index first,
-                                          Index last) {
-  std::map<std::string, double> rms;
-  for (const ChannelMismatch& channel : comparison.channels) {
-    const VectorXd difference = comparison.measured.At(channel.name).samples -
-                                comparison.simulated.At(channel.name).samples;
-    rms[channel.name] = Rms(difference.segment(first, last - first));
+/// rms of measured minus simulated of records, samples from `first` on.
+/// @param samples  of every record; 0: all
+std::map<std::string, double> MismatchRms(
+    const std::vector<const Comparison*>& comparisons, Index first, Index samples) {
+  std::map<std::string, double> squares;
+  std::map<std::string, double> counts;
+  for (const Comparison* comparison : comparisons) {
+    for (const ChannelMismatch& channel : comparison->channels) {
+      const VectorXd difference = comparison->measured.At(channel.name).samples -
+                                  comparison->simulated.At(channel.name).samples;
+      const Index n = samples > 0 ? samples : difference.size() - first;
+      squares[channel.name] += difference.segment(first, n).squaredNorm();
+      counts[channel.name] += static_cast<double>(n);
+    }
   }
-  return rms;
+  for (auto& [name, square] : squares) square = std::sqrt(square / counts[name]);
+  return squares;
 }
 
 double Gain(const std::map<std::string, double>& before,
@@ -199,7 +205,7 @@ void Discoverer::AddLadder() {
     discovery_.ladder[i].added = steps[i].first;
   }
   // One replay each: the cores come to their end together.
-  const int replays = validation_ != nullptr ? 3 : 2;
+  const int replays = measurements_.unseen.empty() ? 2 : 3;
   ParallelFor(replays * static_cast<int>(steps.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / replays);
     const Changes& changes = steps[i].second;
@@ -211,51 +217,31 @@ void Discoverer::AddLadder() {
       entry.held_out = std::sqrt(
           MeanSquare(rest, channels, problem_.train(), problem_.run().samples()));
     } else if (number % replays == 1) {
-      entry.error_percent = ReplayErrors(machine_, changes, measured_);
+      entry.error_percent = MeanReplayErrors(measurements_.fit, changes);
     } else {
-      entry.validation_percent = ReplayErrors(machine_, changes, *validation_);
+      entry.validation_percent = MeanReplayErrors(measurements_.unseen, changes);
     }
   });
 }
 
 void Discoverer::AddComparisons() {
-  RunOptions options;
-  options.seed = options_.seed;
-  const Machine extended = machine_.With(changes_);
-  struct Task {
-    const Machine& machine;
-    const Record& measured;
-    Comparison& result;
-  };
-  std::vector<Task> tasks{{machine_, measured_, discovery_.before},
-                          {extended, measured_, discovery_.after}};
-  if (validation_ != nullptr) {
-    tasks.push_back({machine_, *validation_, discovery_.validation_before.emplace()});
-    tasks.push_back({extended, *validation_, discovery_.validation_after.emplace()});
-  }
-  ParallelFor(static_cast<int>(tasks.size()), [&](int number) {
-    const Task& task = tasks[static_cast<std::size_t>(number)];
-    task.result = Compare(task.machine, task.measured, options);
-  });
+  discovery_.records = ReplayAll(measurements_, changes_, options_.seed);
   const Index skip = problem_.skip();
-  discovery_.mismatch_before.train =
-      MismatchRms(discovery_.before, skip, problem_.train());
-  discovery_.mismatch_after.train =
-      MismatchRms(discovery_.after, skip, problem_.train());
-  if (validation_ != nullptr) {
-    const Index n = validation_->samples();
-    discovery_.mismatch_before.validation =
-        MismatchRms(*discovery_.validation_before, skip, n);
-    discovery_.mismatch_after.validation =
-        MismatchRms(*discovery_.validation_after, skip, n);
-  } else {
-    const Index n = measured_.samples();
-    discovery_.mismatch_before.validation =
-        MismatchRms(discovery_.before, problem_.train(), n);
-    discovery_.mismatch_after.validation =
-        MismatchRms(discovery_.after, problem_.train(), n);
-  }
-  for (const ChannelMismatch& channel : discovery_.after.channels) {
+  const Index train = problem_.train();
+  const bool one = measurements_.fit.size() == 1;
+  const auto figures = [&](const Comparison RecordReplay::*model) {
+    std::vector<const Comparison*> seen;
+    std::vector<const Comparison*> unseen;
+    for (const RecordReplay& replay : discovery_.records) {
+      (replay.seen ? seen : unseen).push_back(&(replay.*model));
+    }
+    return Discovery::Figures{
+        MismatchRms(seen, skip, one ? train - skip : 0),
+        unseen.empty() ? MismatchRms(seen, train, 0) : MismatchRms(unseen, skip, 0)};
+  };
+  discovery_.mismatch_before = figures(&RecordReplay::before);
+  discovery_.mismatch_after = figures(&RecordReplay::after);
+  for (const ChannelMismatch& channel : discovery_.Fitted()->after.channels) {
     discovery_.noise_floor[channel.name] = channel.noise_floor.rms;
     discovery_.unit[channel.name] = channel.unit;
   }

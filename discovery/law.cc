@@ -52,9 +52,7 @@ LawAxis AxisOf(LawVariable variable, const Candidate& candidate,
     case LawVariable::kTime:
       break;
   }
-  const Index n = motion.samples();
-  return {VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1) * motion.sample_time),
-          "time", "s"};
+  return {motion.time, "time", "s"};
 }
 
 Eigen::MatrixX2d LawCurve(const Cause& cause, const VectorXd& x,

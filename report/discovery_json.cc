@@ -59,10 +59,10 @@ json CausesOf(const Discovery& discovery) {
 json CalibrationOf(const Discovery& discovery) {
   json numbers = json::array();
   for (const CalibratedNumber& number : discovery.calibration) {
-    numbers.push_back({{"number", number.name},
-                       {"factor", Finite(number.factor)},
+    numbers.push_back({{"name", number.name},
+                       {"value", Finite(number.factor)},
                        {"ci95", {Finite(number.low), Finite(number.high)}},
-                       {"known", Finite(number.doubt)},
+                       {"prior_sd", Finite(number.doubt)},
                        {"off", IsOff(number)}});
   }
   return numbers;
@@ -80,9 +80,38 @@ json DerivedOf(const Comparison& comparison) {
   return derived;
 }
 
-json DerivedOf(const Comparison& record, const std::optional<Comparison>& validation) {
-  return {{"record", DerivedOf(record)},
-          {"validation", validation ? DerivedOf(*validation) : json()}};
+/// Of the first record that fits saw, and the first that they did not.
+json DerivedOf(const Discovery& discovery, const Comparison RecordReplay::*model) {
+  const auto of = [&](const RecordReplay* replay) {
+    return replay != nullptr ? DerivedOf(replay->*model) : json();
+  };
+  return {{"record", of(discovery.Fitted())}, {"validation", of(discovery.Unseen())}};
+}
+
+json ReplayOf(const Comparison& comparison) {
+  json channels = json::object();
+  for (const ChannelMismatch& channel : comparison.channels) {
+    channels[channel.name] = {{"rms", Finite(channel.rms)},
+                              {"mae", Finite(channel.mae)},
+                              {"fit_percent", Finite(channel.fit_percent)}};
+  }
+  return channels;
+}
+
+json RecordsOf(const Discovery& discovery) {
+  json records = json::array();
+  for (const RecordReplay& replay : discovery.records) {
+    records.push_back({{"file", replay.name},
+                       {"role", replay.seen ? "fit" : "validation"},
+                       {"before", ReplayOf(replay.before)},
+                       {"replay", ReplayOf(replay.after)}});
+  }
+  return records;
+}
+
+Eigen::Index SamplesOf(const Discovery& discovery) {
+  const RecordReplay* first = discovery.Fitted();
+  return first != nullptr ? first->before.measured.samples() : 0;
 }
 
 json UnexplainedOf(const Discovery& discovery) {
@@ -146,10 +175,11 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"unexplained", UnexplainedOf(discovery)},
           {"train_share", Finite(discovery.train_share)},
           {"sample_time", Finite(discovery.sample_time)},
-          {"samples", discovery.before.measured.samples()},
+          {"samples", SamplesOf(discovery)},
           {"derived",
-           {{"before", DerivedOf(discovery.before, discovery.validation_before)},
-            {"after", DerivedOf(discovery.after, discovery.validation_after)}}},
+           {{"before", DerivedOf(discovery, &RecordReplay::before)},
+            {"after", DerivedOf(discovery, &RecordReplay::after)}}},
+          {"records", RecordsOf(discovery)},
           {"ladder", LadderOf(discovery)},
           {"fault_limits", FaultLimitsOf(discovery)},
           {"notes", discovery.notes}};

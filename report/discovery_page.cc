@@ -27,15 +27,16 @@ Tone ToneOf(DiscoveryVerdict verdict) {
 
 void AddDiscoveryFacts(Page& page, const Discovery& discovery,
                        const DiscoveryRun& run) {
-  const Record& record = discovery.before.measured;
+  const RecordReplay* first = discovery.Fitted();
   std::vector<std::pair<std::string, std::string>> facts = {{"Setup", discovery.setup},
                                                             {"Record", run.run.record}};
   if (!run.validation.empty()) facts.emplace_back("Validation", run.validation);
-  if (record.samples() > 0) {
+  if (first != nullptr) {
+    const Record& record = first->before.measured;
     facts.emplace_back("Length", std::to_string(record.samples()) + " samples at " +
                                      FormatQuantity(1.0 / record.sample_time(), "Hz") +
                                      ", " + FormatQuantity(record.duration(), "s"));
-    facts.emplace_back("Replayed", discovery.before.closed_loop
+    facts.emplace_back("Replayed", first->before.closed_loop
                                        ? "measured reference, in closed loop"
                                        : "measured input, in open loop");
   }
@@ -130,14 +131,20 @@ void AddMismatch(Page& page, const Discovery& discovery) {
   page.AddTable(table);
   page.AddParagraph(kHowToReadMismatch);
   if (changed) page.AddParagraph(GainParagraph(discovery));
-  AddPlots(page, MismatchPlots(discovery.before, changed ? &discovery.after : nullptr,
-                               discovery.train_share, kMostChannels));
-  if (!discovery.validation_before) return;
-  const bool validated = changed && discovery.validation_after.has_value();
+  const Table records = RecordTable(discovery);
+  if (!records.rows.empty()) {
+    page.AddHeading("Every record");
+    page.AddTable(records);
+  }
+  const auto add = [&](const RecordReplay& replay, double fitted) {
+    AddPlots(page, MismatchPlots(replay.before, changed ? &replay.after : nullptr,
+                                 fitted, kMostChannels));
+  };
+  if (discovery.Fitted() == nullptr) return;
+  add(*discovery.Fitted(), discovery.train_share);
+  if (discovery.Unseen() == nullptr) return;
   page.AddHeading("The validation record");
-  AddPlots(page, MismatchPlots(*discovery.validation_before,
-                               validated ? &*discovery.validation_after : nullptr, 0.0,
-                               kMostChannels));
+  add(*discovery.Unseen(), 0.0);
 }
 
 void AddUnexplained(Page& page, const Discovery& discovery) {

@@ -126,8 +126,8 @@ std::vector<TimePlot> MismatchPlots(const Comparison& before, const Comparison* 
 }
 
 std::vector<TimePlot> UnexplainedPlots(const Discovery& discovery) {
-  const Record& record = discovery.before.measured;
-  const double start = record.samples() > 0 ? record.start_time() : 0.0;
+  const RecordReplay* first = discovery.Fitted();
+  const double start = first != nullptr ? first->before.measured.start_time() : 0.0;
   std::vector<TimePlot> plots;
   for (const UnknownSignal& before : discovery.forces_before) {
     plots.push_back(

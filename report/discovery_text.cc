@@ -140,8 +140,10 @@ void AddErrors(Table& table, const std::vector<LadderStep>& ladder,
 /// Channels in the order of the comparison, then those that only have figures.
 std::vector<std::string> ChannelsOf(const Discovery& discovery) {
   std::vector<std::string> names;
-  for (const ChannelMismatch& channel : discovery.before.channels) {
-    names.push_back(channel.name);
+  if (discovery.Fitted() != nullptr) {
+    for (const ChannelMismatch& channel : discovery.Fitted()->before.channels) {
+      names.push_back(channel.name);
+    }
   }
   for (const auto& [name, floor] : discovery.noise_floor) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -333,6 +335,26 @@ Table MismatchTable(const Discovery& discovery) {
          At(before.train, name, quantity), At(after.train, name, quantity),
          At(before.validation, name, quantity), At(after.validation, name, quantity),
          At(after.validation, name, times)});
+  }
+  return table;
+}
+
+Table RecordTable(const Discovery& discovery) {
+  Table table;
+  if (discovery.records.size() < 2) return table;
+  table.columns = {{"Record"},      {"Fitted"},
+                   {"Channel"},     {"Mean absolute, before", true},
+                   {"after", true}, {"Fit, before", true},
+                   {"after", true}};
+  for (const RecordReplay& replay : discovery.records) {
+    for (std::size_t i = 0; i < replay.before.channels.size(); ++i) {
+      const ChannelMismatch& before = replay.before.channels[i];
+      const ChannelMismatch& after = replay.after.channels[i];
+      table.rows.push_back({replay.name, replay.seen ? "yes" : "no", before.name,
+                            FormatQuantity(before.mae, before.unit),
+                            FormatQuantity(after.mae, after.unit),
+                            Percent(before.fit_percent), Percent(after.fit_percent)});
+    }
   }
   return table;
 }

@@ -41,6 +41,8 @@ Table LadderTable(const Discovery& discovery);
 Table ValidationLadderTable(const Discovery& discovery);
 /// rms of the mismatch of every channel before and after.
 Table MismatchTable(const Discovery& discovery);
+/// Free simulation of every record before and after; no rows of one record alone.
+Table RecordTable(const Discovery& discovery);
 /// The smallest fault that is seen, with either plant.
 Table FaultLimitTable(const Discovery& discovery);
 

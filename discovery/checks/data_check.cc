@@ -113,7 +113,7 @@ class RecordCheck {
 };
 
 void RecordCheck::CheckLength() const {
-  constexpr Index kLeast = 500;
+  constexpr Index kLeast = 64;  // as a comparison asks for
   if (measured_.samples() - skip_ >= kLeast) return;
   std::string what = std::to_string(measured_.samples()) + " samples";
   if (skip_ > 0)
@@ -198,7 +198,7 @@ const VectorXd* RecordCheck::Expected(const SensorSetup& sensor) const {
 /// Whether the signal has white noise of a quantum or more outside the runs. That of
 /// quantising alone is smaller, and the differences of a smooth signal do not
 /// alternate.
-bool IsNoisy(const VectorXd& x) {
+bool IsNoisy(const VectorXd& x, double resolution) {
   constexpr Index kOrder = 6;
   constexpr Index kLeast = 100;
   constexpr double kAlternates = -0.5;  // white noise: -m / (m + 1)
@@ -226,8 +226,37 @@ bool IsNoisy(const VectorXd& x) {
   }
   if (count < kLeast) return false;
   const double level = NoiseLevel(free.head(used), kOrder);
-  return product < kAlternates * power && level >= SmallestStep(x) &&
-         level > 1e-9 * Range(x);
+  return product < kAlternates * power &&
+         level >= std::max(SmallestStep(x), resolution) && level > 1e-9 * Range(x);
+}
+
+/// Samples that x needs to get `quanta` steps away from sample k, forwards or backwards;
+/// nothing if the record ends before.
+std::optional<Index> Leaves(const VectorXd& x, Index k, Index direction, double away) {
+  for (Index n = 1; k + direction * n >= 0 && k + direction * n < x.size(); ++n) {
+    if (std::abs(x[k + direction * n] - x[k]) >= away) return n;
+  }
+  return std::nullopt;
+}
+
+/// Whether a coarse signal comes to a rest and leaves it at a steady speed, which no
+/// machine with inertia does: four times the way takes it four times as long then, from
+/// a turning point or out of friction twice as long.
+bool IsCutOff(const VectorXd& x, const Repeats& run, double resolution) {
+  constexpr double kNear = 4.0;  // steps
+  constexpr Index kLeast = 4;    // samples
+  constexpr double kSteady = 0.35;
+  const double step = std::max(SmallestStep(x), resolution);
+  const auto steady = [&](Index k, Index direction) {
+    auto near = Leaves(x, k, direction, kNear * step);
+    if (!near) return false;
+    near = std::max(*near, kLeast);
+    const Index end = k + direction * *near;
+    if (end < 0 || end >= x.size()) return false;
+    const auto far = Leaves(x, k, direction, 4.0 * std::abs(x[end] - x[k]));
+    return far && static_cast<double>(*near) < kSteady * static_cast<double>(*far);
+  };
+  return steady(run.first, -1) && steady(run.end() - 1, 1);
 }
 
 void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
@@ -237,11 +266,13 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   const VectorXd x = Reading(sensor.channel);
   if (Range(x) == 0.0) return;
   const VectorXd* expected = Expected(sensor);
+  const bool noisy = IsNoisy(x, sensor.resolution);
   const std::vector<Repeats> runs = RepeatsIn(x, kLeast);
   for (const double extreme : {x.maxCoeff(), x.minCoeff()}) {
     Index total = 0;
     Index first = -1;
     bool should_move = false;
+    bool cut_off = false;
     for (const Repeats& run : runs) {
       if (x[run.first] != extreme) continue;
       if (first < 0) first = run.first;
@@ -249,9 +280,11 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
       should_move |= expected != nullptr &&
                      Range(expected->segment(run.first + skip_, run.count)) >
                          kShouldMove * Range(*expected);
+      cut_off |= IsCutOff(x, run, sensor.resolution);
     }
     if (static_cast<double>(total) <= kShare * static_cast<double>(x.size())) continue;
-    if (!should_move && !IsNoisy(x)) continue;
+    // An arm that friction holds rests where its reference moves on.
+    if (!noisy && !(should_move && cut_off)) continue;
     throw InputError("record",
                      "saturated: " + Quoted(sensor.channel) + " sits at exactly " +
                          Digits(extreme) + " " + sensor.unit + " for " +

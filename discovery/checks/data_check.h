@@ -3,14 +3,15 @@
 // machine has, so it is refused before anything is fitted to it.
 //
 // Refused with InputError, with n samples left after setup.compare.skip_samples:
-//   too short     n < 500
+//   too short     n < 64
 //   missing       a sample that is NaN or infinite; a sensor held: 5 equal values or
 //                 more, then a step larger than 3 times every step around, 3 times the
 //                 smallest step of the sensor and 6 standard deviations of its noise
 //   saturated     a sensor that stays at exactly its largest or smallest value, at
 //                 least 10 samples at a time, for more than 0.5 % of n, although it is
-//                 noisy elsewhere or should move there: by its reference in closed
-//                 loop, by the simulated plant in open loop
+//                 noisy elsewhere, or should move there (by its reference in closed
+//                 loop, by the simulated plant in open loop) and comes and goes at a
+//                 steady speed
 //   wrong units   a channel of the shape of what it should be (correlation) but about
 //                 10^3, 10^6, 10^-3 or 10^-6 times it (within a factor of 2), for
 //                 angles also 180 / pi or pi / 180 times (within 10 %). In closed loop

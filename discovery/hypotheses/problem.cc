@@ -66,8 +66,12 @@ VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
 }
 
 VectorXd DiscoveryProblem::Scaled(const Track& track) const {
-  const Eigen::MatrixXd scaled =
+  Eigen::MatrixXd scaled =
       observer_.innovation_sd.cwiseInverse().asDiagonal() * track.innovations;
+  for (std::size_t i = 1; i < run_->records.size(); ++i) {
+    const Index first = run_->records[i].sample;
+    scaled.middleCols(first, std::min(skip_, run_->SamplesOf(i))).setZero();
+  }
   return Eigen::Map<const VectorXd>(scaled.data(), scaled.size());
 }
 
@@ -196,12 +200,12 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
   return sd;
 }
 
-DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
+DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
                              double train_share, double bandwidth) {
-  MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
-  const double hertz = bandwidth > 0.0 ? bandwidth
-                                       : std::min(kPeriods / measured.duration(),
-                                                  0.1 * machine.rates().control);
+  const double longest = run.Time().maxCoeff();
+  const double hertz =
+      bandwidth > 0.0 ? bandwidth
+                      : std::min(kPeriods / longest, 0.1 * machine.rates().control);
   const auto design = [&](const Eigen::MatrixXd& innovations) {
     return DesignObserver(machine.linear(), machine.plant().opt.timestep,
                           machine.rates().substeps,
@@ -211,21 +215,22 @@ DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
   const Observer first = design({});
   const Observer observer =
       design(FollowRun(machine, {}, run, first, false).innovations);
-  const auto train = static_cast<Index>(
-      std::lround(train_share * static_cast<double>(measured.samples())));
+  const double share = run.records.size() > 1 ? 1.0 : train_share;
+  const auto train =
+      static_cast<Index>(std::lround(share * static_cast<double>(run.samples())));
   return {machine, observer, std::move(run), machine.setup().compare.skip_samples,
           train};
 }
 
+DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
+                             double train_share, double bandwidth) {
+  return PoseProblem(machine, ToMeasuredRun(machine.setup(), measured), train_share,
+                     bandwidth);
+}
+
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
-  const MeasuredRun& all = problem.run();
-  MeasuredRun beginning{.sample_time = all.sample_time,
-                        .outputs = all.outputs.leftCols(samples),
-                        .inputs = all.inputs.leftCols(samples),
-                        .start = all.start,
-                        .on = all.on.leftCols(std::min(samples, all.on.cols()))};
-  return DiscoveryProblem(problem.machine(), problem.observer(), std::move(beginning),
-                          problem.skip(), samples)
+  return DiscoveryProblem(problem.machine(), problem.observer(),
+                          Part(problem.run(), 0, samples), problem.skip(), samples)
       .Doubting(problem.numbers());
 }
 

@@ -35,7 +35,7 @@ struct DoubtedNumber {
 class DiscoveryProblem {
  public:
   /// @param machine  the nominal one
-  /// @param skip     samples at the start that count for nothing
+  /// @param skip     samples at the start of every record that count for nothing
   /// @param train    samples that a fit sees; the rest is held out
   DiscoveryProblem(Machine machine, Observer observer, MeasuredRun run,
                    Eigen::Index skip, Eigen::Index train);
@@ -109,8 +109,10 @@ DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
 Eigen::VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
                             const Eigen::MatrixXd& innovations);
 
-/// @param train_share  of the record that fits see, 0 to 1
-/// @param bandwidth    of the observer [Hz]; 0: 25 over the duration of the record
+/// @param train_share  of one record that fits see, 0 to 1; of several all
+/// @param bandwidth    of the observer [Hz]; 0: 25 over the duration of the longest
+DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
+                             double train_share, double bandwidth);
 DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
                              double train_share, double bandwidth);
 

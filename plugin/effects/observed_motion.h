@@ -8,6 +8,7 @@ namespace mjdiag {
 
 struct ObservedMotion {
   double sample_time = 0.0;      ///< [s]
+  Eigen::VectorXd time;          ///< [s] since the start of the record, samples
   Eigen::MatrixXd position;      ///< nv x samples, from qpos0
   Eigen::MatrixXd velocity;      ///< nv x samples
   Eigen::MatrixXd acceleration;  ///< nv x samples

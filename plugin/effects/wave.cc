@@ -45,9 +45,7 @@ Sweep FrequencySweep(const VectorXd& entry, const ObservedMotion& motion,
   const double spacing = 0.7 / duration;
   Sweep sweep;
   for (double f = 2.0 * spacing; f < highest; f += spacing) sweep.values.push_back(f);
-  const Index n = motion.samples();
-  const VectorXd time =
-      motion.sample_time * VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  const VectorXd& time = motion.time;
   sweep.angle = kTurn * 2.0 * spacing * time;
   sweep.increment = kTurn * spacing * time;
   sweep.make = [entry, time](double frequency) {

@@ -15,6 +15,15 @@ ErrorDynamics::ErrorDynamics(const Observer& observer, Index block)
       LC_(observer.L * observer.tick.C),
       weight_(observer.innovation_sd.cwiseInverse()) {}
 
+// The state that what was leaves is none.
+void ErrorDynamics::Begin() {
+  if (in_open_ == 0 && blocks_.empty()) return;
+  Block& last = in_open_ > 0 ? open_ : blocks_.back();
+  last.F.setZero();
+  last.B.setZero();
+  last.L.setZero();
+}
+
 void ErrorDynamics::Add(const TickTangent& tick) {
   const MatrixXd F = tick.A - LC_;
   if (in_open_ == 0) {

@@ -27,6 +27,8 @@ class ErrorDynamics {
   /// @param block  samples a block
   ErrorDynamics(const Observer& observer, Eigen::Index block);
 
+  /// Another record: what comes has nothing to do with what was.
+  void Begin();
   /// The next tick of the run.
   void Add(const TickTangent& tick);
   /// Whole blocks so far.

@@ -9,6 +9,7 @@
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/tangent.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/plugin/setup/measured_channel.h"
 #include "mjdiag/signals/error.h"
@@ -65,51 +66,88 @@ class RecordedInputs final : public TickControl {
   Index tick_ = 0;
 };
 
-/// Called after every physics step and every tick.
+/// Called before every record, after every physics step and every tick. With any of them
+/// records are followed one after the other.
 struct Watch {
+  std::function<void()> record;
   std::function<void(const mjModel&, const mjData&, std::span<const int> off)> step;
   std::function<void()> tick;
 };
 
-Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& run,
-             const Observer& observer, bool states, const Watch& watch) {
-  const Machine machine = nominal.With(changes);
-  const StartedPlant plant = StartPlant(machine, run.start);
-  mjModel& model = *plant.model;
-  mjData& data = *plant.data;
-  ChooseSolver(model);
-  Stepper stepper(machine);
-  RecordedInputs control(machine, run);
-  std::function<void()> after_step;
-  if (watch.step) after_step = [&] { watch.step(model, data, stepper.off()); };
-
-  const Index n = run.samples();
-  const Index nv = model.nv;
-  Track track;
-  track.innovations.resize(run.outputs.rows(), n);
-  if (states) {
-    track.position.resize(nv, n);
-    track.velocity.resize(nv, n);
+/// One record of a run, beside the machine with all that is put into it.
+class RecordFollower {
+ public:
+  RecordFollower(const Machine& machine, const MeasuredRun& record,
+                 const Observer& observer)
+      : record_(record),
+        observer_(observer),
+        plant_(StartPlant(machine, record.records.front().readings)),
+        stepper_(machine),
+        control_(machine, record) {
+    ChooseSolver(*plant_.model);
   }
+
+  /// Into columns of the track from `first` on.
+  void Follow(const Watch& watch, Index first, Track& track);
+
+ private:
+  const MeasuredRun& record_;
+  const Observer& observer_;
+  StartedPlant plant_;
+  Stepper stepper_;
+  RecordedInputs control_;
+};
+
+void RecordFollower::Follow(const Watch& watch, Index first, Track& track) {
+  mjModel& model = *plant_.model;
+  mjData& data = *plant_.data;
+  std::function<void()> after_step;
+  if (watch.step) after_step = [&] { watch.step(model, data, stepper_.off()); };
+  const Index nv = model.nv;
   Eigen::Map<VectorXd> q(data.qpos, nv);
   Eigen::Map<VectorXd> v(data.qvel, nv);
   VectorXd correction(2 * nv);
-  for (Index k = 0; k < n; ++k) {
-    if (states) {
-      track.position.col(k) = q;
-      track.velocity.col(k) = v;
+  for (Index k = 0; k < record_.samples(); ++k) {
+    if (track.position.size() > 0) {
+      track.position.col(first + k) = q;
+      track.velocity.col(first + k) = v;
     }
-    stepper.Advance(model, data, control, after_step);
-    track.innovations.col(k) = run.outputs.col(k) - control.reading();
+    stepper_.Advance(model, data, control_, after_step);
+    auto innovation = track.innovations.col(first + k);
+    innovation = record_.outputs.col(k) - control_.reading();
     if (HasDiverged(data)) {
-      throw NumericalError("replay: diverged at " +
-                           std::to_string(static_cast<double>(k) * run.sample_time) +
-                           " s");
+      throw NumericalError(
+          "replay: diverged at " +
+          std::to_string(static_cast<double>(k) * record_.sample_time) + " s");
     }
     if (watch.tick) watch.tick();
-    correction.noalias() = observer.L * track.innovations.col(k);
+    correction.noalias() = observer_.L * innovation;
     q += correction.head(nv);
     v += correction.tail(nv);
+  }
+}
+
+Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& run,
+             const Observer& observer, bool states, const Watch& watch) {
+  const Machine machine = nominal.With(changes);
+  Track track;
+  track.innovations.resize(run.outputs.rows(), run.samples());
+  if (states) {
+    track.position.resize(machine.plant().nv, run.samples());
+    track.velocity.resize(machine.plant().nv, run.samples());
+  }
+  const auto follow = [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    if (watch.record) watch.record();
+    const MeasuredRun record = Part(run, i, run.SamplesOf(i));
+    RecordFollower(machine, record, observer)
+        .Follow(watch, run.records[i].sample, track);
+  };
+  const auto records = static_cast<int>(run.records.size());
+  if (watch.record) {
+    for (int i = 0; i < records; ++i) follow(i);
+  } else {
+    ParallelFor(records, follow);
   }
   return track;
 }
@@ -143,10 +181,66 @@ void ChooseSolver(mjModel& model) {
   if (model.neq == 0 && !limited && !contacts) model.opt.solver = mjSOL_PGS;
 }
 
+Index MeasuredRun::SamplesOf(std::size_t record) const {
+  const Index end =
+      record + 1 < records.size() ? records[record + 1].sample : samples();
+  return end - records[record].sample;
+}
+
+VectorXd MeasuredRun::Time() const {
+  VectorXd time(samples());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Index n = SamplesOf(i);
+    time.segment(records[i].sample, n) =
+        sample_time * VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  }
+  return time;
+}
+
+MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
+  const Index first = run.records[record].sample;
+  MeasuredRun part;
+  part.sample_time = run.sample_time;
+  part.outputs = run.outputs.middleCols(first, samples);
+  part.inputs = run.inputs.middleCols(first, samples);
+  if (run.on.size() > 0) part.on = run.on.middleCols(first, samples);
+  part.records.clear();
+  for (const RecordStart& start : run.records) {
+    if (start.sample < first || start.sample >= first + samples) continue;
+    part.records.push_back({start.sample - first, start.readings});
+  }
+  return part;
+}
+
+MeasuredRun Joined(const std::vector<MeasuredRun>& runs) {
+  MeasuredRun all;
+  all.sample_time = runs.front().sample_time;
+  all.records.clear();
+  Index samples = 0;
+  for (const MeasuredRun& run : runs) samples += run.samples();
+  const auto size = [samples](const Eigen::MatrixXd& one) {
+    return one.size() > 0 ? Eigen::MatrixXd(one.rows(), samples) : Eigen::MatrixXd();
+  };
+  all.outputs = size(runs.front().outputs);
+  all.inputs = size(runs.front().inputs);
+  all.on = size(runs.front().on);
+  Index first = 0;
+  for (const MeasuredRun& run : runs) {
+    all.outputs.middleCols(first, run.samples()) = run.outputs;
+    all.inputs.middleCols(first, run.samples()) = run.inputs;
+    if (run.on.size() > 0) all.on.middleCols(first, run.samples()) = run.on;
+    for (const RecordStart& start : run.records) {
+      all.records.push_back({first + start.sample, start.readings});
+    }
+    first += run.samples();
+  }
+  return all;
+}
+
 MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   MeasuredRun run;
   run.sample_time = setup.rates.tick();
-  run.start = Replay(setup, measured).start;
+  run.records.front().readings = Replay(setup, measured).start;
   run.outputs = MeasuredBy(setup.channels.sensors, measured);
   run.inputs = MeasuredBy(setup.channels.actuators, measured);
   if (!setup.channels.Switches().empty()) {
@@ -170,6 +264,7 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
                 const Observer& observer, ErrorDynamics& dynamics) {
   TangentRecorder recorder(machine.plant(), machine.linear());
   const Watch watch{
+      [&dynamics] { dynamics.Begin(); },
       [&recorder](const mjModel& changed, const mjData& data,
                   std::span<const int> off) { recorder.Substep(changed, data, off); },
       [&] { dynamics.Add(recorder.EndTick()); }};
@@ -183,7 +278,13 @@ ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
   const Eigen::Map<const VectorXd> rest(machine.plant().qpos0, machine.plant().nv);
   motion.position = track.position.colwise() - rest;
   motion.velocity = track.velocity;
-  motion.acceleration = CentralDifferences(track.velocity, run.sample_time);
+  motion.time = run.Time();
+  motion.acceleration.resize(track.velocity.rows(), track.velocity.cols());
+  for (std::size_t i = 0; i < run.records.size(); ++i) {
+    const auto of_record = Eigen::seqN(run.records[i].sample, run.SamplesOf(i));
+    motion.acceleration(Eigen::all, of_record) =
+        CentralDifferences(track.velocity(Eigen::all, of_record), run.sample_time);
+  }
   motion.inputs = run.inputs;
   if (run.on.size() > 0) OpenCircuits(machine, run, track, motion.inputs);
   motion.outputs = run.outputs;

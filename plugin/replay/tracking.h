@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
@@ -21,16 +22,33 @@ namespace mjdiag {
 /// in a few sweeps, closer than Newton's default tolerance and in half of its time.
 void ChooseSolver(mjModel& model);
 
-/// What of a measured record the replay needs, in the setup's order.
+/// Where a record begins.
+struct RecordStart {
+  Eigen::Index sample = 0;
+  std::map<std::string, double> readings{};  ///< at rest before its first sample
+};
+
+/// What of measured records the replay needs, in the setup's order: one after the other,
+/// each from its own start.
 struct MeasuredRun {
-  double sample_time = 0.0;             ///< [s]
-  Eigen::MatrixXd outputs;              ///< sensors x samples
-  Eigen::MatrixXd inputs;               ///< actuators x samples
-  std::map<std::string, double> start;  ///< readings at rest before the first sample
+  double sample_time = 0.0;  ///< [s]
+  Eigen::MatrixXd outputs;   ///< sensors x samples
+  Eigen::MatrixXd inputs;    ///< actuators x samples
   /// Actuators x samples, 0: an open circuit; empty: all on.
   Eigen::MatrixXd on{};
+  std::vector<RecordStart> records{{}};  ///< in order, the first at sample 0
+
   Eigen::Index samples() const { return outputs.cols(); }
+  /// Of a record.
+  Eigen::Index SamplesOf(std::size_t record) const;
+  /// [s] since the start of the record of every sample.
+  Eigen::VectorXd Time() const;
 };
+
+/// Some samples of a run, from the start of a record on.
+MeasuredRun Part(const MeasuredRun& run, std::size_t record, Eigen::Index samples);
+/// All of them, one after the other. Of the same channels and sample time.
+MeasuredRun Joined(const std::vector<MeasuredRun>& runs);
 
 /// InputError names a sensor or actuator channel that the record lacks, a wrong unit,
 /// or a sample time that is not the control tick.
@@ -42,7 +60,7 @@ struct Track {
   Eigen::MatrixXd velocity;     ///< nv x samples, the same
 };
 
-/// The run beside the machine with those changes.
+/// The run beside the machine with those changes; its records side by side.
 /// @param machine  the nominal one
 /// @param states   whether to keep the trajectory of the joints
 /// NumericalError if the run diverges.

@@ -320,6 +320,23 @@ std::vector<TomlTable> TomlTable::TableArray(std::string_view key) const {
   return tables;
 }
 
+std::vector<std::string> TomlTable::Overrides(std::string_view key) const {
+  const auto table = FindTable(key);
+  std::vector<std::string> overrides;
+  if (!table) return overrides;
+  for (const auto& [name, node] : *table->table_) {
+    if (node.is_table()) {
+      table->Fail(name.str(), "is a table",
+                  "a whole key path in quotes, and its value");
+    }
+    std::ostringstream text;
+    text << name.str() << '=' << toml::node_view<const toml::node>(node);
+    overrides.push_back(text.str());
+    document_->paths_.insert(Join(table->path_, name.str()));
+  }
+  return overrides;
+}
+
 std::vector<std::string> TomlTable::Names(const std::string& placeholder) const {
   // toml::table sorts by key; the position in the file is the order meant. What an
   // override adds comes last.

@@ -99,6 +99,9 @@ class TomlTable {
   std::vector<TomlTable> TableArray(std::string_view key) const;
   /// The keys of this table, which are names chosen by the file, in the file's order.
   std::vector<std::string> Names(const std::string& placeholder) const;
+  /// The table `key`, whose own keys are key paths of another document, as overrides of
+  /// that: "axes.x.drive_gain=2.0"; none if the key is missing.
+  std::vector<std::string> Overrides(std::string_view key) const;
   /// InputError if the key "schema" is not `schema`.
   void RequireSchema(const std::string& schema) const;
   /// Throws the InputError "<file>:<line>: <key path>: <what>; expected <expected>".

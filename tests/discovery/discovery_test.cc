@@ -69,6 +69,32 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
   EXPECT_EQ(force.unit, "N");
 }
 
+// Three short records, of which the last is left out of the fit by itself.
+TEST(Discovery, FindsOneCauseInSeveralRecords) {
+  const test::StageUnderTest stage;
+  Measurements measurements;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const std::string name = "run" + std::to_string(seed) + ".csv";
+    measurements.fit.push_back(
+        {stage.Measure({"coulomb_friction@load:force=18"}, {}, seed), stage.machine,
+         name});
+  }
+  DiscoverOptions options;
+  const Discovery answer = Discover(stage.machine, measurements, options);
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kExplained);
+  EXPECT_EQ(Named(answer), "coulomb_friction@load");
+  const CauseParameter& force = Parameter(answer, "force");
+  EXPECT_NEAR(force.value, 18.0, 4.0 * force.sd);
+  ASSERT_EQ(answer.records.size(), 3u);
+  EXPECT_EQ(answer.Fitted()->name, "run1.csv");
+  EXPECT_EQ(answer.Unseen()->name, "run3.csv");
+  for (const RecordReplay& replay : answer.records) {
+    EXPECT_LT(replay.after.channels.front().mae,
+              0.02 * replay.before.channels.front().mae);
+  }
+  EXPECT_GT(answer.gain_validation, 0.98);
+}
+
 TEST(Discovery, NamesAChangedFaultParameterAsTheFault) {
   const test::StageUnderTest stage;
   const Discovery answer = Discover(stage.machine, stage.Measure({}, {{"zeta", 1.02}}),

@@ -79,8 +79,7 @@ inline Discovery SampleDiscovery() {
   discovery.causes = {SampleFriction(), SampleFault()};
   discovery.notes = {"backlash at load cannot be judged: it is never reversed."};
   discovery.train_share = 0.7;
-  discovery.before = SampleReplay(5e-6);
-  discovery.after = SampleReplay(1e-7);
+  discovery.records = {{"slide.csv", true, SampleReplay(5e-6), SampleReplay(1e-7)}};
   discovery.mismatch_before = {{{"q", 3.5e-6}}, {{"q", 4e-6}}};
   discovery.mismatch_after = {{{"q", 1.0e-7}}, {{"q", 1.1e-7}}};
   discovery.noise_floor = {{"q", 1e-7}};
@@ -111,7 +110,7 @@ inline Discovery SampleUnexplained() {
   discovery.verdict = DiscoveryVerdict::kUnexplained;
   discovery.causes.clear();
   discovery.laws.clear();
-  discovery.after = discovery.before;
+  discovery.records.front().after = discovery.records.front().before;
   Signature signature;
   signature.site = "load";
   signature.variable = "position of load";

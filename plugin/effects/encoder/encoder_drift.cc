@@ -20,9 +20,7 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
     return y + values[0] * time;
   }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    const Eigen::Index n = at.motion.samples();
-    const double last = static_cast<double>(n - 1) * at.motion.sample_time;
-    return {LinearTrial(Eigen::VectorXd::LinSpaced(n, 0.0, last), {})};
+    return {LinearTrial(at.motion.time, {})};
   }
   Sized Draw(const Scales& k, Random& r) const override {
     return Proportional(r.Sign() * 0.02 * k.stroke / k.duration);

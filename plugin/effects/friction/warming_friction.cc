@@ -39,13 +39,12 @@ class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
 
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd s = Direction(at.v());
-    const auto n = static_cast<double>(s.size());
-    const Eigen::ArrayXd time = Eigen::ArrayXd::LinSpaced(s.size(), 0.0, n - 1.0);
+    const double last = at.motion.time.maxCoeff();
     std::vector<Trial> trials;
-    for (const double samples : LogGrid(0.05 * n, 2.0 * n, 4)) {
-      trials.push_back({-s.array() * (-time / samples).exp(), at.JointEntry(),
-                        [constant = samples * at.motion.sample_time](
-                            const Amplitudes& a) -> TrialValues {
+    for (const double constant : LogGrid(0.05 * last, 2.0 * last, 4)) {
+      trials.push_back({-s.array() * (-at.motion.time.array() / constant).exp(),
+                        at.JointEntry(),
+                        [constant](const Amplitudes& a) -> TrialValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({a[0], constant});
                         }});

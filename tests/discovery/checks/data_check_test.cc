@@ -135,9 +135,9 @@ TEST_F(EmpsRecord, PassesWithWhateverCauseIsInIt) {
 }
 
 TEST_F(EmpsRecord, WithTooFewSamplesIsRefused) {
-  EXPECT_THAT(subject_->Refusal(record_->Slice(0, 540)),
-              AllOf(HasSubstr("too short: 540 samples of which the first 49"),
-                    HasSubstr("at least 500")));
+  EXPECT_THAT(subject_->Refusal(record_->Slice(0, 100)),
+              AllOf(HasSubstr("too short: 100 samples of which the first 49"),
+                    HasSubstr("at least 64")));
 }
 
 TEST_F(EmpsRecord, WithSamplesThatAreNoNumbersIsRefused) {

@@ -68,6 +68,26 @@ TEST(ErrorDynamics, LosesLittleByBlocks) {
   EXPECT_LT((fine - response(4)).norm(), 0.01 * fine.norm());
 }
 
+// What a force has done to one record is forgotten in the next, whether that begins
+// between two blocks or within one.
+TEST(ErrorDynamics, BeginsAnewWithEveryRecord) {
+  const test::Stage stage;
+  const test::Replay replay(stage.machine, stage.Measure({}));
+  constexpr Index kBlock = 4;
+  for (const Index n : {1000, 1002}) {
+    test::Replay both = replay;
+    both.run = Joined({Part(replay.run, 0, n), Part(replay.run, 0, 1000)});
+    ErrorDynamics dynamics(replay.observer, kBlock);
+    FollowRun(both.machine, {}, both.run, both.observer, dynamics);
+    VectorXd force = VectorXd::Zero(n + 1000);
+    force.head(n - 4).setOnes();
+    const VectorXd response = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
+    const Index later = n / kBlock + 1;
+    EXPECT_GT(response.head(later - 2).cwiseAbs().maxCoeff(), 1.0);
+    EXPECT_EQ(response.tail(response.size() - later).cwiseAbs().maxCoeff(), 0.0) << n;
+  }
+}
+
 TEST(ErrorDynamics, HasAnAdjoint) {
   const Machine machine = test::Bonder();
   const mjModel& plant = machine.plant();

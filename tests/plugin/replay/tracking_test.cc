@@ -48,7 +48,7 @@ TEST(FollowRun, HasNoneBesideTheNominalMachineWithTheChangesThatWereInIt) {
 TEST(FollowRun, IsPulledFromAWrongStartTowardsTheRecord) {
   constexpr double kWrong = 1e-5;
   test::Replay replay = Measured({});
-  replay.run.start["q"] += kWrong;
+  replay.run.records.front().readings["q"] += kWrong;
   const MatrixXd pulled = replay.Follow({}).innovations;
   EXPECT_NEAR(pulled(0, 0), -kWrong, 1e-3 * kWrong);
   EXPECT_LT(pulled.rightCols(100).cwiseAbs().maxCoeff(), 1e-3 * kWrong);
@@ -161,6 +161,36 @@ Record Sampled(const std::string& input_unit, double sample_time) {
   return record;
 }
 
+TEST(FollowRun, FollowsEveryRecordOfARunFromItsOwnStart) {
+  const test::Stage stage;
+  const test::Replay first(stage.machine, stage.Measure({}));
+  test::Replay second(stage.machine, stage.Measure({"coulomb_friction@load:force=18"}));
+  second.run = Part(second.run, 0, 1500);
+  test::Replay both = first;
+  both.run = Joined({first.run, second.run});
+  const Index n = first.run.samples();
+  ASSERT_EQ(both.run.SamplesOf(0), n);
+  ASSERT_EQ(both.run.SamplesOf(1), 1500);
+  EXPECT_EQ(both.run.Time()[n + 1], both.run.sample_time);
+  const Track track = both.Follow({}, true);
+  EXPECT_EQ(track.innovations.leftCols(n), first.Follow({}).innovations);
+  // The observer is that of the first record.
+  const Track alone = FollowRun(second.machine, {}, second.run, first.observer, true);
+  EXPECT_EQ(track.innovations.rightCols(1500), alone.innovations);
+  const ObservedMotion motion = ObserveMotion(both.machine, both.run, track);
+  EXPECT_EQ(motion.acceleration.rightCols(1500),
+            ObserveMotion(second.machine, second.run, alone).acceleration);
+}
+
+TEST(MeasuredRun, IsCutAtAnySample) {
+  const test::Replay replay = Measured({});
+  const MeasuredRun both = Joined({replay.run, replay.run});
+  const Index n = replay.run.samples();
+  EXPECT_EQ(Part(both, 0, n - 1).records.size(), 1u);
+  EXPECT_EQ(Part(both, 0, n + 1).SamplesOf(1), 1);
+  EXPECT_EQ(Part(both, 1, n).outputs, replay.run.outputs);
+}
+
 TEST(ToMeasuredRun, TakesChannelsByNameAndBeginsAtTheFirstReading) {
   const test::Stage stage;
   const double tick = stage.setup().rates.tick();
@@ -169,7 +199,7 @@ TEST(ToMeasuredRun, TakesChannelsByNameAndBeginsAtTheFirstReading) {
   EXPECT_EQ(run.samples(), 50);
   EXPECT_EQ(run.inputs(0, 49), 1.0);
   EXPECT_EQ(run.outputs(0, 49), 0.4);
-  EXPECT_EQ(run.start.at("q"), 0.3);
+  EXPECT_EQ(run.records.front().readings.at("q"), 0.3);
 }
 
 TEST(ToMeasuredRun, RefusesAnotherUnitRateOrChannel) {

@@ -1,0 +1,38 @@
+#include "mjdiag/discovery/measurements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace mjdiag {
+
+Measurements MeasurementsOf(const Machine& machine, const Record& measured,
+                            const Record* unseen) {
+  Measurements measurements;
+  measurements.fit.push_back({measured, machine});
+  if (unseen != nullptr) measurements.unseen.push_back({*unseen, machine});
+  return measurements;
+}
+
+Measurements WithUnseen(Measurements measurements, double fit_share) {
+  std::vector<MeasuredRecord>& fit = measurements.fit;
+  if (!measurements.unseen.empty() || fit.size() < 2) return measurements;
+  const auto records = static_cast<double>(fit.size());
+  const auto kept = std::clamp<std::ptrdiff_t>(std::lround(fit_share * records), 1,
+                                               std::ssize(fit) - 1);
+  measurements.unseen.assign(std::make_move_iterator(fit.begin() + kept),
+                             std::make_move_iterator(fit.end()));
+  fit.erase(fit.begin() + kept, fit.end());
+  return measurements;
+}
+
+MeasuredRun RunOf(const std::vector<MeasuredRecord>& records) {
+  std::vector<MeasuredRun> runs;
+  for (const MeasuredRecord& one : records) {
+    runs.push_back(ToMeasuredRun(one.machine.setup(), one.record));
+  }
+  return Joined(runs);
+}
+
+}  // namespace mjdiag

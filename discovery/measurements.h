@@ -1,0 +1,40 @@
+#pragma once
+// What a discovery works on: measured records of one machine, those that fits see and
+// those that they do not.
+
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/replay/tracking.h"
+#include "mjdiag/signals/record.h"
+
+namespace mjdiag {
+
+struct MeasuredRecord {
+  Record record;
+  /// The machine as it was during the record: controllers with other gains, for example.
+  /// Its plant, its rates and its channels are those of all records.
+  Machine machine;
+  std::string name{};  ///< of its file
+};
+
+struct Measurements {
+  std::vector<MeasuredRecord> fit;     ///< at least one
+  std::vector<MeasuredRecord> unseen;  ///< nothing is fitted to them
+
+  bool Several() const { return fit.size() + unseen.size() > 1; }
+};
+
+/// One record of a machine, and another that nothing is fitted to, or null.
+Measurements MeasurementsOf(const Machine& machine, const Record& measured,
+                            const Record* unseen);
+
+/// Of several records without one to validate with, as many of the last as are left
+/// beyond `fit_share` of them, one at least, become unseen.
+Measurements WithUnseen(Measurements measurements, double fit_share);
+
+/// All of them in one run. InputError as ToMeasuredRun.
+MeasuredRun RunOf(const std::vector<MeasuredRecord>& records);
+
+}  // namespace mjdiag

@@ -1,0 +1,29 @@
+#pragma once
+// How a model stands on single records: free simulation, from the reference in closed
+// loop or the recorded input, beside what was measured.
+
+#include <string>
+#include <vector>
+
+#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/measurements.h"
+#include "mjdiag/plugin/effects/changes.h"
+
+namespace mjdiag {
+
+struct RecordReplay {
+  std::string name;   ///< of the record
+  bool seen = true;   ///< by fits
+  Comparison before;  ///< plant as given
+  Comparison after;   ///< extended plant
+};
+
+/// Of all records, those that fits saw first. @param seed  of the noise floors
+std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
+                                    const Changes& changes, std::uint64_t seed);
+
+/// Channel or derived signal -> relative error (ReplayErrors), mean over records [%].
+std::map<std::string, double> MeanReplayErrors(
+    const std::vector<MeasuredRecord>& records, const Changes& changes);
+
+}  // namespace mjdiag
