@@ -96,7 +96,7 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
 void Discoverer::NameCauses() {
   const CauseFit& fit = search_.fit();
   if (fit.jacobian.cols() == 0) return;
-  const MatrixXd of_all = ParameterCovariance(problem_, fit);
+  const MatrixXd of_all = ParameterCovariance(problem_, candidates_, fit);
   const Index numbers = fit.numbers.size();
   NameNumbers(of_all.topLeftCorner(numbers, numbers));
   if (fit.causes.empty()) return;
@@ -267,6 +267,9 @@ void Discoverer::SearchAll() {
   if (!measurements_.unseen.empty()) {
     unseen = RunOf(measurements_.unseen);
     options.unseen = &*unseen;
+    options.free_run = [this](const Changes& changes) {
+      return FreeRun(measurements_.unseen, changes, problem_.observer().noise_sd);
+    };
   }
   if (options_.doubt) {
     Report("numbers of the plant", 0.0);
@@ -279,7 +282,7 @@ Discovery Discoverer::Run() {
   discovery_.setup = machine_.setup().name;
   discovery_.train_share = options_.train_share;
   discovery_.sample_time = machine_.rates().tick();
-  BoundByRecord(candidates_, problem_.MotionOf(problem_.Nominal()));
+  BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   SearchAll();
   NameCauses();
   const std::array plants{Changes{}, ChangesOf(problem_, candidates_, search_.fit())};

@@ -1,7 +1,13 @@
 #include "mjdiag/discovery/record_replay.h"
 
+#include <cmath>
+#include <limits>
+#include <numeric>
+
 #include "mjdiag/comparison/replay_error.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 
@@ -29,6 +35,34 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
     }
   });
   return replays;
+}
+
+double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& changes,
+               const Eigen::VectorXd& noise_sd) {
+  std::vector<double> off(records.size());
+  ParallelFor(static_cast<int>(records.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    const auto& [record, machine, name] = records[i];
+    RunOptions quiet;
+    quiet.noise_scale = 0.0;
+    try {
+      const Record simulated =
+          Simulate(machine.With(changes), Replay(machine.setup(), record), quiet);
+      Eigen::Index sensor = 0;
+      const Eigen::Index skip = machine.setup().compare.skip_samples;
+      for (const SensorSetup& one : machine.channels().sensors) {
+        const Eigen::VectorXd error =
+            record.At(one.channel).samples - simulated.At(one.channel).samples;
+        const double rms = Rms(error.tail(error.size() - skip));
+        off[i] += 0.5 * std::log1p(std::pow(rms / noise_sd[sensor++], 2));
+      }
+    } catch (const NumericalError&) {
+      off[i] = std::numeric_limits<double>::infinity();
+    }
+  });
+  const double sum = std::accumulate(off.begin(), off.end(), 0.0);
+  return sum / static_cast<double>(noise_sd.size() *
+                                   static_cast<Eigen::Index>(records.size()));
 }
 
 std::map<std::string, double> MeanReplayErrors(

@@ -2,6 +2,8 @@
 // How a model stands on single records: free simulation, from the reference in closed
 // loop or the recorded input, beside what was measured.
 
+#include <Eigen/Core>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,12 @@ struct RecordReplay {
 /// Of all records, those that fits saw first. @param seed  of the noise floors
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed);
+
+/// How far free simulation of records is off beside a model: the mean over sensors and
+/// records of ln sqrt(1 + e^2 / r^2), e the rms of what was measured less what was
+/// simulated, r that of the sensor's noise. Infinite where one diverges.
+double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& changes,
+               const Eigen::VectorXd& noise_sd);
 
 /// Channel or derived signal -> relative error (ReplayErrors), mean over records [%].
 std::map<std::string, double> MeanReplayErrors(

@@ -137,6 +137,8 @@ void MjcfEditor::EditJoint(int joint) {
                Row(after_.jnt_stiffness, joint));
   AddIfChanged(changed, "damping", Row(before_.dof_damping, dof),
                Row(after_.dof_damping, dof));
+  AddIfChanged(changed, "armature", Row(before_.dof_armature, dof),
+               Row(after_.dof_armature, dof));
   const bool springdamper = std::any_of(
       xml_.elements().begin(), xml_.elements().end(), [](const XmlElement& element) {
         return element.Find("springdamper") != nullptr;
@@ -145,7 +147,8 @@ void MjcfEditor::EditJoint(int joint) {
     // It would derive both anew.
     changed = {{"springdamper", "0 0"},
                {"stiffness", AllDigits(after_.jnt_stiffness[joint])},
-               {"damping", AllDigits(after_.dof_damping[dof])}};
+               {"damping", AllDigits(after_.dof_damping[dof])},
+               {"armature", AllDigits(after_.dof_armature[dof])}};
   }
   const mjtNum reference = after_.qpos_spring[address];
   if (before_.jnt_type[joint] >= mjJNT_SLIDE &&
@@ -220,6 +223,10 @@ void MjcfEditor::EditActuator(int actuator) {
   if (!changed.empty()) changed.emplace_back("forcelimited", "true");
   AddIfChanged(changed, "gear", Row(before_.actuator_gear, actuator, 6),
                Row(after_.actuator_gear, actuator, 6));
+  AddIfChanged(changed, "gainprm", Row(before_.actuator_gainprm, actuator, mjNGAIN),
+               Row(after_.actuator_gainprm, actuator, mjNGAIN));
+  AddIfChanged(changed, "biasprm", Row(before_.actuator_biasprm, actuator, mjNBIAS),
+               Row(after_.actuator_biasprm, actuator, mjNBIAS));
   if (!changed.empty()) Set(FindOrFail("actuator", mjOBJ_ACTUATOR, actuator), changed);
 }
 

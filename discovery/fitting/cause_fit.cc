@@ -47,7 +47,7 @@ class Simulator {
         initial_jacobian_(options.initial_jacobian),
         secant_(options.secant),
         parameters_(problem.numbers().size(),
-                    {"number", Role::kFactor, -kFarthest, kFarthest}) {
+                    {"number", Role::kFactor, -kFarthest, kFarthest, 0.0, 1.0}) {
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
       parameters_.push_back(parameter);
     }
@@ -227,22 +227,38 @@ class InnovationCost final : public ceres::CostFunction {
   Index count_;
 };
 
-/// z of the first parameters.
+/// What is known beforehand: of every parameter with a spread its distance from nothing.
 class PriorCost final : public ceres::CostFunction {
  public:
-  PriorCost(Index numbers, Index parameters) {
-    set_num_residuals(static_cast<int>(numbers));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
+  PriorCost(const std::vector<FitParameter>& parameters, double weight) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      if (!std::isfinite(parameters[i].spread)) continue;
+      known_.push_back({static_cast<int>(i), parameters[i].nothing,
+                        std::sqrt(weight) / parameters[i].spread});
+    }
+    set_num_residuals(static_cast<int>(known_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters.size()));
   }
   bool Evaluate(const double* const* blocks, double* residuals,
                 double** jacobians) const override {
-    std::copy_n(blocks[0], num_residuals(), residuals);
-    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     const int size = parameter_block_sizes()[0];
-    std::fill_n(jacobians[0], num_residuals() * size, 0.0);
-    for (int i = 0; i < num_residuals(); ++i) jacobians[0][i * size + i] = 1.0;
+    double* J = jacobians == nullptr ? nullptr : jacobians[0];
+    if (J != nullptr) std::fill_n(J, num_residuals() * size, 0.0);
+    for (std::size_t row = 0; row < known_.size(); ++row) {
+      const auto& [place, nothing, slope] = known_[row];
+      residuals[row] = slope * (blocks[0][place] - nothing);
+      if (J != nullptr) J[static_cast<int>(row) * size + place] = slope;
+    }
     return true;
   }
+
+ private:
+  struct Known {
+    int place;
+    double nothing;
+    double slope;
+  };
+  std::vector<Known> known_;
 };
 
 void SetBounds(ceres::Problem& problem, double* theta,
@@ -274,6 +290,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   CauseFit fit;
   const auto numbers = static_cast<Index>(problem.numbers().size());
   fit.causes = start.causes;
+  fit.prior_weight = start.prior_weight;
   fit.numbers = start.numbers.size() > 0 ? start.numbers : VectorXd::Zero(numbers);
   // What is held out need not be run while the fit goes on.
   const DiscoveryProblem seen = problem.TrainPart();
@@ -293,9 +310,10 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     ceres::Problem least_squares(ownership);
     least_squares.AddResidualBlock(&cost, nullptr, theta.data());
     SetBounds(least_squares, theta.data(), simulator.parameters());
-    // What is known of the numbers beforehand.
-    PriorCost prior(numbers, theta.size());
-    if (numbers > 0) least_squares.AddResidualBlock(&prior, nullptr, theta.data());
+    PriorCost prior(simulator.parameters(), start.prior_weight);
+    if (prior.num_residuals() > 0) {
+      least_squares.AddResidualBlock(&prior, nullptr, theta.data());
+    }
     const int size = static_cast<int>(theta.size());
     if (options.held && size == 1) {
       least_squares.SetParameterBlockConstant(theta.data());
@@ -331,6 +349,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   fit.residual = problem.train() == samples
                      ? simulator.Residual(theta)
                      : problem.Residual(ChangesOf(problem, candidates, fit));
+  fit.prior = PriorOf(candidates, fit);
   fit.train = MeanSquare(fit.residual, channels, problem.skip(), problem.train());
   fit.held_out = MeanSquare(fit.residual, channels, problem.train(), samples);
   return fit;
@@ -338,16 +357,20 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
 
 CauseFit FitNumbers(const DiscoveryProblem& problem,
                     const std::vector<Candidate>& candidates) {
-  if (problem.numbers().empty()) return FitCauses(problem, candidates, {}, {});
-  constexpr int kAnew = 2;            // derivatives, for the plant may be far off
+  CauseFit fit =
+      FitCauses(problem, candidates, {}, {.iterations = 0, .jacobian = false});
+  if (problem.numbers().empty()) return fit;
+  constexpr int kAnew = 4;            // derivatives, for the plant may be far off
   constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
-  CauseFit fit;
-  for (int i = 0; i < kAnew; ++i) {
-    CauseFit next = FitCauses(problem, candidates, fit,
+  constexpr double kSettled = 0.01;   // of the mean square
+  for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
+    FittedModel start = fit;
+    start.prior_weight = std::max(1.0, fit.train);
+    CauseFit next = FitCauses(problem, candidates, start,
                               {.iterations = 10, .jacobian = false, .secant = true});
-    const bool done = i > 0 && FittedValues(problem) * (fit.train - next.train) < 1.0;
+    const bool settled = fit.train - next.train < kSettled * fit.train;
     fit = std::move(next);
-    if (done || fit.train < kNoiseOnly) break;
+    if (settled) break;
   }
   return fit;
 }
@@ -374,7 +397,7 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
 }
 
 FittedModel ModelWithout(const CauseFit& fit, std::size_t i) {
-  return {Without(fit.causes, i), fit.numbers};
+  return {Without(fit.causes, i), fit.numbers, fit.prior_weight};
 }
 
 MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i) {

@@ -23,6 +23,7 @@ struct CauseFit : FittedModel {
   Eigen::VectorXd residual;  ///< scaled innovations of all samples
   Eigen::MatrixXd jacobian;  ///< J = d residual / d theta of the train part
   bool exact = false;        ///< J by differences at theta, not by secants
+  double prior = 0.0;        ///< PriorOf
   double train = 0.0;        ///< mean square of the train part
   double held_out = 0.0;     ///< of the rest; 0 without
 };

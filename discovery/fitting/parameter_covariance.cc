@@ -11,24 +11,34 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-ScaledInformation InformationOf(const DiscoveryProblem& problem, const CauseFit& fit) {
+ScaledInformation InformationOf(const DiscoveryProblem& problem,
+                                const std::vector<Candidate>& candidates,
+                                const CauseFit& fit) {
   const Index channels = problem.run().outputs.rows();
   const Index n = problem.train() - problem.skip();
   const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip(), channels * n);
   ScaledInformation information;
   information.scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   information.jacobian = J * information.scale.asDiagonal();
-  information.known = information.scale.head(fit.numbers.size()).cwiseAbs2();
+  information.known = VectorXd::Ones(J.cols());
+  Index i = fit.numbers.size();
+  for (const FitParameter& parameter : ParametersOf(candidates, fit.causes)) {
+    information.known[i++] = std::pow(parameter.spread, -2);
+  }
+  information.known =
+      fit.prior_weight * information.known.cwiseProduct(information.scale.cwiseAbs2());
   information.matrix = information.jacobian.transpose() * information.jacobian;
-  information.matrix.diagonal().head(information.known.size()) += information.known;
+  information.matrix.diagonal() += information.known;
   return information;
 }
 
-MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fit) {
+MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
+                             const std::vector<Candidate>& candidates,
+                             const CauseFit& fit) {
   const Index channels = problem.run().outputs.rows();
   const Index parameters = fit.jacobian.cols();
   const Index n = problem.train() - problem.skip();
-  const auto [scaled, scale, known, all] = InformationOf(problem, fit);
+  const auto [scaled, scale, known, all] = InformationOf(problem, candidates, fit);
   const VectorXd e = fit.residual.segment(channels * problem.skip(), channels * n);
   MatrixXd scores(n, parameters);
   for (Index k = 0; k < n; ++k) {
@@ -47,8 +57,8 @@ MatrixXd ParameterCovariance(const DiscoveryProblem& problem, const CauseFit& fi
         1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
     B += weight * (product + product.transpose());
   }
-  // What is known of the numbers beforehand: independent measurements.
-  B.diagonal().head(known.size()) += known;
+  // What is known beforehand: independent measurements.
+  B.diagonal() += fit.prior_weight * known;
   const Eigen::FullPivLU<MatrixXd> information(all);
   if (!information.isInvertible()) {
     return MatrixXd::Identity(parameters, parameters) *

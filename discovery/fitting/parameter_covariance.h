@@ -7,7 +7,8 @@
 //   cov = (J^T J)^-1 B (J^T J)^-1,  B = sum over lags l of w_l sum_k s_k s_(k+l)^T,
 //   s_k = J_k^T e_k,   w_l = 1 - |l| / (m + 1)
 //
-// What is known of the numbers of the plant beforehand adds I to J^T J and to B.
+// What is known beforehand of the numbers of the plant and of the sizes of causes, with
+// precision P and weight w (FittedModel), adds w P to J^T J and w^2 P to B.
 
 #include <Eigen/Core>
 
@@ -15,18 +16,21 @@
 
 namespace mjdiag {
 
-/// J^T J of the part that the fit saw, and what is known of the numbers beforehand, with
+/// J^T J of the part that the fit saw, and what is known beforehand, with
 /// theta_i = scale_i theta'_i: parameters of all units alike.
 struct ScaledInformation {
   Eigen::MatrixXd jacobian;  ///< J diag(scale), values of the fit x parameters
   Eigen::VectorXd scale;
-  Eigen::VectorXd known;  ///< of the numbers, on the diagonal
+  Eigen::VectorXd known;  ///< beforehand, weighted, on the diagonal
   Eigen::MatrixXd matrix;
 };
-ScaledInformation InformationOf(const DiscoveryProblem& problem, const CauseFit& fit);
+ScaledInformation InformationOf(const DiscoveryProblem& problem,
+                                const std::vector<Candidate>& candidates,
+                                const CauseFit& fit);
 
 /// Covariance of theta; infinite variance where the data say nothing.
 Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
+                                    const std::vector<Candidate>& candidates,
                                     const CauseFit& fit);
 
 }  // namespace mjdiag

@@ -65,11 +65,12 @@ double Profile::Lost(double step) const {
   const double tolerance = 0.1 * crossing_ / (FittedValues(problem_) * fit_.train);
   FitOptions options = CompareFrom(&fit_.jacobian, 4, tolerance);
   options.held = index_;
-  const auto held = TryFit(problem_, candidates_,
-                           {WithValues(fit_.causes, theta), fit_.numbers}, options);
+  const auto held = TryFit(
+      problem_, candidates_,
+      {WithValues(fit_.causes, theta), fit_.numbers, fit_.prior_weight}, options);
   if (!held) return std::numeric_limits<double>::infinity();
   const double lost = FittedValues(problem_) * (held->train - fit_.train) +
-                      held->numbers.squaredNorm() - fit_.numbers.squaredNorm();
+                      fit_.prior_weight * (held->prior - fit_.prior);
   return std::sqrt(std::max(lost, 0.0) / crossing_);
 }
 
@@ -139,7 +140,7 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const CauseFit& fit,
                                          const MatrixXd& covariance) {
   const VectorXd theta = Flatten(fit.causes);
-  const ScaledInformation information = InformationOf(problem, fit);
+  const ScaledInformation information = InformationOf(problem, candidates, fit);
   const MatrixXd all = information.scale.asDiagonal() * Inverse(information.matrix) *
                        information.scale.asDiagonal();
   const MatrixXd C = all.bottomRightCorner(theta.size(), theta.size());

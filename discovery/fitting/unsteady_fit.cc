@@ -61,9 +61,10 @@ std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
   const auto best = std::ranges::min_element(left);
   if (FittedValues(problem) * (fit.train - *best) <= least_gain) return std::nullopt;
   const auto place = static_cast<std::size_t>(best - left.begin());
-  return FitCauses(problem, candidates,
-                   {WithValues(fit.causes, places[place]), fit.numbers},
-                   {.iterations = 0});
+  return FitCauses(
+      problem, candidates,
+      {WithValues(fit.causes, places[place]), fit.numbers, fit.prior_weight},
+      {.iterations = 0});
 }
 
 }  // namespace mjdiag

@@ -41,9 +41,10 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   const auto run = seen.Linearised(ChangesOf(seen, candidates, fit));
   const auto& [track, dynamics] = *run;
   std::vector<FittedCause> others;
-  for (Start& start : BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
-                                  left - (moved - left) / kStep,
-                                  JacobianWithout(fit, i), fit.numbers, kMostPeriods)) {
+  for (Start& start :
+       BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
+                   left - (moved - left) / kStep, JacobianWithout(fit, i),
+                   ModelWithout(fit, i), kMostPeriods)) {
     start.cause.candidate = causes[i].candidate;
     others.push_back(Bounded(candidates, std::move(start.cause)));
   }

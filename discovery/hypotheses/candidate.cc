@@ -15,7 +15,8 @@ void AddSitesOf(const EffectPtr& effect, const SiteMap& map,
     std::size_t i = 0;
     for (const EffectParameter& p : effect->parameters()) {
       const double least = effect->Least(map.plant(), site.joint, i++);
-      candidate.parameters.push_back({p.name, p.role, least, p.maximum});
+      const double nothing = p.role == Role::kFactor ? 1.0 : 0.0;
+      candidate.parameters.push_back({p.name, p.role, least, p.maximum, nothing});
     }
     candidates.push_back(std::move(candidate));
   }

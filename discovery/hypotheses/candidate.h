@@ -7,6 +7,7 @@
 // can tell from one (Indistinguishable) is left to it.
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct FitParameter {
   Role role = Role::kAmplitude;
   double lower = 0.0;
   double upper = 0.0;
+  /// Where it does nothing, and how far from there it is expected, a standard deviation;
+  /// infinite: anywhere.
+  double nothing = 0.0;
+  double spread = std::numeric_limits<double>::infinity();
 };
 
 /// An effect and where it acts, without values.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
 
 namespace mjdiag {
@@ -18,12 +19,19 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
 
 }  // namespace
 
-void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& motion) {
+void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
+                   const ObservedMotion& motion) {
   const double duration = motion.sample_time * static_cast<double>(motion.samples());
   for (Candidate& candidate : candidates) {
+    const Site site{candidate.site, candidate.joint, candidate.channel};
+    const SiteMotion at{machine.plant(), machine.linear(), motion, site};
+    const VectorXd spread = candidate.effect->Spread(ScalesOf(at));
+    Index place = 0;
     const VectorXd q = motion.position.row(candidate.joint);
     const double speed = motion.velocity.row(candidate.joint).cwiseAbs().maxCoeff();
     for (FitParameter& parameter : candidate.parameters) {
+      const double expected = spread[place++];
+      if (expected > 0.0) parameter.spread = expected;
       switch (parameter.role) {
         case Role::kVelocity:
           Narrow(parameter, 1e-3 * speed, 2.0 * speed);
@@ -38,8 +46,7 @@ void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& mot
           Narrow(parameter, 1.0 / duration, 0.5 / motion.sample_time);
           break;
         case Role::kLimit:
-          Narrow(parameter, 0.0,
-                 motion.inputs.row(candidate.channel).cwiseAbs().maxCoeff());
+          Narrow(parameter, 0.0, at.before_gear().cwiseAbs().maxCoeff());
           break;
         default:
           break;

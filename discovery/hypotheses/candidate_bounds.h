@@ -1,6 +1,7 @@
 #pragma once
-// What a record can say of the shapes of candidates: a law that changes at a speed, a
-// place or a command that the record never comes near is not one of that record.
+// What a record says of candidates beforehand. Of their shapes: a law that changes at a
+// speed, a place or a command that the record never comes near is not one of that record.
+// Of their sizes: what is plausible is so in proportion to what the machine does.
 
 #include <vector>
 
@@ -12,9 +13,10 @@ namespace mjdiag {
 /// Narrows the bounds of shape parameters, by their role, to what the motion reaches
 /// and resolves: velocities (of Stribeck friction) to 0.001 to 2 times the top speed of
 /// the joint, lengths (of a hysteresis) to 1e-5 to 10 times the stroke, positions (of an
-/// end stop) to the stroke, limits (of a drive) to the largest command, frequencies to
-/// between one period a record and half of the control rate. Joints that stand still
-/// keep theirs.
-void BoundByRecord(std::vector<Candidate>& candidates, const ObservedMotion& motion);
+/// end stop) to the stroke, limits (of a drive) to the largest force before the gear,
+/// frequencies to between one period a record and half of the control rate. Joints that
+/// stand still keep theirs. Sizes get their spread (Effect::Spread).
+void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
+                   const ObservedMotion& motion);
 
 }  // namespace mjdiag

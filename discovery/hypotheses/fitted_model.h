@@ -13,12 +13,20 @@ namespace mjdiag {
 
 struct FittedModel {
   FittedModel() = default;
-  FittedModel(std::vector<FittedCause> found, Eigen::VectorXd z = {})
-      : causes(std::move(found)), numbers(std::move(z)) {}
+  FittedModel(std::vector<FittedCause> found, Eigen::VectorXd z = {},
+              double weight = 1.0)
+      : causes(std::move(found)), numbers(std::move(z)), prior_weight(weight) {}
 
   std::vector<FittedCause> causes;
   Eigen::VectorXd numbers;  ///< z; empty: all at 0
+  /// What is known beforehand counts that much more than one innovation does: what a
+  /// model leaves is larger than noise, and few of its values are independent.
+  double prior_weight = 1.0;
 };
+
+/// Sum of squares of z and of the sizes of the causes over their spread, and of the
+/// causes -2 log odds: -2 log of what is known beforehand, but for a constant.
+double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& model);
 
 /// What it does to the plant.
 Changes ChangesOf(const DiscoveryProblem& problem,

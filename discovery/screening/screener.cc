@@ -30,7 +30,7 @@ MatrixXd WithNumbers(const MatrixXd& measured, const MatrixXd& numbers) {
 
 Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
                    const VectorXd& residual, const MatrixXd& jacobian,
-                   const VectorXd& numbers)
+                   const FittedModel& present)
     : problem_(problem),
       dynamics_(dynamics),
       channels_(problem.run().outputs.rows()),
@@ -39,11 +39,13 @@ Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamic
       blocks_(problem.train() / block_ - skip_),
       full_(
           residual.segment(channels_ * block_ * skip_, channels_ * block_ * blocks_)) {
+  const double root = std::sqrt(present.prior_weight);
+  const VectorXd numbers = root * present.numbers;
   VectorXd left = WithNumbers(full_, numbers);
   if (jacobian.cols() > 0) {
     const MatrixXd J =
         jacobian.middleRows(channels_ * block_ * skip_, channels_ * block_ * blocks_);
-    const MatrixXd known = MatrixXd::Identity(numbers.size(), J.cols());
+    const MatrixXd known = root * MatrixXd::Identity(numbers.size(), J.cols());
     const MatrixXd all = OrthonormalColumns(WithNumbers(J, known));
     left -= all * (all.transpose() * left);
     found_ = OrthonormalColumns(WithNumbers(Averaged(J, channels_, block_), known));

@@ -20,10 +20,10 @@ class Screener {
   /// @param dynamics     of the samples of the problem that are for fits, in blocks
   /// @param residual     scaled innovations
   /// @param jacobian     J of what has been found; may be empty
-  /// @param numbers      z of the numbers of the plant, of the first columns of J
+  /// @param present      what has been found: J has its numbers first
   Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamics,
            const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
-           const Eigen::VectorXd& numbers);
+           const FittedModel& present);
 
   /// Squared residual, as far as what has been found cannot take it away.
   double Rest() const { return rest_; }

@@ -26,8 +26,9 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const VectorXd& residual,
-                 const MatrixXd& jacobian, const VectorXd& numbers, int starts_each) {
-  const Screener screener(problem, dynamics, residual, jacobian, numbers);
+                 const MatrixXd& jacobian, const FittedModel& present,
+                 int starts_each) {
+  const Screener screener(problem, dynamics, residual, jacobian, present);
   std::vector<std::vector<Start>> found(candidates.size());
   std::vector<int> tried(candidates.size());
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
@@ -68,17 +69,17 @@ Screening ScreenBeside(const DiscoveryProblem& problem,
   const auto run = seen.Linearised(ChangesOf(seen, candidates, present));
   const auto& [track, dynamics] = *run;
   return Screen(seen, candidates, seen.MotionOf(track), dynamics, seen.Scaled(track),
-                jacobian, present.numbers, starts_each);
+                jacobian, present, starts_each);
 }
 
 std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate& wave,
                                double present, const ObservedMotion& motion,
                                const ErrorDynamics& dynamics, const VectorXd& residual,
-                               const MatrixXd& jacobian, const VectorXd& numbers,
+                               const MatrixXd& jacobian, const FittedModel& beside,
                                int most) {
   const double duration =
       static_cast<double>(problem.train() - problem.skip()) * problem.run().sample_time;
-  const Screener screener(problem, dynamics, residual, jacobian, numbers);
+  const Screener screener(problem, dynamics, residual, jacobian, beside);
   double gain = 0.0;
   std::vector<Trial> trials;
   if (const auto sweep = MakeSweep(problem.machine(), wave, motion, duration)) {

@@ -43,12 +43,12 @@ struct Screening {
 /// @param residual       scaled innovations, only the train part is used
 /// @param jacobian       J of what has been found, (ny samples) x (numbers of the
 ///                       plant, then parameters); may be empty
-/// @param numbers        z, of the first columns of J
+/// @param present        what has been found: J has its numbers first
 /// @param starts_each    how many starts of one candidate to keep at most
 Screening Screen(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, const ObservedMotion& motion,
                  const ErrorDynamics& dynamics, const Eigen::VectorXd& residual,
-                 const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& numbers,
+                 const Eigen::MatrixXd& jacobian, const FittedModel& present,
                  int starts_each);
 
 /// The same beside the plant as that model has it, on what it leaves.
@@ -68,6 +68,6 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
                                const ErrorDynamics& dynamics,
                                const Eigen::VectorXd& residual,
                                const Eigen::MatrixXd& jacobian,
-                               const Eigen::VectorXd& numbers, int most);
+                               const FittedModel& beside, int most);
 
 }  // namespace mjdiag

@@ -98,11 +98,13 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   constexpr double kSmall = 1.5;  // times the power of the noise
   std::vector<Entry> entries;
   for (const Start& start : shortlist) {
-    Entry entry{{present_.fit().causes, present_.fit().numbers}};
+    Entry entry{
+        {present_.fit().causes, present_.fit().numbers, present_.fit().prior_weight}};
     entry.causes.push_back(Bounded(data_.candidates, start.cause));
     const double n =
         static_cast<double>(data_.problem.train()) * present_.independent().sum();
-    entry.criterion = -start.gain + ParameterCount({entry.causes.back()}) * std::log(n);
+    entry.criterion = -start.gain + PriorOf(data_.candidates, entry) +
+                      ParameterCount({entry.causes.back()}) * std::log(n);
     entries.push_back(std::move(entry));
   }
   std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);

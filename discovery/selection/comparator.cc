@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mjdiag/discovery/selection/verdict.h"
+
 namespace mjdiag {
 namespace {
 
@@ -23,9 +25,13 @@ Judgement Judge(const Evidence& present, const Evidence& proposed) {
     return Judgement::kChance;
   }
   const double allowed = larger ? 0.0 : gain;
-  return proposed.Unseen(independent) <= present.Unseen(independent) + allowed
-             ? Judgement::kAccepted
-             : Judgement::kUnseen;
+  if (!(proposed.Unseen(independent) <= present.Unseen(independent) + allowed)) {
+    return Judgement::kUnseen;
+  }
+  constexpr double kWorse = 0.02;
+  if (present.fit().train <= kFarAboveNoise) return Judgement::kAccepted;
+  return proposed.FreeRun() <= present.FreeRun() + kWorse ? Judgement::kAccepted
+                                                          : Judgement::kUnseen;
 }
 
 std::optional<std::size_t> BestOf(

@@ -13,7 +13,10 @@
 // 3. unseen data agree:   U' - U <= 0 if k' > k, else C - C'
 //    a larger set must not spoil them; one that is no larger must not lose there more
 //    than it gains where it was fitted. Data on which neither set can be run say
-//    nothing.
+//    nothing;
+// 4. free simulation of unseen records agrees:   F' - F <= 0.02, F its log rms
+//    (record_replay.h), where the present set leaves far more than noise. What is left
+//    then is physics that neither set has, and an observer hides what it does.
 //
 // Both sets are counted with the independent share of the proposed one: what the larger
 // set leaves if it adds, else the share that it has inherited from the present one.
@@ -30,7 +33,7 @@ enum class Judgement {
   kAccepted,
   kCriterion,  ///< the criterion does not fall
   kChance,     ///< what is added may be chance
-  kUnseen      ///< unseen data speak against it
+  kUnseen      ///< unseen data speak against it, behind the observer or free
 };
 
 /// The clauses in that order: unseen records are replayed only where the others hold.

@@ -13,12 +13,17 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 EvidenceData DataOf(const DiscoveryProblem& problem,
-                    const std::vector<Candidate>& candidates,
-                    const MeasuredRun* unseen) {
+                    const std::vector<Candidate>& candidates, const MeasuredRun* unseen,
+                    const std::function<double(const Changes&)>& free_run) {
   EvidenceData data;
   data.skip = problem.skip();
   data.train = problem.train();
   data.samples = problem.run().samples();
+  if (free_run) {
+    data.free_run = [&problem, &candidates, free_run](const FittedModel& model) {
+      return free_run(ChangesOf(problem, candidates, model));
+    };
+  }
   if (unseen == nullptr) return data;
   const auto other = std::make_shared<const DiscoveryProblem>(problem.WithRun(*unseen));
   data.replay = [other, &candidates](const FittedModel& model) {
@@ -47,6 +52,12 @@ double Evidence::Unseen(const VectorXd& independent) const {
                              replayed_->size() / independent.size());
 }
 
+double Evidence::FreeRun() const {
+  if (!data_.free_run) return 0.0;
+  if (!free_run_) free_run_ = data_.free_run(fit_);
+  return *free_run_;
+}
+
 double Evidence::Inflation(const VectorXd& independent) const {
   return std::max(1.0, fit_.train) / std::min(1.0, independent.minCoeff());
 }
@@ -64,7 +75,7 @@ Significance Evidence::SignificanceOf(double gain, int freedom, const Chance& ch
 Significance Evidence::SignificanceOf(const CauseFit& after, const Chance& chance,
                                       const VectorXd& independent) const {
   return SignificanceOf(Noise() * (fit_.train - after.train) +
-                            fit_.numbers.squaredNorm() - after.numbers.squaredNorm(),
+                            fit_.prior_weight * (fit_.prior - after.prior),
                         ParameterCount({after.causes.back()}), chance, independent);
 }
 

@@ -6,6 +6,7 @@
 //              of the plant in their standard deviations (model_choice.h)
 //   unseen     deviance of what the fit did not see: the part held out, and other
 //              records, which are replayed when first asked for
+//   free run   how far a free simulation of those other records is off
 //   addition   how much more than chance the hypothesis that came last explains
 //
 // All of these count independent values only. Which share of the samples that is
@@ -35,12 +36,15 @@ struct EvidenceData {
   /// Scaled innovations of another record beside it, stacked sample by sample;
   /// of no size where it cannot be run. May be empty: there is no other record.
   std::function<Eigen::VectorXd(const FittedModel& model)> replay;
+  /// FreeRun of record_replay.h beside a model, on records that no fit sees. May be empty.
+  std::function<double(const FittedModel& model)> free_run;
 };
 
-/// @param unseen  another record of the machine, or null
+/// @param unseen    another record of the machine, or null
+/// @param free_run  of changes to its plant, or empty
 EvidenceData DataOf(const DiscoveryProblem& problem,
-                    const std::vector<Candidate>& candidates,
-                    const MeasuredRun* unseen);
+                    const std::vector<Candidate>& candidates, const MeasuredRun* unseen,
+                    const std::function<double(const Changes&)>& free_run = {});
 
 /// What one more hypothesis takes away beside what chance would: both in squared
 /// innovations as of white sensor noise.
@@ -68,7 +72,9 @@ class Evidence {
       : data_(std::move(data)),
         fit_(std::move(fit)),
         independent_(std::move(independent)),
-        addition_(addition) {}
+        addition_(addition) {
+    if (independent_.size() > 0) fit_.prior_weight = Inflation();
+  }
 
   const CauseFit& fit() const { return fit_; }
   const Eigen::VectorXd& independent() const { return independent_; }
@@ -81,6 +87,9 @@ class Evidence {
   double Criterion(const Eigen::VectorXd& independent) const;
   /// Of the part held out and of other records; infinite where those cannot be run.
   double Unseen(const Eigen::VectorXd& independent) const;
+
+  /// Log of what free simulation of unseen records leaves; 0 without such records.
+  double FreeRun() const;
 
   /// By how much gains by chance are larger beside this set than in white noise alone:
   /// what it leaves may be more than sensor noise, and coloured.
@@ -108,6 +117,7 @@ class Evidence {
   Eigen::VectorXd independent_;
   std::optional<Significance> addition_;
   mutable std::optional<Eigen::VectorXd> replayed_;  // other records
+  mutable std::optional<double> free_run_;
 };
 
 }  // namespace mjdiag

@@ -58,7 +58,7 @@ double Criterion(const CauseFit& fit, const VectorXd& independent, Index first,
                  Index last) {
   const auto samples = static_cast<double>(last - first);
   const double n = std::max(2.0, samples * independent.sum());
-  return Deviance(fit.residual, independent, first, last) + fit.numbers.squaredNorm() +
+  return Deviance(fit.residual, independent, first, last) + fit.prior +
          ParameterCount(fit.causes) * std::log(n);
 }
 

@@ -31,8 +31,9 @@ double GainByChance(double probability, int trials, int freedom);
 
 int ParameterCount(const std::vector<FittedCause>& causes);
 
-/// Bayesian information criterion of samples first .. last - 1, deviance + |z|^2 +
-/// parameters log n. The numbers of the plant, z, are the same in all sets that compare.
+/// Bayesian information criterion of samples first .. last - 1 with what is known
+/// beforehand, deviance + PriorOf + parameters log n. The numbers of the plant are the same
+/// in all sets that compare.
 double Criterion(const CauseFit& fit, const Eigen::VectorXd& independent,
                  Eigen::Index first, Eigen::Index last);
 

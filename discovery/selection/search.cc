@@ -30,7 +30,7 @@ class Search {
   Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
          const SearchOptions& options, const SearchResult* before)
       : data_{problem, Beginning(problem, BeginningLength(problem)), candidates,
-              DataOf(problem, candidates, options.unseen)},
+              DataOf(problem, candidates, options.unseen, options.free_run)},
         options_(options) {
     if (before == nullptr) return;
     found_before_ = before->fit();

@@ -34,6 +34,9 @@ struct SearchOptions {
   /// Another record of the machine: what makes its innovations larger is no cause. Not
   /// owned, may be null.
   const MeasuredRun* unseen = nullptr;
+  /// FreeRun (record_replay.h) of the same: what is far above noise must not grow. May
+  /// be empty.
+  std::function<double(const Changes& changes)> free_run;
   /// Chance to claim a cause where there is noise only, per round.
   double false_alarm = 1e-4;
   /// Whether another search goes on from such a fit: then no causes are exchanged, and

@@ -9,23 +9,9 @@
 #include <functional>
 #include <random>
 
+#include "mjdiag/plugin/effects/scales.h"
+
 namespace mjdiag {
-
-/// What the sizes of effects are measured in: the nominal run at a site.
-struct Scales {
-  double stroke = 0.0;     ///< of the joint [m, rad]
-  double speed = 0.0;      ///< its largest
-  double force = 0.0;      ///< the largest command of the motor that moves it
-  double stiffness = 0.0;  ///< of the joint's spring
-  double strain = 0.0;     ///< largest, of that spring
-  double damping = 0.0;
-  double mass = 0.0;
-  double duration = 0.0;
-  double noise = 0.0;  ///< standard deviation, of a sensor
-
-  /// A twentieth of what the motor does: what friction takes of it.
-  double SmallForce() const { return 0.05 * force; }
-};
 
 class Random {
  public:

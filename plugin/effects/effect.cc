@@ -103,6 +103,17 @@ std::vector<Site> Effect::CandidateSites(const SiteMap& map) const {
   }
 }
 
+EffectValues Effect::Spread(const Scales& scales) const {
+  EffectValues spread(static_cast<Index>(parameters().size()));
+  Index i = 0;
+  for (const EffectParameter& parameter : parameters()) {
+    const bool size =
+        parameter.role == Role::kAmplitude || parameter.role == Role::kFactor;
+    spread[i++] = size ? MachineUnit(scales, parameter.unit) : kAny;
+  }
+  return spread;
+}
+
 double Effect::Least(const mjModel&, Index, std::size_t parameter) const {
   return parameters()[parameter].minimum;
 }

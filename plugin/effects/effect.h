@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,7 +58,14 @@ enum class LawVariable { kPosition, kVelocity, kAcceleration, kInput, kTime };
 
 /// Values of an effect's parameters, in their order.
 using EffectValues = Eigen::VectorXd;
+inline constexpr double kAnySize = std::numeric_limits<double>::infinity();
 EffectValues ValuesOf(std::initializer_list<double> values);
+
+/// How often an effect is what a simulation lacks, beside dry friction: what nearly every
+/// machine has, what some have, and what one has now and then.
+inline constexpr double kCommon = 1.0;
+inline constexpr double kSome = 0.3;
+inline constexpr double kRare = 0.1;
 
 /// What is said of every effect.
 struct EffectType {
@@ -67,6 +75,7 @@ struct EffectType {
   LawVariable variable;
   std::vector<EffectParameter> parameters;
   std::string meaning;
+  double odds = kCommon;  ///< Effect::odds
 };
 
 class Effect {
@@ -118,6 +127,16 @@ class Effect {
   virtual std::vector<Trial> Trials(const SiteMotion&) const { return {}; }
   /// @param duration  of what is fitted [s], for the resolution of frequencies
   virtual std::optional<Sweep> MakeSweep(const SiteMotion&, double /*duration*/) const;
+
+  // How likely it is.
+
+  /// How often it is what a simulation lacks, beside dry friction.
+  double odds() const { return type_.odds; }
+  /// How large its amplitudes and factors are on machines: standard deviations about
+  /// nothing (0 of an amplitude, 1 of a factor), infinite where any size is as good. By
+  /// default the machine's own size in their unit (MachineUnit): friction as large as
+  /// the motor is rare, a multiple of it is no friction.
+  virtual EffectValues Spread(const Scales& scales) const;
 
   // How it compares with others.
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "mjdiag/plugin/plant/motor_force.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 
@@ -15,6 +16,23 @@ VectorXd SiteMotion::motor() const {
   return motion.inputs.transpose() * model.Gamma.row(site.joint).transpose() -
          motion.position.transpose() * bias.stiffness.row(site.joint).transpose() -
          motion.velocity.transpose() * bias.damping.row(site.joint).transpose();
+}
+
+VectorXd SiteMotion::before_gear() const {
+  const int motor = FindElement(plant, mjOBJ_ACTUATOR, site.name);
+  const DataPtr data = MakeData(plant);
+  mj_fwdPosition(&plant, data.get());
+  const double length = data->actuator_length[motor];
+  const VectorXd arm =
+      VectorXd::Map(RowOf(data->actuator_moment, plant.nv, motor), plant.nv);
+  VectorXd force(motion.samples());
+  for (Index k = 0; k < force.size(); ++k) {
+    data->ctrl[motor] = motion.inputs(site.channel, k);
+    data->actuator_length[motor] = length + arm.dot(motion.position.col(k));
+    data->actuator_velocity[motor] = arm.dot(motion.velocity.col(k));
+    force[k] = MotorForce(plant, *data, motor);
+  }
+  return force;
 }
 
 MatrixXd SiteMotion::JointEntry(Index columns) const {

@@ -57,6 +57,9 @@ struct SiteMotion {
   Eigen::VectorXd y() const { return motion.outputs.row(site.channel); }
   /// The force of all motors on the joint, to first order in what they are driven by.
   Eigen::VectorXd motor() const;
+  /// The force of the motor of the channel before its gear, as MotorForce has it, with
+  /// its arm at qpos0.
+  Eigen::VectorXd before_gear() const;
   /// Of `columns` forces on the joint, or commands of the actuator.
   Eigen::MatrixXd JointEntry(Eigen::Index columns = 1) const;
   Eigen::MatrixXd MotorEntry(Eigen::Index columns = 1) const;

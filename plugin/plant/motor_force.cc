@@ -24,16 +24,16 @@ double Bias(const mjModel& model, const mjData& data, int motor) {
          bias[2] * data.actuator_velocity[motor];
 }
 
-double Gain(const mjModel& model, int motor) {
+}  // namespace
+
+double MotorGain(const mjModel& model, int motor) noexcept {
   return RowOf(model.actuator_gainprm, mjNGAIN, motor)[0];
 }
-
-}  // namespace
 
 double MotorForce(const mjModel& model, const mjData& data, int motor) noexcept {
   const double command = Clamped(data.ctrl[motor], motor, model.actuator_ctrllimited,
                                  model.actuator_ctrlrange);
-  return Clamped(Gain(model, motor) * command + Bias(model, data, motor), motor,
+  return Clamped(MotorGain(model, motor) * command + Bias(model, data, motor), motor,
                  model.actuator_forcelimited, model.actuator_forcerange);
 }
 
@@ -43,12 +43,13 @@ double GearOf(const mjModel& model, int motor) noexcept {
 
 double OpenCircuitCommand(const mjModel& model, const mjData& data,
                           int motor) noexcept {
-  return -Bias(model, data, motor) / Gain(model, motor);
+  return -Bias(model, data, motor) / MotorGain(model, motor);
 }
 
 void CheckOpenCircuit(const mjModel& model, int motor) {
   const bool limited = model.actuator_ctrllimited[motor] != 0 && HasBias(model, motor);
-  if (model.actuator_gaintype[motor] == mjGAIN_FIXED && Gain(model, motor) != 0.0 &&
+  if (model.actuator_gaintype[motor] == mjGAIN_FIXED &&
+      MotorGain(model, motor) != 0.0 &&
       model.actuator_biastype[motor] != mjBIAS_MUSCLE && !limited) {
     return;
   }

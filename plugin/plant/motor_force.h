@@ -15,6 +15,8 @@ namespace mjdiag {
 /// Before the gear, of the command in data.ctrl. After positions and velocities.
 double MotorForce(const mjModel& model, const mjData& data, int motor) noexcept;
 
+/// Of its force by its command.
+double MotorGain(const mjModel& model, int motor) noexcept;
 /// Force or torque of a unit of its force: length of the six numbers of the gear.
 double GearOf(const mjModel& model, int motor) noexcept;
 

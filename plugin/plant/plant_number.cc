@@ -25,13 +25,15 @@ struct KindOfNumber {
 constexpr double kFactorOfTwo = std::numbers::ln2;
 
 /// In the order of PlantNumberKind.
-constexpr std::array<KindOfNumber, 6> kKinds = {
+constexpr std::array<KindOfNumber, 8> kKinds = {
     {{"mass", mjOBJ_BODY, 0.01, 0.05},
      {"inertia", mjOBJ_BODY, 0.03, 0.1},
      {"stiffness", mjOBJ_JOINT, 0.05, 0.1},
      {"damping", mjOBJ_JOINT, 0.2, kFactorOfTwo},
      {"friction", mjOBJ_JOINT, 0.2, kFactorOfTwo},
-     {"gear", mjOBJ_ACTUATOR, 0.01, 0.05}}};
+     {"gear", mjOBJ_ACTUATOR, 0.01, 0.05},
+     {"armature", mjOBJ_JOINT, 0.05, 0.1},
+     {"gain", mjOBJ_ACTUATOR, 0.03, 0.1}}};
 
 const KindOfNumber& Of(PlantNumberKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];
@@ -45,22 +47,30 @@ std::span<mjtNum> DofsOf(const mjModel& model, int joint, mjtNum* of_dof) {
   return {of_dof + first, static_cast<std::size_t>(last - first)};
 }
 
-/// Where the number stands in the model.
-std::span<mjtNum> NumbersOf(const mjModel& model, const PlantNumber& number) {
+/// Where the number stands in the model, one place or two.
+std::array<std::span<mjtNum>, 2> NumbersOf(const mjModel& model,
+                                           const PlantNumber& number) {
   const int element = number.element;
   switch (number.kind) {
     case PlantNumberKind::kMass:
-      return {model.body_mass + element, 1};
+      return {{{model.body_mass + element, 1}}};
     case PlantNumberKind::kInertia:
-      return {RowOf(model.body_inertia, 3, element), 3};
+      return {{{RowOf(model.body_inertia, 3, element), 3}}};
     case PlantNumberKind::kStiffness:
-      return {model.jnt_stiffness + element, 1};
+      return {{{model.jnt_stiffness + element, 1}}};
     case PlantNumberKind::kDamping:
-      return DofsOf(model, element, model.dof_damping);
+      return {DofsOf(model, element, model.dof_damping)};
     case PlantNumberKind::kFriction:
-      return DofsOf(model, element, model.dof_frictionloss);
+      return {DofsOf(model, element, model.dof_frictionloss)};
     case PlantNumberKind::kGear:
-      return {RowOf(model.actuator_gear, 6, element), 6};
+      return {{{RowOf(model.actuator_gear, 6, element), 6}}};
+    case PlantNumberKind::kArmature:
+      return {DofsOf(model, element, model.dof_armature)};
+    case PlantNumberKind::kGain:
+      // Of a motor without a bias it is the gear.
+      if (model.actuator_biastype[element] != mjBIAS_AFFINE) return {};
+      return {{{RowOf(model.actuator_gainprm, mjNGAIN, element), mjNGAIN},
+               {RowOf(model.actuator_biasprm, mjNBIAS, element), mjNBIAS}}};
   }
   return {};
 }
@@ -108,8 +118,8 @@ PlantNumber FindPlantNumber(const mjModel& model, const std::string& name) {
                    [&](const KindOfNumber& known) { return known.name == word; });
   if (kind == kKinds.end() || at == std::string::npos) {
     throw InputError("plant number '" + name + "'", "is of no known kind",
-                     "mass@ or inertia@ a body, stiffness@, damping@ or friction@ a "
-                     "joint, gear@ an actuator");
+                     "mass@ or inertia@ a body, stiffness@, damping@, friction@ or "
+                     "armature@ a joint, gear@ or gain@ an actuator");
   }
   return {static_cast<PlantNumberKind>(kind - kKinds.begin()),
           FindElement(model, kind->element, name.substr(at + 1))};
@@ -122,10 +132,12 @@ std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
       const PlantNumber number{kind, element};
       const bool of_body = Of(kind).element == mjOBJ_BODY;
       if (of_body && !Moves(model, element)) continue;
-      const auto values = NumbersOf(model, number);
-      if (std::any_of(values.begin(), values.end(),
-                      [](double value) { return value != 0.0; })) {
+      for (const auto values : NumbersOf(model, number)) {
+        if (std::ranges::all_of(values, [](double value) { return value == 0.0; })) {
+          continue;
+        }
         numbers.push_back(number);
+        break;
       }
     }
   };
@@ -135,6 +147,8 @@ std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
   add(PlantNumberKind::kDamping, model.njnt);
   add(PlantNumberKind::kFriction, model.njnt);
   add(PlantNumberKind::kGear, model.nu);
+  add(PlantNumberKind::kArmature, model.njnt);
+  add(PlantNumberKind::kGain, model.nu);
   return numbers;
 }
 
@@ -172,7 +186,9 @@ bool IsExact(const mjModel& model) {
 }
 
 void Scale(mjModel& model, const PlantNumber& number, double factor) {
-  for (mjtNum& value : NumbersOf(model, number)) value *= factor;
+  for (const auto values : NumbersOf(model, number)) {
+    for (mjtNum& value : values) value *= factor;
+  }
 }
 
 void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
@@ -183,10 +199,12 @@ void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
 
 void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
                double factor) {
-  const auto from = NumbersOf(nominal, number);
-  const auto to = NumbersOf(model, number);
-  std::transform(from.begin(), from.end(), to.begin(),
-                 [&](double value) { return factor * value; });
+  const auto all = NumbersOf(nominal, number);
+  const auto changed = NumbersOf(model, number);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::ranges::transform(all[i], changed[i].begin(),
+                           [&](double value) { return factor * value; });
+  }
 }
 
 void DeriveConstants(mjModel& model) {

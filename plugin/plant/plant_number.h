@@ -4,7 +4,10 @@
 //
 //   mass@<body>, inertia@<body>              of it and what it weighs
 //   stiffness@<joint>, damping@<joint>, friction@<joint>
+//   armature@<joint>                         inertia of the rotor, behind its gears
 //   gear@<actuator>                          force of a unit of its control
+//   gain@<actuator>                          of one with a bias: gain and bias together,
+//                                            1 / R of a DC motor driven by a voltage
 //
 // A plant says how well one is known by a relative standard deviation of its own,
 //   <custom><numeric name="known.stiffness@X" data="0.02"/></custom>
@@ -19,7 +22,16 @@
 
 namespace mjdiag {
 
-enum class PlantNumberKind { kMass, kInertia, kStiffness, kDamping, kFriction, kGear };
+enum class PlantNumberKind {
+  kMass,
+  kInertia,
+  kStiffness,
+  kDamping,
+  kFriction,
+  kGear,
+  kArmature,
+  kGain
+};
 
 struct PlantNumber {
   PlantNumberKind kind = PlantNumberKind::kMass;
@@ -41,15 +53,16 @@ std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string&
 
 /// Relative standard deviation with which such a number is known without measuring it:
 /// masses by weighing 1 %, inertias from drawings 3 %, mounts and springs 5 %, damping
-/// and dry friction 20 %, motor constants from data sheets 1 %.
+/// and dry friction 20 %, motor constants from data sheets 1 %, rotors 5 %, resistances
+/// 3 %.
 double UsualSpread(PlantNumberKind kind);
 /// As the plant declares it, else UsualSpread. InputError on a declaration that names
 /// nothing or is not a number >= 0.
 double SpreadOf(const mjModel& model, const PlantNumber& number);
 /// Standard deviation of the logarithm of a number that nobody has measured on the
 /// machine itself, when a record of it is explained: as the plant declares it above 0,
-/// else masses 5 %, inertias and springs 10 %, motor constants 5 %, damping and dry
-/// friction a factor of 2.
+/// else masses 5 %, inertias, rotors and springs 10 %, motor constants 5 %, resistances
+/// 10 %, damping and dry friction a factor of 2.
 double DoubtOf(const mjModel& model, const PlantNumber& number);
 /// Whether the plant says of itself that it is what it says (`known` 0).
 bool IsExact(const mjModel& model);

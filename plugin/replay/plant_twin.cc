@@ -59,6 +59,7 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
     switch (known.number.kind) {
       case PlantNumberKind::kMass:
       case PlantNumberKind::kInertia:
+      case PlantNumberKind::kArmature:
         number.inertia = known.part;
         heavy_ = true;
         break;

@@ -70,6 +70,8 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
   for (const PlantNumber& number : PlantNumbers(plant)) {
     const bool friction = number.kind == PlantNumberKind::kFriction;
     if (friction && !options.friction) continue;
+    // Its force is no function of the input alone, as a twin has motors.
+    if (number.kind == PlantNumberKind::kGain) continue;
     const double spread = Spread(machine, number, options.doubt);
     if (!(spread > 0.0)) continue;
     UncertainNumber& uncertain_number = NumberOf(machine, number, uncertain);

@@ -41,8 +41,8 @@ class AmplifierLagEffect final : public Effect {
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kInput,
                 .parameters = {Positive("time_constant", Role::kTime, "s")},
-                .meaning = "the drive follows its command as a first-order low-pass"}) {
-  }
+                .meaning = "the drive follows its command as a first-order low-pass",
+                .odds = kSome}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int actuator,

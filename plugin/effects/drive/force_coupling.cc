@@ -41,11 +41,11 @@ bool IsOther(const MechanicalModel& model, Eigen::Index joint, Eigen::Index chan
 class ForceCouplingEffect final : public Effect {
  public:
   ForceCouplingEffect()
-      : Effect(
-            {.name = "force_coupling",
-             .variable = LawVariable::kInput,
-             .parameters = {Free("coefficient", Role::kAmplitude, "1")},
-             .meaning = "coefficient times the force of the motors of other joints"}) {}
+      : Effect({.name = "force_coupling",
+                .variable = LawVariable::kInput,
+                .parameters = {Free("coefficient", Role::kAmplitude, "1")},
+                .meaning = "coefficient times the force of the motors of other joints",
+                .odds = kRare}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
@@ -69,6 +69,7 @@ class ForceCouplingEffect final : public Effect {
     }
     return {LinearTrial(sum, at.JointEntry())};
   }
+  EffectValues Spread(const Scales&) const override { return ValuesOf({0.3}); }
   Sized Draw(const Scales&, Random& r) const override {
     return Proportional(r.Sign() * 0.05);
   }

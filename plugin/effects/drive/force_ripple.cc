@@ -19,7 +19,8 @@ class ForceRippleEffect final : public JointForceEffect {
              .variable = LawVariable::kPosition,
              .parameters = {Free("amplitude", Role::kAmplitude, "N"),
                             Positive("period", Role::kPeriod, "m"), Phase()},
-             .meaning = "amplitude sin(2 pi q / period + phase): cogging"}) {}
+             .meaning = "amplitude sin(2 pi q / period + phase): cogging",
+             .odds = kSome}) {}
 
   double Force(double q, double, double,
                const EffectValues& values) const noexcept override {
@@ -30,6 +31,9 @@ class ForceRippleEffect final : public JointForceEffect {
     const Eigen::VectorXd q = at.q();
     if (Range(q) == 0.0) return std::nullopt;
     return PeriodSweep(at.JointEntry(), q, kFinest, 1, 0.0);
+  }
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({0.1 * k.force, kAnySize, kAnySize});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double period = k.stroke * r.Log(0.05, 1.0);

@@ -43,7 +43,8 @@ class PositionDependentMotorConstantEffect final : public Effect {
                 .parameters = {Free("slope", Role::kAmplitude, "1/m"),
                                Free("curvature", Role::kAmplitude, "1/m^2")},
                 .meaning = "the force times 1 + slope s + curvature s^2, s the travel "
-                           "of the motor"}) {}
+                           "of the motor",
+                .odds = kRare}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int actuator,
@@ -55,6 +56,10 @@ class PositionDependentMotorConstantEffect final : public Effect {
     Eigen::MatrixXd parts(q.size(), 2);
     parts << q.cwiseProduct(at.u()), q.cwiseAbs2().cwiseProduct(at.u());
     return {LinearTrial(parts, at.MotorEntry(2))};
+  }
+  // A tenth over the stroke, thrice that at the most.
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({0.3 / k.stroke, 0.3 / (k.stroke * k.stroke)});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double slope = r.Sign() * r.Uniform(0.2, 1.0) * 0.1 / k.stroke;

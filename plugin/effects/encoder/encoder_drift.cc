@@ -13,7 +13,8 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kTime,
                             .parameters = {Free("rate", Role::kAmplitude, "m/s")},
-                            .meaning = "the reading plus rate t"}) {}
+                            .meaning = "the reading plus rate t",
+                            .odds = kRare}) {}
 
   double Read(double y, double time,
               const EffectValues& values) const noexcept override {
@@ -21,6 +22,9 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
   }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(at.motion.time, {})};
+  }
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({0.02 * k.stroke / k.duration});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     return Proportional(r.Sign() * 0.02 * k.stroke / k.duration);

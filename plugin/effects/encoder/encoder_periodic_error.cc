@@ -31,8 +31,8 @@ class EncoderPeriodicErrorEffect final : public ReadingErrorEffect {
              .variable = LawVariable::kPosition,
              .parameters = {Free("amplitude", Role::kAmplitude, "m"),
                             Positive("period", Role::kPeriod, "m"), Phase()},
-             .meaning =
-                 "the reading plus amplitude sin(2 pi reading / period + phase)"}) {}
+             .meaning = "the reading plus amplitude sin(2 pi reading / period + phase)",
+             .odds = kRare}) {}
 
   double Read(double y, double, const EffectValues& values) const noexcept override {
     return y + values[0] * std::sin(2.0 * std::numbers::pi / values[1] * y + values[2]);
@@ -43,6 +43,9 @@ class EncoderPeriodicErrorEffect final : public ReadingErrorEffect {
     if (Range(y) == 0.0) return std::nullopt;
     // What goes by faster than that the observer does not follow by far.
     return PeriodSweep({}, y, kFinest, 2, Range(y) / 6.0);
+  }
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({2e-3 * k.stroke, kAnySize, kAnySize});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double period = k.stroke * r.Log(0.005, 0.3);

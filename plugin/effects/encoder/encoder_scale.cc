@@ -13,7 +13,8 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kPosition,
                             .parameters = {Free("factor", Role::kFactor, "1")},
-                            .meaning = "the reading times factor"}) {}
+                            .meaning = "the reading times factor",
+                            .odds = kSome}) {}
 
   double Read(double y, double, const EffectValues& values) const noexcept override {
     return values[0] * y;
@@ -21,6 +22,8 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(at.y(), {}, 1.0)};
   }
+  // Rulers and gratings are right to a few parts in a thousand.
+  EffectValues Spread(const Scales&) const override { return ValuesOf({0.01}); }
   Sized Draw(const Scales&, Random& r) const override {
     return AroundOne(r.Sign() * 0.01);
   }

@@ -84,6 +84,7 @@ class ZeroOffsetEffect final : public Effect {
     }
     return {LinearTrial(-slope, at.JointEntry())};
   }
+  EffectValues Spread(const Scales&) const override { return ValuesOf({0.1}); }
   // Teeth of a horn or a coupling are some degrees apart; what is left is a part of that.
   Sized Draw(const Scales&, Random& r) const override {
     return Proportional(r.Sign() * 0.05);

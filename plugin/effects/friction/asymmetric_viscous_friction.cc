@@ -13,7 +13,8 @@ class AsymmetricViscousFrictionEffect final : public JointForceEffect {
                           .variable = LawVariable::kVelocity,
                           .parameters = {Free("positive", Role::kAmplitude, "N s/m"),
                                          Free("negative", Role::kAmplitude, "N s/m")},
-                          .meaning = "-positive v for v > 0, -negative v for v < 0"}) {}
+                          .meaning = "-positive v for v > 0, -negative v for v < 0",
+                          .odds = kSome}) {}
 
   double Force(double, double v, double,
                const EffectValues& values) const noexcept override {

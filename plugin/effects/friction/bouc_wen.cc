@@ -75,7 +75,8 @@ class BoucWenEffect final : public Effect {
                             Free("hardening", Role::kSteepness, "1/m"),
                             WithFallback(Positive("exponent", Role::kRatio, "1"), 1.0)},
              .meaning = "hysteresis: -z, dz/dt = stiffness v - loss |v| |z|^(n-1) z - "
-                        "hardening v |z|^n"}) {}
+                        "hardening v |z|^n",
+             .odds = kRare}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
@@ -100,6 +101,10 @@ class BoucWenEffect final : public Effect {
     if (loss <= 0.0 || self.values[0] <= 0.0) return std::nullopt;
     return PlacedEffect{Lasting(PreslidingHysteresis()), self.site,
                         ValuesOf({self.values[0] / loss, self.values[0]})};
+  }
+  // Before it slides it is as stiff as steel.
+  EffectValues Spread(const Scales&) const override {
+    return ValuesOf({kAnySize, kAnySize, kAnySize, kAnySize});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double length = k.stroke * r.Log(0.01, 0.1);

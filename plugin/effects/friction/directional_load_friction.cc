@@ -38,7 +38,8 @@ class DirectionalLoadFrictionEffect final : public VaryingFrictionEffect<BoundBy
              .parameters = {NotNegative("motor_share", Role::kAmplitude, "1"),
                             NotNegative("load_share", Role::kAmplitude, "1")},
              .meaning = "dry friction of |motor_share motor - load_share rest|: a "
-                        "drive that a load turns less easily than its motor"}) {}
+                        "drive that a load turns less easily than its motor",
+             .odds = kSome}) {}
 
   // Motor and rest work against each other nearly all the time, and the bound is the sum
   // of its two parts then.

@@ -16,7 +16,8 @@ class EddyCurrentBrakeEffect final : public JointForceEffect {
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "N s/m"),
                             Positive("velocity", Role::kVelocity, "m/s")},
-             .meaning = "-coefficient v / (1 + (v / velocity)^2)"}) {}
+             .meaning = "-coefficient v / (1 + (v / velocity)^2)",
+             .odds = kRare}) {}
 
   double Force(double, double v, double,
                const EffectValues& values) const noexcept override {

@@ -34,7 +34,8 @@ class HystereticStiffnessEffect final : public Effect {
                                NotNegative("loss", Role::kRatio, "1"),
                                Positive("length", Role::kLength, "m")},
                 .meaning = "-stiffness (q + loss z), z follows q over that length: a "
-                           "cable, a hose"}) {}
+                           "cable, a hose",
+                .odds = kRare}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
@@ -57,6 +58,9 @@ class HystereticStiffnessEffect final : public Effect {
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(LinearStiffness()), self.site, self.values.head(1)};
+  }
+  EffectValues Spread(const Scales&) const override {
+    return ValuesOf({kAnySize, kAnySize, kAnySize});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double length = k.stroke * r.Log(0.02, 0.3);

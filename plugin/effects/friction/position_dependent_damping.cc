@@ -15,7 +15,8 @@ class PositionDependentDampingEffect final : public JointForceEffect {
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N s/m^2"),
                             Free("curvature", Role::kAmplitude, "N s/m^3")},
-             .meaning = "-(slope q + curvature q^2) v"}) {}
+             .meaning = "-(slope q + curvature q^2) v",
+             .odds = kRare}) {}
 
   double Force(double q, double v, double,
                const EffectValues& values) const noexcept override {

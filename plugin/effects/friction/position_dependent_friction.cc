@@ -40,7 +40,8 @@ class PositionDependentFrictionEffect final
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N/m"),
                             Free("curvature", Role::kAmplitude, "N/m^2")},
-             .meaning = "dry friction that changes by slope q + curvature q^2"}) {}
+             .meaning = "dry friction that changes by slope q + curvature q^2",
+             .odds = kRare}) {}
 
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();

@@ -32,12 +32,13 @@ class Presliding final : public ActiveEffect {
 class PreslidingHysteresisEffect final : public Effect {
  public:
   PreslidingHysteresisEffect()
-      : Effect({.name = "presliding_hysteresis",
-                .variable = LawVariable::kPosition,
-                .parameters = {NotNegative("force", Role::kAmplitude, "N"),
-                               Positive("stiffness", Role::kSteepness, "N/m")},
-                .meaning =
-                    "Dahl friction: springs with that stiffness before it slides"}) {}
+      : Effect(
+            {.name = "presliding_hysteresis",
+             .variable = LawVariable::kPosition,
+             .parameters = {NotNegative("force", Role::kAmplitude, "N"),
+                            Positive("stiffness", Role::kSteepness, "N/m")},
+             .meaning = "Dahl friction: springs with that stiffness before it slides",
+             .odds = kSome}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,

@@ -15,7 +15,8 @@ class QuadraticDragEffect final : public JointForceEffect {
             {.name = "quadratic_drag",
              .variable = LawVariable::kVelocity,
              .parameters = {Free("coefficient", Role::kAmplitude, "N s^2/m^2")},
-             .meaning = "-coefficient v |v|"}) {}
+             .meaning = "-coefficient v |v|",
+             .odds = kSome}) {}
 
   double Force(double, double v, double,
                const EffectValues& values) const noexcept override {

@@ -35,7 +35,8 @@ class QuadraticLoadFrictionEffect final
             {.name = "quadratic_load_friction",
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1/N")},
-             .meaning = "dry friction of coefficient (what the drive transmits)^2"}) {}
+             .meaning = "dry friction of coefficient (what the drive transmits)^2",
+             .odds = kSome}) {}
 
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const ObservedLoad load(at);

@@ -45,7 +45,8 @@ class StribeckLoadFrictionEffect final
                             NotNegative("breakaway", Role::kAmplitude, "1"),
                             Positive("velocity", Role::kVelocity, "m/s")},
              .meaning = "dry friction of (coefficient + breakaway exp(-(v / "
-                        "velocity)^2)) |what the drive transmits|"}) {}
+                        "velocity)^2)) |what the drive transmits|",
+             .odds = kSome}) {}
 
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const ObservedLoad load(at);

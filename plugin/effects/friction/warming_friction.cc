@@ -34,8 +34,8 @@ class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
              .variable = LawVariable::kTime,
              .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                             Positive("time_constant", Role::kDuration, "s")},
-             .meaning = "dry friction that goes away: force exp(-t / time_constant)"}) {
-  }
+             .meaning = "dry friction that goes away: force exp(-t / time_constant)",
+             .odds = kRare}) {}
 
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd s = Direction(at.v());

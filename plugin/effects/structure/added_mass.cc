@@ -45,6 +45,9 @@ class AddedMassEffect final : public Effect {
   std::optional<double> Law(double a, const EffectValues& values) const override {
     return -values[0] * a;
   }
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({0.5 * k.mass});
+  }
   Sized Draw(const Scales& k, Random&) const override {
     return Proportional(0.1 * k.mass);
   }

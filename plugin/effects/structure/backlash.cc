@@ -38,7 +38,8 @@ class BacklashEffect final : public Effect {
                 .site = SiteKind::kHeldJoint,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("gap", Role::kGap, "m")},
-                .meaning = "play of that full width in what holds the joint"}) {}
+                .meaning = "play of that full width in what holds the joint",
+                .odds = kSome}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,

@@ -15,7 +15,8 @@ class CubicStiffnessEffect final : public JointForceEffect {
             {.name = "cubic_stiffness",
              .variable = LawVariable::kPosition,
              .parameters = {Free("coefficient", Role::kAmplitude, "N/m^3")},
-             .meaning = "-coefficient q^3"}) {}
+             .meaning = "-coefficient q^3",
+             .odds = kSome}) {}
 
   double Force(double q, double, double,
                const EffectValues& values) const noexcept override {

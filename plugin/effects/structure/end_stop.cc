@@ -17,7 +17,8 @@ class EndStopEffect final : public JointForceEffect {
              .variable = LawVariable::kPosition,
              .parameters = {Free("position", Role::kPosition, "m"),
                             NotNegative("stiffness", Role::kAmplitude, "N/m")},
-             .meaning = "a spring beyond position, on the side of its sign"}) {}
+             .meaning = "a spring beyond position, on the side of its sign",
+             .odds = kSome}) {}
 
   double Force(double q, double, double,
                const EffectValues& values) const noexcept override {
@@ -47,6 +48,9 @@ class EndStopEffect final : public JointForceEffect {
       }
     }
     return trials;
+  }
+  EffectValues Spread(const Scales&) const override {
+    return ValuesOf({kAnySize, kAnySize});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double position = r.Uniform(0.5, 0.95) * k.stroke;

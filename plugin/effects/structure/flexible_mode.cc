@@ -50,7 +50,8 @@ class FlexibleModeEffect final : public Effect {
                 .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
                                Positive("frequency", Role::kFrequency, "Hz"),
                                NotNegative("damping_ratio", Role::kRatio, "1")},
-                .meaning = "a mass on a spring and a damper on the joint"}) {}
+                .meaning = "a mass on a spring and a damper on the joint",
+                .odds = kSome}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
@@ -75,6 +76,9 @@ class FlexibleModeEffect final : public Effect {
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(AddedMass()), self.site, self.values.head(1)};
+  }
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({0.5 * k.mass, kAnySize, kAnySize});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double frequency = r.Log(40.0, 400.0);

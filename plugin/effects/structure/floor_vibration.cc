@@ -19,7 +19,8 @@ class FloorVibrationEffect final : public JointForceEffect {
              .parameters = {Free("amplitude", Role::kAmplitude, "N"),
                             Positive("frequency", Role::kFrequency, "Hz"), Phase()},
              .meaning = "amplitude sin(2 pi frequency t + phase): what the floor "
-                        "passes on"}) {}
+                        "passes on",
+             .odds = kRare}) {}
 
   double Force(double, double, double time,
                const EffectValues& values) const noexcept override {
@@ -33,6 +34,10 @@ class FloorVibrationEffect final : public JointForceEffect {
   }
   std::optional<Sweep> MakeSweep(const SiteMotion& at, double duration) const override {
     return FrequencySweep(at.JointEntry(), at.motion, duration);
+  }
+  // A tenth of gravity shakes everything.
+  EffectValues Spread(const Scales& k) const override {
+    return ValuesOf({k.mass, kAnySize, kAnySize});
   }
   Sized Draw(const Scales&, Random& r) const override {
     const double frequency = r.Log(8.0, 200.0);

@@ -15,7 +15,8 @@ class QuadraticStiffnessEffect final : public JointForceEffect {
             {.name = "quadratic_stiffness",
              .variable = LawVariable::kPosition,
              .parameters = {Free("coefficient", Role::kAmplitude, "N/m^2")},
-             .meaning = "-coefficient q^2"}) {}
+             .meaning = "-coefficient q^2",
+             .odds = kSome}) {}
 
   double Force(double q, double, double,
                const EffectValues& values) const noexcept override {

@@ -43,6 +43,7 @@ class StructuralStiffnessEffect final : public Effect {
     }
     return trials;
   }
+  EffectValues Spread(const Scales&) const override { return ValuesOf({0.5}); }
   Sized Draw(const Scales&, Random& r) const override {
     return AroundOne(r.Sign() * 0.5);
   }

@@ -22,7 +22,7 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
   auto candidates = ListCandidates(stage.machine);
   const auto before = candidates;
   const ObservedMotion motion = problem.MotionOf(problem.Nominal());
-  BoundByRecord(candidates, motion);
+  BoundByRecord(candidates, stage.machine, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();
   const FitParameter& velocity =
       Parameter(candidates, "stribeck_friction@load", "velocity");
