@@ -200,6 +200,7 @@ void Discoverer::AddLadder() {
   }
   // One replay each: the cores come to their end together.
   const int replays = validation_ != nullptr ? 3 : 2;
+  work_->Add((replays - 1) * static_cast<double>(steps.size()) * problem_.RunWork());
   ParallelFor(replays * static_cast<int>(steps.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / replays);
     const Changes& changes = steps[i].second;
@@ -233,6 +234,7 @@ void Discoverer::AddComparisons() {
     tasks.push_back({machine_, *validation_, discovery_.validation_before.emplace()});
     tasks.push_back({extended, *validation_, discovery_.validation_after.emplace()});
   }
+  work_->Add(static_cast<double>(tasks.size()) * problem_.RunWork());
   ParallelFor(static_cast<int>(tasks.size()), [&](int number) {
     const Task& task = tasks[static_cast<std::size_t>(number)];
     task.result = Compare(task.machine, task.measured, options);
@@ -267,8 +269,10 @@ void Discoverer::AddComparisons() {
 }
 
 void Discoverer::AddLimits() {
-  const auto before = FaultLimits(problem_, candidates_, {});
-  const auto after = FaultLimits(problem_, candidates_, changes_);
+  // Of all faults, whatever causes were looked for.
+  const std::vector<Candidate> candidates = ListCandidates(machine_);
+  const auto before = FaultLimits(problem_, candidates, {});
+  const auto after = FaultLimits(problem_, candidates, changes_);
   for (const auto& [fault, limit] : before) {
     const auto now = after.find(fault);
     if (now == after.end()) continue;

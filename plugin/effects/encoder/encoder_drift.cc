@@ -10,6 +10,7 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
  public:
   EncoderDriftEffect()
       : ReadingErrorEffect({.name = "encoder_drift",
+                            .family = Family::kEncoder,
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kTime,
                             .parameters = {Free("rate", Role::kAmplitude, "m/s")},

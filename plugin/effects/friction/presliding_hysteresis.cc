@@ -33,6 +33,7 @@ class PreslidingHysteresisEffect final : public Effect {
  public:
   PreslidingHysteresisEffect()
       : Effect({.name = "presliding_hysteresis",
+                .family = Family::kFriction,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                                Positive("stiffness", Role::kSteepness, "N/m")},
