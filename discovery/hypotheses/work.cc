@@ -8,14 +8,20 @@ namespace {
 
 // Of the budget, for intervals and figures of what a search has found.
 constexpr double kForTheRest = 0.15;
+constexpr double kCores = 2.0;
 
 }  // namespace
 
+// Measured on two cores at 2.5 GHz that were both busy, plants with dry friction: 2.4 to
+// 4.6 us a step with one degree of freedom, 14 to 19 us with ten. The quadratic part is
+// that of dense matrices, small up to there.
 double StepWork(int nv) {
-  constexpr double kCores = 2.0;
   const double n = nv;
-  return 1e-6 * (0.6 + 0.1 * n + 0.005 * n * n) / kCores;
+  return 1e-6 * (2.0 + 1.2 * n + 0.03 * n * n) / kCores;
 }
+
+// Measured likewise: a nanosecond for every multiplication that is not in the cache.
+double FilterWork(double numbers) { return 1e-9 * numbers / kCores; }
 
 void Work::Add(double seconds) { nanoseconds_ += std::llround(1e9 * seconds); }
 

@@ -5,7 +5,7 @@
 //
 //   work = sum over runs of samples substeps (a + b nv + c nv^2) / 2,
 //
-// nv degrees of freedom, and in proportion what screenings filter and fits factorise.
+// nv degrees of freedom, and what screenings filter.
 //
 // Work may be added from any thread. What is left is asked for only between moves and
 // stages, where no other thread adds any: there the sum is the same every time.
@@ -21,6 +21,8 @@ namespace mjdiag {
 
 /// One physics step of a plant with nv degrees of freedom, beside the observer [s].
 double StepWork(int nv);
+/// To filter or correlate so many numbers [s].
+double FilterWork(double numbers);
 
 class Work {
  public:
