@@ -24,6 +24,8 @@ class Budget : public ::testing::Test {
     DiscoverOptions options;
     options.figures = false;
     options.budget = seconds;
+    // Few, for these tests are about how a search ends.
+    options.choice.only = {"coulomb_friction", "force_ripple", "force_offset", "eta"};
     return options;
   }
   Discovery Answer(const DiscoverOptions& options) const {
@@ -58,7 +60,7 @@ TEST_F(Budget, ChangesNothingOfAnAnswerThatEndsWithinIt) {
 
 TEST_F(Budget, GivesTheSameAnswerWithAnyNumberOfThreads) {
   const double all = Answer(Within(Work::kUnlimited)).budget.used;
-  for (const double part : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+  for (const double part : {0.2, 0.5, 0.8}) {
     const Discovery several = Answer(Within(part * all));
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Discovery alone = Answer(Within(part * all));
@@ -70,7 +72,7 @@ TEST_F(Budget, GivesTheSameAnswerWithAnyNumberOfThreads) {
 
 TEST_F(Budget, EndsASearchNearItAndSaysWhatIsLeftOut) {
   const double all = Answer(Within(Work::kUnlimited)).budget.used;
-  for (const double part : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}) {
+  for (const double part : {0.2, 0.4, 0.6}) {
     const Discovery answer = Answer(Within(part * all));
     EXPECT_LT(answer.budget.used, 1.3 * part * all + 0.05 * all) << part;
     EXPECT_FALSE(answer.budget.left_out.empty()) << part;
@@ -108,10 +110,9 @@ TEST_F(Budget, EndsSoonAfterItIsAskedTo) {
 
 TEST_F(Budget, NamesOnlyWhatWasChosen) {
   DiscoverOptions options = Within(Work::kUnlimited);
+  EXPECT_EQ(Answer(options).causes.size(), 2u);
   options.choice.without = {"coulomb_friction"};
   EXPECT_THAT(Named(Answer(options)), Not(HasSubstr("coulomb_friction@")));
-  options.choice = {{"force_ripple", "coulomb_friction"}, {}};
-  EXPECT_EQ(Answer(options).causes.size(), 2u);
   const Record noisy = stage_.Measure({"encoder_noise@load_encoder:sd=1.5e-8"});
   options.choice = {{}, {"encoder_noise"}};
   EXPECT_TRUE(Discover(stage_.machine, noisy, nullptr, options).causes.empty());
