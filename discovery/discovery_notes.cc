@@ -2,11 +2,12 @@
 // come to.
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <string>
 
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
-#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
@@ -18,6 +19,13 @@ using Eigen::VectorXd;
 constexpr double kMore = 5.0;
 
 constexpr const char* kExperiments = "experiments that would tell causes apart";
+
+/// Of a budget, as it was given.
+std::string Seconds(double value) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%g", value);
+  return digits.data();
+}
 
 }  // namespace
 
@@ -87,11 +95,11 @@ void Discoverer::NoteBudget() {
   std::string rest;
   for (const std::string& what : budget.left_out)
     rest += (rest.empty() ? "" : ", ") + what;
-  discovery_.notes.push_back(
-      budget.stopped ? "it was stopped; left out: " + rest
-                     : "ended by its budget of " + FormatNumber(budget.limit) +
-                           " s; left out: " + rest + "; --budget " +
-                           FormatNumber(kMore * budget.limit) + " goes on");
+  discovery_.notes.push_back(budget.stopped
+                                 ? "it was stopped; left out: " + rest
+                                 : "ended by its budget of " + Seconds(budget.limit) +
+                                       " s; left out: " + rest + "; --budget " +
+                                       Seconds(kMore * budget.limit) + " goes on");
 }
 
 }  // namespace mjdiag

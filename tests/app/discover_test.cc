@@ -66,7 +66,7 @@ class DiscoverCommand : public ::testing::Test {
 };
 
 TEST_F(DiscoverCommand, TellsEveryFewSecondsHowFarItIs) {
-  const CommandResult result = RunCommand(Arguments("--budget 30"));
+  const CommandResult result = RunCommand(Arguments("--budget 12"));
   const std::regex line(R"(\d+ s: [^;\n]+; so far: [^\n]+\n)");
   std::vector<int> seconds;
   for (std::sregex_iterator i(result.err.begin(), result.err.end(), line), end;
