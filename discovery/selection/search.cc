@@ -172,7 +172,10 @@ bool Search::AddCause() {
         return present.SignificanceOf(after, chance, present.independent())
             .IsMoreThanChance();
       });
-  if (!Keep(std::move(additions), chance)) return false;
+  if (!Keep(std::move(additions), chance)) {
+    work().MayBegin(kFurther);  // kept if their fits were cut short
+    return false;
+  }
   result_.exchanged = false;
   return true;
 }

@@ -105,6 +105,7 @@ TEST_F(Budget, EndsSoonAfterItIsAskedTo) {
   const Discovery answer = Answer(options);
   EXPECT_TRUE(answer.budget.stopped);
   EXPECT_THAT(answer.notes, Contains(HasSubstr("it was stopped")));
+  EXPECT_THAT(answer.budget.left_out, Contains("further causes"));
   EXPECT_LT(answer.budget.used, 0.4 * Answer(Within(Work::kUnlimited)).budget.used);
 }
 
