@@ -6,6 +6,7 @@
 #include "app/command.h"
 #include "app/discovery_output.h"
 #include "app/exit_status.h"
+#include "app/interrupt.h"
 #include "app/measured_records.h"
 #include "app/output.h"
 #include "app/progress.h"
@@ -21,6 +22,9 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.95;
 constexpr int kMostCauses = 20;
+constexpr double kUsualBudget = 120.0;  // [s]
+constexpr double kLeastBudget = 1e-3;
+constexpr double kMostBudget = 1e9;
 
 struct DiscoverCommand {
   MachineOptions machine;
@@ -40,9 +44,15 @@ void RequirePlantOfItsFile(const MachineOptions& options) {
 Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
                        const Measurements& measurements) {
   ProgressBar bar("discovering");
+  ProgressLog log;
   DiscoverOptions options = command.search;
-  options.progress = [&bar](const std::string& what, double fraction) {
-    bar.Show(what, fraction);
+  options.stop = [] { return Interrupt::IsWished(); };
+  options.progress = [&bar, &log](const DiscoveryProgress& progress) {
+    if (bar.is_on_terminal()) {
+      bar.Show(progress.what, progress.fraction);
+    } else {
+      log.Show(progress.what, progress.best);
+    }
   };
   return Discover(machine, measurements, options);
 }
@@ -66,6 +76,7 @@ void Discover(const DiscoverCommand& command) {
   const Measurements measurements =
       LoadMeasurements(command.records, command.machine, machine);
   PrepareOutput(command.output);
+  const Interrupt interrupt;
   Discovery discovery = RunDiscovery(machine, command, measurements);
 
   const std::string record = Names(measurements.fit);
@@ -86,6 +97,7 @@ void Discover(const DiscoverCommand& command) {
   Publish(command.output, "discovery", document, text, [&] {
     return NamedPage{"discovery", DiscoveryPage(discovery, run)};
   });
+  Interrupt::ThrowIfWished();
   if (discovery.verdict == DiscoveryVerdict::kUnexplained) throw NegativeAnswer{};
 }
 
@@ -118,6 +130,23 @@ void AddDiscover(CLI::App& app) {
           "Beside --doubt: what is as the plant says, a kind of numbers such as "
           "mass, or one such as mass@stage; may be repeated")
       ->needs(doubt);
+  command
+      ->add_option("--without", options->search.choice.without,
+                   "No such causes: a family (friction, drive, structure, encoder), an "
+                   "effect such as encoder_scale, one at a site such as "
+                   "coulomb_friction@load, or a fault parameter; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--only", options->search.choice.only,
+                   "No causes but those, named in the same way; may be repeated")
+      ->allow_extra_args(false);
+  options->search.budget = kUsualBudget;
+  command
+      ->add_option(
+          "--budget", options->search.budget,
+          "Seconds of work of two ordinary cores, 120 if not given, after which "
+          "the best answer so far is given: the same on every machine")
+      ->check(Within(kLeastBudget, kMostBudget));
   command->add_option("--seed", options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);

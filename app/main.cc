@@ -57,7 +57,8 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done, 1 done and the answer is negative, 2 bad input or usage, "
-      "3 numerical failure.");
+      "3 numerical failure, 130 or 143 ended by SIGINT or SIGTERM with the answer so "
+      "far.");
   AddSimulate(app);
   AddLinearize(app);
   AddDesign(app);
@@ -76,6 +77,8 @@ int Main(int argc, char** argv) {
     return Fail(ExitStatus::kBadInput, std::string(error.what()) + "; see --help");
   } catch (const NegativeAnswer&) {
     return static_cast<int>(ExitStatus::kNegative);
+  } catch (const Interrupted& interrupted) {
+    return interrupted.Status();
   } catch (const InputError& error) {
     return Fail(ExitStatus::kBadInput, error.what());
   } catch (const std::filesystem::filesystem_error& error) {

@@ -13,6 +13,7 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 constexpr auto kQuiet = milliseconds(2000);
 constexpr auto kBetweenDraws = milliseconds(100);
+constexpr auto kBetweenLines = milliseconds(5000);
 constexpr int kWidth = 32;
 constexpr std::size_t kLongestLabel = 40;
 
@@ -47,6 +48,18 @@ void ProgressBar::Show(double fraction) {
 void ProgressBar::Show(const std::string& label, double fraction) {
   label_ = label.substr(0, kLongestLabel);
   Show(fraction);
+}
+
+ProgressLog::ProgressLog() : start_(Clock::now()), last_(start_) {}
+
+void ProgressLog::Show(const std::string& what, const std::string& so_far) {
+  const auto now = Clock::now();
+  if (now - last_ < kBetweenLines) return;
+  last_ = now;
+  const auto elapsed = std::chrono::duration_cast<std::chrono::seconds>(now - start_);
+  std::fprintf(stderr, "%lld s: %s; so far: %s\n",
+               static_cast<long long>(elapsed.count()), what.c_str(),
+               so_far.empty() ? "nothing" : so_far.c_str());
 }
 
 }  // namespace mjdiag::app

@@ -1,7 +1,8 @@
 #pragma once
 // The parts of a discovery (discovery.h) while it is under way: causes in discovery.cc,
-// figures in discovery_figures.cc.
+// notes in discovery_notes.cc, figures in discovery_figures.cc.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,9 @@
 #include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/discovery/hypotheses/work.h"
 #include "mjdiag/discovery/screening/trial.h"
 #include "mjdiag/discovery/selection/search.h"
 
@@ -23,21 +26,28 @@ class Discoverer {
       : machine_(machine),
         measurements_(measurements),
         options_(options),
-        problem_(PoseProblem(machine, RunOf(measurements.fit), options.train_share,
-                             options.bandwidth)),
-        candidates_(ListCandidates(machine)) {}
+        work_(std::make_shared<Work>(options.budget, options.stop)),
+        candidates_(ChooseCandidates(machine, options.choice)),
+        problem_(Pose(options.bandwidth)) {}
 
   Discovery Run();
 
  private:
+  DiscoveryProblem Pose(double bandwidth) const;
+  void Report(const std::string& what, double fraction, const CauseFit& best) const;
   void Report(const std::string& what, double fraction) const {
-    if (options_.progress) options_.progress(what, fraction);
+    Report(what, fraction, search_.fit());
   }
   bool IsColoured(const CauseFit& fit) const;
   void Search(SearchOptions options, bool down_to_noise);
   void SearchBehindObservers(SearchOptions options);
   std::vector<PlantNumber> KnownNumbers() const;
+  /// Samples that no fit sees over those that it does.
+  double UnseenShare() const;
   void SearchAll();
+  void MeasureNominal();
+  void CompleteJacobian();
+  void NoteBudget();
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
                                                  const Eigen::MatrixXd& covariance,
@@ -62,8 +72,10 @@ class Discoverer {
   const Machine& machine_;
   const Measurements& measurements_;
   const DiscoverOptions& options_;
-  DiscoveryProblem problem_;
+  std::shared_ptr<Work> work_;
   std::vector<Candidate> candidates_;
+  DiscoveryProblem problem_;
+  double nominal_ = 0.0;  // mean square of the plant as given, behind this observer
   SearchResult search_;
   Changes changes_;
   Discovery discovery_;

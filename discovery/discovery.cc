@@ -12,12 +12,12 @@
 #include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
-#include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
@@ -30,6 +30,8 @@ using Eigen::VectorXd;
 constexpr double kFastShare = 0.02;
 constexpr int kFurtherCauses = 3;
 constexpr double kLeastProbability = 0.01;
+
+constexpr const char* kFasterObserver = "a search behind a faster observer";
 
 }  // namespace
 
@@ -63,6 +65,35 @@ std::vector<Alternative> Discoverer::AlternativesOf(
   return alternatives;
 }
 
+DiscoveryProblem Discoverer::Pose(double bandwidth) const {
+  DiscoveryProblem problem =
+      PoseProblem(machine_, RunOf(measurements_.fit), options_.train_share, bandwidth)
+          .Charging(work_);
+  constexpr double kRuns = 2.0;  // to know the noise
+  work_->Add(kRuns * problem.RunWork());
+  return problem;
+}
+
+void Discoverer::MeasureNominal() {
+  nominal_ = MeanSquare(problem_.Residual({}), problem_.run().outputs.rows(),
+                        problem_.skip(), problem_.train());
+}
+
+void Discoverer::Report(const std::string& what, double fraction,
+                        const CauseFit& best) const {
+  if (!options_.progress) return;
+  DiscoveryProgress progress{what, fraction, ""};
+  for (const FittedCause& cause : best.causes) {
+    progress.best +=
+        (progress.best.empty() ? "" : ", ") + Describe(candidates_[cause.candidate]);
+  }
+  if (!best.causes.empty() && nominal_ > 0.0) {
+    progress.best += " (mismatch 100 % to " +
+                     FormatNumber(100.0 * std::sqrt(best.train / nominal_), 2) + " %)";
+  }
+  options_.progress(progress);
+}
+
 // What a real machine does beside all models is no white noise: behind a slow observer
 // it piles up, and few of its values are independent of each other. A fast observer
 // takes it away as it comes, and smaller causes show.
@@ -76,8 +107,11 @@ bool Discoverer::IsColoured(const CauseFit& fit) const {
 /// steps have to stay near; beside a rest that is far above it anyway they need not.
 void Discoverer::Search(SearchOptions options, bool down_to_noise) {
   const auto before = static_cast<int>(search_.fit().causes.size());
-  if (const auto coarse =
-          Coarsen(problem_, ChangesOf(problem_, candidates_, search_.fit()))) {
+  std::optional<DiscoveryProblem> coarse;
+  if (work_->MayBegin("further causes")) {
+    coarse = Coarsen(problem_, ChangesOf(problem_, candidates_, search_.fit()));
+  }
+  if (coarse) {
     SearchOptions rough = options;
     rough.last_fit = false;
     rough.serves = [&](const CauseFit& fit) {
@@ -85,7 +119,8 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
              IsNear(*coarse, problem_, ChangesOf(problem_, candidates_, fit));
     };
     search_ = SearchCauses(*coarse, candidates_, rough, &search_);
-    if (search_.served && options.preliminary && options.preliminary(search_.fit())) {
+    if (search_.served && options.preliminary && options.preliminary(search_.fit()) &&
+        work_->MayBegin(kFasterObserver)) {
       return;
     }
     options.most_causes -= static_cast<int>(search_.fit().causes.size()) - before;
@@ -144,8 +179,13 @@ void Discoverer::NameNumbers(const MatrixXd& covariance) {
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
   for (const RaisedNoise& raised : FindRaisedNoise(
            machine_.setup(), problem_.observer(), innovations, options_.train_share)) {
-    FoundCause found;
     const Effect& noise = NoiseEffect();
+    const bool chosen =
+        std::ranges::any_of(candidates_, [&](const Candidate& candidate) {
+          return candidate.effect.get() == &noise && candidate.site == raised.element;
+        });
+    if (!chosen) continue;
+    FoundCause found;
     found.cause = {Lasting(noise), raised.element, ValuesOf({raised.sd})};
     const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
     found.parameters = {{noise.parameters().front().name, raised.unit, raised.sd,
@@ -161,10 +201,7 @@ void Discoverer::Judge() {
                                Describe(CauseOf(candidates_, refuted)));
   }
   const bool named = !discovery_.causes.empty();
-  const double nominal =
-      MeanSquare(problem_.Residual({}), problem_.run().outputs.rows(), problem_.skip(),
-                 problem_.train());
-  discovery_.verdict = VerdictOf(search_, named, nominal);
+  discovery_.verdict = VerdictOf(search_, named, nominal_);
   if (named && discovery_.verdict == DiscoveryVerdict::kUnexplained) {
     std::string tried;
     for (const FoundCause& cause : discovery_.causes) {
@@ -178,71 +215,16 @@ void Discoverer::Judge() {
   changes_ = ChangesOf(discovery_);
 }
 
-void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
-  const std::vector<Index> seen = SeenJoints(problem_.machine().linear());
-  for (std::size_t y = 0; y < seen.size(); ++y) {
-    constexpr double kMoves = 50.0;  // times the sensor noise
-    const VectorXd q = motion.outputs.row(static_cast<Index>(y));
-    const double range = q.maxCoeff() - q.minCoeff();
-    const std::string& joint =
-        problem_.machine().linear().coordinates[static_cast<std::size_t>(seen[y])];
-    if (range < kMoves * problem_.observer().noise_sd[static_cast<Index>(y)]) {
-      discovery_.notes.push_back(
-          "'" + machine_.channels().sensors[y].channel +
-          "' does not move: friction, springs, ripple, mass and motor of joint '" +
-          joint + "' cannot be judged; record a motion of it");
-    }
-  }
-}
-
-void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals) {
-  const FoundCause& found = discovery_.causes[cause];
-  for (const Alternative& other : found.alternatives) {
-    if (other.indistinguishable) {
-      discovery_.notes.push_back(Describe(found.cause) + " and " +
-                                 Describe(other.cause) +
-                                 " are the same change of the model: no measurement "
-                                 "tells them apart");
-    }
-  }
-  constexpr double kCompetes = 0.05;
-  const FittedCause& fitted = search_.fit().causes[cause];
-  for (const Hypothesis& other : rivals) {
-    if (other.cause.candidate == fitted.candidate || other.probability < kCompetes) {
-      continue;
-    }
-    std::string note = "the record does not tell " + Describe(found.cause) + " from " +
-                       Describe(CauseOf(candidates_, other.cause));
-    const auto experiment = FindDiscriminatingExperiment(
-        machine_.WithSensorNoise(problem_.observer().noise_sd),
-        ChangesOf({found.cause}), ChangesOf({CauseOf(candidates_, other.cause)}));
-    constexpr double kTells = 4.0;
-    if (!experiment || experiment->separation < kTells) {
-      note += "; no trajectory of the setup would, a larger or faster motion may";
-    } else {
-      note += "; trajectory '" + experiment->trajectory + "'";
-      if (experiment->slower > 1.0) {
-        note += ", " + std::to_string(static_cast<int>(experiment->slower)) +
-                " times slower,";
-      }
-      note += " would, by " + std::to_string(static_cast<int>(experiment->separation)) +
-              " standard deviations";
-    }
-    discovery_.notes.push_back(note);
-  }
-}
-
 /// Behind the observer of the problem, and a fast one where it leaves what is coloured.
 void Discoverer::SearchBehindObservers(SearchOptions options) {
   options.preliminary = [this](const CauseFit& fit) {
     return options_.bandwidth == 0.0 && IsColoured(fit);
   };
   Search(options, true);
-  if (!options.preliminary(search_.fit())) return;
+  if (!options.preliminary(search_.fit()) || !work_->MayBegin(kFasterObserver)) return;
   std::vector<DoubtedNumber> numbers = problem_.numbers();
-  problem_ = PoseProblem(machine_, problem_.run(), options_.train_share,
-                         kFastShare * machine_.rates().control)
-                 .Doubting(std::move(numbers));
+  problem_ = Pose(kFastShare * machine_.rates().control).Doubting(std::move(numbers));
+  MeasureNominal();
   // Every further one takes longer than all before it.
   options.most_causes = std::min(options.most_causes, kFurtherCauses);
   options.preliminary = nullptr;
@@ -259,23 +241,45 @@ std::vector<PlantNumber> Discoverer::KnownNumbers() const {
   return known;
 }
 
+double Discoverer::UnseenShare() const {
+  Index samples = 0;
+  for (const MeasuredRecord& one : measurements_.unseen)
+    samples += one.record.samples();
+  return static_cast<double>(samples) / static_cast<double>(problem_.run().samples());
+}
+
 void Discoverer::SearchAll() {
   SearchOptions options;
   options.most_causes = options_.most_causes;
-  options.progress = options_.progress;
+  options.progress = [this](const std::string& what, double fraction,
+                            const CauseFit& best) { Report(what, fraction, best); };
   std::optional<MeasuredRun> unseen;
   if (!measurements_.unseen.empty()) {
     unseen = RunOf(measurements_.unseen);
     options.unseen = &*unseen;
     options.free_run = [this](const Changes& changes) {
+      work_->Add(problem_.RunWork() * UnseenShare());
       return FreeRun(measurements_.unseen, changes, problem_.observer().noise_sd);
     };
   }
-  if (options_.doubt) {
+  if (options_.doubt && work_->MayBegin("numbers of the plant")) {
     Report("numbers of the plant", 0.0);
     problem_ = WithDoubts(problem_, KnownNumbers());
   }
   SearchBehindObservers(options);
+  work_->EndSearch();
+  CompleteJacobian();
+}
+
+/// The derivatives that intervals are made of, where the search ended without them.
+void Discoverer::CompleteJacobian() {
+  const CauseFit& fit = search_.fit();
+  if (fit.exact || fit.numbers.size() + Flatten(fit.causes).size() == 0) return;
+  // Without any there are no intervals; those of secants are near enough where there is
+  // no time for others.
+  if (fit.jacobian.cols() > 0 && !work_->MayBegin("exact intervals")) return;
+  search_.evidence = search_.evidence.Changed(
+      FitCauses(problem_, candidates_, fit, {.iterations = 0, .closing = true}));
 }
 
 Discovery Discoverer::Run() {
@@ -283,6 +287,7 @@ Discovery Discoverer::Run() {
   discovery_.train_share = options_.train_share;
   discovery_.sample_time = machine_.rates().tick();
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
+  MeasureNominal();
   SearchAll();
   NameCauses();
   const std::array plants{Changes{}, ChangesOf(problem_, candidates_, search_.fit())};
@@ -320,6 +325,7 @@ Discovery Discoverer::Run() {
     discovery_.colour_after =
         1.0 - IndependentShare(problem_, problem_.Scaled(final)).mean();
   }
+  NoteBudget();
   return std::move(discovery_);
 }
 

@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/discovery/hypotheses/work.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/discovery/record_replay.h"
 #include "mjdiag/discovery/selection/discovery_verdict.h"
@@ -88,6 +90,21 @@ struct FaultLimit {
   double after = 0.0;   ///< with the extended plant
 };
 
+/// What a discovery did, in seconds of work (work.h).
+struct Budget {
+  double used = 0.0;
+  double limit = Work::kUnlimited;
+  bool stopped = false;               ///< it was asked to end
+  std::vector<std::string> left_out;  ///< what it did not come to
+};
+
+/// A discovery under way, for people.
+struct DiscoveryProgress {
+  std::string what;       ///< is being tried
+  double fraction = 0.0;  ///< of a round that is done
+  std::string best;       ///< "coulomb_friction@load (mismatch 100 % to 7 %)"
+};
+
 struct Discovery {
   std::string setup;  ///< its name
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
@@ -130,6 +147,7 @@ struct Discovery {
   std::vector<LawPlot> laws;
   std::vector<FaultLimit> fault_limits;
   double sample_time = 0.0;
+  Budget budget;
 };
 
 struct DiscoverOptions {
@@ -144,12 +162,18 @@ struct DiscoverOptions {
   std::vector<std::string> known;
   bool figures = true;  ///< comparisons, ladder, laws and limits, not only causes
   std::uint64_t seed = 1;
-  std::function<void(const std::string& what, double fraction)> progress;
+  /// Causes that may be named: all but for these choices.
+  CandidateChoice choice;
+  /// Seconds of work after which a discovery ends with the best answer so far.
+  double budget = Work::kUnlimited;
+  /// Whether it is asked to do so at once; called from any thread. May be empty.
+  std::function<bool()> stop;
+  std::function<void(const DiscoveryProgress& progress)> progress;
 };
 
 /// @param machine  the nominal one
 /// InputError if the record lacks what the replay needs or cannot be judged (see
-/// data_check.h).
+/// data_check.h), and on a choice that means nothing (candidate_choice.h).
 Discovery Discover(const Machine& machine, const Measurements& measurements,
                    const DiscoverOptions& options);
 /// @param validation  a record of another motion that nothing is fitted to, or null

@@ -206,6 +206,7 @@ void Discoverer::AddLadder() {
   }
   // One replay each: the cores come to their end together.
   const int replays = measurements_.unseen.empty() ? 2 : 3;
+  work_->Add((replays - 1) * static_cast<double>(steps.size()) * problem_.RunWork());
   ParallelFor(replays * static_cast<int>(steps.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / replays);
     const Changes& changes = steps[i].second;
@@ -225,6 +226,7 @@ void Discoverer::AddLadder() {
 }
 
 void Discoverer::AddComparisons() {
+  work_->Add(2.0 * problem_.RunWork());
   discovery_.records = ReplayAll(measurements_, changes_, options_.seed);
   const Index skip = problem_.skip();
   const Index train = problem_.train();
@@ -253,8 +255,10 @@ void Discoverer::AddComparisons() {
 }
 
 void Discoverer::AddLimits() {
-  const auto before = FaultLimits(problem_, candidates_, {});
-  const auto after = FaultLimits(problem_, candidates_, changes_);
+  // Of all faults, whatever causes were looked for.
+  const std::vector<Candidate> candidates = ListCandidates(machine_);
+  const auto before = FaultLimits(problem_, candidates, {});
+  const auto after = FaultLimits(problem_, candidates, changes_);
   for (const auto& [fault, limit] : before) {
     const auto now = after.find(fault);
     if (now == after.end()) continue;

@@ -182,6 +182,11 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"records", RecordsOf(discovery)},
           {"ladder", LadderOf(discovery)},
           {"fault_limits", FaultLimitsOf(discovery)},
+          {"budget",
+           {{"used", Finite(discovery.budget.used)},
+            {"limit", Finite(discovery.budget.limit)},
+            {"stopped", discovery.budget.stopped},
+            {"left_out", discovery.budget.left_out}}},
           {"notes", discovery.notes}};
 }
 

@@ -137,8 +137,6 @@ void MjcfEditor::EditJoint(int joint) {
                Row(after_.jnt_stiffness, joint));
   AddIfChanged(changed, "damping", Row(before_.dof_damping, dof),
                Row(after_.dof_damping, dof));
-  AddIfChanged(changed, "armature", Row(before_.dof_armature, dof),
-               Row(after_.dof_armature, dof));
   const bool springdamper = std::any_of(
       xml_.elements().begin(), xml_.elements().end(), [](const XmlElement& element) {
         return element.Find("springdamper") != nullptr;
@@ -147,9 +145,10 @@ void MjcfEditor::EditJoint(int joint) {
     // It would derive both anew.
     changed = {{"springdamper", "0 0"},
                {"stiffness", AllDigits(after_.jnt_stiffness[joint])},
-               {"damping", AllDigits(after_.dof_damping[dof])},
-               {"armature", AllDigits(after_.dof_armature[dof])}};
+               {"damping", AllDigits(after_.dof_damping[dof])}};
   }
+  AddIfChanged(changed, "armature", Row(before_.dof_armature, dof),
+               Row(after_.dof_armature, dof));
   const mjtNum reference = after_.qpos_spring[address];
   if (before_.jnt_type[joint] >= mjJNT_SLIDE &&
       before_.qpos_spring[address] != reference) {
@@ -158,8 +157,6 @@ void MjcfEditor::EditJoint(int joint) {
     const double unit = degrees ? 180.0 / std::numbers::pi : 1.0;
     changed.emplace_back("springref", AllDigits(reference * unit));
   }
-  AddIfChanged(changed, "armature", Row(before_.dof_armature, dof),
-               Row(after_.dof_armature, dof));
   AddIfChanged(changed, "frictionloss", Row(before_.dof_frictionloss, dof),
                Row(after_.dof_frictionloss, dof));
   if (after_.dof_frictionloss[dof] != 0.0) {

@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -46,6 +47,8 @@ class Simulator {
         numbers_(static_cast<Index>(problem.numbers().size())),
         initial_jacobian_(options.initial_jacobian),
         secant_(options.secant),
+        share_(options.share),
+        closing_(options.closing),
         parameters_(problem.numbers().size(),
                     {"number", Role::kFactor, -kFarthest, kFarthest, 0.0, 1.0}) {
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
@@ -62,9 +65,15 @@ class Simulator {
     return residual_;
   }
 
-  /// J at theta for a step of the fit, all samples.
+  /// Whether the fit was asked to end, or has done its share of the work. Where no run
+  /// is under way the latter is the same every time.
+  bool IsOver() const { return IsStopped() || Used() > share_; }
+
+  /// J at theta for a step of the fit, all samples. CutShort without a first one.
   const MatrixXd& StepJacobian(const VectorXd& theta) {
     if (jacobian_.size() == 0) {
+      RequireShareFor(theta.size() -
+                      (initial_jacobian_ != nullptr ? initial_jacobian_->cols() : 0));
       jacobian_ = Differences(theta, initial_jacobian_, true);
       NoteJacobian(theta, initial_jacobian_ == nullptr && numbers_ == 0);
     } else if (theta != jacobian_theta_ && secant_) {
@@ -78,9 +87,12 @@ class Simulator {
 
   /// J of the last step of the fit.
   const MatrixXd& jacobian() const { return jacobian_; }
+  bool exact() const { return exact_; }
 
-  /// J at theta by differences, all samples.
+  /// J at theta by differences, all samples; that of the last step if the share does
+  /// not allow for it.
   const MatrixXd& Jacobian(const VectorXd& theta) {
+    if (jacobian_.size() > 0 && !Allows(theta.size())) return jacobian_;
     if (!exact_ || theta != jacobian_theta_) {
       jacobian_ = Differences(theta, nullptr, false);
       NoteJacobian(theta, true);
@@ -89,6 +101,16 @@ class Simulator {
   }
 
  private:
+  double Used() const { return runs_ * problem_.RunWork(); }
+  bool IsStopped() const { return !closing_ && problem_.work()->IsStopped(); }
+  bool Allows(Index runs) const {
+    return !IsStopped() &&
+           Used() + static_cast<double>(runs) * problem_.RunWork() <= share_;
+  }
+  void RequireShareFor(Index runs) const {
+    if (!Allows(runs)) throw CutShort();
+  }
+
   void NoteJacobian(const VectorXd& theta, bool exact) {
     exact_ = exact;
     jacobian_theta_ = theta;
@@ -109,10 +131,11 @@ class Simulator {
       kept = numbers_;
       const Changes causes = CausesAt(theta);
       const VectorXd z = theta.head(numbers_);
+      runs_ += static_cast<int>(numbers_) + 1;
       J.leftCols(kept) = rough ? problem_.RoughNumberJacobian(causes, z)
                                : problem_.NumberJacobian(causes, z);
     }
-    ParallelFor(static_cast<int>(theta.size() - kept), [&](int number) {
+    ParallelForAll(static_cast<int>(theta.size() - kept), [&](int number) {
       const Index i = kept + number;
       J.col(i) = Difference(theta, base, i, duration);
     });
@@ -170,6 +193,8 @@ class Simulator {
                      WithValues(causes_, theta.tail(theta.size() - numbers_)));
   }
   VectorXd RunAt(const VectorXd& theta) const {
+    if (IsStopped()) throw CutShort();
+    ++runs_;
     return problem_.Residual(
         problem_.WithNumbers(CausesAt(theta), theta.head(numbers_)));
   }
@@ -180,6 +205,9 @@ class Simulator {
   Index numbers_;
   const MatrixXd* initial_jacobian_;
   bool secant_;
+  double share_;
+  bool closing_;
+  mutable std::atomic<int> runs_ = 0;
   std::vector<FitParameter> parameters_;
   VectorXd theta_;
   VectorXd residual_;
@@ -218,6 +246,8 @@ class InnovationCost final : public ceres::CostFunction {
       return false;  // diverged: a step that far is refused
     } catch (const InputError&) {
       return false;  // takes away more than there is
+    } catch (const CutShort&) {
+      return false;
     }
   }
 
@@ -225,6 +255,19 @@ class InnovationCost final : public ceres::CostFunction {
   Simulator& simulator_;
   Index first_;
   Index count_;
+};
+
+/// Ends a fit that is over with the values it has.
+class EndWhenOver final : public ceres::IterationCallback {
+ public:
+  explicit EndWhenOver(const Simulator& simulator) : simulator_(simulator) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return simulator_.IsOver() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                               : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Simulator& simulator_;
 };
 
 /// What is known beforehand: of every parameter with a spread its distance from nothing.
@@ -333,8 +376,14 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     // With bounds Ceres searches along every step; a cubic would ask for J there.
     solver.line_search_interpolation_type = ceres::BISECTION;
     solver.max_num_line_search_step_size_iterations = 3;
+    EndWhenOver end(simulator);
+    solver.callbacks.push_back(&end);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &least_squares, &summary);
+    fit.cut = summary.termination_type == ceres::USER_SUCCESS;
+    if (fit.cut) problem.work()->CutShort();
+    // Asked to end in the midst of a step, of which nothing is left.
+    if (!summary.IsSolutionUsable() && simulator.IsOver()) throw CutShort();
     if (!summary.IsSolutionUsable()) {
       throw NumericalError("fit: the run with the first values diverges");
     }
@@ -342,8 +391,8 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     fit.causes = WithValues(start.causes, theta.tail(values.size()));
   }
   if (moves) {
-    fit.exact = options.jacobian;
     fit.jacobian = options.jacobian ? simulator.Jacobian(theta) : simulator.jacobian();
+    fit.exact = options.jacobian && simulator.exact();
   }
   const Index samples = problem.run().samples();
   fit.residual = problem.train() == samples
@@ -355,33 +404,14 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   return fit;
 }
 
-CauseFit FitNumbers(const DiscoveryProblem& problem,
-                    const std::vector<Candidate>& candidates) {
-  CauseFit fit =
-      FitCauses(problem, candidates, {}, {.iterations = 0, .jacobian = false});
-  if (problem.numbers().empty()) return fit;
-  constexpr int kAnew = 4;            // derivatives, for the plant may be far off
-  constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
-  constexpr double kSettled = 0.01;   // of the mean square
-  for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
-    FittedModel start = fit;
-    start.prior_weight = std::max(1.0, fit.train);
-    CauseFit next = FitCauses(problem, candidates, start,
-                              {.iterations = 10, .jacobian = false, .secant = true});
-    const bool settled = fit.train - next.train < kSettled * fit.train;
-    fit = std::move(next);
-    if (settled) break;
-  }
-  return fit;
-}
-
 FitOptions CompareFrom(const MatrixXd* initial_jacobian, int iterations,
-                       double tolerance) {
+                       double tolerance, double share) {
   return {.iterations = iterations,
           .tolerance = tolerance,
           .jacobian = false,
           .initial_jacobian = initial_jacobian,
-          .secant = true};
+          .secant = true,
+          .share = share};
 }
 
 std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
@@ -392,6 +422,9 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
   } catch (const NumericalError&) {
     return std::nullopt;
   } catch (const InputError&) {
+    return std::nullopt;
+  } catch (const CutShort&) {
+    problem.work()->CutShort();
     return std::nullopt;
   }
 }

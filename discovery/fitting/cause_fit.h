@@ -11,7 +11,9 @@
 // whole runs, side by side; see DiscoveryProblem::NumberJacobian for those by z.
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/fitted_model.h"
@@ -26,6 +28,7 @@ struct CauseFit : FittedModel {
   double prior = 0.0;        ///< PriorOf
   double train = 0.0;        ///< mean square of the train part
   double held_out = 0.0;     ///< of the rest; 0 without
+  bool cut = false;          ///< ended by its share of the work, or asked to
 };
 
 struct FitOptions {
@@ -42,6 +45,19 @@ struct FitOptions {
   bool secant = false;
   /// Place of a parameter of the causes that keeps its value.
   std::optional<Eigen::Index> held = std::nullopt;
+  /// Work that it may do [s]: then it ends with the values it has, and no further move
+  /// is begun (Work::CutShort).
+  double share = Work::kUnlimited;
+  /// Whether it goes on where the discovery was asked to end: what has to be known of
+  /// an answer.
+  bool closing = false;
+};
+
+/// A fit ended before it had any values of its own: it was asked to, or its share of
+/// the work was used up.
+class CutShort : public std::runtime_error {
+ public:
+  CutShort() : std::runtime_error("fit: ended before its first step") {}
 };
 
 /// Innovations that a fit sees, all channels: the sum of squares of noise alone, and of
@@ -49,21 +65,19 @@ struct FitOptions {
 double FittedValues(const DiscoveryProblem& problem);
 
 /// @param start  causes with values to start from, within their bounds, and numbers
-/// NumericalError if the run with the start diverges.
+/// NumericalError if the run with the start diverges; CutShort.
 CauseFit FitCauses(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates, const FittedModel& start,
                    const FitOptions& options);
 
-/// Of the numbers of the plant alone; without numbers nothing is fitted.
-CauseFit FitNumbers(const DiscoveryProblem& problem,
-                    const std::vector<Candidate>& candidates);
-
 /// For fits that are compared: by secants, from a J of the first parameters (or null),
 /// none computed at the end.
+/// @param share  of the work that is left [s]
 FitOptions CompareFrom(const Eigen::MatrixXd* initial_jacobian, int iterations,
-                       double tolerance);
+                       double tolerance, double share);
 
-/// The same; none where the start diverges or takes away more than there is.
+/// The same; none where the start diverges or takes away more than there is, or if it
+/// is cut short.
 std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const std::vector<Candidate>& candidates,
                                const FittedModel& start, const FitOptions& options);

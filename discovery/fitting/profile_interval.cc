@@ -18,19 +18,23 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kOutside = 0.05;
+constexpr const char* kProfiles = "skew intervals";
 
 /// Where the profile of one parameter crosses.
 class Profile {
  public:
   /// @param direction  how all others follow, per unit of parameter `index`
+  /// @param share      of the work that is left, for one end
   Profile(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
-          const CauseFit& fit, Index index, VectorXd direction, double crossing)
+          const CauseFit& fit, Index index, VectorXd direction, double crossing,
+          double share)
       : problem_(problem),
         candidates_(candidates),
         fit_(fit),
         index_(index),
         direction_(std::move(direction)),
-        crossing_(crossing) {}
+        crossing_(crossing),
+        share_(share / kSteps) {}
 
   /// @param step  to where a quadratic one crosses, with its sign
   /// @param bound of the parameter on that side
@@ -38,8 +42,10 @@ class Profile {
 
  private:
   double Value() const { return Flatten(fit_.causes)[index_]; }
+  static constexpr int kSteps = 6;
+
   /// Root of what is lost over the crossing, 1 at an end; infinite where the plant
-  /// cannot be run.
+  /// cannot be run, not a number where the share is used up.
   double Lost(double step) const;
   double Clipped(double step, double bound) const {
     return step < 0.0 ? std::max(step, bound - Value())
@@ -52,6 +58,7 @@ class Profile {
   Index index_;
   VectorXd direction_;
   double crossing_;
+  double share_;  // of a step
 };
 
 double Profile::Lost(double step) const {
@@ -63,11 +70,14 @@ double Profile::Lost(double step) const {
   }
   // To a tenth of what a crossing is.
   const double tolerance = 0.1 * crossing_ / (FittedValues(problem_) * fit_.train);
-  FitOptions options = CompareFrom(&fit_.jacobian, 4, tolerance);
+  FitOptions options = CompareFrom(&fit_.jacobian, 4, tolerance, share_);
   options.held = index_;
   const auto held = TryFit(
       problem_, candidates_,
       {WithValues(fit_.causes, theta), fit_.numbers, fit_.prior_weight}, options);
+  if (held ? held->cut : problem_.work()->IsStopped()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   if (!held) return std::numeric_limits<double>::infinity();
   const double lost = FittedValues(problem_) * (held->train - fit_.train) +
                       fit_.prior_weight * (held->prior - fit_.prior);
@@ -76,7 +86,6 @@ double Profile::Lost(double step) const {
 
 double Profile::End(double step, double bound) const {
   constexpr double kNear = 0.05;
-  constexpr int kSteps = 6;
   // The root of what is lost grows nearly in proportion: false position from 0 on.
   double below = 0.0;
   double lost_below = 0.0;
@@ -85,6 +94,7 @@ double Profile::End(double step, double bound) const {
   double next = Clipped(step, bound);
   for (int i = 0; i < kSteps; ++i) {
     const double lost = Lost(next);
+    if (std::isnan(lost)) return Value() + Clipped(step, bound);
     if (std::abs(lost - 1.0) < kNear) return Value() + next;
     if (lost < 1.0) {
       if (next == Clipped(2.0 * next, bound)) return bound;
@@ -150,6 +160,9 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
   const double normal = TwoSidedNormalQuantile(kOutside);
   const double chi_squared = ChiSquaredQuantile(kOutside, 1.0);
   std::vector<Interval> intervals(parameters.size());
+  const auto ends = 2 * static_cast<int>(std::ranges::count(needed, true));
+  const bool follow = ends == 0 || problem.work()->MayBegin(kProfiles);
+  const double share = problem.work()->Share(ends);
   ParallelFor(2 * static_cast<int>(parameters.size()), [&](int number) {
     const Index i = number / 2;
     const double side = number % 2 == 0 ? -1.0 : 1.0;
@@ -157,13 +170,14 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
     double& end = side < 0.0 ? intervals[p].min : intervals[p].max;
     const double sd = std::sqrt(covariance(i, i));
     end = theta[i] + side * normal * sd;
-    if (!needed[p]) return;
+    if (!needed[p] || !follow) return;
     const double colour = covariance(i, i) / C(i, i);
     const Profile profile(seen, candidates, fit, i, C.col(i) / C(i, i),
-                          chi_squared * colour);
+                          chi_squared * colour, share);
     end = profile.End(side * normal * sd,
                       side < 0.0 ? parameters[p].lower : parameters[p].upper);
   });
+  if (ends > 0) problem.work()->MayBegin(kProfiles);  // kept if it was cut short
   return intervals;
 }
 

@@ -26,7 +26,8 @@ namespace mjdiag {
 /// The 95 % intervals of all parameters of the fit: value +- 1.96 sd where the
 /// likelihood is quadratic, for sizes of laws and where the standard deviation is small
 /// beside the value; else the profile is followed from there to where it crosses. An
-/// end beyond a parameter's bounds is the bound.
+/// end beyond a parameter's bounds is the bound. Profiles are followed as far as the
+/// work that is left allows.
 /// @param fit         with the Jacobian at its solution
 /// @param covariance  of its parameters
 std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,

@@ -48,6 +48,10 @@ std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
   const VectorXd theta = Flatten(fit.causes);
   const auto parameters = ParametersOf(candidates, fit.causes);
   const std::size_t tries = parameters.size() * kSteps.size();
+  if (!problem.work()->MayBegin("whether runs are repeatable",
+                                static_cast<double>(tries) * seen.RunWork())) {
+    return std::nullopt;
+  }
   std::vector<VectorXd> places(tries, theta);
   std::vector<double> left(tries);
   ParallelFor(static_cast<int>(tries), [&](int number) {
@@ -61,10 +65,9 @@ std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
   const auto best = std::ranges::min_element(left);
   if (FittedValues(problem) * (fit.train - *best) <= least_gain) return std::nullopt;
   const auto place = static_cast<std::size_t>(best - left.begin());
-  return FitCauses(
-      problem, candidates,
-      {WithValues(fit.causes, places[place]), fit.numbers, fit.prior_weight},
-      {.iterations = 0});
+  return TryFit(problem, candidates,
+                {WithValues(fit.causes, places[place]), fit.numbers, fit.prior_weight},
+                {.iterations = 0});
 }
 
 }  // namespace mjdiag

@@ -21,7 +21,8 @@ double Unsteadiness(const DiscoveryProblem& problem,
                     const std::vector<Candidate>& candidates, const CauseFit& fit);
 
 /// The best of the places around a fit, up to a tenth of every parameter away, if it
-/// explains more by `least_gain` of squared innovations.
+/// explains more by `least_gain` of squared innovations; none where nothing more may be
+/// begun (Work::MayBegin).
 std::optional<CauseFit> LookAround(const DiscoveryProblem& problem,
                                    const std::vector<Candidate>& candidates,
                                    const CauseFit& fit, double least_gain);

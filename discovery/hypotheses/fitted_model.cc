@@ -6,16 +6,20 @@
 
 namespace mjdiag {
 
+double SizePriorOf(const std::vector<Candidate>& candidates, const FittedCause& cause) {
+  double sum = 0.0;
+  Eigen::Index i = 0;
+  for (const FitParameter& parameter : candidates[cause.candidate].parameters) {
+    sum += std::pow((cause.value[i++] - parameter.nothing) / parameter.spread, 2);
+  }
+  return sum;
+}
+
 double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& model) {
   double sum = model.numbers.squaredNorm();
   for (const FittedCause& cause : model.causes) {
-    const Candidate& candidate = candidates[cause.candidate];
-    sum -= 2.0 * std::log(candidate.effect->odds());
-    for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-      const FitParameter& parameter = candidate.parameters[i];
-      const double off = cause.value[static_cast<Eigen::Index>(i)] - parameter.nothing;
-      sum += std::pow(off / parameter.spread, 2);
-    }
+    const double odds = candidates[cause.candidate].effect->odds();
+    sum += SizePriorOf(candidates, cause) - 2.0 * std::log(odds);
   }
   return sum;
 }

@@ -24,6 +24,8 @@ struct FittedModel {
   double prior_weight = 1.0;
 };
 
+/// Sum of squares of the sizes of a cause over their spread.
+double SizePriorOf(const std::vector<Candidate>& candidates, const FittedCause& cause);
 /// Sum of squares of z and of the sizes of the causes over their spread, and of the
 /// causes -2 log odds: -2 log of what is known beforehand, but for a constant.
 double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& model);

@@ -48,6 +48,7 @@ DiscoveryProblem::DiscoveryProblem(Machine machine, Observer observer, MeasuredR
 
 const Track& DiscoveryProblem::Nominal() const& {
   std::call_once(derived_->nominal_once, [this] {
+    work_->Add(RunWork());
     derived_->nominal = FollowRun(machine_, {}, *run_, observer_, true);
   });
   return derived_->nominal;
@@ -57,11 +58,13 @@ Track DiscoveryProblem::Nominal() const&& { return std::as_const(*this).Nominal(
 
 Track DiscoveryProblem::Follow(const Changes& changes) const {
   if (changes == Changes{}) return Nominal();
+  work_->Add(RunWork());
   return FollowRun(machine_, changes, *run_, observer_, true);
 }
 
 VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
   if (changes == Changes{}) return Scaled(Nominal());
+  work_->Add(RunWork());
   return Scaled(FollowRun(machine_, changes, *run_, observer_, false));
 }
 
@@ -79,6 +82,8 @@ std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
     const Changes& changes) const {
   const auto linearise = [&] {
     constexpr Index kBlocks = 5000;
+    constexpr double kFirstOrder = 2.5;  // times the run alone
+    work_->Add(kFirstOrder * RunWork());
     ErrorDynamics dynamics(observer_, std::max<Index>(1, run_->samples() / kBlocks));
     Track track = FollowRun(machine_, changes, *run_, observer_, dynamics);
     return std::make_shared<const LinearisedRun>(
@@ -88,6 +93,11 @@ std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
   std::call_once(derived_->linearised_once,
                  [&] { derived_->linearised = linearise(); });
   return derived_->linearised;
+}
+
+double DiscoveryProblem::RunWork() const {
+  return static_cast<double>(run_->samples() * machine_.rates().substeps) *
+         StepWork(machine_.plant().nv);
 }
 
 Changes DiscoveryProblem::WithNumbers(Changes changes, const VectorXd& z) const {
@@ -107,7 +117,7 @@ Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
   const auto p = static_cast<Index>(numbers_.size());
   const VectorXd about = z.size() > 0 ? z : VectorXd::Zero(p);
   std::vector<VectorXd> run(numbers_.size() + 1);
-  ParallelFor(static_cast<int>(run.size()), [&](int number) {
+  ParallelForAll(static_cast<int>(run.size()), [&](int number) {
     VectorXd moved = about;
     if (number < p) moved[number] += kStep;
     run[static_cast<std::size_t>(number)] = Residual(WithNumbers(changes, moved));
@@ -157,7 +167,15 @@ DiscoveryProblem DiscoveryProblem::WithSubsteps(int substeps) const {
 
 DiscoveryProblem DiscoveryProblem::WithRun(MeasuredRun run) const {
   return DiscoveryProblem(machine_, observer_, std::move(run), skip_, train_)
+      .Charging(work_)
       .Doubting(numbers_);
+}
+
+DiscoveryProblem DiscoveryProblem::Charging(std::shared_ptr<Work> work) const {
+  DiscoveryProblem changed = *this;
+  changed.work_ = std::move(work);
+  changed.derived_ = std::make_shared<Derived>();
+  return changed;
 }
 
 DiscoveryProblem DiscoveryProblem::Doubting(std::vector<DoubtedNumber> numbers) const {
@@ -231,6 +249,7 @@ DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
   return DiscoveryProblem(problem.machine(), problem.observer(),
                           Part(problem.run(), 0, samples), problem.skip(), samples)
+      .Charging(problem.work())
       .Doubting(problem.numbers());
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/discovery/hypotheses/work.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/replay/observer.h"
@@ -49,6 +50,10 @@ class DiscoveryProblem {
   /// Numbers of the plant that are fitted with every hypothesis.
   const std::vector<DoubtedNumber>& numbers() const { return numbers_; }
 
+  /// What is spent on it, by all copies; without a limit unless one is charged.
+  const std::shared_ptr<Work>& work() const { return work_; }
+  double RunWork() const;  ///< of one run [s of work]
+
   /// The run beside the nominal machine, with the trajectory of the joints; found when
   /// first asked for. This and what follows: NumericalError if a run diverges.
   const Track& Nominal() const&;
@@ -84,6 +89,8 @@ class DiscoveryProblem {
   DiscoveryProblem WithSubsteps(int substeps) const;
   /// With another run of the machine behind the same observer.
   DiscoveryProblem WithRun(MeasuredRun run) const;
+  /// With its runs counted as that work.
+  DiscoveryProblem Charging(std::shared_ptr<Work> work) const;
   /// With doubts about those numbers.
   DiscoveryProblem Doubting(std::vector<DoubtedNumber> numbers) const;
 
@@ -96,6 +103,7 @@ class DiscoveryProblem {
   Eigen::Index skip_;
   Eigen::Index train_;
   std::vector<DoubtedNumber> numbers_;
+  std::shared_ptr<Work> work_ = std::make_shared<Work>();
   std::shared_ptr<Derived> derived_;
 };
 

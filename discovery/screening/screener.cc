@@ -18,6 +18,8 @@ using Eigen::VectorXd;
 // Columns that are filtered together: enough to keep the processor busy, few enough to
 // stay in memory.
 constexpr Index kBatch = 48;
+// Multiplications for every sample of a signal: to make it, and to take means.
+constexpr Index kPerSample = 8;
 
 /// What is measured over what is known of the numbers beforehand.
 MatrixXd WithNumbers(const MatrixXd& measured, const MatrixXd& numbers) {
@@ -61,11 +63,20 @@ Screener::Screener(const DiscoveryProblem& problem, const ErrorDynamics& dynamic
   adjoint_ = dynamics_.AdjointOf(padded);
 }
 
+/// Work that so many numbers each of `count` signals are.
+void Screener::Charge(Index numbers, Index count) const {
+  problem_.work()->Add(
+      FilterWork(static_cast<double>(numbers) * static_cast<double>(count)));
+}
+
 /// Columns of trials first .. last - 1 side by side.
 MatrixXd Screener::Responses(const std::vector<Trial>& trials, std::size_t first,
                              std::size_t last, const Candidate& candidate) const {
   Index columns = 0;
   for (std::size_t t = first; t < last; ++t) columns += trials[t].signals.cols();
+  Charge(kPerSample * problem_.train() + blocks_ * found_.cols() +
+             blocks_ * 4 * problem_.machine().linear().M.size(),
+         columns);
   MatrixXd signals(problem_.train(), columns);
   MatrixXd entry(problem_.machine().linear().M.rows(), columns);
   const bool forces = trials[first].entry.size() > 0;
@@ -183,6 +194,7 @@ std::vector<double> Screener::Common(const Sweep& sweep,
   };
   Eigen::ArrayXcd wave = waves(sweep.angle.head(problem_.train()));
   const Eigen::ArrayXcd turn = waves(sweep.increment.head(problem_.train()));
+  Charge(kPerSample * problem_.train(), static_cast<Index>(sweep.values.size()));
   std::vector<double> common;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
     const VectorXd& weight = sweep.values[i] < sweep.fast_below ? of_fast : of_slow;

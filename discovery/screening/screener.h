@@ -55,6 +55,7 @@ class Screener {
   template <typename Take>
   void ForEachResponse(const std::vector<Trial>& trials, const Candidate& candidate,
                        const Take& take) const;
+  void Charge(Eigen::Index numbers, Eigen::Index count) const;
   Eigen::MatrixXd Fast(const Trial& trial, const Candidate& candidate) const;
   std::vector<double> Common(const Sweep& sweep, const Candidate& candidate) const;
   Eigen::MatrixXd Responses(const std::vector<Trial>& trials, std::size_t first,

@@ -21,6 +21,15 @@ void KeepBest(std::vector<Start>& starts, std::size_t count) {
   if (starts.size() > count) starts.resize(count);
 }
 
+/// What is left of a gain G where the sizes that it takes cost P beforehand: with
+/// amplitudes as large as they would be best and known to 1 / G of their square,
+/// G / (G + P).
+double Plausible(const std::vector<Candidate>& candidates, const Start& start,
+                 double prior_weight) {
+  const double cost = prior_weight * SizePriorOf(candidates, start.cause);
+  return start.gain / (start.gain + cost);
+}
+
 }  // namespace
 
 Screening Screen(const DiscoveryProblem& problem,
@@ -48,7 +57,10 @@ Screening Screen(const DiscoveryProblem& problem,
     for (auto& start : screener.Judge(trials, candidate)) {
       if (start) found[c].push_back(std::move(*start));
     }
-    for (Start& start : found[c]) start.cause.candidate = c;
+    for (Start& start : found[c]) {
+      start.cause.candidate = c;
+      start.gain *= Plausible(candidates, start, present.prior_weight);
+    }
     KeepBest(found[c], static_cast<std::size_t>(starts_each));
   });
   Screening screening;

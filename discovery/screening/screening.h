@@ -27,7 +27,7 @@ namespace mjdiag {
 /// Values to start a fit from, which may lie beyond their bounds (Bounded).
 struct Start {
   FittedCause cause;
-  double gain = 0.0;  ///< of the squared scaled innovations
+  double gain = 0.0;  ///< of the squared scaled innovations, less what sizes cost
   int freedom = 1;    ///< amplitudes
 };
 

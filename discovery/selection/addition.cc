@@ -70,10 +70,11 @@ void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
                              int iterations) const {
   if (entries.size() > count) entries.resize(count);
   std::vector<std::optional<CauseFit>> fits(entries.size());
+  const double share = data_.work().Share(static_cast<int>(entries.size()));
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     fits[i] = TryFit(data_.beginning, data_.candidates, entries[i],
-                     CompareFrom(FoundJacobian(), iterations, 1e-3));
+                     CompareFrom(FoundJacobian(), iterations, 1e-3, share));
   });
   // On more data a difference grows in proportion.
   const double growth =
@@ -120,10 +121,11 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
 std::vector<std::optional<CauseFit>> Contest::Fit(
     const std::vector<Entry>& entries) const {
   std::vector<std::optional<CauseFit>> fits(entries.size());
+  const double share = data_.work().Share(static_cast<int>(entries.size()));
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     fits[i] = TryFit(data_.problem, data_.candidates, entries[i],
-                     CompareFrom(FoundJacobian(), 8, 1e-4));
+                     CompareFrom(FoundJacobian(), 8, 1e-4, share));
   });
   return fits;
 }

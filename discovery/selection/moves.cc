@@ -30,21 +30,22 @@ void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
 /// The fit of other causes; none if the beginning of the record shows that they explain
 /// far less than the present ones.
 /// @param jacobian  of the first of the causes
+/// @param share     of the work that is left, for both fits
 std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                                          const Evidence& present,
                                          const FittedModel& model,
-                                         const MatrixXd& jacobian) {
+                                         const MatrixXd& jacobian, double share) {
   constexpr double kFar = 60.0;  // in units of the deviance
   const MatrixXd* initial = jacobian.cols() > 0 ? &jacobian : nullptr;
   const auto early = [&](const CauseFit& fit) {
     return Deviance(fit.residual, present.independent(), data.problem.skip(),
                     data.beginning.train());
   };
-  const auto rough =
-      TryFit(data.beginning, data.candidates, model, CompareFrom(initial, 8, 1e-3));
+  const auto rough = TryFit(data.beginning, data.candidates, model,
+                            CompareFrom(initial, 8, 1e-3, 0.5 * share));
   if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
-  auto fit =
-      TryFit(data.problem, data.candidates, model, CompareFrom(initial, 8, 1e-5));
+  auto fit = TryFit(data.problem, data.candidates, model,
+                    CompareFrom(initial, 8, 1e-5, 0.5 * share));
   if (!fit) return std::nullopt;
   return present.Changed(std::move(*fit));
 }
@@ -56,11 +57,12 @@ Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::s
   const FittedModel rest = ModelWithout(present.fit(), i);
   const MatrixXd jacobian = JacobianWithout(present.fit(), i);
   Proposals proposals(others.size());
+  const double share = data.work().Share(static_cast<int>(others.size()));
   ParallelFor(static_cast<int>(others.size()), [&](int number) {
     const auto k = static_cast<std::size_t>(number);
     FittedModel other = rest;
     other.causes.push_back(others[k]);
-    proposals[k] = ProposeUnlessFar(data, present, other, jacobian);
+    proposals[k] = ProposeUnlessFar(data, present, other, jacobian, share);
   });
   return proposals;
 }
@@ -69,10 +71,11 @@ Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::s
 Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
   const CauseFit& fit = present.fit();
   Proposals proposals(fit.causes.size());
+  const double share = data.work().Share(static_cast<int>(proposals.size()));
   ParallelFor(static_cast<int>(proposals.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    proposals[i] =
-        ProposeUnlessFar(data, present, ModelWithout(fit, i), JacobianWithout(fit, i));
+    proposals[i] = ProposeUnlessFar(data, present, ModelWithout(fit, i),
+                                    JacobianWithout(fit, i), share);
   });
   return proposals;
 }
@@ -145,6 +148,7 @@ bool TakeInPlace(HypothesisSet& set, std::size_t i, Proposals proposals) {
 bool ChangePeriod(const SearchData& data, HypothesisSet& set, std::size_t i) {
   const CauseFit& fit = set.fit();
   if (!HasPeriod(data.candidates[fit.causes[i].candidate])) return false;
+  if (!data.work().MayBegin("other periods")) return false;
   const auto others = OtherPeriods(data.problem, data.candidates, fit, i);
   return TakeInPlace(set, i, ProposeInPlace(data, set.evidence, i, others));
 }
@@ -152,6 +156,8 @@ bool ChangePeriod(const SearchData& data, HypothesisSet& set, std::size_t i) {
 bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i) {
   const std::vector<FittedCause> others = OthersFor(data, set.fit(), i);
   Proposals proposals = ProposeInPlace(data, set.evidence, i, others);
+  // Fits that were cut short say nothing of how probable the rivals are.
+  if (!data.work().MayBegin(kOthers)) return false;
   RankRivals(set, i, others, proposals);
   return TakeInPlace(set, i, std::move(proposals));
 }
@@ -177,6 +183,7 @@ bool Drop(const SearchData& data, HypothesisSet& set) {
 
 bool Exchange(const SearchData& data, HypothesisSet& set) {
   for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
+    if (!data.work().MayBegin(kOthers)) break;
     if (ExchangeAt(data, set, i)) return true;
   }
   return false;

@@ -16,6 +16,9 @@
 
 namespace mjdiag {
 
+/// Exchange, as people are told of it.
+inline constexpr const char* kOthers = "other causes in the place of those found";
+
 /// Gives waves of the set other periods while one is accepted.
 void ChangePeriods(const SearchData& data, HypothesisSet& set);
 

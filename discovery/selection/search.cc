@@ -10,6 +10,7 @@
 #include "mjdiag/discovery/selection/comparator.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/moves.h"
+#include "mjdiag/discovery/selection/number_fit.h"
 #include "mjdiag/discovery/selection/search_data.h"
 
 namespace mjdiag {
@@ -17,6 +18,12 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+
+// Steps of a search that may be left out.
+constexpr const char* kFurther = "further causes";
+constexpr const char* kNeeded = "whether every cause is needed";
+constexpr const char* kRepeatable = "whether runs are repeatable";
+constexpr const char* kLastFit = "last fit";
 
 Index BeginningLength(const DiscoveryProblem& problem) {
   constexpr Index kShortest = 4000;
@@ -45,18 +52,21 @@ class Search {
 
  private:
   void Report(const std::string& what, double fraction) const {
-    if (options_.progress) options_.progress(what, fraction);
+    if (options_.progress) options_.progress(what, fraction, result_.fit());
   }
+  Work& work() const { return *data_.problem.work(); }
   Chance ChanceOf(int trials) const {
     return {options_.false_alarm, trials, unsteadiness_};
   }
+  CauseFit FitFoundBefore() const;
   void FitCausesFoundBefore();
   bool Keep(Additions additions, const Chance& chance);
   void MeetUnsteadiness();
   bool AddCause();
   void AddCauses();
   void DropSuperfluous() {
-    while (Drop(data_, result_)) {
+    while (!result_.fit().causes.empty() && work().MayBegin(kNeeded) &&
+           Drop(data_, result_)) {
     }
   }
   void Settle();
@@ -71,12 +81,28 @@ class Search {
   int rounds_ = 0;
 };
 
+CauseFit Search::FitFoundBefore() const {
+  try {
+    if (found_before_.causes.empty()) {
+      return FitNumbers(data_.problem, data_.candidates, work().Share(1));
+    }
+    return FitCauses(data_.problem, data_.candidates, found_before_,
+                     {.iterations = 10,
+                      .tolerance = 1e-5,
+                      .secant = true,
+                      .share = work().Share(1)});
+  } catch (const CutShort&) {
+    work().CutShort();
+    return FitCauses(data_.problem, data_.candidates, found_before_,
+                     {.iterations = 0, .jacobian = false, .closing = true});
+  }
+}
+
 void Search::FitCausesFoundBefore() {
   Report("fit of the causes found before", 0.0);
-  CauseFit fit = found_before_.causes.empty()
-                     ? FitNumbers(data_.problem, data_.candidates)
-                     : FitCauses(data_.problem, data_.candidates, found_before_,
-                                 {.iterations = 10, .tolerance = 1e-5, .secant = true});
+  CauseFit fit = FitFoundBefore();
+  // Until a screening says otherwise.
+  result_.significant_rest = true;
   if (fit.causes.empty()) result_.numbers_alone = fit.numbers;
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
@@ -136,6 +162,7 @@ bool Search::AddCause() {
       Shortlist(present, screening, chance, options_.shortlist);
   result_.significant_rest = !shortlist.empty();
   if (shortlist.empty() || rounds_++ >= options_.most_causes) return false;
+  if (!work().MayBegin(kFurther)) return false;
   Additions additions =
       ProposeAdditions(data_, present, shortlist,
                        [this](const std::string& what) { Report(what, 0.5); });
@@ -146,7 +173,10 @@ bool Search::AddCause() {
         return present.SignificanceOf(after, chance, present.independent())
             .IsMoreThanChance();
       });
-  if (!Keep(std::move(additions), chance)) return false;
+  if (!Keep(std::move(additions), chance)) {
+    work().MayBegin(kFurther);  // kept if their fits were cut short
+    return false;
+  }
   result_.exchanged = false;
   return true;
 }
@@ -155,10 +185,10 @@ bool Search::AddCause() {
 void Search::Settle() {
   Report("other periods", 0.7);
   ChangePeriods(data_, result_);
-  Report("whether every cause is needed", 0.8);
+  Report(kNeeded, 0.8);
   DropSuperfluous();
-  Report("whether runs are repeatable", 0.9);
-  MeetUnsteadiness();
+  Report(kRepeatable, 0.9);
+  if (work().MayBegin(kRepeatable)) MeetUnsteadiness();
 }
 
 void Search::AddCauses() {
@@ -166,24 +196,29 @@ void Search::AddCauses() {
     result_.served = !options_.serves || options_.serves(result_.fit());
     return result_.served;
   };
-  while (serves() && AddCause()) Settle();
+  while (work().MayBegin(kFurther) && serves() && AddCause()) Settle();
 }
 
 /// True if another candidate came into the place of a cause.
 bool Search::TryExchange() {
   if (result_.fit().causes.empty()) return false;
-  Report("other causes in the place of those found", 0.9);
+  Report(kOthers, 0.9);
   return Exchange(data_, result_);
 }
 
 void Search::FitClosely() {
-  Report("last fit", 0.9);
+  Report(kLastFit, 0.9);
   const CauseFit& fit = result_.fit();
-  result_.evidence = result_.evidence.Changed(
-      FitCauses(data_.problem, data_.candidates, fit,
-                {.iterations = 8,
-                 .tolerance = 1e-8,
-                 .initial_jacobian = fit.exact ? &fit.jacobian : nullptr}));
+  try {
+    result_.evidence = result_.evidence.Changed(
+        FitCauses(data_.problem, data_.candidates, fit,
+                  {.iterations = 8,
+                   .tolerance = 1e-8,
+                   .initial_jacobian = fit.exact ? &fit.jacobian : nullptr,
+                   .share = work().Share(1)}));
+  } catch (const CutShort&) {
+    work().CutShort();
+  }
 }
 
 SearchResult Search::Run() {
@@ -197,6 +232,7 @@ SearchResult Search::Run() {
   }
   constexpr int kExchanges = 4;
   for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
+    if (!result_.fit().causes.empty() && !work().MayBegin(kOthers)) break;
     if (TryExchange()) {
       Settle();
       AddCauses();
@@ -204,7 +240,10 @@ SearchResult Search::Run() {
       result_.exchanged = true;
     }
   }
-  if (options_.last_fit && result_.fit().jacobian.cols() > 0) FitClosely();
+  if (options_.last_fit && result_.fit().jacobian.cols() > 0 &&
+      work().MayBegin(kLastFit)) {
+    FitClosely();
+  }
   return std::move(result_);
 }
 

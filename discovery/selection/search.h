@@ -15,6 +15,9 @@
 // rounds go on, four times at most. In the end all values are fitted once more, as
 // closely as possible.
 //
+// Where the work that the discovery may do is used up, or it was asked to end (work.h),
+// no further move is begun, and those under way end with the sets they have.
+//
 // One comparator judges all of these moves (comparator.h). A set that it turns down
 // leaves no trace but, if unseen data spoke against it, its name among the refuted.
 
@@ -47,7 +50,9 @@ struct SearchOptions {
   std::function<bool(const CauseFit& fit)> serves;
   /// Whether to fit the causes once more in the end, as closely as possible.
   bool last_fit = true;
-  std::function<void(const std::string& what, double fraction)> progress;
+  /// What is tried, which share of a round is done, and the best set so far.
+  std::function<void(const std::string& what, double fraction, const CauseFit& best)>
+      progress;
 };
 
 struct SearchResult : HypothesisSet {

@@ -14,6 +14,8 @@ struct SearchData {
   DiscoveryProblem beginning;  ///< of the problem, for what shows early
   const std::vector<Candidate>& candidates;
   EvidenceData evidence;
+
+  Work& work() const { return *problem.work(); }
 };
 
 }  // namespace mjdiag

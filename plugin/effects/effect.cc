@@ -26,6 +26,20 @@ std::optional<Index> PlaceOf(const std::vector<EffectParameter>& parameters,
 
 }  // namespace
 
+std::string FamilyName(Family family) {
+  switch (family) {
+    case Family::kFriction:
+      return "friction";
+    case Family::kDrive:
+      return "drive";
+    case Family::kStructure:
+      return "structure";
+    case Family::kEncoder:
+      return "encoder";
+  }
+  return "";
+}
+
 EffectParameter Effect::Free(std::string name, Role role, std::string unit) {
   return {std::move(name), role, std::move(unit), -kAny, kAny};
 }

@@ -10,6 +10,7 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -46,6 +47,13 @@ enum class SiteKind {
   kHinge  ///< any hinge
 };
 
+/// What kind of physics an effect is; the effects of each lie in a folder of that name.
+enum class Family { kFriction, kDrive, kStructure, kEncoder };
+inline constexpr std::array kFamilies = {Family::kFriction, Family::kDrive,
+                                         Family::kStructure, Family::kEncoder};
+/// "friction".
+std::string FamilyName(Family family);
+
 /// How an extended plant carries an effect.
 enum class Form {
   kAttributes,  ///< attributes of MJCF elements: a native effect
@@ -70,6 +78,7 @@ inline constexpr double kRare = 0.1;
 /// What is said of every effect.
 struct EffectType {
   std::string name;
+  Family family;
   SiteKind site = SiteKind::kJoint;
   Form form = Form::kNumeric;
   LawVariable variable;
@@ -88,6 +97,7 @@ class Effect {
   const std::string& name() const { return type_.name; }
   const std::string& meaning() const { return type_.meaning; }
   const std::vector<EffectParameter>& parameters() const { return type_.parameters; }
+  Family family() const { return type_.family; }
   SiteKind site() const { return type_.site; }
   Form form() const { return type_.form; }
   LawVariable variable() const { return type_.variable; }

@@ -14,10 +14,23 @@ using Eigen::Index;
 // Where a fit ends: far beyond any machine.
 constexpr double kMost = 100.0;
 
+/// That of the effect that changes the same attribute of one element.
+Family FamilyOf(PlantNumberKind kind) {
+  switch (kind) {
+    case PlantNumberKind::kDamping:
+      return ViscousFriction().family();
+    case PlantNumberKind::kGear:
+      return MotorConstant().family();
+    default:
+      return StructuralStiffness().family();
+  }
+}
+
 class FaultParameterEffect final : public Effect {
  public:
   explicit FaultParameterEffect(FaultParameter declared)
       : Effect({.name = declared.name,
+                .family = FamilyOf(declared.kind),
                 .site = declared.kind == PlantNumberKind::kGear ? SiteKind::kActuator
                                                                 : SiteKind::kJoint,
                 .form = Form::kAttributes,

@@ -6,7 +6,9 @@
 #include <tbb/task_group.h>
 
 #include <atomic>
+#include <exception>
 #include <thread>
+#include <vector>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -92,6 +94,20 @@ void ParallelFor(int count, const std::function<void(int)>& task,
     tbb::parallel_for(tbb::blocked_range<int>(0, count), LoopBody{&loop},
                       tbb::simple_partitioner(), context);
   });
+}
+
+void ParallelForAll(int count, const std::function<void(int)>& task) {
+  std::vector<std::exception_ptr> failures(static_cast<std::size_t>(count));
+  ParallelFor(count, [&](int number) {
+    try {
+      task(number);
+    } catch (...) {
+      failures[static_cast<std::size_t>(number)] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
 }
 
 }  // namespace mjdiag

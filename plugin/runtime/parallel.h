@@ -15,4 +15,8 @@ namespace mjdiag {
 void ParallelFor(int count, const std::function<void(int)>& task,
                  const std::function<void(double fraction)>& progress = {});
 
+/// The same, but every task is begun, even if one throws: how much work they do does
+/// not depend on the number of threads. Throws what the first of them by number did.
+void ParallelForAll(int count, const std::function<void(int)>& task);
+
 }  // namespace mjdiag

@@ -38,6 +38,7 @@ class AmplifierLagEffect final : public Effect {
  public:
   AmplifierLagEffect()
       : Effect({.name = "amplifier_lag",
+                .family = Family::kDrive,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kInput,
                 .parameters = {Positive("time_constant", Role::kTime, "s")},

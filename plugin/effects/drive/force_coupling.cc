@@ -42,6 +42,7 @@ class ForceCouplingEffect final : public Effect {
  public:
   ForceCouplingEffect()
       : Effect({.name = "force_coupling",
+                .family = Family::kDrive,
                 .variable = LawVariable::kInput,
                 .parameters = {Free("coefficient", Role::kAmplitude, "1")},
                 .meaning = "coefficient times the force of the motors of other joints",

@@ -10,6 +10,7 @@ class ForceOffsetEffect final : public JointForceEffect {
  public:
   ForceOffsetEffect()
       : JointForceEffect({.name = "force_offset",
+                          .family = Family::kDrive,
                           .variable = LawVariable::kTime,
                           .parameters = {Free("force", Role::kAmplitude, "N")},
                           .meaning = "a constant force"}) {}

@@ -16,6 +16,7 @@ class ForceRippleEffect final : public JointForceEffect {
   ForceRippleEffect()
       : JointForceEffect(
             {.name = "force_ripple",
+             .family = Family::kDrive,
              .variable = LawVariable::kPosition,
              .parameters = {Free("amplitude", Role::kAmplitude, "N"),
                             Positive("period", Role::kPeriod, "m"), Phase()},

@@ -13,6 +13,7 @@ class ForceSaturationEffect final : public Effect {
  public:
   ForceSaturationEffect()
       : Effect({.name = "force_saturation",
+                .family = Family::kDrive,
                 .site = SiteKind::kActuator,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kInput,

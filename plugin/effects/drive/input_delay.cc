@@ -48,6 +48,7 @@ class InputDelayEffect final : public Effect {
  public:
   InputDelayEffect()
       : Effect({.name = "input_delay",
+                .family = Family::kDrive,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kInput,
                 .parameters = {{"delay", Role::kTime, "s", 0.0, kLongest}},

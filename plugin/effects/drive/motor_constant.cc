@@ -12,6 +12,7 @@ class MotorConstantEffect final : public Effect {
  public:
   MotorConstantEffect()
       : Effect({.name = "motor_constant",
+                .family = Family::kDrive,
                 .site = SiteKind::kActuator,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kInput,

@@ -38,6 +38,7 @@ class PositionDependentMotorConstantEffect final : public Effect {
  public:
   PositionDependentMotorConstantEffect()
       : Effect({.name = "position_dependent_motor_constant",
+                .family = Family::kDrive,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("slope", Role::kAmplitude, "1/m"),

@@ -10,6 +10,7 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
  public:
   EncoderDriftEffect()
       : ReadingErrorEffect({.name = "encoder_drift",
+                            .family = Family::kEncoder,
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kTime,
                             .parameters = {Free("rate", Role::kAmplitude, "m/s")},
@@ -23,8 +24,9 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(at.motion.time, {})};
   }
+  // What heat moves in the time of a record.
   EffectValues Spread(const Scales& k) const override {
-    return ValuesOf({0.02 * k.stroke / k.duration});
+    return ValuesOf({2e-3 * k.stroke / k.duration});
   }
   Sized Draw(const Scales& k, Random& r) const override {
     return Proportional(r.Sign() * 0.02 * k.stroke / k.duration);

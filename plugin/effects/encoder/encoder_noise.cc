@@ -13,6 +13,7 @@ class EncoderNoiseEffect final : public Effect {
  public:
   EncoderNoiseEffect()
       : Effect({.name = "encoder_noise",
+                .family = Family::kEncoder,
                 .site = SiteKind::kSensor,
                 .form = Form::kNoise,
                 .variable = LawVariable::kTime,

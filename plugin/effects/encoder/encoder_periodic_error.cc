@@ -27,6 +27,7 @@ class EncoderPeriodicErrorEffect final : public ReadingErrorEffect {
   EncoderPeriodicErrorEffect()
       : ReadingErrorEffect(
             {.name = "encoder_periodic_error",
+             .family = Family::kEncoder,
              .site = SiteKind::kSensor,
              .variable = LawVariable::kPosition,
              .parameters = {Free("amplitude", Role::kAmplitude, "m"),

@@ -10,6 +10,7 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
  public:
   EncoderScaleEffect()
       : ReadingErrorEffect({.name = "encoder_scale",
+                            .family = Family::kEncoder,
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kPosition,
                             .parameters = {Free("factor", Role::kFactor, "1")},

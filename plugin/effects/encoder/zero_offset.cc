@@ -47,6 +47,7 @@ class ZeroOffsetEffect final : public Effect {
  public:
   ZeroOffsetEffect()
       : Effect({.name = "zero_offset",
+                .family = Family::kEncoder,
                 .site = SiteKind::kHinge,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("offset", Role::kAmplitude, "rad")},

@@ -10,6 +10,7 @@ class AsymmetricViscousFrictionEffect final : public JointForceEffect {
  public:
   AsymmetricViscousFrictionEffect()
       : JointForceEffect({.name = "asymmetric_viscous_friction",
+                          .family = Family::kFriction,
                           .variable = LawVariable::kVelocity,
                           .parameters = {Free("positive", Role::kAmplitude, "N s/m"),
                                          Free("negative", Role::kAmplitude, "N s/m")},

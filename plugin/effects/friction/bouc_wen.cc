@@ -69,6 +69,7 @@ class BoucWenEffect final : public Effect {
   BoucWenEffect()
       : Effect(
             {.name = "bouc_wen",
+             .family = Family::kFriction,
              .variable = LawVariable::kPosition,
              .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
                             NotNegative("loss", Role::kSteepness, "1/m"),

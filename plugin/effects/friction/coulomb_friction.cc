@@ -11,6 +11,7 @@ class CoulombFrictionEffect final : public Effect {
  public:
   CoulombFrictionEffect()
       : Effect({.name = "coulomb_friction",
+                .family = Family::kFriction,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {NotNegative("force", Role::kAmplitude, "N")},

@@ -34,6 +34,7 @@ class DirectionalLoadFrictionEffect final : public VaryingFrictionEffect<BoundBy
   DirectionalLoadFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "directional_load_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("motor_share", Role::kAmplitude, "1"),
                             NotNegative("load_share", Role::kAmplitude, "1")},

@@ -13,6 +13,7 @@ class EddyCurrentBrakeEffect final : public JointForceEffect {
   EddyCurrentBrakeEffect()
       : JointForceEffect(
             {.name = "eddy_current_brake",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "N s/m"),
                             Positive("velocity", Role::kVelocity, "m/s")},

@@ -29,6 +29,7 @@ class HystereticStiffnessEffect final : public Effect {
  public:
   HystereticStiffnessEffect()
       : Effect({.name = "hysteretic_stiffness",
+                .family = Family::kFriction,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
                                NotNegative("loss", Role::kRatio, "1"),

@@ -34,6 +34,7 @@ class LoadFrictionEffect final : public VaryingFrictionEffect<BoundByLoad> {
   LoadFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "load_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1")},
              .meaning = "dry friction of coefficient |what the drive transmits|: "

@@ -12,6 +12,7 @@ class PositionDependentDampingEffect final : public JointForceEffect {
   PositionDependentDampingEffect()
       : JointForceEffect(
             {.name = "position_dependent_damping",
+             .family = Family::kFriction,
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N s/m^2"),
                             Free("curvature", Role::kAmplitude, "N s/m^3")},

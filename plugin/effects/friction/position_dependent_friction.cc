@@ -37,6 +37,7 @@ class PositionDependentFrictionEffect final
   PositionDependentFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "position_dependent_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N/m"),
                             Free("curvature", Role::kAmplitude, "N/m^2")},

@@ -34,6 +34,7 @@ class PreslidingHysteresisEffect final : public Effect {
   PreslidingHysteresisEffect()
       : Effect(
             {.name = "presliding_hysteresis",
+             .family = Family::kFriction,
              .variable = LawVariable::kPosition,
              .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                             Positive("stiffness", Role::kSteepness, "N/m")},

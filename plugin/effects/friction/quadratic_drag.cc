@@ -13,6 +13,7 @@ class QuadraticDragEffect final : public JointForceEffect {
   QuadraticDragEffect()
       : JointForceEffect(
             {.name = "quadratic_drag",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {Free("coefficient", Role::kAmplitude, "N s^2/m^2")},
              .meaning = "-coefficient v |v|",

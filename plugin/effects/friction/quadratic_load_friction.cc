@@ -33,6 +33,7 @@ class QuadraticLoadFrictionEffect final
   QuadraticLoadFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "quadratic_load_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1/N")},
              .meaning = "dry friction of coefficient (what the drive transmits)^2",

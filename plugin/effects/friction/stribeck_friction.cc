@@ -30,6 +30,7 @@ class StribeckFrictionEffect final : public VaryingFrictionEffect<FallingBound> 
   StribeckFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "stribeck_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coulomb", Role::kAmplitude, "N"),
                             NotNegative("breakaway", Role::kAmplitude, "N"),

@@ -40,6 +40,7 @@ class StribeckLoadFrictionEffect final
   StribeckLoadFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "stribeck_load_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1"),
                             NotNegative("breakaway", Role::kAmplitude, "1"),

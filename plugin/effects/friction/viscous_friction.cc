@@ -9,6 +9,7 @@ class ViscousFrictionEffect final : public Effect {
  public:
   ViscousFrictionEffect()
       : Effect({.name = "viscous_friction",
+                .family = Family::kFriction,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {Free("coefficient", Role::kAmplitude, "N s/m")},

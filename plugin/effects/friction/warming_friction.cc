@@ -31,6 +31,7 @@ class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
   WarmingFrictionEffect()
       : VaryingFrictionEffect(
             {.name = "warming_friction",
+             .family = Family::kFriction,
              .variable = LawVariable::kTime,
              .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                             Positive("time_constant", Role::kDuration, "s")},

@@ -10,6 +10,7 @@ class AddedMassEffect final : public Effect {
  public:
   AddedMassEffect()
       : Effect({.name = "added_mass",
+                .family = Family::kStructure,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kAcceleration,
                 .parameters = {Free("mass", Role::kAmplitude, "kg")},

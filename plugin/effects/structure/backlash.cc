@@ -35,6 +35,7 @@ class BacklashEffect final : public Effect {
  public:
   BacklashEffect()
       : Effect({.name = "backlash",
+                .family = Family::kStructure,
                 .site = SiteKind::kHeldJoint,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("gap", Role::kGap, "m")},

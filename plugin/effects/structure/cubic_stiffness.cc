@@ -13,6 +13,7 @@ class CubicStiffnessEffect final : public JointForceEffect {
   CubicStiffnessEffect()
       : JointForceEffect(
             {.name = "cubic_stiffness",
+             .family = Family::kStructure,
              .variable = LawVariable::kPosition,
              .parameters = {Free("coefficient", Role::kAmplitude, "N/m^3")},
              .meaning = "-coefficient q^3",

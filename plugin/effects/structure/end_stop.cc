@@ -14,6 +14,7 @@ class EndStopEffect final : public JointForceEffect {
   EndStopEffect()
       : JointForceEffect(
             {.name = "end_stop",
+             .family = Family::kStructure,
              .variable = LawVariable::kPosition,
              .parameters = {Free("position", Role::kPosition, "m"),
                             NotNegative("stiffness", Role::kAmplitude, "N/m")},

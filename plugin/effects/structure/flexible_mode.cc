@@ -46,6 +46,7 @@ class FlexibleModeEffect final : public Effect {
  public:
   FlexibleModeEffect()
       : Effect({.name = "flexible_mode",
+                .family = Family::kStructure,
                 .variable = LawVariable::kAcceleration,
                 .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
                                Positive("frequency", Role::kFrequency, "Hz"),

@@ -15,6 +15,7 @@ class FloorVibrationEffect final : public JointForceEffect {
   FloorVibrationEffect()
       : JointForceEffect(
             {.name = "floor_vibration",
+             .family = Family::kStructure,
              .variable = LawVariable::kTime,
              .parameters = {Free("amplitude", Role::kAmplitude, "N"),
                             Positive("frequency", Role::kFrequency, "Hz"), Phase()},

@@ -10,6 +10,7 @@ class LinearStiffnessEffect final : public Effect {
  public:
   LinearStiffnessEffect()
       : Effect({.name = "linear_stiffness",
+                .family = Family::kStructure,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("stiffness", Role::kAmplitude, "N/m")},

@@ -13,6 +13,7 @@ class QuadraticStiffnessEffect final : public JointForceEffect {
   QuadraticStiffnessEffect()
       : JointForceEffect(
             {.name = "quadratic_stiffness",
+             .family = Family::kStructure,
              .variable = LawVariable::kPosition,
              .parameters = {Free("coefficient", Role::kAmplitude, "N/m^2")},
              .meaning = "-coefficient q^2",

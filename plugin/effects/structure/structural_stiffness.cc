@@ -12,6 +12,7 @@ class StructuralStiffnessEffect final : public Effect {
  public:
   StructuralStiffnessEffect()
       : Effect({.name = "structural_stiffness",
+                .family = Family::kStructure,
                 .site = SiteKind::kHeldJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kPosition,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <regex>
@@ -75,6 +76,15 @@ TEST(Registry, HoldsExactlyTheDocumentedEffects) {
   EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(DocumentedNames()));
   std::ranges::sort(names);
   EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
+}
+
+TEST(Registry, HasEveryEffectInTheFolderOfItsFamily) {
+  namespace fs = std::filesystem;
+  for (const Effect* effect : Effects()) {
+    const fs::path folder =
+        fs::path(MJDIAG_SOURCE_DIR) / "plugin/effects" / FamilyName(effect->family());
+    EXPECT_TRUE(fs::exists(folder / (effect->name() + ".cc"))) << effect->name();
+  }
 }
 
 TEST(Registry, IsParsedAndFormattedWithoutLoss) {

@@ -36,6 +36,18 @@ TEST(ParallelFor, UsesMoreThanOneThread) {
   EXPECT_EQ(begun, 2);
 }
 
+TEST(ParallelForAll, BeginsEveryTaskAndThrowsWhatTheFirstByNumberDid) {
+  std::atomic<int> begun{0};
+  const std::string message = test::MessageOf<InputError>([&] {
+    ParallelForAll(1000, [&](int i) {
+      ++begun;
+      if (i % 10 == 7) throw InputError("task", std::to_string(i), "another");
+    });
+  });
+  EXPECT_EQ(message, InputError("task", "7", "another").what());
+  EXPECT_EQ(begun, 1000);
+}
+
 TEST(ParallelFor, BeginsNothingMoreAfterAnException) {
   // 10000 tasks of a millisecond would follow it.
   std::atomic<int> begun{0};

@@ -1,0 +1,105 @@
+// The notes of a discovery: what cannot be judged or told apart, and what it did not
+// come to.
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/selection/discriminating_experiment.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Times a budget that was too small.
+constexpr double kMore = 5.0;
+
+constexpr const char* kExperiments = "experiments that would tell causes apart";
+
+/// Of a budget, as it was given.
+std::string Seconds(double value) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%g", value);
+  return digits.data();
+}
+
+}  // namespace
+
+void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
+  const std::vector<Index> seen = SeenJoints(problem_.machine().linear());
+  for (std::size_t y = 0; y < seen.size(); ++y) {
+    constexpr double kMoves = 50.0;  // times the sensor noise
+    const VectorXd q = motion.outputs.row(static_cast<Index>(y));
+    const double range = q.maxCoeff() - q.minCoeff();
+    const std::string& joint =
+        problem_.machine().linear().coordinates[static_cast<std::size_t>(seen[y])];
+    if (range < kMoves * problem_.observer().noise_sd[static_cast<Index>(y)]) {
+      discovery_.notes.push_back(
+          "'" + machine_.channels().sensors[y].channel +
+          "' does not move: friction, springs, ripple, mass and motor of joint '" +
+          joint + "' cannot be judged; record a motion of it");
+    }
+  }
+}
+
+void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals) {
+  const FoundCause& found = discovery_.causes[cause];
+  for (const Alternative& other : found.alternatives) {
+    if (other.indistinguishable) {
+      discovery_.notes.push_back(Describe(found.cause) + " and " +
+                                 Describe(other.cause) +
+                                 " are the same change of the model: no measurement "
+                                 "tells them apart");
+    }
+  }
+  constexpr double kCompetes = 0.05;
+  const FittedCause& fitted = search_.fit().causes[cause];
+  for (const Hypothesis& other : rivals) {
+    if (other.cause.candidate == fitted.candidate || other.probability < kCompetes) {
+      continue;
+    }
+    std::string note = "the record does not tell " + Describe(found.cause) + " from " +
+                       Describe(CauseOf(candidates_, other.cause));
+    if (!work_->MayBegin(kExperiments)) {
+      discovery_.notes.push_back(note);
+      continue;
+    }
+    const auto experiment = FindDiscriminatingExperiment(
+        machine_.WithSensorNoise(problem_.observer().noise_sd),
+        ChangesOf({found.cause}), ChangesOf({CauseOf(candidates_, other.cause)}));
+    constexpr double kTells = 4.0;
+    if (!experiment || experiment->separation < kTells) {
+      note += "; no trajectory of the setup would, a larger or faster motion may";
+    } else {
+      note += "; trajectory '" + experiment->trajectory + "'";
+      if (experiment->slower > 1.0) {
+        note += ", " + std::to_string(static_cast<int>(experiment->slower)) +
+                " times slower,";
+      }
+      note += " would, by " + std::to_string(static_cast<int>(experiment->separation)) +
+              " standard deviations";
+    }
+    discovery_.notes.push_back(note);
+  }
+}
+
+/// What the search did not come to, and how it does.
+void Discoverer::NoteBudget() {
+  Budget& budget = discovery_.budget;
+  budget = {work_->used(), work_->limit(), work_->IsStopped(), work_->left_out()};
+  if (budget.left_out.empty()) return;
+  std::string rest;
+  for (const std::string& what : budget.left_out)
+    rest += (rest.empty() ? "" : ", ") + what;
+  discovery_.notes.push_back(budget.stopped
+                                 ? "it was stopped; left out: " + rest
+                                 : "ended by its budget of " + Seconds(budget.limit) +
+                                       " s; left out: " + rest + "; --budget " +
+                                       Seconds(kMore * budget.limit) + " goes on");
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,32 @@
+#include "mjdiag/discovery/selection/number_fit.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "mjdiag/discovery/selection/model_choice.h"
+
+namespace mjdiag {
+
+CauseFit FitNumbers(const DiscoveryProblem& problem,
+                    const std::vector<Candidate>& candidates, double share) {
+  CauseFit fit =
+      FitCauses(problem, candidates, {}, {.iterations = 0, .jacobian = false});
+  if (problem.numbers().empty()) return fit;
+  constexpr int kAnew = 4;            // derivatives, for the plant may be far off
+  constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
+  constexpr double kSettled = 0.01;   // of the mean square
+  for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
+    FittedModel start = fit;
+    start.prior_weight =
+        std::max(1.0, fit.train) / IndependentShare(problem, fit.residual).minCoeff();
+    CauseFit next = FitCauses(
+        problem, candidates, start,
+        {.iterations = 10, .jacobian = false, .secant = true, .share = share / kAnew});
+    const bool settled = fit.train - next.train < kSettled * fit.train;
+    fit = std::move(next);
+    if (settled) break;
+  }
+  return fit;
+}
+
+}  // namespace mjdiag
