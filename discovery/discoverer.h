@@ -47,6 +47,7 @@ class Discoverer {
   void SearchAll();
   void MeasureNominal();
   void CompleteJacobian();
+  void FitFree();
   void NoteBudget();
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
@@ -77,6 +78,8 @@ class Discoverer {
   DiscoveryProblem problem_;
   double nominal_ = 0.0;  // mean square of the plant as given, behind this observer
   SearchResult search_;
+  /// The last fit, where it is one of free simulation, with its problem.
+  std::optional<std::pair<DiscoveryProblem, CauseFit>> free_fit_;
   Changes changes_;
   Discovery discovery_;
 };

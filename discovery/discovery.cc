@@ -129,9 +129,10 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
 }
 
 void Discoverer::NameCauses() {
-  const CauseFit& fit = search_.fit();
+  const CauseFit& fit = free_fit_ ? free_fit_->second : search_.fit();
+  const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
   if (fit.jacobian.cols() == 0) return;
-  const MatrixXd of_all = ParameterCovariance(problem_, candidates_, fit);
+  const MatrixXd of_all = ParameterCovariance(problem, candidates_, fit);
   const Index numbers = fit.numbers.size();
   NameNumbers(of_all.topLeftCorner(numbers, numbers));
   if (fit.causes.empty()) return;
@@ -139,7 +140,7 @@ void Discoverer::NameCauses() {
   const MatrixXd covariance = of_all.bottomRightCorner(parameters, parameters);
   Report("intervals", 0.7);
   const std::vector<Interval> intervals =
-      ParameterIntervals(problem_, candidates_, fit, covariance);
+      ParameterIntervals(problem, candidates_, fit, covariance);
   Index first = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
     FoundCause found;
@@ -180,11 +181,9 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
   for (const RaisedNoise& raised : FindRaisedNoise(
            machine_.setup(), problem_.observer(), innovations, options_.train_share)) {
     const Effect& noise = NoiseEffect();
-    const bool chosen =
-        std::ranges::any_of(candidates_, [&](const Candidate& candidate) {
-          return candidate.effect.get() == &noise && candidate.site == raised.element;
-        });
-    if (!chosen) continue;
+    const Candidate candidate{
+        .effect = Lasting(noise), .site = raised.element, .parameters = {}};
+    if (!IsChosen(candidate, options_.choice)) continue;
     FoundCause found;
     found.cause = {Lasting(noise), raised.element, ValuesOf({raised.sd})};
     const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
@@ -267,8 +266,38 @@ void Discoverer::SearchAll() {
     problem_ = WithDoubts(problem_, KnownNumbers());
   }
   SearchBehindObservers(options);
+  FitFree();
   work_->EndSearch();
   CompleteJacobian();
+}
+
+/// Beside a rest far above noise every value of a fit takes over some of what the model
+/// lacks, and what it takes over depends on what is fitted. People use a model to simulate:
+/// the last fit is one of free simulation, if that is better on records that no fit saw.
+void Discoverer::FitFree() {
+  const CauseFit& found = search_.fit();
+  if (measurements_.unseen.empty() || found.train <= kFarAboveNoise) return;
+  if (found.causes.empty() || !work_->MayBegin("fit of free simulation")) return;
+  Report("fit of free simulation", 0.9, found);
+  const DiscoveryProblem free = problem_.Simulating([this](const Changes& changes) {
+    return FreeErrors(measurements_.fit, changes);
+  });
+  const auto measure = [&](const FittedModel& model) {
+    work_->Add(problem_.RunWork() * UnseenShare());
+    return FreeRun(measurements_.unseen, ChangesOf(problem_, candidates_, model),
+                   problem_.observer().noise_sd);
+  };
+  auto start = TryFit(free, candidates_, found, {.iterations = 0, .jacobian = false});
+  if (!start) return;
+  start->prior_weight =
+      std::max(1.0, start->train) / IndependentShare(free, start->residual).minCoeff();
+  auto fit = TryFit(
+      free, candidates_, *start,
+      {.iterations = 12, .tolerance = 1e-4, .secant = true, .share = work_->Share(1)});
+  if (!fit || measure(*fit) >= measure(found)) return;
+  search_.evidence = search_.evidence.Changed(
+      FitCauses(problem_, candidates_, *fit, {.iterations = 0, .closing = true}));
+  free_fit_.emplace(free, std::move(*fit));
 }
 
 /// The derivatives that intervals are made of, where the search ended without them.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "mjdiag/comparison/replay_error.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -37,30 +36,51 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
   return replays;
 }
 
-double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& changes,
-               const Eigen::VectorXd& noise_sd) {
-  std::vector<double> off(records.size());
+Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
+                           const Changes& changes) {
+  Eigen::Index samples = 0;
+  std::vector<Eigen::Index> first;
+  for (const MeasuredRecord& one : records) {
+    first.push_back(samples);
+    samples += one.record.samples();
+  }
+  const Channels& channels = records.front().machine.channels();
+  Eigen::MatrixXd errors(static_cast<Eigen::Index>(channels.sensors.size()), samples);
   ParallelFor(static_cast<int>(records.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     const auto& [record, machine, name] = records[i];
     RunOptions quiet;
     quiet.noise_scale = 0.0;
-    try {
-      const Record simulated =
-          Simulate(machine.With(changes), Replay(machine.setup(), record), quiet);
-      Eigen::Index sensor = 0;
-      const Eigen::Index skip = machine.setup().compare.skip_samples;
-      for (const SensorSetup& one : machine.channels().sensors) {
-        const Eigen::VectorXd error =
-            record.At(one.channel).samples - simulated.At(one.channel).samples;
-        const double rms = Rms(error.tail(error.size() - skip));
-        off[i] += 0.5 * std::log1p(std::pow(rms / noise_sd[sensor++], 2));
-      }
-    } catch (const NumericalError&) {
-      off[i] = std::numeric_limits<double>::infinity();
+    const Record simulated =
+        Simulate(machine.With(changes), Replay(machine.setup(), record), quiet);
+    Eigen::Index row = 0;
+    for (const SensorSetup& sensor : channels.sensors) {
+      errors.row(row++).segment(first[i], record.samples()) =
+          record.At(sensor.channel).samples - simulated.At(sensor.channel).samples;
     }
   });
-  const double sum = std::accumulate(off.begin(), off.end(), 0.0);
+  return errors;
+}
+
+double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& changes,
+               const Eigen::VectorXd& noise_sd) {
+  double sum = 0.0;
+  try {
+    const Eigen::MatrixXd errors = FreeErrors(records, changes);
+    Eigen::Index first = 0;
+    for (const auto& [record, machine, name] : records) {
+      const Eigen::Index skip = machine.setup().compare.skip_samples;
+      const Eigen::Index n = record.samples() - skip;
+      for (Eigen::Index i = 0; i < errors.rows(); ++i) {
+        const double square = errors.row(i).segment(first + skip, n).squaredNorm() /
+                              static_cast<double>(n);
+        sum += 0.5 * std::log1p(square / (noise_sd[i] * noise_sd[i]));
+      }
+      first += record.samples();
+    }
+  } catch (const NumericalError&) {
+    return std::numeric_limits<double>::infinity();
+  }
   return sum / static_cast<double>(noise_sd.size() *
                                    static_cast<Eigen::Index>(records.size()));
 }

@@ -24,6 +24,11 @@ struct RecordReplay {
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed);
 
+/// Measured less simulated of every sensor, one record after the other, sensors x
+/// samples. NumericalError where one diverges.
+Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
+                           const Changes& changes);
+
 /// How far free simulation of records is off beside a model: the mean over sensors and
 /// records of ln sqrt(1 + e^2 / r^2), e the rms of what was measured less what was
 /// simulated, r that of the sensor's noise. Infinite where one diverges.

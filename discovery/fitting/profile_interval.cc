@@ -155,7 +155,10 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                        information.scale.asDiagonal();
   const MatrixXd C = all.bottomRightCorner(theta.size(), theta.size());
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);
-  const std::vector<bool> needed = NeedProfile(candidates, fit.causes, covariance);
+  // Free simulations take long, and their values are pulled by more than noise.
+  const std::vector<bool> needed =
+      problem.IsFree() ? std::vector<bool>(parameters.size(), false)
+                       : NeedProfile(candidates, fit.causes, covariance);
   const DiscoveryProblem seen = problem.TrainPart();
   const double normal = TwoSidedNormalQuantile(kOutside);
   const double chi_squared = ChiSquaredQuantile(kOutside, 1.0);

@@ -72,6 +72,11 @@ void RequireMeaning(const std::vector<Candidate>& all, const std::string& option
 
 }  // namespace
 
+bool IsChosen(const Candidate& candidate, const CandidateChoice& choice) {
+  return !IsMeantByAny(candidate, choice.without) &&
+         (choice.only.empty() || IsMeantByAny(candidate, choice.only));
+}
+
 std::vector<Candidate> ChooseCandidates(const Machine& machine,
                                         const CandidateChoice& choice) {
   const std::vector<Candidate> all = AllSites(machine);
@@ -79,8 +84,7 @@ std::vector<Candidate> ChooseCandidates(const Machine& machine,
   for (const std::string& text : choice.without) RequireMeaning(all, "--without", text);
   std::vector<Candidate> candidates = ListCandidates(machine);
   std::erase_if(candidates, [&](const Candidate& candidate) {
-    return IsMeantByAny(candidate, choice.without) ||
-           (!choice.only.empty() && !IsMeantByAny(candidate, choice.only));
+    return !IsChosen(candidate, choice);
   });
   if (candidates.empty()) {
     throw InputError("--only, --without", "together they leave no cause to look for",

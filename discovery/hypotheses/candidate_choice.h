@@ -22,6 +22,8 @@ struct CandidateChoice {
   std::vector<std::string> without;
 };
 
+bool IsChosen(const Candidate& candidate, const CandidateChoice& choice);
+
 /// Those of ListCandidates that the choice leaves. InputError on a name that means
 /// nothing on the machine, and if none is left.
 std::vector<Candidate> ChooseCandidates(const Machine& machine,

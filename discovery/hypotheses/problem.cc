@@ -63,6 +63,10 @@ Track DiscoveryProblem::Follow(const Changes& changes) const {
 }
 
 VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
+  if (free_errors_) {
+    work_->Add(RunWork());
+    return Scaled({free_errors_(changes), {}, {}});
+  }
   if (changes == Changes{}) return Scaled(Nominal());
   work_->Add(RunWork());
   return Scaled(FollowRun(machine_, changes, *run_, observer_, false));
@@ -113,24 +117,26 @@ Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
                                                  const VectorXd& z) const {
   // Of the nonlinear part of the residual 1e-6 is left, of rounding 1e-9: numbers that
   // act alike together, as a mass and the motor that moves it, must not seem to differ.
-  constexpr double kStep = 1e-6;
+  // A free simulation of what sticks and slips shows larger steps only.
+  const double step = free_errors_ ? 1e-3 : 1e-6;
   const auto p = static_cast<Index>(numbers_.size());
   const VectorXd about = z.size() > 0 ? z : VectorXd::Zero(p);
   std::vector<VectorXd> run(numbers_.size() + 1);
   ParallelForAll(static_cast<int>(run.size()), [&](int number) {
     VectorXd moved = about;
-    if (number < p) moved[number] += kStep;
+    if (number < p) moved[number] += step;
     run[static_cast<std::size_t>(number)] = Residual(WithNumbers(changes, moved));
   });
   Eigen::MatrixXd J(run.back().size(), p);
   for (Index i = 0; i < p; ++i) {
-    J.col(i) = (run[static_cast<std::size_t>(i)] - run.back()) / kStep;
+    J.col(i) = (run[static_cast<std::size_t>(i)] - run.back()) / step;
   }
   return J;
 }
 
 Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
                                                       const VectorXd& z) const {
+  if (free_errors_) return NumberJacobian(changes, z);
   for (int fewer = 1; fewer < std::min(machine_.rates().substeps, 3); ++fewer) {
     try {
       return WithSubsteps(fewer).NumberJacobian(changes, z);
@@ -152,7 +158,7 @@ VectorXd DiscoveryProblem::StillSpeed() const {
 }
 
 DiscoveryProblem DiscoveryProblem::TrainPart() const {
-  if (train_ == run_->samples()) return *this;
+  if (train_ == run_->samples() || free_errors_) return *this;
   std::call_once(derived_->train_part_once,
                  [this] { derived_->train_part = Beginning(*this, train_); });
   return *derived_->train_part;
@@ -181,6 +187,14 @@ DiscoveryProblem DiscoveryProblem::Charging(std::shared_ptr<Work> work) const {
 DiscoveryProblem DiscoveryProblem::Doubting(std::vector<DoubtedNumber> numbers) const {
   DiscoveryProblem changed = *this;
   changed.numbers_ = std::move(numbers);
+  changed.derived_ = std::make_shared<Derived>();
+  return changed;
+}
+
+DiscoveryProblem DiscoveryProblem::Simulating(
+    std::function<Eigen::MatrixXd(const Changes&)> errors) const {
+  DiscoveryProblem changed = *this;
+  changed.free_errors_ = std::move(errors);
   changed.derived_ = std::make_shared<Derived>();
   return changed;
 }

@@ -7,6 +7,7 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -49,6 +50,8 @@ class DiscoveryProblem {
   double step() const { return machine_.plant().opt.timestep; }  ///< of physics [s]
   /// Numbers of the plant that are fitted with every hypothesis.
   const std::vector<DoubtedNumber>& numbers() const { return numbers_; }
+  /// Whether its residuals are those of free simulation (Simulating).
+  bool IsFree() const { return static_cast<bool>(free_errors_); }
 
   /// What is spent on it, by all copies; without a limit unless one is charged.
   const std::shared_ptr<Work>& work() const { return work_; }
@@ -93,6 +96,10 @@ class DiscoveryProblem {
   DiscoveryProblem Charging(std::shared_ptr<Work> work) const;
   /// With doubts about those numbers.
   DiscoveryProblem Doubting(std::vector<DoubtedNumber> numbers) const;
+  /// With what a free simulation is off in the place of innovations.
+  /// @param errors  measured less simulated beside changes, sensors x samples
+  DiscoveryProblem Simulating(
+      std::function<Eigen::MatrixXd(const Changes&)> errors) const;
 
  private:
   struct Derived;
@@ -103,6 +110,7 @@ class DiscoveryProblem {
   Eigen::Index skip_;
   Eigen::Index train_;
   std::vector<DoubtedNumber> numbers_;
+  std::function<Eigen::MatrixXd(const Changes&)> free_errors_;
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
   std::shared_ptr<Derived> derived_;
 };

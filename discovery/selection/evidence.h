@@ -37,7 +37,7 @@ struct EvidenceData {
   /// of no size where it cannot be run. May be empty: there is no other record.
   std::function<Eigen::VectorXd(const FittedModel& model)> replay;
   /// FreeRun of record_replay.h beside a model, on records that no fit sees. May be empty.
-  std::function<double(const FittedModel& model)> free_run;
+  std::function<double(const FittedModel& model)> free_run{};
 };
 
 /// @param unseen    another record of the machine, or null

@@ -153,8 +153,8 @@ bool ChangePeriod(const SearchData& data, HypothesisSet& set, std::size_t i) {
   return TakeInPlace(set, i, ProposeInPlace(data, set.evidence, i, others));
 }
 
-bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i) {
-  const std::vector<FittedCause> others = OthersFor(data, set.fit(), i);
+bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i,
+                const std::vector<FittedCause>& others) {
   Proposals proposals = ProposeInPlace(data, set.evidence, i, others);
   // Fits that were cut short say nothing of how probable the rivals are.
   if (!data.work().MayBegin(kOthers)) return false;
@@ -171,6 +171,21 @@ void ChangePeriods(const SearchData& data, HypothesisSet& set) {
   }
 }
 
+bool Simplify(const SearchData& data, HypothesisSet& set) {
+  for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
+    const std::vector<FittedCause>& causes = set.fit().causes;
+    const auto simpler =
+        SimplerLaw(data.problem.machine().plant(), data.candidates, causes[i]);
+    if (!simpler) continue;
+    const bool known = std::ranges::any_of(causes, [&](const FittedCause& cause) {
+      return cause.candidate == simpler->candidate;
+    });
+    if (known || !data.work().MayBegin("simpler laws")) continue;
+    if (ExchangeAt(data, set, i, {*simpler})) return true;
+  }
+  return false;
+}
+
 bool Drop(const SearchData& data, HypothesisSet& set) {
   if (set.fit().causes.empty()) return false;
   Proposals proposals = ProposeDrops(data, set.evidence);
@@ -184,7 +199,7 @@ bool Drop(const SearchData& data, HypothesisSet& set) {
 bool Exchange(const SearchData& data, HypothesisSet& set) {
   for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
     if (!data.work().MayBegin(kOthers)) break;
-    if (ExchangeAt(data, set, i)) return true;
+    if (ExchangeAt(data, set, i, OthersFor(data, set.fit(), i))) return true;
   }
   return false;
 }

@@ -25,6 +25,11 @@ void ChangePeriods(const SearchData& data, HypothesisSet& set);
 /// Drops one hypothesis; true if that was accepted of any.
 bool Drop(const SearchData& data, HypothesisSet& set);
 
+/// Puts the law that a hypothesis becomes at an end of its parameters in its place; true if
+/// that was accepted of any. Before all is found the larger law wins by what it takes over
+/// of the rest.
+bool Simplify(const SearchData& data, HypothesisSet& set);
+
 /// Puts another hypothesis in the place of one; true if that was accepted. How probable
 /// the rivals for a place are is judged anew in any case.
 bool Exchange(const SearchData& data, HypothesisSet& set);

@@ -185,6 +185,9 @@ bool Search::AddCause() {
 void Search::Settle() {
   Report("other periods", 0.7);
   ChangePeriods(data_, result_);
+  Report("simpler laws", 0.8);
+  while (Simplify(data_, result_)) {
+  }
   Report(kNeeded, 0.8);
   DropSuperfluous();
   Report(kRepeatable, 0.9);

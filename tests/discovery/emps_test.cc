@@ -116,8 +116,8 @@ TEST_F(Emps, ParametersOfTheAuthorsModelClassAreTheirsWithinJointUncertainty) {
       0.5 * (20.6277 - 20.1440);
   Eigen::VectorXd sd(5);
   sd << 0.10, 1.15, 1.15, 0.11, 0.04;
-  const Eigen::MatrixXd joint =
-      ParameterCovariance(problem, fit) + Eigen::MatrixXd(sd.cwiseAbs2().asDiagonal());
+  const Eigen::MatrixXd joint = ParameterCovariance(problem, candidates, fit) +
+                                Eigen::MatrixXd(sd.cwiseAbs2().asDiagonal());
   const Eigen::VectorXd off = Flatten(fit.causes) - authors;
   RecordProperty("chi_squared", std::to_string(off.dot(joint.inverse() * off)));
   constexpr double kChiSquared95 = 11.07;  // five degrees of freedom

@@ -85,6 +85,7 @@ TEST(LawCurve, WithoutAClosedFormIsTheMeanOfWhatTheCauseExplains) {
 ObservedMotion Motion() {
   ObservedMotion motion;
   motion.sample_time = 0.5;
+  motion.time = Eigen::Vector3d(0.0, 0.5, 1.0);
   motion.position = (Eigen::MatrixXd(2, 3) << 1, 2, 3, 4, 5, 6).finished();
   motion.velocity = 10.0 * motion.position;
   motion.acceleration = 100.0 * motion.position;

@@ -24,7 +24,7 @@ TEST(CauseFit, HasIntervalsThatHold) {
     const std::size_t place = Place(candidates, "quadratic_drag@load");
     const CauseFit fit = FitCauses(problem, candidates,
                                    {{{place, Eigen::VectorXd::Constant(1, 0.4)}}}, {});
-    const double sd = std::sqrt(ParameterCovariance(problem, fit)(0, 0));
+    const double sd = std::sqrt(ParameterCovariance(problem, candidates, fit)(0, 0));
     covered += std::abs(fit.causes[0].value[0] - 0.5) < 1.96 * sd;
   }
   EXPECT_GE(covered, 32);
@@ -57,7 +57,8 @@ TEST(CauseFit, BySecantsFindsTheSamePlace) {
       FitCauses(problem, candidates, start, {30, 1e-10, true, nullptr, false});
   const CauseFit secant =
       FitCauses(problem, candidates, start, {60, 1e-10, false, nullptr, true});
-  const Eigen::VectorXd sd = ParameterCovariance(problem, full).diagonal().cwiseSqrt();
+  const Eigen::VectorXd sd =
+      ParameterCovariance(problem, candidates, full).diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < 3; ++i) {
     EXPECT_NEAR(secant.causes[0].value[i], full.causes[0].value[i], 0.1 * 1.96 * sd[i])
         << i;

@@ -29,7 +29,7 @@ Fitted FitOf(const test::StageUnderTest& stage, const std::string& effect,
   const std::size_t place = test::Place(f.candidates, site);
   f.fit = FitCauses(f.problem, f.candidates, {{{place, start}}},
                     {.iterations = 30, .tolerance = 1e-10});
-  f.covariance = ParameterCovariance(f.problem, f.fit);
+  f.covariance = ParameterCovariance(f.problem, f.candidates, f.fit);
   f.intervals = ParameterIntervals(f.problem, f.candidates, f.fit, f.covariance);
   return f;
 }
