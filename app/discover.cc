@@ -2,6 +2,7 @@
 // what it gains.
 
 #include <memory>
+#include <optional>
 
 #include "app/command.h"
 #include "app/discovery_output.h"
@@ -12,6 +13,7 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/discovery/discovery.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
 #include "mjdiag/signals/error.h"
@@ -30,6 +32,7 @@ struct DiscoverCommand {
   MachineOptions machine;
   OutputOptions output;
   MeasurementOptions records;
+  std::optional<bool> doubt;
   DiscoverOptions search;
 };
 
@@ -46,6 +49,7 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
   ProgressBar bar("discovering");
   ProgressLog log;
   DiscoverOptions options = command.search;
+  options.doubt = command.doubt.value_or(!IsExact(machine.plant()));
   options.stop = [] { return Interrupt::IsWished(); };
   options.progress = [&bar, &log](const DiscoveryProgress& progress) {
     if (bar.is_on_terminal()) {
@@ -120,16 +124,13 @@ void AddDiscover(CLI::App& app) {
   command
       ->add_option("--causes", options->search.most_causes, "Most causes to look for")
       ->check(CLI::Range(1, kMostCauses));
-  CLI::Option* doubt =
-      command->add_flag("--doubt", options->search.doubt,
-                        "Fit the numbers of the plant with every cause, as far as they "
-                        "are not known beforehand, instead of taking them as true");
-  command
-      ->add_option(
-          "--known", options->search.known,
-          "Beside --doubt: what is as the plant says, a kind of numbers such as "
-          "mass, or one such as mass@stage; may be repeated")
-      ->needs(doubt);
+  command->add_flag("--doubt,!--no-doubt", options->doubt,
+                    "Fit the numbers of the plant with every cause, as far as they are "
+                    "not known beforehand, or take them as true; without either they "
+                    "are fitted where the plant does not say that it is exact");
+  command->add_option("--known", options->search.known,
+                      "What is as the plant says, a kind of numbers such as mass, or "
+                      "one such as mass@stage; may be repeated");
   command
       ->add_option("--without", options->search.choice.without,
                    "No such causes: a family (friction, drive, structure, encoder), an "

@@ -66,6 +66,7 @@ class Discoverer {
   void SignRest(const ObservedMotion& motion);
   LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;
   void AddLaws(const ObservedMotion& motion);
+  double UnseenSquare(const Changes& changes) const;
   void AddLadder();
   void AddComparisons();
   void AddLimits();

@@ -178,8 +178,9 @@ void Discoverer::NameNumbers(const MatrixXd& covariance) {
 // White noise beyond what the setup says of a sensor. Sensors of which it says nothing
 // cannot be judged.
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
-  for (const RaisedNoise& raised : FindRaisedNoise(
-           machine_.setup(), problem_.observer(), innovations, options_.train_share)) {
+  for (const RaisedNoise& raised :
+       FindRaisedNoise(machine_.setup(), problem_.observer(), innovations,
+                       discovery_.train_share)) {
     const Effect& noise = NoiseEffect();
     const Candidate candidate{
         .effect = Lasting(noise), .site = raised.element, .parameters = {}};
@@ -313,7 +314,8 @@ void Discoverer::CompleteJacobian() {
 
 Discovery Discoverer::Run() {
   discovery_.setup = machine_.setup().name;
-  discovery_.train_share = options_.train_share;
+  discovery_.train_share = static_cast<double>(problem_.train()) /
+                           static_cast<double>(problem_.run().samples());
   discovery_.sample_time = machine_.rates().tick();
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();

@@ -117,7 +117,7 @@ struct Discovery {
   /// what looks odd in the record.
   std::vector<std::string> notes;
 
-  double train_share = 0.0;  ///< of one record that fits saw
+  double train_share = 0.0;  ///< of the record that fits saw; of several 1
   /// Of every record; those that fits saw first.
   std::vector<RecordReplay> records;
   /// The first that they saw, and the first that they did not; null if there is none.

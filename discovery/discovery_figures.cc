@@ -187,6 +187,13 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
   std::erase_if(discovery_.laws, [](const LawPlot& law) { return law.x.size() == 0; });
 }
 
+/// Mean square of the innovations of the records that no fit saw.
+double Discoverer::UnseenSquare(const Changes& changes) const {
+  const DiscoveryProblem unseen = problem_.WithRun(RunOf(measurements_.unseen));
+  return MeanSquare(unseen.Residual(changes), unseen.run().outputs.rows(),
+                    unseen.skip(), unseen.run().samples());
+}
+
 /// Every step behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
   const Index channels = problem_.run().outputs.rows();
@@ -215,8 +222,11 @@ void Discoverer::AddLadder() {
       const VectorXd rest = problem_.Residual(changes);
       entry.train =
           std::sqrt(MeanSquare(rest, channels, problem_.skip(), problem_.train()));
-      entry.held_out = std::sqrt(
-          MeanSquare(rest, channels, problem_.train(), problem_.run().samples()));
+      const Index samples = problem_.run().samples();
+      const bool whole = problem_.train() == samples && !measurements_.unseen.empty();
+      entry.held_out =
+          std::sqrt(whole ? UnseenSquare(changes)
+                          : MeanSquare(rest, channels, problem_.train(), samples));
     } else if (number % replays == 1) {
       entry.error_percent = MeanReplayErrors(measurements_.fit, changes);
     } else {

@@ -40,7 +40,10 @@ void AddDiscoveryFacts(Page& page, const Discovery& discovery,
                                        ? "measured reference, in closed loop"
                                        : "measured input, in open loop");
   }
-  if (discovery.train_share > 0.0) {
+  const auto seen = std::ranges::count(discovery.records, true, &RecordReplay::seen);
+  if (seen > 1) {
+    facts.emplace_back("Fitted to", std::to_string(seen) + " records");
+  } else if (discovery.train_share > 0.0) {
     facts.emplace_back("Fitted to", "the first " + ShareText(discovery.train_share) +
                                         " of the record");
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
@@ -209,6 +210,13 @@ void ApplyEffect(mjModel& model, const PlacedEffect& placed) {
 
 std::string SiteUnit(const mjModel& model, const Effect& effect,
                      const std::string& site, const EffectParameter& parameter) {
+  if (effect.element() == mjOBJ_ACTUATOR && parameter.role == Role::kLimit) {
+    // The command itself where a unit of it is a unit of force.
+    const int motor = FindElement(model, mjOBJ_ACTUATOR, site);
+    const bool same =
+        MotorGain(model, motor) == 1.0 && model.actuator_biastype[motor] == mjBIAS_NONE;
+    return same ? parameter.unit : "before the gear";
+  }
   if (effect.element() != mjOBJ_JOINT || HingeUnit(parameter.unit) == parameter.unit) {
     return parameter.unit;
   }

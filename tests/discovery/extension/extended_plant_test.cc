@@ -137,6 +137,25 @@ TEST(ExtendedPlant, MovesAsTheMachineWithOtherNumbers) {
   }
 }
 
+TEST(ExtendedPlant, HasTheRotorAndTheWindingThatWereFound) {
+  const Machine servo(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo"));
+  const std::filesystem::path plant = servo.setup().plant;
+  NumberFactors numbers;
+  for (const std::string name : {"armature@shaft", "gain@motor"}) {
+    numbers.emplace_back(FindPlantNumber(servo.plant(), name), 1.125);
+  }
+  const test::TemporaryFolder folder;
+  const std::string text =
+      ExtendMjcf(plant, servo.plant(), {{}, {}, numbers}, folder.path());
+  const ModelPtr read = LoadModel(folder.Write("plant.xml", text));
+  EXPECT_DOUBLE_EQ(read->dof_armature[0], 1.125 * servo.plant().dof_armature[0]);
+  EXPECT_DOUBLE_EQ(read->actuator_gainprm[0],
+                   1.125 * servo.plant().actuator_gainprm[0]);
+  EXPECT_DOUBLE_EQ(read->actuator_biasprm[2],
+                   1.125 * servo.plant().actuator_biasprm[2]);
+  EXPECT_EQ(read->actuator_gear[0], servo.plant().actuator_gear[0]);
+}
+
 TEST(ExtendedPlant, HoldsSeveralCausesAtOneSite) {
   const Changes causes = test::With(
       {"coulomb_friction@load:force=11.1", "coulomb_friction@load:force=7.3",

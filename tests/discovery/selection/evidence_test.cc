@@ -237,5 +237,32 @@ TEST(Comparator, TakesTheBestOfSeveralProposals) {
   EXPECT_EQ(BestOf(present, {worse, std::nullopt, spoils}), std::nullopt);
 }
 
+/// Unseen records of which free simulation leaves as much as the number of hypotheses
+/// says.
+EvidenceData WithFreeRun(const std::vector<double>& left) {
+  EvidenceData data = kRecord;
+  data.free_run = [left](const FittedModel& model) {
+    return left[model.causes.size()];
+  };
+  return data;
+}
+
+TEST(Comparator, TurnsDownWhatSpoilsFreeSimulationWhereMuchIsLeft) {
+  const auto judge = [](double left, double after) {
+    const Evidence present = Present({0}, left, 1.0, WithFreeRun({0.0, 1.0, after}));
+    return Judge(present, Adding(present, FitOf({0, 1}, 0.5 * left, 1.0)));
+  };
+  EXPECT_EQ(judge(10.0, 1.019), Judgement::kAccepted);
+  EXPECT_EQ(judge(10.0, 1.021), Judgement::kUnseen);
+  // Near the noise the innovations know better.
+  EXPECT_EQ(judge(1.9, 1.5), Judgement::kAccepted);
+}
+
+TEST(Evidence, WeighsWhatIsKnownBeforehandByWhatIsLeft) {
+  EXPECT_EQ(Present({0}, 1.0, 1.0).fit().prior_weight, 1.0);
+  const Evidence coloured(kRecord, FitOf({0}, 3.0, 1.0), VectorXd::Constant(1, 0.25));
+  EXPECT_EQ(coloured.fit().prior_weight, 9.0 / 0.25);
+}
+
 }  // namespace
 }  // namespace mjdiag

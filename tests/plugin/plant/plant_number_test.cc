@@ -37,6 +37,15 @@ TEST(PlantNumber, IsElseKnownAsItsKindUsuallyIs) {
   }
 }
 
+// Without a bias the gear says the same.
+TEST(PlantNumber, IsAGainOfMotorsWithABiasOnly) {
+  const Machine bonder = test::Bonder();
+  EXPECT_THROW(PlantNumbersOf(bonder.plant(), "gain"), InputError);
+  const Machine servo(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo"));
+  EXPECT_EQ(PlantNumbersOf(servo.plant(), "gain").size(), 1u);
+  EXPECT_EQ(PlantNumbersOf(servo.plant(), "armature").size(), 1u);
+}
+
 TEST(PlantNumber, ScalesTheMachine) {
   const Machine bonder = test::Bonder();
   const PlantNumber mass = FindPlantNumber(bonder.plant(), "mass@y_stage");
