@@ -1,5 +1,7 @@
 #include "mjdiag/report/discovery_page.h"
 
+#include <algorithm>
+
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/page/page.h"
