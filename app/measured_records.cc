@@ -1,35 +1,11 @@
 #include "app/measured_records.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "mjdiag/plugin/setup/record_manifest.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/record_file.h"
 
 namespace mjdiag::app {
-namespace {
-
-namespace fs = std::filesystem;
-
-MeasuredRecord Load(const fs::path& file, const Machine& machine) {
-  return {ReadRecord(file, machine.setup().record), machine, file.filename().string()};
-}
-
-void AddManifest(const MeasurementOptions& options, const MachineOptions& machine,
-                 const Machine& nominal, Measurements& measurements) {
-  for (const ManifestRecord& one : ReadRecordManifest(options.manifest, options.data)) {
-    std::vector<std::string> overrides = machine.overrides;
-    overrides.insert(overrides.end(), one.overrides.begin(), one.overrides.end());
-    const Machine during = one.overrides.empty()
-                               ? nominal
-                               : nominal.WithSetup(ReadSetup(machine.setup, overrides));
-    (one.fit ? measurements.fit : measurements.unseen)
-        .push_back(Load(one.file, during));
-  }
-}
-
-}  // namespace
 
 void AddMeasurementOptions(CLI::App& command, MeasurementOptions& options) {
   command.add_option("--record", options.records,
@@ -50,20 +26,16 @@ void AddMeasurementOptions(CLI::App& command, MeasurementOptions& options) {
 
 Measurements LoadMeasurements(const MeasurementOptions& options,
                               const MachineOptions& machine, const Machine& nominal) {
-  Measurements measurements;
+  std::vector<ManifestRecord> records;
   if (!options.manifest.empty()) {
-    AddManifest(options, machine, nominal, measurements);
+    records = ReadRecordManifest(options.manifest, options.data);
   }
-  for (const std::string& file : options.records) {
-    measurements.fit.push_back(Load(file, nominal));
-  }
-  for (const std::string& file : options.validations) {
-    measurements.unseen.push_back(Load(file, nominal));
-  }
-  if (measurements.fit.empty()) {
+  for (const std::string& file : options.records) records.push_back({file, true});
+  for (const std::string& file : options.validations) records.push_back({file, false});
+  if (std::ranges::none_of(records, &ManifestRecord::fit)) {
     throw InputError("--record", "is missing", "a record, or --records with --data");
   }
-  return measurements;
+  return ReadMeasurements(nominal, machine.setup, machine.overrides, records);
 }
 
 std::string Names(const std::vector<MeasuredRecord>& records) {

@@ -42,8 +42,8 @@ class Discoverer {
   void Search(SearchOptions options, bool down_to_noise);
   void SearchBehindObservers(SearchOptions options);
   std::vector<PlantNumber> KnownNumbers() const;
-  /// Samples that no fit sees over those that it does.
-  double UnseenShare() const;
+  /// FreeRun of the records that no fit sees.
+  double UnseenFree(const Changes& changes) const;
   void SearchAll();
   void MeasureNominal();
   void CompleteJacobian();
@@ -66,7 +66,6 @@ class Discoverer {
   void SignRest(const ObservedMotion& motion);
   LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;
   void AddLaws(const ObservedMotion& motion);
-  double UnseenSquare(const Changes& changes) const;
   void AddLadder();
   void AddComparisons();
   void AddLimits();

@@ -241,11 +241,14 @@ std::vector<PlantNumber> Discoverer::KnownNumbers() const {
   return known;
 }
 
-double Discoverer::UnseenShare() const {
+double Discoverer::UnseenFree(const Changes& changes) const {
   Index samples = 0;
-  for (const MeasuredRecord& one : measurements_.unseen)
+  for (const MeasuredRecord& one : measurements_.unseen) {
     samples += one.record.samples();
-  return static_cast<double>(samples) / static_cast<double>(problem_.run().samples());
+  }
+  work_->Add(problem_.RunWork() * static_cast<double>(samples) /
+             static_cast<double>(problem_.run().samples()));
+  return FreeRun(measurements_.unseen, changes, problem_.observer().noise_sd);
 }
 
 void Discoverer::SearchAll() {
@@ -257,10 +260,7 @@ void Discoverer::SearchAll() {
   if (!measurements_.unseen.empty()) {
     unseen = RunOf(measurements_.unseen);
     options.unseen = &*unseen;
-    options.free_run = [this](const Changes& changes) {
-      work_->Add(problem_.RunWork() * UnseenShare());
-      return FreeRun(measurements_.unseen, changes, problem_.observer().noise_sd);
-    };
+    options.free_run = [this](const Changes& changes) { return UnseenFree(changes); };
   }
   if (options_.doubt && work_->MayBegin("numbers of the plant")) {
     Report("numbers of the plant", 0.0);
@@ -269,7 +269,7 @@ void Discoverer::SearchAll() {
   SearchBehindObservers(options);
   FitFree();
   work_->EndSearch();
-  CompleteJacobian();
+  if (!free_fit_) CompleteJacobian();
 }
 
 /// Beside a rest far above noise every value of a fit takes over some of what the model
@@ -283,21 +283,20 @@ void Discoverer::FitFree() {
   const DiscoveryProblem free = problem_.Simulating([this](const Changes& changes) {
     return FreeErrors(measurements_.fit, changes);
   });
-  const auto measure = [&](const FittedModel& model) {
-    work_->Add(problem_.RunWork() * UnseenShare());
-    return FreeRun(measurements_.unseen, ChangesOf(problem_, candidates_, model),
-                   problem_.observer().noise_sd);
+  const auto unseen = [&](const FittedModel& model) {
+    return UnseenFree(ChangesOf(problem_, candidates_, model));
   };
   auto start = TryFit(free, candidates_, found, {.iterations = 0, .jacobian = false});
   if (!start) return;
   start->prior_weight =
-      std::max(1.0, start->train) / IndependentShare(free, start->residual).minCoeff();
+      Inflation(start->train, IndependentShare(free, start->residual));
   auto fit = TryFit(
       free, candidates_, *start,
       {.iterations = 12, .tolerance = 1e-4, .secant = true, .share = work_->Share(1)});
-  if (!fit || measure(*fit) >= measure(found)) return;
+  if (!fit || unseen(*fit) >= unseen(found)) return;
   search_.evidence = search_.evidence.Changed(
-      FitCauses(problem_, candidates_, *fit, {.iterations = 0, .closing = true}));
+      FitCauses(problem_, candidates_, *fit,
+                {.iterations = 0, .jacobian = false, .closing = true}));
   free_fit_.emplace(free, std::move(*fit));
 }
 
@@ -367,8 +366,8 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   const auto check = [&](const std::vector<MeasuredRecord>& records,
                          const std::string& role) {
     for (const MeasuredRecord& one : records) {
-      const std::string& where = split.Several() ? one.name : "";
-      const std::string of = where.empty() ? role : where + ": ";
+      const bool named = split.Several() && !one.name.empty();
+      const std::string of = named ? one.name + ": " : role;
       for (const std::string& note : CheckRecord(one.machine, one.record)) {
         notes.push_back(of + note);
       }

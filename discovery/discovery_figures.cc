@@ -187,13 +187,6 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
   std::erase_if(discovery_.laws, [](const LawPlot& law) { return law.x.size() == 0; });
 }
 
-/// Mean square of the innovations of the records that no fit saw.
-double Discoverer::UnseenSquare(const Changes& changes) const {
-  const DiscoveryProblem unseen = problem_.WithRun(RunOf(measurements_.unseen));
-  return MeanSquare(unseen.Residual(changes), unseen.run().outputs.rows(),
-                    unseen.skip(), unseen.run().samples());
-}
-
 /// Every step behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
   const Index channels = problem_.run().outputs.rows();
@@ -211,6 +204,12 @@ void Discoverer::AddLadder() {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     discovery_.ladder[i].added = steps[i].first;
   }
+  // What no fit saw is the end of one record, or records of their own.
+  const Index samples = problem_.run().samples();
+  std::optional<DiscoveryProblem> unseen;
+  if (problem_.train() == samples && !measurements_.unseen.empty()) {
+    unseen = problem_.WithRun(RunOf(measurements_.unseen));
+  }
   // One replay each: the cores come to their end together.
   const int replays = measurements_.unseen.empty() ? 2 : 3;
   work_->Add((replays - 1) * static_cast<double>(steps.size()) * problem_.RunWork());
@@ -222,11 +221,10 @@ void Discoverer::AddLadder() {
       const VectorXd rest = problem_.Residual(changes);
       entry.train =
           std::sqrt(MeanSquare(rest, channels, problem_.skip(), problem_.train()));
-      const Index samples = problem_.run().samples();
-      const bool whole = problem_.train() == samples && !measurements_.unseen.empty();
       entry.held_out =
-          std::sqrt(whole ? UnseenSquare(changes)
-                          : MeanSquare(rest, channels, problem_.train(), samples));
+          std::sqrt(unseen ? MeanSquare(unseen->Residual(changes), channels,
+                                        unseen->skip(), unseen->run().samples())
+                           : MeanSquare(rest, channels, problem_.train(), samples));
     } else if (number % replays == 1) {
       entry.error_percent = MeanReplayErrors(measurements_.fit, changes);
     } else {

@@ -5,7 +5,26 @@
 #include <iterator>
 #include <utility>
 
+#include "mjdiag/signals/record_file.h"
+
 namespace mjdiag {
+
+Measurements ReadMeasurements(const Machine& nominal,
+                              const std::filesystem::path& setup,
+                              const std::vector<std::string>& overrides,
+                              const std::vector<ManifestRecord>& records) {
+  Measurements measurements;
+  for (const ManifestRecord& one : records) {
+    std::vector<std::string> all = overrides;
+    all.insert(all.end(), one.overrides.begin(), one.overrides.end());
+    const Machine during =
+        one.overrides.empty() ? nominal : nominal.WithSetup(ReadSetup(setup, all));
+    (one.fit ? measurements.fit : measurements.unseen)
+        .push_back({ReadRecord(one.file, during.setup().record), during,
+                    one.file.filename().string()});
+  }
+  return measurements;
+}
 
 Measurements MeasurementsOf(const Machine& machine, const Record& measured,
                             const Record* unseen) {

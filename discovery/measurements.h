@@ -2,11 +2,13 @@
 // What a discovery works on: measured records of one machine, those that fits see and
 // those that they do not.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/tracking.h"
+#include "mjdiag/plugin/setup/record_manifest.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -25,6 +27,13 @@ struct Measurements {
 
   bool Several() const { return fit.size() + unseen.size() > 1; }
 };
+
+/// Of a list of records: what each of them sets comes behind `overrides` of the setup.
+/// InputError as ReadSetup and ReadRecord.
+Measurements ReadMeasurements(const Machine& nominal,
+                              const std::filesystem::path& setup,
+                              const std::vector<std::string>& overrides,
+                              const std::vector<ManifestRecord>& records);
 
 /// One record of a machine, and another that nothing is fitted to, or null.
 Measurements MeasurementsOf(const Machine& machine, const Record& measured,

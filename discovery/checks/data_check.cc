@@ -198,7 +198,7 @@ const VectorXd* RecordCheck::Expected(const SensorSetup& sensor) const {
 /// Whether the signal has white noise of a quantum or more outside the runs. That of
 /// quantising alone is smaller, and the differences of a smooth signal do not
 /// alternate.
-bool IsNoisy(const VectorXd& x, double resolution) {
+bool IsNoisy(const VectorXd& x, double quantum) {
   constexpr Index kOrder = 6;
   constexpr Index kLeast = 100;
   constexpr double kAlternates = -0.5;  // white noise: -m / (m + 1)
@@ -226,12 +226,11 @@ bool IsNoisy(const VectorXd& x, double resolution) {
   }
   if (count < kLeast) return false;
   const double level = NoiseLevel(free.head(used), kOrder);
-  return product < kAlternates * power &&
-         level >= std::max(SmallestStep(x), resolution) && level > 1e-9 * Range(x);
+  return product < kAlternates * power && level >= quantum && level > 1e-9 * Range(x);
 }
 
-/// Samples that x needs to get `quanta` steps away from sample k, forwards or backwards;
-/// nothing if the record ends before.
+/// Samples that x needs to get so far away from sample k, forwards (direction 1) or
+/// backwards (-1); nothing if the record ends before.
 std::optional<Index> Leaves(const VectorXd& x, Index k, Index direction, double away) {
   for (Index n = 1; k + direction * n >= 0 && k + direction * n < x.size(); ++n) {
     if (std::abs(x[k + direction * n] - x[k]) >= away) return n;
@@ -242,11 +241,11 @@ std::optional<Index> Leaves(const VectorXd& x, Index k, Index direction, double 
 /// Whether a coarse signal comes to a rest and leaves it at a steady speed, which no
 /// machine with inertia does: four times the way takes it four times as long then, from
 /// a turning point or out of friction twice as long.
-bool IsCutOff(const VectorXd& x, const Repeats& run, double resolution) {
+/// @param step  the smallest of the signal
+bool IsCutOff(const VectorXd& x, const Repeats& run, double step) {
   constexpr double kNear = 4.0;  // steps
   constexpr Index kLeast = 4;    // samples
   constexpr double kSteady = 0.35;
-  const double step = std::max(SmallestStep(x), resolution);
   const auto steady = [&](Index k, Index direction) {
     auto near = Leaves(x, k, direction, kNear * step);
     if (!near) return false;
@@ -266,7 +265,7 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   const VectorXd x = Reading(sensor.channel);
   if (Range(x) == 0.0) return;
   const VectorXd* expected = Expected(sensor);
-  const bool noisy = IsNoisy(x, sensor.resolution);
+  const double step = std::max(SmallestStep(x), sensor.resolution);
   const std::vector<Repeats> runs = RepeatsIn(x, kLeast);
   for (const double extreme : {x.maxCoeff(), x.minCoeff()}) {
     Index total = 0;
@@ -280,11 +279,11 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
       should_move |= expected != nullptr &&
                      Range(expected->segment(run.first + skip_, run.count)) >
                          kShouldMove * Range(*expected);
-      cut_off |= IsCutOff(x, run, sensor.resolution);
+      cut_off |= IsCutOff(x, run, step);
     }
     if (static_cast<double>(total) <= kShare * static_cast<double>(x.size())) continue;
     // An arm that friction holds rests where its reference moves on.
-    if (!noisy && !(should_move && cut_off)) continue;
+    if (!(should_move && cut_off) && !IsNoisy(x, step)) continue;
     throw InputError("record",
                      "saturated: " + Quoted(sensor.channel) + " sits at exactly " +
                          Digits(extreme) + " " + sensor.unit + " for " +

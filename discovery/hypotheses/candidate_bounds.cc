@@ -1,9 +1,9 @@
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 
 #include <algorithm>
+#include <map>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -22,22 +22,24 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion) {
   const double duration = motion.sample_time * static_cast<double>(motion.samples());
+  std::map<Index, Scales> scales;  // of every joint
   for (Candidate& candidate : candidates) {
     const Site site{candidate.site, candidate.joint, candidate.channel};
     const SiteMotion at{machine.plant(), machine.linear(), motion, site};
-    const VectorXd spread = candidate.effect->Spread(ScalesOf(at));
+    if (!scales.contains(candidate.joint)) scales[candidate.joint] = ScalesOf(at);
+    const Scales& own = scales[candidate.joint];
+    const VectorXd spread = candidate.effect->Spread(own);
     Index place = 0;
-    const VectorXd q = motion.position.row(candidate.joint);
-    const double speed = motion.velocity.row(candidate.joint).cwiseAbs().maxCoeff();
+    const VectorXd q = at.q();
     for (FitParameter& parameter : candidate.parameters) {
       const double expected = spread[place++];
       if (expected > 0.0) parameter.spread = expected;
       switch (parameter.role) {
         case Role::kVelocity:
-          Narrow(parameter, 1e-3 * speed, 2.0 * speed);
+          Narrow(parameter, 1e-3 * own.speed, 2.0 * own.speed);
           break;
         case Role::kLength:
-          Narrow(parameter, 1e-5 * Range(q), 10.0 * Range(q));
+          Narrow(parameter, 1e-5 * own.stroke, 10.0 * own.stroke);
           break;
         case Role::kPosition:
           Narrow(parameter, q.minCoeff(), q.maxCoeff());

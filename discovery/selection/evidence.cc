@@ -59,7 +59,7 @@ double Evidence::FreeRun() const {
 }
 
 double Evidence::Inflation(const VectorXd& independent) const {
-  return std::max(1.0, fit_.train) / std::min(1.0, independent.minCoeff());
+  return mjdiag::Inflation(fit_.train, independent);
 }
 
 double Evidence::Noise() const {

@@ -44,6 +44,10 @@ VectorXd IndependentShare(const DiscoveryProblem& problem, const VectorXd& resid
   return share;
 }
 
+double Inflation(double train, const VectorXd& independent) {
+  return std::max(1.0, train) / std::min(1.0, independent.minCoeff());
+}
+
 double GainByChance(double probability, int trials, int freedom) {
   return ChiSquaredQuantile(probability / std::max(trials, 1), freedom);
 }

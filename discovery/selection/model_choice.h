@@ -25,6 +25,12 @@ double Deviance(const Eigen::VectorXd& residual, const Eigen::VectorXd& independ
 Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
                                  const Eigen::VectorXd& residual);
 
+/// By how much gains by chance are larger beside a fit than in white noise alone: what it
+/// leaves may be more than sensor noise, and coloured.
+/// @param train        mean square of what it leaves
+/// @param independent  as IndependentShare
+double Inflation(double train, const Eigen::VectorXd& independent);
+
 /// Gain that the best of `trials` reaches by chance with that probability where there
 /// is noise only, of a trial with that many degrees of freedom: chi-squared.
 double GainByChance(double probability, int trials, int freedom);

@@ -1,6 +1,5 @@
 #include "mjdiag/discovery/selection/number_fit.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "mjdiag/discovery/selection/model_choice.h"
@@ -17,8 +16,7 @@ CauseFit FitNumbers(const DiscoveryProblem& problem,
   constexpr double kSettled = 0.01;   // of the mean square
   for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
     FittedModel start = fit;
-    start.prior_weight =
-        std::max(1.0, fit.train) / IndependentShare(problem, fit.residual).minCoeff();
+    start.prior_weight = Inflation(fit.train, IndependentShare(problem, fit.residual));
     CauseFit next = FitCauses(
         problem, candidates, start,
         {.iterations = 10, .jacobian = false, .secant = true, .share = share / kAnew});

@@ -10,8 +10,6 @@
 
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/setup/record_manifest.h"
-#include "mjdiag/signals/record_file.h"
 
 namespace mjdiag {
 namespace {
@@ -21,19 +19,6 @@ const std::filesystem::path kSetup = MJDIAG_SOURCE_DIR "/mjcf/servo";
 std::filesystem::path ServoFolder() {
   const char* named = std::getenv("MJDIAG_SERVO_DATA");
   return named != nullptr ? named : "";
-}
-
-Measurements Bench() {
-  const Machine machine(ReadSetup(kSetup));
-  Measurements measurements;
-  for (const ManifestRecord& one :
-       ReadRecordManifest(kSetup / "records.toml", ServoFolder())) {
-    (one.fit ? measurements.fit : measurements.unseen)
-        .push_back({ReadRecord(one.file, machine.setup().record),
-                    machine.WithSetup(ReadSetup(kSetup, one.overrides)),
-                    one.file.filename().string()});
-  }
-  return measurements;
 }
 
 double MeanMae(const Discovery& answer, const Comparison RecordReplay::*model) {
@@ -58,7 +43,12 @@ TEST(Servo, HasFrictionThatGrowsWithItsLoad) {
   options.doubt = true;
   options.choice.only = {"friction"};
   options.budget = 40.0;
-  const Discovery answer = Discover(Machine(ReadSetup(kSetup)), Bench(), options);
+  const Machine machine(ReadSetup(kSetup));
+  const Discovery answer = Discover(
+      machine,
+      ReadMeasurements(machine, kSetup, {},
+                       ReadRecordManifest(kSetup / "records.toml", ServoFolder())),
+      options);
   EXPECT_TRUE(std::ranges::any_of(answer.causes, [](const FoundCause& found) {
     return found.cause.name().find("load_friction") != std::string::npos;
   }));
