@@ -165,7 +165,10 @@ void Discoverer::NameCauses() {
 void Discoverer::NameNumbers(const MatrixXd& covariance) {
   const double normal = TwoSidedNormalQuantile(0.05);
   const VectorXd& z = search_.fit().numbers;
+  const std::vector<bool> stood_for =
+      problem_.StoodFor(ChangesOf(candidates_, search_.fit().causes));
   for (Index i = 0; i < z.size(); ++i) {
+    if (stood_for[static_cast<std::size_t>(i)]) continue;
     const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
     const double half = normal * std::sqrt(covariance(i, i));
     discovery_.calibration.push_back(

@@ -125,21 +125,34 @@ class Simulator {
         static_cast<double>(problem_.run().samples()) * problem_.run().sample_time;
     MatrixXd J(base.size(), theta.size());
     Index kept = initial != nullptr ? initial->cols() : 0;
-    if (kept > 0) {
-      J.leftCols(kept) = initial->topRows(base.size());
-    } else if (numbers_ > 0) {
-      kept = numbers_;
+    if (kept > 0) J.leftCols(kept) = initial->topRows(base.size());
+    if (numbers_ > 0 && (kept == 0 || !HasNumbersOf(theta, J))) {
+      kept = std::max(kept, numbers_);
       const Changes causes = CausesAt(theta);
       const VectorXd z = theta.head(numbers_);
       runs_ += static_cast<int>(numbers_) + 1;
-      J.leftCols(kept) = rough ? problem_.RoughNumberJacobian(causes, z)
-                               : problem_.NumberJacobian(causes, z);
+      J.leftCols(numbers_) = rough ? problem_.RoughNumberJacobian(causes, z)
+                                   : problem_.NumberJacobian(causes, z);
     }
     ParallelForAll(static_cast<int>(theta.size() - kept), [&](int number) {
       const Index i = kept + number;
       J.col(i) = Difference(theta, base, i, duration);
     });
     return J;
+  }
+
+  /// Whether the derivatives by z are those beside the causes: they are 0 of the numbers
+  /// that causes stand for, and of no others. Those that have to be 0 are made so.
+  bool HasNumbersOf(const VectorXd& theta, MatrixXd& J) const {
+    const std::vector<bool> stood_for = problem_.StoodFor(CausesAt(theta));
+    for (Index i = 0; i < numbers_; ++i) {
+      if (stood_for[static_cast<std::size_t>(i)]) {
+        J.col(i).setZero();
+      } else if (J.col(i).isZero(0.0)) {
+        return false;
+      }
+    }
+    return true;
   }
 
   /// J += (dr - J s) (D s)^T / (s^T D s) for the step s since the last J, with D the

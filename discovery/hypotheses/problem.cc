@@ -105,12 +105,30 @@ double DiscoveryProblem::RunWork() const {
 }
 
 Changes DiscoveryProblem::WithNumbers(Changes changes, const VectorXd& z) const {
+  const std::vector<bool> stood_for = StoodFor(changes);
   for (Index i = 0; i < z.size(); ++i) {
-    if (z[i] == 0.0) continue;
-    const DoubtedNumber& doubted = numbers_[static_cast<std::size_t>(i)];
+    const auto place = static_cast<std::size_t>(i);
+    if (z[i] == 0.0 || stood_for[place]) continue;
+    const DoubtedNumber& doubted = numbers_[place];
     changes.numbers.emplace_back(doubted.number, std::exp(doubted.spread * z[i]));
   }
   return changes;
+}
+
+std::vector<bool> DiscoveryProblem::StoodFor(const Changes& changes) const {
+  std::vector<bool> stood_for(numbers_.size(), false);
+  for (const PlacedEffect& placed : changes.effects) {
+    const mjModel& plant = machine_.plant();
+    const int element =
+        mj_name2id(&plant, placed.effect->element(), placed.site.c_str());
+    if (element < 0) continue;  // of a sensor channel
+    const auto number = placed.effect->Number(plant, element);
+    if (!number) continue;
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      if (numbers_[i].number == *number) stood_for[i] = true;
+    }
+  }
+  return stood_for;
 }
 
 Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,

@@ -70,8 +70,11 @@ class DiscoveryProblem {
   /// The run with those changes and its first order; of the nominal machine found when
   /// first asked for.
   std::shared_ptr<const LinearisedRun> Linearised(const Changes& changes) const;
-  /// Changes with the numbers at z, which may be empty: all at 0.
+  /// Changes with the numbers at z, which may be empty: all at 0. A number that an
+  /// effect among the changes stands for (Effect::Number) is as the plant says.
   Changes WithNumbers(Changes changes, const Eigen::VectorXd& z) const;
+  /// Which numbers effects among the changes stand for.
+  std::vector<bool> StoodFor(const Changes& changes) const;
   /// d residual / dz at z beside those changes, (ny samples) x numbers, by differences.
   Eigen::MatrixXd NumberJacobian(const Changes& changes,
                                  const Eigen::VectorXd& z) const;

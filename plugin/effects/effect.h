@@ -25,6 +25,7 @@
 #include "mjdiag/plugin/effects/role.h"
 #include "mjdiag/plugin/effects/site.h"
 #include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
@@ -164,6 +165,13 @@ class Effect {
   virtual std::optional<EffectValues> FromTwin(const mjModel&,
                                                const EffectValues& twin) const {
     return twin;
+  }
+
+  /// The number of the plant at that element that a part of it adds to, or that it
+  /// scales: no record tells the two apart, and with it the number is what the plant
+  /// says.
+  virtual std::optional<PlantNumber> Number(const mjModel&, int /*element*/) const {
+    return std::nullopt;
   }
 
   // How it is shown and drawn.

@@ -26,6 +26,9 @@ class MotorConstantEffect final : public Effect {
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
   }
+  std::optional<PlantNumber> Number(const mjModel&, int actuator) const override {
+    return PlantNumber{PlantNumberKind::kGear, actuator};
+  }
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.3}); }
   Sized Draw(const Scales&, Random& r) const override {
     return AroundOne(r.Sign() * 0.1);

@@ -34,6 +34,9 @@ class AsymmetricViscousFrictionEffect final : public JointForceEffect {
     return PlacedEffect{Lasting(ViscousFriction()), self.site,
                         ValuesOf({(self.values[0] + self.values[1]) / 2.0})};
   }
+  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
+    return PlantNumber{PlantNumberKind::kDamping, joint};
+  }
   Sized Draw(const Scales& k, Random& r) const override {
     const double up = r.Uniform(0.2, 1.0) * k.SmallForce() / k.speed;
     const double down = up * r.Uniform(1.5, 4.0);

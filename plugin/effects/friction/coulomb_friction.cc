@@ -23,6 +23,9 @@ class CoulombFrictionEffect final : public Effect {
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(-Direction(at.v()), at.JointEntry(), 0.0, true)};
   }
+  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
+    return PlantNumber{PlantNumberKind::kFriction, joint};
+  }
   std::optional<double> Law(double v, const EffectValues& values) const override {
     return -values[0] * Sign(v);
   }

@@ -26,6 +26,9 @@ class ViscousFrictionEffect final : public Effect {
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(-at.v(), at.JointEntry())};
   }
+  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
+    return PlantNumber{PlantNumberKind::kDamping, joint};
+  }
   std::optional<double> Law(double v, const EffectValues& values) const override {
     return -values[0] * v;
   }
