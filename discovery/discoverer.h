@@ -1,7 +1,9 @@
 #pragma once
 // The parts of a discovery (discovery.h) while it is under way: causes in discovery.cc,
-// notes in discovery_notes.cc, figures in discovery_figures.cc.
+// what has no name in discovery_curves.cc, notes in discovery_notes.cc, figures in
+// discovery_figures.cc.
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,8 +15,11 @@
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/hypotheses/work.h"
+#include "mjdiag/discovery/law.h"
 #include "mjdiag/discovery/screening/trial.h"
 #include "mjdiag/discovery/selection/search.h"
+#include "mjdiag/discovery/unexplained/motion_variables.h"
+#include "mjdiag/discovery/unexplained/unknown_input.h"
 
 namespace mjdiag {
 
@@ -63,7 +68,20 @@ class Discoverer {
   void NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals);
   std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
   void FindWhere(const Track& nominal, const Track& final);
+  /// What the largest of the forces that nothing explains depends on.
+  struct Rest {
+    UnknownSignal force;
+    Eigen::Index joint = 0;  ///< nv
+    std::vector<MotionVariable> variables;
+    Signature signature;
+  };
+  Rest SignatureOf(const ObservedMotion& motion,
+                   const std::vector<UnknownSignal>& forces) const;
   void SignRest(const ObservedMotion& motion);
+  /// Whether the fit leaves more than noise.
+  bool IsMoreLeft() const;
+  bool LearnCurve(const EvidenceData& data);
+  void LearnCurves(const SearchOptions& options);
   LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;
   void AddLaws(const ObservedMotion& motion);
   void AddLadder();
@@ -80,6 +98,12 @@ class Discoverer {
   SearchResult search_;
   /// The last fit, where it is one of free simulation, with its problem.
   std::optional<std::pair<DiscoveryProblem, CauseFit>> free_fit_;
+  /// Of what was learned, by candidate.
+  struct CurveText {
+    std::string words;
+    LawAxis axis;
+  };
+  std::map<std::size_t, CurveText> curves_;
   Changes changes_;
   Discovery discovery_;
 };

@@ -44,7 +44,9 @@ std::vector<CauseParameter> Discoverer::DescribeParameters(
     const auto index = static_cast<Index>(i);
     const Interval& interval = intervals[static_cast<std::size_t>(first) + i];
     const double sd = std::sqrt(covariance(first + index, first + index));
-    const EffectParameter& parameter = candidate.effect->parameters()[i];
+    const EffectParameter& parameter =
+        candidate.effect
+            ->parameters()[static_cast<std::size_t>(candidate.chosen.size()) + i];
     parameters.push_back(
         {parameter.name,
          SiteUnit(machine_.plant(), *candidate.effect, candidate.site, parameter),
@@ -148,6 +150,10 @@ void Discoverer::NameCauses() {
     found.parameters = DescribeParameters(fit.causes[i], covariance, intervals, first);
     first += fit.causes[i].value.size();
     found.probability = 1.0;
+    if (const auto words = curves_.find(fit.causes[i].candidate);
+        words != curves_.end()) {
+      found.unnamed = words->second.words;
+    }
     for (const Hypothesis& rival : search_.rivals[i]) {
       if (rival.cause.candidate == fit.causes[i].candidate) {
         found.probability = rival.probability;
@@ -205,6 +211,11 @@ void Discoverer::Judge() {
   }
   const bool named = !discovery_.causes.empty();
   discovery_.verdict = VerdictOf(search_, named, nominal_);
+  const bool has_unnamed = !std::ranges::all_of(discovery_.causes, &std::string::empty,
+                                                &FoundCause::unnamed);
+  if (has_unnamed && discovery_.verdict == DiscoveryVerdict::kExplained) {
+    discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
+  }
   if (named && discovery_.verdict == DiscoveryVerdict::kUnexplained) {
     std::string tried;
     for (const FoundCause& cause : discovery_.causes) {
@@ -270,6 +281,7 @@ void Discoverer::SearchAll() {
     problem_ = WithDoubts(problem_, KnownNumbers());
   }
   SearchBehindObservers(options);
+  LearnCurves(options);
   FitFree();
   work_->EndSearch();
   if (!free_fit_) CompleteJacobian();
@@ -410,10 +422,10 @@ const RecordReplay* Discovery::Unseen() const {
 
 bool IsOff(const CalibratedNumber& number) {
   // Data have to say more than what was known before, and something else.
-  constexpr double kLearned = 0.5;
+  constexpr double kBeyondDoubt = 0.5;
   const double width = std::log(number.high / number.low);
   const double known = 2.0 * TwoSidedNormalQuantile(0.05) * number.doubt;
-  return width < kLearned * known && (number.low > 1.0 || number.high < 1.0);
+  return width < kBeyondDoubt * known && (number.low > 1.0 || number.high < 1.0);
 }
 
 }  // namespace mjdiag

@@ -57,6 +57,8 @@ struct FoundCause {
   std::vector<CauseParameter> parameters;
   double probability = 0.0;               ///< among all candidates for its place
   std::vector<Alternative> alternatives;  ///< of 1 % or more, likeliest first
+  /// Of a force that was learned and has no name, what it is in words; else empty.
+  std::string unnamed = {};
 };
 
 /// After each cause that was added; the first step is the plant as it was given.

@@ -88,47 +88,11 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
       discovery_.verdict != DiscoveryVerdict::kPartlyExplained) {
     return;
   }
-  const auto strength = [](const UnknownSignal& s) {
-    return s.value.norm() / std::max(s.sd, 1e-300);
-  };
-  const auto worst =
-      std::ranges::max_element(discovery_.forces_after, std::less<>(),
-                               [&](const UnknownSignal& s) { return strength(s); });
-  const auto joint =
-      std::ranges::find(problem_.machine().linear().coordinates, worst->site) -
-      problem_.machine().linear().coordinates.begin();
-  std::vector<Variable> variables;
-  const VectorXd own = motion.velocity.row(joint);
-  for (const std::string& name : DrivenNames(problem_.machine().linear())) {
-    const auto j = std::ranges::find(problem_.machine().linear().coordinates, name) -
-                   problem_.machine().linear().coordinates.begin();
-    const bool hinge =
-        machine_.plant().jnt_type[machine_.plant().dof_jntid[j]] == mjJNT_HINGE;
-    const std::string unit = hinge ? "rad" : "m";
-    variables.push_back({name + " position", unit, motion.position.row(j), false});
-    variables.push_back(
-        {name + " velocity", unit + "/s", motion.velocity.row(j), j == joint});
-    variables.push_back(
-        {name + " acceleration", unit + "/s^2", motion.acceleration.row(j), false});
-  }
-  const double still = problem_.StillSpeed()[joint];
-  const VectorXd direction = own.unaryExpr([still](double v) {
-    return std::abs(v) < still ? 0.0 : v > 0.0 ? 1.0 : -1.0;
-  });
-  variables.push_back({"direction", "1", direction, true});
-  for (std::size_t u = 0; u < machine_.channels().actuators.size(); ++u) {
-    variables.push_back({machine_.channels().actuators[u].channel,
-                         machine_.channels().actuators[u].unit,
-                         motion.inputs.row(static_cast<Index>(u)), false});
-  }
-  const Index n = motion.samples();
-  variables.push_back(
-      {"time", "s",
-       VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1) * motion.sample_time),
-       false});
-  discovery_.unexplained = FindSignature(worst->site, worst->value, worst->unit,
-                                         std::max(worst->sd, 1e-300), variables);
-  discovery_.unexplained_site = worst->site;
+  // Beside a curve noise may be all that is left.
+  if (!IsMoreLeft()) return;
+  const Rest rest = SignatureOf(motion, discovery_.forces_after);
+  discovery_.unexplained = rest.signature;
+  discovery_.unexplained_site = rest.signature.site;
 }
 
 /// Partial residuals: with several causes at a joint, the force that all of them
@@ -158,8 +122,11 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, problem_.run().inputs.rows() - 1));
   const Cause& named = discovery_.causes[cause].cause;
-  const LawAxis axis = AxisOf(named.effect->variable(), candidate, motion, hinge,
-                              machine_.channels().actuators[channel].unit);
+  const auto learned = curves_.find(search_.fit().causes[cause].candidate);
+  const LawAxis axis = learned != curves_.end()
+                           ? learned->second.axis
+                           : AxisOf(named.effect->variable(), candidate, motion, hinge,
+                                    machine_.channels().actuators[channel].unit);
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;
   plot.y_unit = without.unit;

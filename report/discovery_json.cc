@@ -51,7 +51,8 @@ json CausesOf(const Discovery& discovery) {
                       {"fault", found.cause.effect->IsFault()},
                       {"parameters", ParametersOf(found)},
                       {"probability", Finite(found.probability)},
-                      {"alternatives", AlternativesOf(found)}});
+                      {"alternatives", AlternativesOf(found)},
+                      {"unnamed", TextOrNull(found.unnamed)}});
   }
   return causes;
 }

@@ -38,7 +38,8 @@ int Magnitude(double value) { return static_cast<int>(std::floor(std::log10(valu
 
 Notation NotationOf(const CauseParameter& parameter) {
   constexpr int kMostDecimals = 9;
-  const double size = std::max(std::abs(parameter.value), std::abs(parameter.high));
+  const double high = std::isfinite(parameter.high) ? std::abs(parameter.high) : 0.0;
+  const double size = std::max(std::abs(parameter.value), high);
   Notation notation{ChooseDisplayUnit(size, parameter.unit)};
   const double shown = size * notation.unit.factor;
   const double half = (parameter.high - parameter.low) / 2.0 * notation.unit.factor;
@@ -63,6 +64,7 @@ std::string Join(const std::vector<std::string>& items) {
 
 /// "coulomb_friction at load (force 20.39 N)", "zeta_x = 1.2000".
 std::string WithValues(const FoundCause& found) {
+  if (!found.unnamed.empty()) return "a force without a name (" + found.unnamed + ")";
   std::string values;
   for (const CauseParameter& parameter : found.parameters) {
     if (found.cause.effect->IsFault())
@@ -180,6 +182,9 @@ std::string ValueText(const CauseParameter& parameter) {
 }
 
 std::string IntervalText(const CauseParameter& parameter) {
+  if (!std::isfinite(parameter.low) && !std::isfinite(parameter.high)) {
+    return "not told";
+  }
   const Notation notation = NotationOf(parameter);
   return notation.WithUnit(notation.Number(parameter.low) + " to " +
                            notation.Number(parameter.high));
@@ -209,7 +214,8 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
     case DiscoveryVerdict::kExplained:
       return FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
-      return FoundText(discovery) + UnseenText(discovery) + " Something is left." +
+      return FoundText(discovery) + UnseenText(discovery) +
+             (discovery.unexplained ? " Something is left." : " Noise is left.") +
              SignatureText(discovery);
     case DiscoveryVerdict::kUnexplained:
       return "Something is there that no known cause explains." +
@@ -228,6 +234,12 @@ Table CauseTable(const Discovery& discovery) {
                    {"Probability", true},
                    {"Best alternative"}};
   for (const FoundCause& found : discovery.causes) {
+    if (!found.unnamed.empty()) {
+      table.rows.push_back({found.cause.name(), found.cause.site, "curve",
+                            std::to_string(found.parameters.size()) + " knots", kNone,
+                            "no name", kNone});
+      continue;
+    }
     bool first = true;
     for (const CauseParameter& parameter : found.parameters) {
       std::vector<std::string> row(table.columns.size());

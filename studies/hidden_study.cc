@@ -108,12 +108,14 @@ double UnseenRatio(const Machine& machine, const HiddenCase& hidden,
 }  // namespace
 
 std::vector<std::string> TypesOfRun(int run, int causes) {
-  const int size = static_cast<int>(Effects().size());
+  std::vector<const Effect*> drawn = Effects();
+  std::erase_if(drawn, [](const Effect* effect) { return effect->odds() == kLearned; });
+  const int size = static_cast<int>(drawn.size());
   std::vector<std::string> types;
   // A second effect is another type, and another pair every time round.
   for (int i = 0; i < causes; ++i) {
     const int number = (run + i * (7 + run / size)) % size;
-    types.push_back(Effects()[static_cast<std::size_t>(number)]->name());
+    types.push_back(drawn[static_cast<std::size_t>(number)]->name());
   }
   return types;
 }

@@ -1,9 +1,10 @@
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 
@@ -18,18 +19,49 @@ ScaledInformation InformationOf(const DiscoveryProblem& problem,
   const Index n = problem.train() - problem.skip();
   const MatrixXd J = fit.jacobian.middleRows(channels * problem.skip(), channels * n);
   ScaledInformation information;
-  information.scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  information.jacobian = J * information.scale.asDiagonal();
-  information.known = VectorXd::Ones(J.cols());
+  VectorXd known = VectorXd::Ones(J.cols());
   Index i = fit.numbers.size();
   for (const FitParameter& parameter : ParametersOf(candidates, fit.causes)) {
-    information.known[i++] = std::pow(parameter.spread, -2);
+    known[i++] = std::pow(parameter.spread, -2);
   }
-  information.known =
-      fit.prior_weight * information.known.cwiseProduct(information.scale.cwiseAbs2());
+  known *= fit.prior_weight;
+  // A parameter that does nothing where it is has the scale of what is known of it.
+  information.scale = (J.colwise().squaredNorm().transpose() + known)
+                          .cwiseMax(1e-300)
+                          .cwiseSqrt()
+                          .cwiseInverse();
+  information.jacobian = J * information.scale.asDiagonal();
+  information.known = known.cwiseProduct(information.scale.cwiseAbs2());
   information.matrix = information.jacobian.transpose() * information.jacobian;
   information.matrix.diagonal() += information.known;
   return information;
+}
+
+InverseInformation InverseOf(const ScaledInformation& information) {
+  constexpr double kNothing = 1e-14;   // of the largest eigenvalue
+  constexpr double kTakesPart = 1e-6;  // of a direction, squared
+  const auto [values, vectors] = SymmetricEigenDecomposition(information.matrix);
+  const Index n = values.size();
+  InverseInformation inverse{MatrixXd::Zero(n, n),
+                             std::vector<bool>(static_cast<std::size_t>(n), true)};
+  for (Index d = 0; d < n; ++d) {
+    const VectorXd direction = vectors.col(d);
+    if (values[d] > kNothing * values[n - 1]) {
+      inverse.matrix += direction * direction.transpose() / values[d];
+      continue;
+    }
+    for (Index i = 0; i < n; ++i) {
+      if (direction[i] * direction[i] > kTakesPart) {
+        inverse.told[static_cast<std::size_t>(i)] = false;
+      }
+    }
+  }
+  for (Index i = 0; i < n; ++i) {
+    if (inverse.told[static_cast<std::size_t>(i)]) continue;
+    inverse.matrix.row(i).setZero();
+    inverse.matrix.col(i).setZero();
+  }
+  return inverse;
 }
 
 MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
@@ -38,7 +70,9 @@ MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
   const Index channels = problem.run().outputs.rows();
   const Index parameters = fit.jacobian.cols();
   const Index n = problem.train() - problem.skip();
-  const auto [scaled, scale, known, all] = InformationOf(problem, candidates, fit);
+  const ScaledInformation information = InformationOf(problem, candidates, fit);
+  const VectorXd& scale = information.scale;
+  const MatrixXd& scaled = information.jacobian;
   const VectorXd e = fit.residual.segment(channels * problem.skip(), channels * n);
   MatrixXd scores(n, parameters);
   for (Index k = 0; k < n; ++k) {
@@ -58,14 +92,15 @@ MatrixXd ParameterCovariance(const DiscoveryProblem& problem,
     B += weight * (product + product.transpose());
   }
   // What is known beforehand: independent measurements.
-  B.diagonal() += fit.prior_weight * known;
-  const Eigen::FullPivLU<MatrixXd> information(all);
-  if (!information.isInvertible()) {
-    return MatrixXd::Identity(parameters, parameters) *
-           std::numeric_limits<double>::infinity();
+  B.diagonal() += fit.prior_weight * information.known;
+  const auto [inverse, told] = InverseOf(information);
+  MatrixXd covariance =
+      scale.asDiagonal() * (inverse * B * inverse) * scale.asDiagonal();
+  for (Index i = 0; i < parameters; ++i) {
+    if (told[static_cast<std::size_t>(i)]) continue;
+    covariance(i, i) = std::numeric_limits<double>::infinity();
   }
-  const MatrixXd inverse = information.inverse();
-  return scale.asDiagonal() * (inverse * B * inverse) * scale.asDiagonal();
+  return covariance;
 }
 
 }  // namespace mjdiag

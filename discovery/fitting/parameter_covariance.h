@@ -11,6 +11,7 @@
 // precision P and weight w (FittedModel), adds w P to J^T J and w^2 P to B.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "mjdiag/discovery/fitting/cause_fit.h"
 
@@ -27,6 +28,14 @@ struct ScaledInformation {
 ScaledInformation InformationOf(const DiscoveryProblem& problem,
                                 const std::vector<Candidate>& candidates,
                                 const CauseFit& fit);
+
+/// The inverse of its matrix on what it tells of. A parameter that nothing is known of,
+/// as where the part that it shapes is of no size, takes nothing from the others.
+struct InverseInformation {
+  Eigen::MatrixXd matrix;  ///< of theta'; 0 of parameters that are not told
+  std::vector<bool> told;
+};
+InverseInformation InverseOf(const ScaledInformation& information);
 
 /// Covariance of theta; infinite variance where the data say nothing.
 Eigen::MatrixXd ParameterCovariance(const DiscoveryProblem& problem,

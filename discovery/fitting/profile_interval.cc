@@ -8,7 +8,6 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/plugin/runtime/parallel.h"
-#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -151,7 +150,7 @@ std::vector<Interval> ParameterIntervals(const DiscoveryProblem& problem,
                                          const MatrixXd& covariance) {
   const VectorXd theta = Flatten(fit.causes);
   const ScaledInformation information = InformationOf(problem, candidates, fit);
-  const MatrixXd all = information.scale.asDiagonal() * Inverse(information.matrix) *
+  const MatrixXd all = information.scale.asDiagonal() * InverseOf(information).matrix *
                        information.scale.asDiagonal();
   const MatrixXd C = all.bottomRightCorner(theta.size(), theta.size());
   const std::vector<FitParameter> parameters = ParametersOf(candidates, fit.causes);

@@ -37,6 +37,9 @@ struct Candidate {
   Eigen::Index joint = 0;     ///< see Site
   Eigen::Index channel = -1;  ///< see Site
   std::vector<FitParameter> parameters;
+  /// Of effects with choices (Role::kChoice), which come first: their values. Parameters
+  /// of the effect behind `parameters` are 0.
+  Eigen::VectorXd chosen = {};
 };
 
 /// Place of the first parameter with that role; the number of parameters if there is

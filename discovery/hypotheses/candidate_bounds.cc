@@ -4,6 +4,7 @@
 #include <map>
 
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/trial_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -21,7 +22,7 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
 
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion) {
-  const double duration = motion.sample_time * static_cast<double>(motion.samples());
+  constexpr double kOnce = 1.1;    // strokes, for a wave comes round once at least
   std::map<Index, Scales> scales;  // of every joint
   for (Candidate& candidate : candidates) {
     const Site site{candidate.site, candidate.joint, candidate.channel};
@@ -45,7 +46,12 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
           Narrow(parameter, q.minCoeff(), q.maxCoeff());
           break;
         case Role::kFrequency:
-          Narrow(parameter, 1.0 / duration, 0.5 / motion.sample_time);
+          Narrow(parameter, 1.0 / motion.time.maxCoeff(), 0.5 / motion.sample_time);
+          break;
+        case Role::kPeriod:
+          Narrow(parameter, 0.0,
+                 kOnce * (candidate.effect->site() == SiteKind::kSensor ? Range(at.y())
+                                                                        : own.stroke));
           break;
         case Role::kLimit:
           Narrow(parameter, 0.0, at.before_gear().cwiseAbs().maxCoeff());

@@ -36,6 +36,7 @@ Changes ChangesOf(const std::vector<Cause>& causes) {
 std::string Describe(const Cause& cause) {
   if (cause.effect->IsFault()) return cause.name() + " = " + Number(cause.values[0]);
   std::string text = cause.name() + "@" + cause.site;
+  if (cause.effect->odds() == kLearned) return text;  // its knots say nothing to people
   const char* separator = ": ";
   Eigen::Index i = 0;
   for (const EffectParameter& parameter : cause.effect->parameters()) {

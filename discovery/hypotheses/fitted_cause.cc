@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mjdiag/plugin/effects/effect.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
@@ -51,7 +53,12 @@ std::vector<FitParameter> ParametersOf(const std::vector<Candidate>& candidates,
 
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted) {
   const Candidate& candidate = candidates[fitted.candidate];
-  return {candidate.effect, candidate.site, fitted.value};
+  VectorXd values =
+      VectorXd::Zero(static_cast<Index>(candidate.effect->parameters().size()));
+  const Index choices = candidate.chosen.size();
+  values.head(choices) = candidate.chosen;
+  values.segment(choices, fitted.value.size()) = fitted.value;
+  return {candidate.effect, candidate.site, std::move(values)};
 }
 
 Changes ChangesOf(const std::vector<Candidate>& candidates,

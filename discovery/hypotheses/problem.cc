@@ -99,6 +99,11 @@ std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
   return derived_->linearised;
 }
 
+double DiscoveryProblem::FittedDuration() const {
+  return run_->Time().segment(skip_, train_ - skip_).maxCoeff() -
+         static_cast<double>(skip_ - 1) * run_->sample_time;
+}
+
 double DiscoveryProblem::RunWork() const {
   return static_cast<double>(run_->samples() * machine_.rates().substeps) *
          StepWork(machine_.plant().nv);

@@ -47,6 +47,8 @@ class DiscoveryProblem {
   const MeasuredRun& run() const { return *run_; }
   Eigen::Index skip() const { return skip_; }
   Eigen::Index train() const { return train_; }
+  /// Of what fits see of the longest record [s].
+  double FittedDuration() const;
   double step() const { return machine_.plant().opt.timestep; }  ///< of physics [s]
   /// Numbers of the plant that are fitted with every hypothesis.
   const std::vector<DoubtedNumber>& numbers() const { return numbers_; }

@@ -43,10 +43,9 @@ Screening Screen(const DiscoveryProblem& problem,
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
     const auto c = static_cast<std::size_t>(number);
     const Candidate& candidate = candidates[c];
-    const double duration = static_cast<double>(problem.train() - problem.skip()) *
-                            problem.run().sample_time;
     std::vector<Trial> trials;
-    if (const auto sweep = MakeSweep(problem.machine(), candidate, motion, duration)) {
+    if (const auto sweep =
+            MakeSweep(problem.machine(), candidate, motion, problem.FittedDuration())) {
       tried[c] = static_cast<int>(sweep->values.size());
       trials =
           screener.BestOf(*sweep, candidate, screener.RoughGains(*sweep, candidate));
@@ -89,12 +88,11 @@ std::vector<Start> BetterWaves(const DiscoveryProblem& problem, const Candidate&
                                const ErrorDynamics& dynamics, const VectorXd& residual,
                                const MatrixXd& jacobian, const FittedModel& beside,
                                int most) {
-  const double duration =
-      static_cast<double>(problem.train() - problem.skip()) * problem.run().sample_time;
   const Screener screener(problem, dynamics, residual, jacobian, beside);
   double gain = 0.0;
   std::vector<Trial> trials;
-  if (const auto sweep = MakeSweep(problem.machine(), wave, motion, duration)) {
+  if (const auto sweep =
+          MakeSweep(problem.machine(), wave, motion, problem.FittedDuration())) {
     constexpr std::size_t kPeaks = 40;
     const auto now = screener.Judge({sweep->make(present)}, wave).front();
     gain = now ? now->gain : 0.0;

@@ -24,14 +24,15 @@ Judgement Judge(const Evidence& present, const Evidence& proposed) {
   if (larger && !(proposed.addition() && proposed.addition()->IsMoreThanChance())) {
     return Judgement::kChance;
   }
-  const double allowed = larger ? 0.0 : gain;
-  if (!(proposed.Unseen(independent) <= present.Unseen(independent) + allowed)) {
-    return Judgement::kUnseen;
-  }
   constexpr double kWorse = 0.02;
-  if (present.fit().train <= kFarAboveNoise) return Judgement::kAccepted;
-  return proposed.FreeRun() <= present.FreeRun() + kWorse ? Judgement::kAccepted
-                                                          : Judgement::kUnseen;
+  if (present.fit().train > kFarAboveNoise && present.HasFreeRun()) {
+    return proposed.FreeRun() <= present.FreeRun() + kWorse ? Judgement::kAccepted
+                                                            : Judgement::kUnseen;
+  }
+  const double allowed = larger ? 0.0 : gain;
+  return proposed.Unseen(independent) <= present.Unseen(independent) + allowed
+             ? Judgement::kAccepted
+             : Judgement::kUnseen;
 }
 
 std::optional<std::size_t> BestOf(

@@ -14,9 +14,10 @@
 //    a larger set must not spoil them; one that is no larger must not lose there more
 //    than it gains where it was fitted. Data on which neither set can be run say
 //    nothing;
-// 4. free simulation of unseen records agrees:   F' - F <= 0.02, F its log rms
-//    (record_replay.h), where the present set leaves far more than noise. What is left
-//    then is physics that neither set has, and an observer hides what it does.
+// 4. in the place of that, where the present set leaves far more than noise and there are
+//    unseen records, their free simulation agrees:   F' - F <= 0.02, F its log rms
+//    (record_replay.h). What is left then is physics that neither set has: an observer
+//    hides what it does, and follows it better beside one wrong law than another.
 //
 // Both sets are counted with the independent share of the proposed one: what the larger
 // set leaves if it adds, else the share that it has inherited from the present one.

@@ -26,6 +26,8 @@ constexpr const char* kRepeatable = "whether runs are repeatable";
 constexpr const char* kLastFit = "last fit";
 
 Index BeginningLength(const DiscoveryProblem& problem) {
+  // Each of several records shows something that the others do not.
+  if (problem.run().records.size() > 1) return problem.train();
   constexpr Index kShortest = 4000;
   return std::min(problem.train(),
                   problem.skip() + std::max(kShortest, problem.train() / 4));

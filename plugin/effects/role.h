@@ -19,7 +19,8 @@ enum class Role {
   kGap,        ///< width within which something does not act
   kSteepness,  ///< with which a law begins
   kRatio,      ///< of one part of a law to another
-  kDuration    ///< over which something changes with time [s]
+  kDuration,   ///< over which something changes with time [s]
+  kChoice      ///< which law it is: no question of a fit
 };
 
 /// Whether it says where or how a law bends, and not only how large its parts are:

@@ -27,8 +27,12 @@ Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step
                   double fast_below) {
   const double range = Range(x);
   Sweep sweep;
-  for (int m = 2; m <= finest; m += step) sweep.values.push_back(4.0 * range / m);
-  sweep.angle = 2.0 * kTurn / (4.0 * range) * x;
+  // What does not come round once is no wave.
+  constexpr int kCoarsest = 4;
+  for (int m = kCoarsest; m <= finest; m += step) {
+    sweep.values.push_back(4.0 * range / m);
+  }
+  sweep.angle = kCoarsest * kTurn / (4.0 * range) * x;
   sweep.increment = step * kTurn / (4.0 * range) * x;
   sweep.fast_below = fast_below;
   sweep.make = [entry, x, fast_below](double period) {

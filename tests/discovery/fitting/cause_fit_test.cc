@@ -76,5 +76,61 @@ TEST(CauseFit, StaysWithinItsBounds) {
   EXPECT_GE(fit.causes[0].value[0], 0.0);
 }
 
+// The damper of the plant is in doubt by a factor of two, and acts as both sides of the
+// law together do.
+TEST(CauseFit, ALawThatStandsForANumberOfThePlantHasAllOfIt) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = WithDoubts(
+      stage.Pose(
+          stage.Measure({"asymmetric_viscous_friction@load:positive=30,negative=-20"})),
+      {FindPlantNumber(stage.machine.plant(), "mass@load"),
+       FindPlantNumber(stage.machine.plant(), "gear@drive")});
+  ASSERT_EQ(problem.numbers().size(), 1u);
+  const auto candidates = ListCandidates(stage.machine);
+  const std::size_t place = Place(candidates, "asymmetric_viscous_friction@load");
+  FittedModel start = {{{place, Eigen::Vector2d(1.0, 1.0)}},
+                       Eigen::VectorXd::Constant(1, 0.3)};
+  const CauseFit fit = FitCauses(problem, candidates, start, {});
+  EXPECT_NEAR(fit.numbers[0], 0.0, 1e-6);
+  const Eigen::MatrixXd covariance = ParameterCovariance(problem, candidates, fit);
+  const Eigen::Vector2d truth(30.0, -20.0);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const double sd = std::sqrt(covariance(i + 1, i + 1));
+    EXPECT_LT(sd, 3.0);
+    EXPECT_NEAR(fit.causes[0].value[i], truth[i], 4.0 * sd);
+  }
+  // From a J of another set, in which the number is free, and back.
+  FitOptions options;
+  const Eigen::MatrixXd of_number = problem.NumberJacobian({}, {});
+  options.initial_jacobian = &of_number;
+  EXPECT_NEAR(FitCauses(problem, candidates, start, options).numbers[0], 0.0, 1e-6);
+  const Eigen::MatrixXd of_none = 0.0 * of_number;
+  options.initial_jacobian = &of_none;
+  const CauseFit alone = FitCauses(problem, candidates, {}, options);
+  // Alone the damper lies between what both sides ask for, which a damper that stood
+  // still would not.
+  const double damping =
+      203.5 * std::exp(problem.numbers()[0].spread * alone.numbers[0]);
+  EXPECT_GT(damping, 204.5);
+  EXPECT_LT(damping, 203.5 + 30.0);
+}
+
+TEST(ParameterCovariance, OfWhatNothingIsToldTakesNothingFromTheOthers) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem =
+      stage.Pose(stage.Measure({"coulomb_friction@load:force=12"}));
+  const auto candidates = ListCandidates(stage.machine);
+  const std::size_t place = Place(candidates, "stribeck_friction@load");
+  // Without a breakaway part its velocity does nothing.
+  const CauseFit fit =
+      FitCauses(problem, candidates, {{{place, Eigen::Vector3d(12.0, 0.0, 0.02)}}},
+                {.iterations = 0});
+  const Eigen::MatrixXd covariance = ParameterCovariance(problem, candidates, fit);
+  EXPECT_TRUE(std::isinf(covariance(2, 2)));
+  EXPECT_TRUE(std::isfinite(covariance(0, 0)));
+  EXPECT_LT(std::sqrt(covariance(0, 0)), 1.0);
+  EXPECT_EQ(covariance(0, 2), 0.0);
+}
+
 }  // namespace
 }  // namespace mjdiag
