@@ -68,7 +68,8 @@ class Discoverer {
   void NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals);
   std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
   void FindWhere(const Track& nominal, const Track& final);
-  /// What the largest of the forces that nothing explains depends on.
+  /// What the largest of the forces that nothing explains depends on; asked of all that
+  /// the machine does, or of what a curve may be over.
   struct Rest {
     UnknownSignal force;
     Eigen::Index joint = 0;  ///< nv
@@ -76,11 +77,13 @@ class Discoverer {
     Signature signature;
   };
   Rest SignatureOf(const ObservedMotion& motion,
-                   const std::vector<UnknownSignal>& forces) const;
+                   const std::vector<UnknownSignal>& forces, bool for_curve) const;
   void SignRest(const ObservedMotion& motion);
   /// Whether the fit leaves more than noise.
   bool IsMoreLeft() const;
-  bool LearnCurve(const EvidenceData& data);
+  bool LearnCurve(const EvidenceData& data, const FittedModel& base);
+  void TakeCurve(Evidence with_curve);
+  std::vector<FittedModel> WithoutAlike() const;
   void LearnCurves(const SearchOptions& options);
   LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;
   void AddLaws(const ObservedMotion& motion);

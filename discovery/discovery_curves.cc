@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/comparator.h"
@@ -37,10 +40,21 @@ std::string InWords(const UnknownSignal& force, const Signature& signature) {
   return text + " (" + signature.shape + ")";
 }
 
+/// Whether a force at the joint is no curve over it: accelerations, and commands of the
+/// joint's own motors, answer to the force.
+bool IsAnswer(const MotionVariable& variable, const MechanicalModel& model,
+              Index joint) {
+  if (variable.kind == CurveVariable::kCommand) {
+    return model.Gamma(joint, variable.of) != 0.0;
+  }
+  return !variable.kind && variable.factor == CurveFactor::kNone;
+}
+
 }  // namespace
 
-Discoverer::Rest Discoverer::SignatureOf(
-    const ObservedMotion& motion, const std::vector<UnknownSignal>& forces) const {
+Discoverer::Rest Discoverer::SignatureOf(const ObservedMotion& motion,
+                                         const std::vector<UnknownSignal>& forces,
+                                         bool for_curve) const {
   const auto strength = [](const UnknownSignal& s) {
     return s.value.norm() / std::max(s.sd, 1e-300);
   };
@@ -53,6 +67,11 @@ Discoverer::Rest Discoverer::SignatureOf(
   rest.variables =
       MotionVariables(problem_.machine(), motion, joints, rest.joint,
                       problem_.StillSpeed()[rest.joint], problem_.run().records.size());
+  if (for_curve) {
+    std::erase_if(rest.variables, [&](const MotionVariable& variable) {
+      return IsAnswer(variable, problem_.machine().linear(), rest.joint);
+    });
+  }
   const std::vector<Variable> variables(rest.variables.begin(), rest.variables.end());
   rest.signature = FindSignature(rest.force.site, rest.force.value, rest.force.unit,
                                  std::max(rest.force.sd, 1e-300), variables);
@@ -63,15 +82,16 @@ bool Discoverer::IsMoreLeft() const {
   return search_.significant_rest || search_.fit().train > kFarAboveNoise;
 }
 
-/// A curve for what is left; with as many knots as the evidence is for. False if there
-/// is none, or nothing that it would be over.
-bool Discoverer::LearnCurve(const EvidenceData& data) {
+/// A curve for what is left beside `base`, the present set or part of it, with as many
+/// knots as the evidence is for. False if there is none, or nothing that it would be over.
+bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
   constexpr std::array<int, 3> kKnots = {5, 9, 16};
   constexpr double kFalseAlarm = 1e-4;
   const Evidence present(data, search_.fit(), search_.evidence.independent());
-  const Track track = problem_.Follow(ChangesOf(problem_, candidates_, present.fit()));
+  const bool adds = base.causes.size() == present.hypotheses();
+  const Track track = problem_.Follow(ChangesOf(problem_, candidates_, base));
   const ObservedMotion motion = problem_.MotionOf(track);
-  const Rest rest = SignatureOf(motion, UnexplainedIn(track));
+  const Rest rest = SignatureOf(motion, UnexplainedIn(track), true);
   if (!rest.signature.significant || rest.signature.variable.empty()) return false;
   const Site site{rest.force.site, rest.joint, -1};
   const double spread =
@@ -91,15 +111,17 @@ bool Discoverer::LearnCurve(const EvidenceData& data) {
     axis = {std::move(learned->x), learned->over, learned->unit};
     candidates_.resize(place);
     candidates_.push_back(std::move(learned->candidate));
-    FittedModel start = present.fit();
+    FittedModel start = base;
     start.causes.push_back({place, learned->start});
     constexpr int kIterations = 12;
-    auto fit = TryFit(
-        problem_, candidates_, start,
-        CompareFrom(&present.fit().jacobian, kIterations, 1e-4, work_->Share(1)));
+    auto fit = TryFit(problem_, candidates_, start,
+                      CompareFrom(adds ? &present.fit().jacobian : nullptr, kIterations,
+                                  1e-4, work_->Share(1)));
     if (!fit) continue;
     VectorXd independent = IndependentShare(problem_, fit->residual);
-    Evidence proposed = present.Added(std::move(*fit), std::move(independent), chance);
+    Evidence proposed =
+        adds ? present.Added(std::move(*fit), std::move(independent), chance)
+             : present.Changed(std::move(*fit));
     if (mjdiag::Judge(present, proposed) != Judgement::kAccepted) continue;
     if (best && proposed.Criterion(proposed.independent()) >=
                     best->Criterion(proposed.independent())) {
@@ -112,12 +134,50 @@ bool Discoverer::LearnCurve(const EvidenceData& data) {
   if (!best) return false;
   candidates_.push_back(std::move(chosen));
   curves_[place] = {InWords(rest.force, rest.signature), std::move(axis)};
-  search_.ladder.push_back(best->fit());
-  search_.rivals.emplace_back();
-  search_.evidence = std::move(*best);
+  TakeCurve(std::move(*best));
+  return true;
+}
+
+/// The set with the curve that came last, in the place of the present one.
+void Discoverer::TakeCurve(Evidence with_curve) {
+  std::vector<std::vector<Hypothesis>> rivals;
+  for (const FittedCause& cause : with_curve.fit().causes) {
+    const auto& before = search_.fit().causes;
+    const auto same =
+        std::ranges::find(before, cause.candidate, &FittedCause::candidate);
+    rivals.emplace_back();
+    if (same == before.end()) continue;
+    rivals.back() =
+        std::move(search_.rivals[static_cast<std::size_t>(same - before.begin())]);
+  }
+  search_.rivals = std::move(rivals);
+  search_.ladder.push_back(with_curve.fit());
+  search_.evidence = std::move(with_curve);
   // No law was left before.
   search_.significant_rest = false;
-  return true;
+}
+
+/// Of the causes that are functions of one variable of one joint alone, the sets of
+/// several: what many laws describe together may be one that has no name.
+std::vector<FittedModel> Discoverer::WithoutAlike() const {
+  std::map<std::pair<Index, LawVariable>, std::vector<std::size_t>> alike;
+  const std::vector<FittedCause>& causes = search_.fit().causes;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    const Cause cause = CauseOf(candidates_, causes[i]);
+    if (!cause.effect->Law(0.0, cause.values)) continue;
+    alike[{candidates_[causes[i].candidate].joint, cause.effect->variable()}].push_back(
+        i);
+  }
+  std::vector<FittedModel> without;
+  for (const auto& [of, places] : alike) {
+    if (places.size() < 2) continue;
+    FittedModel model = search_.fit();
+    for (std::size_t k = places.size(); k-- > 0;) {
+      model.causes = Without(model.causes, places[k]);
+    }
+    without.push_back(std::move(model));
+  }
+  return without;
 }
 
 /// Laws that do not explain what they were found for may be nothing beside a curve.
@@ -129,11 +189,16 @@ void Discoverer::LearnCurves(const SearchOptions& options) {
       problem_, problem_, candidates_,
       DataOf(problem_, candidates_, options.unseen, options.free_run)};
   for (int i = 0; i < kMost; ++i) {
-    if (!IsMoreLeft() || !work_->MayBegin(kCurve)) return;
+    if (!IsMoreLeft() || !work_->MayBegin(kCurve)) break;
     Report(kCurve, 0.5);
-    if (!LearnCurve(data.evidence)) return;
+    if (!LearnCurve(data.evidence, search_.fit())) break;
     while (work_->MayBegin(kCurve) && Drop(data, search_)) {
     }
+  }
+  for (const FittedModel& base : WithoutAlike()) {
+    if (!work_->MayBegin(kCurve)) break;
+    Report(kCurve, 0.8);
+    if (LearnCurve(data.evidence, base)) break;
   }
 }
 

@@ -22,7 +22,9 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
 
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion) {
-  constexpr double kOnce = 1.1;    // strokes, for a wave comes round once at least
+  // Waves and resonances come round within what is seen, or they are something else.
+  constexpr double kOnce = 1.1;    // strokes a period, at most
+  constexpr double kSwings = 2.0;  // in the longest record, at least
   std::map<Index, Scales> scales;  // of every joint
   for (Candidate& candidate : candidates) {
     const Site site{candidate.site, candidate.joint, candidate.channel};
@@ -46,7 +48,7 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
           Narrow(parameter, q.minCoeff(), q.maxCoeff());
           break;
         case Role::kFrequency:
-          Narrow(parameter, 1.0 / motion.time.maxCoeff(), 0.5 / motion.sample_time);
+          Narrow(parameter, kSwings / motion.time.maxCoeff(), 0.5 / motion.sample_time);
           break;
         case Role::kPeriod:
           Narrow(parameter, 0.0,

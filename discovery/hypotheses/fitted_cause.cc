@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mjdiag/plugin/effects/effect.h"
@@ -17,6 +18,20 @@ FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause)
     value = std::clamp(value, parameter.lower, parameter.upper);
   }
   return cause;
+}
+
+bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cause) {
+  constexpr double kAt = 1e-6;  // of the bound
+  Index i = 0;
+  for (const FitParameter& parameter : candidates[cause.candidate].parameters) {
+    const double value = cause.value[i++];
+    if (!IsShape(parameter.role) || parameter.role == Role::kPhase) continue;
+    const double upper = parameter.upper;
+    const double lower = parameter.lower;
+    if (std::isfinite(upper) && value >= upper - kAt * std::abs(upper)) return true;
+    if (lower != 0.0 && value <= lower + kAt * std::abs(lower)) return true;
+  }
+  return false;
 }
 
 VectorXd Flatten(const std::vector<FittedCause>& causes) {

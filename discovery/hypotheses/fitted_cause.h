@@ -17,6 +17,10 @@ struct FittedCause {
 /// With values within the bounds of its parameters.
 FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause);
 
+/// Whether its shape is as far as it may be: the fit asks for what is no such law any
+/// more, as a resonance that does not swing, or a wave longer than the stroke.
+bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cause);
+
 /// All parameters in one vector, in order of the causes, and back.
 Eigen::VectorXd Flatten(const std::vector<FittedCause>& causes);
 std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,

@@ -19,8 +19,7 @@ double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& mode
   double sum = model.numbers.squaredNorm();
   for (const FittedCause& cause : model.causes) {
     const double odds = candidates[cause.candidate].effect->odds();
-    sum += SizePriorOf(candidates, cause);
-    if (odds > 0.0) sum -= 2.0 * std::log(odds);  // a curve has them in its knots
+    sum += SizePriorOf(candidates, cause) - 2.0 * std::log(kMissing * odds);
   }
   return sum;
 }

@@ -24,10 +24,14 @@ struct FittedModel {
   double prior_weight = 1.0;
 };
 
+/// How probable it is that a model lacks an effect of odds 1 at a site where the machine
+/// has it: models are made by people who know their machine.
+inline constexpr double kMissing = 0.1;
+
 /// Sum of squares of the sizes of a cause over their spread.
 double SizePriorOf(const std::vector<Candidate>& candidates, const FittedCause& cause);
 /// Sum of squares of z and of the sizes of the causes over their spread, and of the
-/// causes -2 log odds: -2 log of what is known beforehand, but for a constant.
+/// causes -2 log(kMissing odds): -2 log of what is known beforehand, but for a constant.
 double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& model);
 
 /// What it does to the plant.

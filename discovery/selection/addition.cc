@@ -190,6 +190,9 @@ Additions ProposeAdditions(const SearchData& data, const Evidence& present,
   }
   if (!finalists.empty()) report("fit of " + NamesOf(data.candidates, finalists));
   std::vector<std::optional<CauseFit>> fits = contest.Fit(finalists);
+  for (auto& fit : fits) {
+    if (fit && IsAtItsEnd(data.candidates, fit->causes.back())) fit.reset();
+  }
   Additions additions;
   const std::vector<double> criteria = Criteria(data.problem, fits);
   std::vector<std::size_t> order(fits.size());

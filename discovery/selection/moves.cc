@@ -27,6 +27,17 @@ void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
   std::rotate(place, place + 1, rivals.end());
 }
 
+/// Whether the last cause, which is not among the present ones, is at its end.
+bool IsOfAnotherLaw(const SearchData& data, const Evidence& present,
+                    const CauseFit& fit) {
+  if (fit.causes.empty()) return false;
+  const FittedCause& last = fit.causes.back();
+  const bool is_new =
+      std::ranges::find(present.fit().causes, last.candidate,
+                        &FittedCause::candidate) == present.fit().causes.end();
+  return is_new && IsAtItsEnd(data.candidates, last);
+}
+
 /// The fit of other causes; none if the beginning of the record shows that they explain
 /// far less than the present ones.
 /// @param jacobian  of the first of the causes
@@ -46,7 +57,7 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
   if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
   auto fit = TryFit(data.problem, data.candidates, model,
                     CompareFrom(initial, 8, 1e-5, 0.5 * share));
-  if (!fit) return std::nullopt;
+  if (!fit || IsOfAnotherLaw(data, present, *fit)) return std::nullopt;
   return present.Changed(std::move(*fit));
 }
 
@@ -127,7 +138,10 @@ void RankRivals(HypothesisSet& set, std::size_t i,
   rivals.push_back({cause, present, 0.0});
   for (std::size_t k = 0; k < tried.size(); ++k) {
     std::erase_if(rivals, of(tried[k].candidate));
-    if (!proposals[k]) continue;
+    // What unseen data contradict is no alternative, however well it fits.
+    if (!proposals[k] || Judge(set.evidence, *proposals[k]) == Judgement::kUnseen) {
+      continue;
+    }
     rivals.push_back(
         {proposals[k]->fit().causes.back(), proposals[k]->Criterion(), 0.0});
   }

@@ -203,16 +203,17 @@ Record WithForce(const test::StageUnderTest& stage,
   return shown;
 }
 
-TEST(Discovery, DoesNotNameADampingThatDependsOnThePosition) {
+TEST(Discovery, LearnsADampingThatNoListHoldsAsWhatItIs) {
   const test::StageUnderTest stage;
   const Record record = WithForce(stage, [](double q, double v, double) {
     return -150.0 * std::sin(60.0 * q) * v;
   });
   const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
-  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kUnexplained) << Named(answer);
-  ASSERT_TRUE(answer.unexplained.has_value());
-  EXPECT_NE(answer.unexplained->text.find("position"), std::string::npos)
-      << answer.unexplained->text;
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kPartlyExplained);
+  EXPECT_EQ(Named(answer), "force_curve@load");
+  const std::string& words = answer.causes.at(0).unnamed;
+  EXPECT_NE(words.find("follow load position times load velocity"), std::string::npos)
+      << words;
 }
 
 TEST(Discovery, DoesNotNameAForceThatComesAndGoesWithTime) {

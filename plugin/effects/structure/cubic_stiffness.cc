@@ -23,6 +23,10 @@ class CubicStiffnessEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return -values[0] * q * q * q;
   }
+  // Nothing that is no spring softens.
+  double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
+    return plant.jnt_stiffness[plant.dof_jntid[joint]] > 0.0 ? -kAnySize : 0.0;
+  }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(-at.q().array().cube().matrix(), at.JointEntry())};
   }

@@ -50,7 +50,8 @@ class FlexibleModeEffect final : public Effect {
                 .variable = LawVariable::kAcceleration,
                 .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
                                Positive("frequency", Role::kFrequency, "Hz"),
-                               NotNegative("damping_ratio", Role::kRatio, "1")},
+                               // What does not swing is no mode.
+                               {"damping_ratio", Role::kRatio, "1", 0.0, 1.0}},
                 .meaning = "a mass on a spring and a damper on the joint",
                 .odds = kSome}) {}
 

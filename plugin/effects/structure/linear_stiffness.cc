@@ -31,6 +31,9 @@ class LinearStiffnessEffect final : public Effect {
   std::vector<Site> CandidateSites(const SiteMap& map) const override {
     return map.Joints(Without(map.driven(), map.Held()));
   }
+  double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
+    return -plant.jnt_stiffness[plant.dof_jntid[joint]];
+  }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(-at.q(), at.JointEntry())};
   }

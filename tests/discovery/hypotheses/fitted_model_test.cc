@@ -25,14 +25,16 @@ TEST(PriorOf, CountsSizesInUnitsOfTheMachine) {
   BoundByRecord(candidates, stage.machine, problem.MotionOf(problem.Nominal()));
   const double force =
       candidates[test::Place(candidates, "coulomb_friction@load")].parameters[0].spread;
+  const double missing = 2.0 * std::log(kMissing);
   const FittedCause friction = OneOf(candidates, "coulomb_friction@load", 0.5 * force);
-  EXPECT_NEAR(PriorOf(candidates, FittedModel({friction})), 0.25, 1e-12);
+  EXPECT_NEAR(PriorOf(candidates, FittedModel({friction})), 0.25 - missing, 1e-12);
   // A factor of 1 is nothing; encoders are right to a hundredth, and seldom are not.
   const FittedCause scale = OneOf(candidates, "encoder_scale@load_encoder", 1.02);
-  EXPECT_NEAR(PriorOf(candidates, FittedModel({scale})), 4.0 - 2.0 * std::log(kSome),
-              1e-9);
+  EXPECT_NEAR(PriorOf(candidates, FittedModel({scale})),
+              4.0 - 2.0 * std::log(kSome) - missing, 1e-9);
   const FittedModel all({friction, scale}, Eigen::Vector2d(1.0, -2.0));
-  EXPECT_NEAR(PriorOf(candidates, all), 0.25 + 4.0 - 2.0 * std::log(kSome) + 5.0, 1e-9);
+  EXPECT_NEAR(PriorOf(candidates, all),
+              0.25 + 4.0 - 2.0 * std::log(kSome) - 2.0 * missing + 5.0, 1e-9);
 }
 
 }  // namespace

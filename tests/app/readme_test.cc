@@ -1,0 +1,88 @@
+// The commands of README.md, as they stand there, in a folder that has nothing but the
+// machines.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/command_line.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lines of code blocks that begin with "mjdiag", with what goes on behind a backslash.
+std::vector<std::string> CommandsOfReadme() {
+  std::istringstream readme(ReadAll(fs::path(MJDIAG_SOURCE_DIR) / "README.md"));
+  std::vector<std::string> commands;
+  bool goes_on = false;
+  for (std::string line; std::getline(readme, line);) {
+    const bool begins = line.rfind("    mjdiag ", 0) == 0;
+    if (begins) commands.emplace_back();
+    if (!begins && !goes_on) continue;
+    goes_on = line.ends_with("\\");
+    commands.back() += line.substr(4) + "\n";
+  }
+  return commands;
+}
+
+std::optional<fs::path> DataFolder(const char* variable) {
+  const char* folder = std::getenv(variable);
+  if (folder == nullptr || !fs::exists(folder)) return std::nullopt;
+  return fs::canonical(folder);
+}
+
+/// Puts links to all records of a folder beside the machines.
+void LinkFiles(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const std::string kind = entry.path().extension().string();
+    if (kind != ".csv" && kind != ".mat") continue;
+    fs::create_symlink(entry.path(), to / entry.path().filename());
+  }
+}
+
+TEST(Readme, CommandsDoWhatTheySay) {
+  const TemporaryFolder folder;
+  const fs::path root(MJDIAG_SOURCE_DIR);
+  fs::create_symlink(root / "mjcf", folder.path() / "mjcf");
+  const auto emps = DataFolder("MJDIAG_EMPS_DATA");
+  const auto servo = DataFolder("MJDIAG_SERVO_DATA");
+  if (emps) LinkFiles(*emps, folder.path());
+  if (servo) LinkFiles(*servo, folder.path());
+
+  const std::vector<std::string> commands = CommandsOfReadme();
+  ASSERT_GE(commands.size(), 18u);
+  int typed = 0;
+  for (std::string command : commands) {
+    // Studies take many minutes; tests of their own type them with fewer runs.
+    if (command.rfind("mjdiag study", 0) == 0) continue;
+    // What needs measured data that are not here.
+    if (!emps && command.find("DATA_EMPS") != std::string::npos) continue;
+    if (!servo && command.find("mjcf/servo") != std::string::npos) continue;
+    // FOLDER is where the reader has the records of the servo.
+    if (const auto at = command.find(" FOLDER"); at != std::string::npos) {
+      command.replace(at, 7, " '" + servo->string() + "'");
+    }
+    const std::string log = (folder.path() / "log").string();
+    const std::string line = "cd '" + folder.path().string() +
+                             "' && mjdiag() { '" MJDIAG_COMMAND "' \"$@\"; } && { " +
+                             command + "} >'" + log + "' 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << command << ReadAll(log);
+    ++typed;
+  }
+  EXPECT_GE(typed, 11);
+  // What later commands, and the text, say is there.
+  for (const char* file :
+       {"out/worn/diagnosis.json", "out/worn/report.html", "out/clip/clip.mp4",
+        "out/calibrated/setup.toml", "out/filters/filters.json"}) {
+    EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
+  }
+}
+
+}  // namespace
+}  // namespace mjdiag

@@ -1,0 +1,75 @@
+// Physics that no list holds: learned as what it is, a force without a name.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "discovery/stage_under_test.h"
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+/// A law that the registry does not have.
+class OutsideLaw final : public JointForceEffect {
+ public:
+  using ForceOf = double (*)(double q, double v);
+  explicit OutsideLaw(ForceOf force)
+      : JointForceEffect({.name = "outside",
+                          .family = Family::kStructure,
+                          .variable = LawVariable::kPosition,
+                          .parameters = {},
+                          .meaning = "none"}),
+        force_(force) {}
+  double Force(double q, double v, double,
+               const EffectValues&) const noexcept override {
+    return force_(q, v);
+  }
+  Sized Draw(const Scales&, Random&) const override { return {}; }
+
+ private:
+  ForceOf force_;
+};
+
+Discovery DiscoverOutside(const OutsideLaw& law, const test::StageUnderTest& stage,
+                          const CandidateChoice& choice = {}) {
+  Changes changes;
+  changes.effects.push_back({Lasting(law), "load", {}});
+  RunOptions options;
+  const Record measured =
+      Simulate(stage.machine.With(changes), stage.Motion(), options);
+  DiscoverOptions discover;
+  discover.choice = choice;
+  return Discover(stage.machine, measured, nullptr, discover);
+}
+
+const FoundCause* Curve(const Discovery& answer) {
+  const auto found = std::ranges::find_if(answer.causes, [](const FoundCause& cause) {
+    return cause.cause.name() == "force_curve";
+  });
+  return found == answer.causes.end() ? nullptr : &*found;
+}
+
+TEST(ForceCurveDiscovery, LearnsALawOverThePosition) {
+  const test::StageUnderTest stage;
+  const OutsideLaw law([](double q, double) { return 3.0 * std::sin(25.0 * q * q); });
+  const Discovery answer = DiscoverOutside(law, stage);
+  ASSERT_NE(Curve(answer), nullptr);
+  EXPECT_NE(Curve(answer)->unnamed.find("load position"), std::string::npos);
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kPartlyExplained);
+  EXPECT_GT(answer.gain_validation, 0.8);
+}
+
+TEST(ForceCurveDiscovery, LearnsALawOverTheVelocity) {
+  const test::StageUnderTest stage;
+  const OutsideLaw law([](double, double v) { return 3.0 * std::sin(30.0 * v); });
+  const Discovery answer = DiscoverOutside(law, stage);
+  ASSERT_NE(Curve(answer), nullptr);
+  EXPECT_GT(answer.gain_validation, 0.8);
+}
+
+}  // namespace
+}  // namespace mjdiag
