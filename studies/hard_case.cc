@@ -176,11 +176,12 @@ HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t 
   Random random(seed ^ kDrawStream);
   const Setup& setup = model.setup();
   const Trajectory trajectory = DefaultTrajectory(setup);
+  const int substeps = kFiner * setup.rates.substeps;
   const Excitation motion = FollowTrajectory(setup, trajectory);
   HardCase hard;
   const auto visible = DrawUntilThere([&]() -> std::optional<VisibleSize> {
     hard.numbers = DrawNumbers(model.plant(), random);
-    return VisibleSize(model.WithNumbers(hard.numbers), motion, seed);
+    return VisibleSize(model.WithNumbers(hard.numbers), substeps, motion, seed);
   });
   if (plan.outside) {
     constexpr std::size_t kSites = 5;  // that are tried of a law
@@ -195,7 +196,7 @@ HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t 
         [&] { return DrawOneMore(model, visible, hard.truth, random); }));
   }
 
-  const Machine machine = model.WithSubsteps(kFiner * setup.rates.substeps)
+  const Machine machine = model.WithSubsteps(substeps)
                               .WithNumbers(hard.numbers)
                               .With(ChangesOf(hard.truth));
   std::uint64_t noise = 1000 * seed;

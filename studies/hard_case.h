@@ -43,7 +43,7 @@ struct HardCase {
   Record unseen_clean;  ///< the same without
 };
 
-/// Squared innovations that every cause adds beyond what wrong numbers explain.
+/// What every cause shows at least (visible_size.h).
 inline constexpr double kLeastShown = 200.0;
 
 /// Numbers of a plant as they may be.

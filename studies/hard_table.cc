@@ -187,7 +187,8 @@ std::vector<StudyTable> HardStudy(const Machine& model, bool nothing,
   empty.notes = {
       "All numbers of the plant are off by draws from what is known of them, the "
       "measurement has twice the physics steps of the model, and every cause adds at "
-      "least 200 to the squared innovations beyond what wrong numbers explain.",
+      "least 200 to the squared innovations beyond what wrong numbers explain and what "
+      "the steps of the model hide.",
       "In brackets the probabilities of what was found. Two fitted records without an "
       "unseen one: discovery keeps the second one for that itself."};
   GrowingTable runs(std::move(empty), options.row);

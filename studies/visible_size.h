@@ -6,7 +6,10 @@
 //   min over z, a of |r - J z - R a|^2 + |z|^2
 //
 // z the numbers in the standard deviations of what is known of them, J what they do to
-// the innovations, R what other effects in the same machine show, in any amount a.
+// the innovations, R what other effects in the same machine show, in any amount a. It is
+// counted in what chance makes of as much: the model's physics steps are too long by
+// themselves, and what the numbers cannot make up for of that is no white noise but rest
+// that hides as much (Inflation of model_choice.h).
 
 #include <Eigen/Core>
 #include <vector>
@@ -20,21 +23,26 @@ namespace mjdiag {
 
 class VisibleSize {
  public:
-  /// @param machine  as it is, without the effects
-  VisibleSize(const Machine& machine, const Excitation& motion, std::uint64_t seed);
+  /// @param machine   as it is, without the effects, in the steps of the model
+  /// @param substeps  physics steps a control tick of what is measured
+  VisibleSize(const Machine& machine, int substeps, const Excitation& motion,
+              std::uint64_t seed);
 
   Scales ScalesAt(const Site& site) const;
   /// The scaled innovations of the machine beside a run of it with the cause, without
   /// noise. NumericalError if that diverges.
   Eigen::VectorXd Innovations(const Cause& cause) const;
-  /// What each of several causes shows, of their innovations.
+  /// What each of several causes shows, of their innovations, as beside white noise.
   std::vector<double> Shown(const std::vector<Eigen::VectorXd>& innovations) const;
 
  private:
+  Eigen::VectorXd Beside(const Machine& measured) const;
+
   Excitation motion_;
   DiscoveryProblem problem_;
   ObservedMotion observed_;
   Eigen::MatrixXd numbers_;  // J
+  double inflation_ = 1.0;
 };
 
 }  // namespace mjdiag

@@ -101,7 +101,8 @@ TEST(HardCase, NeedsAMachineThatFollowsTrajectories) {
 
 TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
   const Machine model = Emps();
-  const VisibleSize visible(model, DefaultMotion(model.setup()), 1);
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
   const auto part = [&](const Cause& cause) {
     const Eigen::VectorXd r = visible.Innovations(cause);
     return visible.Shown({r}).front() / r.squaredNorm();
@@ -111,9 +112,20 @@ TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
   EXPECT_GT(part(ParseEffect("force_ripple@load:amplitude=1,period=0.01")), 0.5);
 }
 
+TEST(VisibleSize, IsSmallerBesideAMeasurementOfFinerSteps) {
+  const Machine model = Emps();
+  const Cause cause = ParseEffect("coulomb_friction@load:force=2");
+  const auto shown = [&](int substeps) {
+    const VisibleSize visible(model, substeps, DefaultMotion(model.setup()), 1);
+    return visible.Shown({visible.Innovations(cause)}).front();
+  };
+  EXPECT_LT(shown(2 * model.rates().substeps), 0.1 * shown(model.rates().substeps));
+}
+
 TEST(VisibleSize, IsNothingBesideACauseThatDoesTheSame) {
   const Machine model = Emps();
-  const VisibleSize visible(model, DefaultMotion(model.setup()), 1);
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
   const Eigen::VectorXd one =
       visible.Innovations(ParseEffect("coulomb_friction@load:force=2"));
   const std::vector<double> shown = visible.Shown({one, 2.0 * one});
