@@ -88,7 +88,10 @@ std::optional<Cause> DrawSize(const VisibleSize& visible, const Placed& placed,
   double scale = random.Log(kLeastScale, 1.0);
   for (int i = 0; i < kRaises; ++i) {
     Cause cause{placed.effect, placed.site.name, shape(scale)};
-    const double shown = visible.Shown({visible.Innovations(cause)}).front();
+    double shown = visible.Shown(cause, visible.NoOthers());
+    if (shown >= kLeastShown) {
+      shown = std::min(shown, visible.ShownBesideSimplerLaw(cause));
+    }
     if (shown >= kLeastShown) return cause;
     if (scale >= 1.0) return std::nullopt;
     // Roughly with its square.
@@ -99,13 +102,16 @@ std::optional<Cause> DrawSize(const VisibleSize& visible, const Placed& placed,
 }
 
 bool ShowBesideEachOther(const VisibleSize& visible, const std::vector<Cause>& causes) {
-  std::vector<Eigen::VectorXd> innovations;
-  for (const Cause& cause : causes) {
-    if (cause.effect->form() == Form::kNoise) continue;  // like nothing else
-    innovations.push_back(visible.Innovations(cause));
-  }
-  return std::ranges::all_of(visible.Shown(innovations),
-                             [](double shown) { return shown >= kLeastShown; });
+  return std::ranges::all_of(causes, [&](const Cause& cause) {
+    if (cause.effect->form() == Form::kNoise) return true;  // like nothing else
+    Eigen::MatrixXd others = visible.NoOthers();
+    for (const Cause& other : causes) {
+      if (&other == &cause || other.effect->form() == Form::kNoise) continue;
+      others.conservativeResize(Eigen::NoChange, others.cols() + 1);
+      others.rightCols(1) = visible.Innovations(other);
+    }
+    return visible.Shown(cause, others) >= kLeastShown;
+  });
 }
 
 std::optional<Cause> DrawKnown(const Machine& machine, const VisibleSize& visible,

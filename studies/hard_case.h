@@ -8,7 +8,8 @@
 // - One to three effects and fault parameters at once, or a law that the engine does not
 //   have (outside_law.h), alone. Sizes are shares of what the machine itself does
 //   (Effect::Draw), evenly in the logarithm from 0.03 to 1, raised to what the record can
-//   show at least beside the wrong numbers (visible_size.h), or drawn anew.
+//   show at least beside the wrong numbers, the other causes and, of a law with a simpler
+//   one in it, that one (visible_size.h), or drawn anew.
 // - One record or two, the default motion and one with other strokes; in half of the
 //   cases a further one that nothing is fitted to.
 

@@ -1,7 +1,12 @@
 #include "mjdiag/studies/visible_size.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/signals/decompositions.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -9,6 +14,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+// Standard deviations that a number may be off.
+constexpr double kFarthestNumber = 10.0;
 
 DiscoveryProblem PoseOwnMotion(const Machine& machine, const Excitation& motion,
                                std::uint64_t seed) {
@@ -24,17 +32,48 @@ DiscoveryProblem PoseOwnMotion(const Machine& machine, const Excitation& motion,
   return problem.Doubting(std::move(numbers));
 }
 
-/// What of b is left beside the columns of R in any amount and those of J as far as
-/// numbers may be off, with what that costs below.
-VectorXd LeftOf(const VectorXd& b, const MatrixXd& J, const MatrixXd& R) {
+/// What numbers, and others in any amount, leave of innovations.
+struct Explained {
+  VectorXd z;
+  VectorXd left;  ///< of the innovations
+  double square() const { return left.squaredNorm() + z.squaredNorm(); }
+};
+
+/// min over z, a of |r - J z - R a|^2 + |z|^2 by Gauss and Newton with one J: numbers that
+/// are far off do not act in proportion.
+Explained Explain(const DiscoveryProblem& problem, const MatrixXd& J,
+                  const MatrixXd& R) {
+  constexpr int kSteps = 3;
   MatrixXd A = MatrixXd::Zero(J.rows() + J.cols(), J.cols() + R.cols());
   A.topLeftCorner(J.rows(), J.cols()) = J;
   A.bottomLeftCorner(J.cols(), J.cols()).setIdentity();
   A.topRightCorner(J.rows(), R.cols()) = R;
-  VectorXd left = VectorXd::Zero(A.rows());
-  left.head(b.size()) = b;
-  left -= A * LeastSquares(A, left);
-  return left;
+  VectorXd b = VectorXd::Zero(A.rows());
+  const auto solve = [&](const VectorXd& r, const VectorXd& z) {
+    b << r, z;
+    return VectorXd(LeastSquares(A, b));
+  };
+  VectorXd z = VectorXd::Zero(J.cols());
+  VectorXd r = problem.Residual({});
+  VectorXd step = solve(r, z);
+  // To first order: what the numbers make up for by themselves counts.
+  Explained best{-step.head(J.cols()), r - A.topRows(J.rows()) * step};
+  double last = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kSteps; ++i) {
+    z -= step.head(J.cols());
+    z = z.cwiseMax(-kFarthestNumber).cwiseMin(kFarthestNumber);
+    try {
+      r = problem.Residual(problem.WithNumbers({}, z));
+    } catch (const NumericalError&) {
+      break;
+    }
+    step = solve(r, z);
+    const Explained now{z, r - R * step.tail(R.cols())};
+    if (!(now.square() < last)) break;
+    last = now.square();
+    if (last < best.square()) best = now;
+  }
+  return best;
 }
 
 }  // namespace
@@ -45,9 +84,8 @@ VisibleSize::VisibleSize(const Machine& machine, int substeps, const Excitation&
       problem_(PoseOwnMotion(machine, motion, seed)),
       observed_(problem_.MotionOf(problem_.Nominal())),
       numbers_(problem_.RoughNumberJacobian({}, {})) {
-  const VectorXd left = LeftOf(Beside(machine.WithSubsteps(substeps)), numbers_,
-                               MatrixXd(numbers_.rows(), 0))
-                            .head(numbers_.rows());
+  const DiscoveryProblem finer = WithQuietRunOf(machine.WithSubsteps(substeps));
+  const VectorXd left = Explain(finer, numbers_, NoOthers()).left;
   const double square = left.squaredNorm() / static_cast<double>(left.size());
   if (square < 1.0) return;
   inflation_ = Inflation(square, IndependentShare(problem_, left));
@@ -59,29 +97,39 @@ Scales VisibleSize::ScalesAt(const Site& site) const {
   return ScalesOf(at);
 }
 
-VectorXd VisibleSize::Innovations(const Cause& cause) const {
-  return Beside(problem_.machine().With(ChangesOf({cause})));
-}
-
-VectorXd VisibleSize::Beside(const Machine& measured) const {
+DiscoveryProblem VisibleSize::WithQuietRunOf(const Machine& measured) const {
   RunOptions quiet;
   quiet.noise_scale = 0.0;
   const Record record = Simulate(measured, motion_, quiet);
-  return problem_.WithRun(ToMeasuredRun(measured.setup(), record)).Residual({});
+  return problem_.WithRun(ToMeasuredRun(measured.setup(), record));
 }
 
-std::vector<double> VisibleSize::Shown(const std::vector<VectorXd>& innovations) const {
-  std::vector<double> shown;
-  for (std::size_t own = 0; own < innovations.size(); ++own) {
-    MatrixXd others(numbers_.rows(), static_cast<Index>(innovations.size()) - 1);
-    Index column = 0;
-    for (std::size_t i = 0; i < innovations.size(); ++i) {
-      if (i != own) others.col(column++) = innovations[i];
-    }
-    shown.push_back(LeftOf(innovations[own], numbers_, others).squaredNorm() /
-                    inflation_);
-  }
-  return shown;
+VectorXd VisibleSize::Innovations(const Cause& cause) const {
+  return WithQuietRunOf(problem_.machine().With(ChangesOf({cause}))).Residual({});
+}
+
+double VisibleSize::Shown(const Cause& cause, const MatrixXd& beside) const {
+  const Machine changed = problem_.machine().With(ChangesOf({cause}));
+  return Explain(WithQuietRunOf(changed), numbers_, beside).square() / inflation_;
+}
+
+double VisibleSize::ShownBesideSimplerLaw(const Cause& cause) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto simpler = cause.effect->Simpler(cause);
+  if (!simpler) return kInfinity;
+  const Machine& machine = problem_.machine();
+  const std::vector<Candidate> candidates = AllSites(machine);
+  const auto law = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
+    return SameKind({candidate.effect, candidate.site, {}}, *simpler);
+  });
+  if (law == candidates.end()) return kInfinity;
+  const auto place = static_cast<std::size_t>(law - candidates.begin());
+  const DiscoveryProblem quiet = WithQuietRunOf(machine.With(ChangesOf({cause})));
+  const auto fit =
+      TryFit(quiet, candidates, {{Bounded(candidates, {place, simpler->values})}},
+             {.iterations = 12, .tolerance = 1e-4, .jacobian = false, .secant = true});
+  if (!fit) return kInfinity;
+  return (FittedValues(quiet) * fit->train + fit->numbers.squaredNorm()) / inflation_;
 }
 
 }  // namespace mjdiag

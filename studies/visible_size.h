@@ -12,7 +12,6 @@
 // that hides as much (Inflation of model_choice.h).
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
@@ -32,11 +31,16 @@ class VisibleSize {
   /// The scaled innovations of the machine beside a run of it with the cause, without
   /// noise. NumericalError if that diverges.
   Eigen::VectorXd Innovations(const Cause& cause) const;
-  /// What each of several causes shows, of their innovations, as beside white noise.
-  std::vector<double> Shown(const std::vector<Eigen::VectorXd>& innovations) const;
+  /// What the cause shows, as beside white noise. @param beside  R, may have no columns
+  double Shown(const Cause& cause, const Eigen::MatrixXd& beside) const;
+  /// The same beside the law that it becomes at an end of its parameters, with the values
+  /// that explain most of it; infinite where there is no such law. Less than that and the
+  /// simpler law is what there is.
+  double ShownBesideSimplerLaw(const Cause& cause) const;
+  Eigen::MatrixXd NoOthers() const { return {numbers_.rows(), 0}; }
 
  private:
-  Eigen::VectorXd Beside(const Machine& measured) const;
+  DiscoveryProblem WithQuietRunOf(const Machine& measured) const;
 
   Excitation motion_;
   DiscoveryProblem problem_;

@@ -11,7 +11,12 @@
 namespace mjdiag {
 namespace {
 
-Machine Emps() { return Machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps")); }
+/// With an encoder noise of a micrometre, one move of it.
+Machine Emps() {
+  return Machine(
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps",
+                {"sensors.q.noise_power=1e-15", "trajectories.default.duration=2.5"}));
+}
 
 const Eigen::VectorXd& PositionsOf(const HardCase& hard) {
   return hard.measurements.fit.front().record.At("q").samples;
@@ -104,34 +109,56 @@ TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
   const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
                             1);
   const auto part = [&](const Cause& cause) {
-    const Eigen::VectorXd r = visible.Innovations(cause);
-    return visible.Shown({r}).front() / r.squaredNorm();
+    return visible.Shown(cause, visible.NoOthers()) /
+           visible.Innovations(cause).squaredNorm();
   };
   // Damping may be another one by a factor of 2, ripple is in no number.
   EXPECT_LT(part(ParseEffect("viscous_friction@load:coefficient=1")), 0.01);
   EXPECT_GT(part(ParseEffect("force_ripple@load:amplitude=1,period=0.01")), 0.5);
 }
 
-TEST(VisibleSize, IsSmallerBesideAMeasurementOfFinerSteps) {
-  const Machine model = Emps();
+// A simulation with steps that are half as long is late, to first order, and nothing else.
+TEST(VisibleSize, IsNotHiddenByStepsThatOnlyMakeInputsEarly) {
+  const Machine model = Emps().WithSensorNoise(Eigen::VectorXd::Constant(1, 1e-8));
   const Cause cause = ParseEffect("coulomb_friction@load:force=2");
   const auto shown = [&](int substeps) {
     const VisibleSize visible(model, substeps, DefaultMotion(model.setup()), 1);
-    return visible.Shown({visible.Innovations(cause)}).front();
+    return visible.Shown(cause, visible.NoOthers());
   };
-  EXPECT_LT(shown(2 * model.rates().substeps), 0.1 * shown(model.rates().substeps));
+  const double same = shown(model.rates().substeps);
+  EXPECT_NEAR(shown(2 * model.rates().substeps) / same, 1.0, 0.1);
 }
 
 TEST(VisibleSize, IsNothingBesideACauseThatDoesTheSame) {
   const Machine model = Emps();
   const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
                             1);
-  const Eigen::VectorXd one =
-      visible.Innovations(ParseEffect("coulomb_friction@load:force=2"));
-  const std::vector<double> shown = visible.Shown({one, 2.0 * one});
-  EXPECT_GT(visible.Shown({one}).front(), 200.0);
-  EXPECT_LT(shown[0], 1e-6 * one.squaredNorm());
-  EXPECT_LT(shown[1], 1e-6 * one.squaredNorm());
+  const Cause cause = ParseEffect("coulomb_friction@load:force=2");
+  const Eigen::VectorXd one = visible.Innovations(cause);
+  EXPECT_GT(visible.Shown(cause, visible.NoOthers()), 200.0);
+  EXPECT_LT(visible.Shown(cause, 2.0 * one), 1e-6 * one.squaredNorm());
+}
+
+// A motor of half its force is a stage of twice its mass, damping and friction: as far as
+// these may be off, and no further, whatever the first order says.
+TEST(VisibleSize, OfAWeakMotorIsWhatWrongNumbersCost) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const Cause weak = ParseEffect("motor_constant@drive:factor=0.8");
+  EXPECT_LT(visible.Shown(weak, visible.NoOthers()), 20.0);
+}
+
+TEST(VisibleSize, OfALawWithASimplerOneInItIsWhatTellsThemApart) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const auto told = [&](const char* law) {
+    return visible.ShownBesideSimplerLaw(ParseEffect(law));
+  };
+  // What falls with speed far above all speeds does not fall.
+  EXPECT_LT(told("stribeck_friction@load:coulomb=1,breakaway=1,velocity=9"), 20.0);
+  EXPECT_GT(told("stribeck_friction@load:coulomb=1,breakaway=9,velocity=0.05"), 200.0);
 }
 
 }  // namespace
