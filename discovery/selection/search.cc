@@ -151,62 +151,35 @@ void Search::MeetUnsteadiness() {
   }
 }
 
-/// Takes away the starts of what was tried and explains next to nothing of what the first
-/// order promises, or was too far behind for a fit; false if there are none. They must not
-/// hide others, for what seems to leave much more than the best is not tried (Shortlist).
-bool DropEmptyPromises(const Evidence& present, const std::vector<Start>& tried,
-                       const Additions& additions, Screening& screening) {
-  constexpr double kKept = 0.1;
-  const auto keeps = [&](const Start& start) {
-    return std::ranges::any_of(additions.fits, [&](const CauseFit& after) {
-      return after.causes.back().candidate == start.cause.candidate &&
-             present.Noise() * (present.fit().train - after.train) > kKept * start.gain;
-    });
-  };
-  const auto before = screening.starts.size();
-  for (const Start& start : tried) {
-    if (keeps(start)) continue;
-    std::erase_if(screening.starts, [&](const Start& other) {
-      return other.cause.candidate == start.cause.candidate;
-    });
-  }
-  return screening.starts.size() < before;
-}
-
 /// One round; false if it found no further cause.
 bool Search::AddCause() {
   Report("screening", 0.0);
   constexpr int kStarts = 6;
   const Evidence& present = result_.evidence;
-  Screening screening = ScreenBeside(data_.problem, data_.candidates, present.fit(),
-                                     present.fit().jacobian, kStarts);
+  const Screening screening = ScreenBeside(
+      data_.problem, data_.candidates, present.fit(), present.fit().jacobian, kStarts);
   const Chance chance = ChanceOf(screening.trials);
-  std::vector<Start> shortlist =
+  const std::vector<Start> shortlist =
       Shortlist(present, screening, chance, options_.shortlist);
   result_.significant_rest = !shortlist.empty();
   if (shortlist.empty() || rounds_++ >= options_.most_causes) return false;
-  do {
-    if (!work().MayBegin(kFurther)) return false;
-    Additions additions =
-        ProposeAdditions(data_, present, shortlist,
-                         [this](const std::string& what) { Report(what, 0.5); });
-    // What the first order promises may not be there.
-    result_.significant_rest =
-        additions.fits.empty() ||
-        std::ranges::any_of(additions.fits, [&](const CauseFit& after) {
-          return present.SignificanceOf(after, chance, present.independent())
-              .IsMoreThanChance();
-        });
-    const bool others = DropEmptyPromises(present, shortlist, additions, screening);
-    if (Keep(std::move(additions), chance)) {
-      result_.exchanged = false;
-      return true;
-    }
-    if (!others) break;
-    shortlist = Shortlist(present, screening, chance, options_.shortlist);
-  } while (!shortlist.empty());
-  work().MayBegin(kFurther);  // kept if their fits were cut short
-  return false;
+  if (!work().MayBegin(kFurther)) return false;
+  Additions additions =
+      ProposeAdditions(data_, present, shortlist,
+                       [this](const std::string& what) { Report(what, 0.5); });
+  // What the first order promises may not be there.
+  result_.significant_rest =
+      additions.fits.empty() ||
+      std::ranges::any_of(additions.fits, [&](const CauseFit& after) {
+        return present.SignificanceOf(after, chance, present.independent())
+            .IsMoreThanChance();
+      });
+  if (!Keep(std::move(additions), chance)) {
+    work().MayBegin(kFurther);  // kept if their fits were cut short
+    return false;
+  }
+  result_.exchanged = false;
+  return true;
 }
 
 /// After a change of the causes.

@@ -6,8 +6,7 @@
 //
 //   screens all candidates on what is left, and fits the best of them beside what has
 //   been found (addition.h); in the order of their criteria they are judged, and the
-//   first that is accepted is added; if none is, what has not kept a tenth of what its
-//   first order promised is put aside, and the best of the others have their turn;
+//   first that is accepted is added;
 //   tries other periods for waves and simpler laws, and drops what has become superfluous
 //   (moves.h);
 //   where the course of the machine depends on the last digit, looks for a better fit
