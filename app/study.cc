@@ -19,6 +19,7 @@
 #include "mjdiag/studies/disturbance_study.h"
 #include "mjdiag/studies/endurance_study.h"
 #include "mjdiag/studies/estimation_study.h"
+#include "mjdiag/studies/hard_table.h"
 #include "mjdiag/studies/hidden_table.h"
 #include "mjdiag/studies/random_fault_study.h"
 #include "mjdiag/studies/tolerance_study.h"
@@ -54,6 +55,12 @@ std::vector<StudyTable> HiddenEffects(const Machine& machine,
   return HiddenStudy(machine, causes, options);
 }
 
+template <bool nothing>
+std::vector<StudyTable> HardEffects(const Machine& machine,
+                                    const StudyOptions& options) {
+  return HardStudy(machine, nothing, options);
+}
+
 /// Table 5 subtracts the baseline of the motion, Table 3 does not.
 template <bool baseline>
 std::vector<StudyTable> Nonlinear(const Machine& machine, const StudyOptions& options) {
@@ -76,6 +83,8 @@ const std::map<std::string, Study>& Studies() {
       {"hidden", {HiddenEffects<1>}},
       {"hidden_none", {HiddenEffects<0>}},
       {"hidden_two", {HiddenEffects<2>}},
+      {"hidden_hard", {HardEffects<false>}},
+      {"hidden_hard_none", {HardEffects<true>}},
       {"endurance", {EnduranceStudy, Choice::kPlantAndTime}}};
   return studies;
 }

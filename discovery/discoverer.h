@@ -64,6 +64,7 @@ class Discoverer {
   void NameNumbers(const Eigen::MatrixXd& covariance);
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
+  void NoteLateness(double delay);
   void NoteQuietAxes(const ObservedMotion& motion);
   void NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals);
   std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;

@@ -177,6 +177,10 @@ void Discoverer::NameNumbers(const MatrixXd& covariance) {
     if (stood_for[static_cast<std::size_t>(i)]) continue;
     const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
     const double half = normal * std::sqrt(covariance(i, i));
+    if (doubted.is_lateness) {
+      if (z[i] > half) NoteLateness(doubted.spread * z[i]);
+      continue;
+    }
     discovery_.calibration.push_back(
         {PlantNumberName(machine_.plant(), doubted.number), doubted.number,
          std::exp(doubted.spread * z[i]), std::exp(doubted.spread * (z[i] - half)),

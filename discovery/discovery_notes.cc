@@ -8,6 +8,7 @@
 
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
+#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
@@ -44,6 +45,13 @@ void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
           joint + "' cannot be judged; record a motion of it");
     }
   }
+}
+
+void Discoverer::NoteLateness(double delay) {
+  discovery_.notes.push_back("all inputs act " + FormatQuantity(delay, "s") +
+                             " later than in the simulation; it has physics steps of " +
+                             FormatQuantity(problem_.step(), "s") +
+                             ", which are off by up to half of that");
 }
 
 void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals) {

@@ -1,6 +1,7 @@
 #include "mjdiag/report/study_page.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "mjdiag/report/page/page.h"
 
@@ -29,6 +30,34 @@ Table ForPage(const StudyTable& study) {
   return table;
 }
 
+/// Intervals are one broken line.
+XyPlot ForPage(const StudyPlot& study) {
+  constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
+  const auto points = static_cast<Eigen::Index>(study.points.size());
+  const auto curve = static_cast<Eigen::Index>(study.curve.size());
+  XyPoints measured{"found", CurveRole::kMeasured, Eigen::VectorXd(points),
+                    Eigen::VectorXd(points)};
+  XyCurve intervals{"95 % interval", CurveRole::kNoise, Eigen::VectorXd(3 * points),
+                    Eigen::VectorXd(3 * points)};
+  XyCurve expected{"expected", CurveRole::kSimulated, Eigen::VectorXd(curve),
+                   Eigen::VectorXd(curve)};
+  Eigen::Index i = 0;
+  for (const StudyPlot::Point& point : study.points) {
+    measured.x[i] = point.x;
+    measured.y[i] = point.y;
+    intervals.x.segment(3 * i, 3).setConstant(point.x);
+    intervals.y.segment(3 * i, 3) << point.low, point.high, kBreak;
+    ++i;
+  }
+  i = 0;
+  for (const auto& [x, y] : study.curve) {
+    expected.x[i] = x;
+    expected.y[i++] = y;
+  }
+  return {study.caption, study.x_quantity,     "1", study.y_quantity, "1",
+          {measured},    {expected, intervals}};
+}
+
 }  // namespace
 
 Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
@@ -41,6 +70,7 @@ Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
   for (const StudyTable& table : tables) {
     page.AddHeading(table.title);
     page.AddTable(ForPage(table));
+    if (table.plot) page.AddPlot(ForPage(*table.plot));
     for (const std::string& note : table.notes) page.AddParagraph(note);
   }
   page.SetRun(run);

@@ -19,8 +19,6 @@ using Eigen::VectorXd;
 
 // DrawEffect meets the size that it draws to a fifth.
 constexpr double kOwnShare = 0.8;
-// The type of all fault parameters.
-constexpr const char* kFault = "fault";
 
 Excitation NominalMotion(const Setup& setup) {
   return FollowTrajectory(setup, setup.trajectories.Find(setup.trajectories.fallback));
@@ -110,25 +108,23 @@ Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate
   return scales;
 }
 
-/// The sites of an effect, or of all fault parameters.
+}  // namespace
+
 std::vector<Candidate> SitesOf(const Machine& machine, const std::string& type) {
   std::vector<Candidate> sites = AllSites(machine);
   std::erase_if(sites, [&](const Candidate& candidate) {
-    return candidate.effect->IsFault() ? type != kFault
+    return candidate.effect->IsFault() ? type != kFaultType
                                        : candidate.effect->name() != type;
   });
   return sites;
 }
 
-/// Noise of one of the sensors.
 Cause DrawNoise(const Channels& channels, Random& random) {
   const SensorSetup& sensor = channels.sensors[random.Index(channels.sensors.size())];
   const Effect& noise = NoiseEffect();
   return {Lasting(noise), sensor.element,
           noise.Draw({.noise = sensor.noise_sd}, random)(1.0)};
 }
-
-}  // namespace
 
 HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
                     std::uint64_t seed) {

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/plugin/effects/draw.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
@@ -33,6 +35,15 @@ struct HiddenSize {
 /// A case with these causes; `seed` draws the noise.
 HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
                     std::uint64_t seed);
+
+/// The type of all fault parameters.
+inline constexpr const char* kFaultType = "fault";
+
+/// The sites of an effect, or of all fault parameters; none of noise.
+std::vector<Candidate> SitesOf(const Machine& machine, const std::string& type);
+
+/// Noise of one of the sensors.
+Cause DrawNoise(const Channels& channels, Random& random);
 
 /// One effect of that type (its name, or "fault" for a fault parameter) at a random
 /// site, with random shape and a size drawn from `size`. The same seed, the same

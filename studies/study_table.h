@@ -1,7 +1,9 @@
 #pragma once
 // What a study finds: tables of text and numbers, for people and programs alike.
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace mjdiag {
@@ -19,11 +21,27 @@ struct Cell {
   bool is_number = false;
 };
 
+/// Points with intervals over a curve, for the page of a study.
+struct StudyPlot {
+  struct Point {
+    double x = 0.0;
+    double y = 0.0;
+    double low = 0.0;  ///< of the interval of y
+    double high = 0.0;
+  };
+  std::string caption;
+  std::string x_quantity;
+  std::string y_quantity;
+  std::vector<Point> points;
+  std::vector<std::pair<double, double>> curve;  ///< what is expected
+};
+
 struct StudyTable {
   std::string title;
   std::vector<std::string> columns;
   std::vector<std::vector<Cell>> rows;
   std::vector<std::string> notes;  ///< one sentence each
+  std::optional<StudyPlot> plot{};
 };
 
 }  // namespace mjdiag

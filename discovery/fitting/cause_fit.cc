@@ -48,9 +48,11 @@ class Simulator {
         initial_jacobian_(options.initial_jacobian),
         secant_(options.secant),
         share_(options.share),
-        closing_(options.closing),
-        parameters_(problem.numbers().size(),
-                    {"number", Role::kFactor, -kFarthest, kFarthest, 0.0, 1.0}) {
+        closing_(options.closing) {
+    for (const DoubtedNumber& number : problem.numbers()) {
+      const double least = number.is_lateness ? 0.0 : -kFarthest;
+      parameters_.push_back({"number", Role::kFactor, least, kFarthest, 0.0, 1.0});
+    }
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
       parameters_.push_back(parameter);
     }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
@@ -25,7 +26,20 @@ double Floor(const SensorSetup& sensor, const Eigen::MatrixXd& outputs, Index ro
   return std::max({sensor.resolution / std::sqrt(12.0), rounding, 1e-15});
 }
 
+/// All inputs that much later [s].
+void AddLateness(const Machine& machine, double delay, Changes& changes) {
+  for (const ActuatorSetup& actuator : machine.channels().actuators) {
+    changes.effects.push_back(
+        {Lasting(InputDelay()), actuator.element, ValuesOf({std::max(delay, 0.0)})});
+  }
+}
+
 }  // namespace
+
+DoubtedNumber LatenessOf(const Machine& machine) {
+  return {
+      .number = {}, .spread = 0.5 * machine.plant().opt.timestep, .is_lateness = true};
+}
 
 /// Found when first asked for, by whichever copy of the problem is asked.
 struct DiscoveryProblem::Derived {
@@ -115,6 +129,10 @@ Changes DiscoveryProblem::WithNumbers(Changes changes, const VectorXd& z) const 
     const auto place = static_cast<std::size_t>(i);
     if (z[i] == 0.0 || stood_for[place]) continue;
     const DoubtedNumber& doubted = numbers_[place];
+    if (doubted.is_lateness) {
+      AddLateness(machine_, doubted.spread * z[i], changes);
+      continue;
+    }
     changes.numbers.emplace_back(doubted.number, std::exp(doubted.spread * z[i]));
   }
   return changes;
@@ -130,7 +148,9 @@ std::vector<bool> DiscoveryProblem::StoodFor(const Changes& changes) const {
     const auto number = placed.effect->Number(plant, element);
     if (!number) continue;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      if (numbers_[i].number == *number) stood_for[i] = true;
+      if (!numbers_[i].is_lateness && numbers_[i].number == *number) {
+        stood_for[i] = true;
+      }
     }
   }
   return stood_for;
@@ -232,6 +252,7 @@ DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
     numbers.push_back({number, DoubtOf(plant, number)});
   }
   if (numbers.empty()) return problem;
+  numbers.push_back(LatenessOf(problem.machine()));
   const DiscoveryProblem all = problem.Doubting(numbers);
   const Eigen::MatrixXd J = all.RoughNumberJacobian({}, {});
   std::vector<DoubtedNumber> shown;

@@ -32,7 +32,15 @@ struct LinearisedRun {
 struct DoubtedNumber {
   PlantNumber number;
   double spread = 0.0;
+  /// None of the plant, but how late all its inputs act: spread z [s], z >= 0.
+  bool is_lateness = false;
 };
+
+/// What the physics steps of a simulation are off by. Positions go on with the velocity at
+/// the end of a step h, so that a force acts h / 2 before its time; a machine, which has no
+/// steps, is that late beside it. What is left is of second order in h. Known beforehand as
+/// h / 2.
+DoubtedNumber LatenessOf(const Machine& machine);
 
 class DiscoveryProblem {
  public:

@@ -7,18 +7,19 @@
 namespace mjdiag {
 
 CauseFit FitNumbers(const DiscoveryProblem& problem,
-                    const std::vector<Candidate>& candidates, double share) {
+                    const std::vector<Candidate>& candidates,
+                    const Eigen::VectorXd& start, double share) {
   CauseFit fit =
-      FitCauses(problem, candidates, {}, {.iterations = 0, .jacobian = false});
+      FitCauses(problem, candidates, {{}, start}, {.iterations = 0, .jacobian = false});
   if (problem.numbers().empty()) return fit;
   constexpr int kAnew = 4;            // derivatives, for the plant may be far off
   constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
   constexpr double kSettled = 0.01;   // of the mean square
   for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
-    FittedModel start = fit;
-    start.prior_weight = Inflation(fit.train, IndependentShare(problem, fit.residual));
+    FittedModel from = fit;
+    from.prior_weight = Inflation(fit.train, IndependentShare(problem, fit.residual));
     CauseFit next = FitCauses(
-        problem, candidates, start,
+        problem, candidates, from,
         {.iterations = 10, .jacobian = false, .secant = true, .share = share / kAnew});
     const bool settled = fit.train - next.train < kSettled * fit.train;
     fit = std::move(next);

@@ -12,8 +12,11 @@
 
 namespace mjdiag {
 
-/// Without numbers nothing is fitted. @param share  see FitOptions
+/// Without numbers nothing is fitted.
+/// @param start  numbers to start from, found with other physics steps; empty: all at 0
+/// @param share  see FitOptions
 CauseFit FitNumbers(const DiscoveryProblem& problem,
-                    const std::vector<Candidate>& candidates, double share);
+                    const std::vector<Candidate>& candidates,
+                    const Eigen::VectorXd& start, double share);
 
 }  // namespace mjdiag

@@ -86,7 +86,8 @@ class Search {
 CauseFit Search::FitFoundBefore() const {
   try {
     if (found_before_.causes.empty()) {
-      return FitNumbers(data_.problem, data_.candidates, work().Share(1));
+      return FitNumbers(data_.problem, data_.candidates, found_before_.numbers,
+                        work().Share(1));
     }
     return FitCauses(data_.problem, data_.candidates, found_before_,
                      {.iterations = 10,

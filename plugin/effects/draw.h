@@ -22,6 +22,7 @@ class Random {
   double Log(double from, double to) {
     return std::exp(Uniform(std::log(from), std::log(to)));
   }
+  double Normal() { return std::normal_distribution<double>()(generator_); }
   double Sign() { return Uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0; }
   std::size_t Index(std::size_t count) {
     return std::uniform_int_distribution<std::size_t>(0, count - 1)(generator_);

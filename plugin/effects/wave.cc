@@ -45,7 +45,8 @@ Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step
 
 Sweep FrequencySweep(const VectorXd& entry, const ObservedMotion& motion,
                      double duration) {
-  const double highest = std::min(0.1 / motion.sample_time, 250.0);
+  // A quarter of the sampling rate: what acts between samples is the same but for a tenth.
+  const double highest = std::min(0.25 / motion.sample_time, 250.0);
   const double spacing = 0.7 / duration;
   Sweep sweep;
   for (double f = 2.0 * spacing; f < highest; f += spacing) sweep.values.push_back(f);

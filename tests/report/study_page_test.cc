@@ -36,5 +36,18 @@ TEST(StudyPage, AlignsColumnsOfNumbersAndFillsShortRows) {
   EXPECT_THAT(page, HasSubstr("<td>c</td><td class=\"number\"></td>"));
 }
 
+TEST(StudyPage, DrawsThePlotOfATableWithItsIntervals) {
+  StudyTable table{"Reliability", {"probability"}, {{0.5}}, {}};
+  table.plot = StudyPlot{"Share that holds",
+                         "probability",
+                         "share",
+                         {{0.5, 0.4, 0.25, 0.75}},
+                         {{0.0, 0.0}, {1.0, 1.0}}};
+  const Page page = StudyPage({"bonder", "p", 2, 1}, {table}, {"cmd", "", {}});
+  const std::string html = ReportHtml(page);
+  EXPECT_THAT(html, HasSubstr("Share that holds"));
+  EXPECT_THAT(html, HasSubstr("95 % interval"));
+}
+
 }  // namespace
 }  // namespace mjdiag

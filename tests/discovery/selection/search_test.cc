@@ -27,6 +27,19 @@ TEST(SearchCauses, AddsWhatExplainsTheRecordAndMeasuresItByWhatItLeaves) {
               IndependentShare(problem, found.fit().residual)[0], 1e-3);
 }
 
+// Above a tenth of the sampling rate, too.
+TEST(SearchCauses, FindAVibrationUpToAQuarterOfTheSamplingRate) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = stage.Pose(
+      stage.Measure({"floor_vibration@load:amplitude=5,frequency=240,phase=1"}));
+  const auto candidates = ListCandidates(stage.machine);
+  const SearchResult found = SearchCauses(problem, candidates, {});
+  ASSERT_EQ(found.fit().causes.size(), 1u);
+  EXPECT_EQ(found.fit().causes[0].candidate,
+            test::Place(candidates, "floor_vibration@load"));
+  EXPECT_NEAR(found.fit().causes[0].value[1], 240.0, 0.1);
+}
+
 // The other record has no drag: every hypothesis spoils it.
 TEST(SearchCauses, AreNotTouchedByHypothesesThatAnotherRecordSpeaksAgainst) {
   const test::StageUnderTest stage;

@@ -1,0 +1,232 @@
+#include "mjdiag/studies/hard_case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/studies/hidden_effect.h"
+#include "mjdiag/studies/outside_law.h"
+#include "mjdiag/studies/visible_size.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+
+// Draws are another stream than noise, which has the seed itself.
+constexpr std::uint64_t kDrawStream = 0x68617264;
+constexpr std::uint64_t kEveryOutside = 5;  // cases
+constexpr int kFiner = 2;        // physics steps of the measurement over the model's
+constexpr double kTicks = 8000;  // of a record at most
+constexpr double kLeastScale = 0.03;
+
+/// The default motion, as long as a record may be.
+Trajectory DefaultTrajectory(const Setup& setup) {
+  if (setup.control.axes.empty()) {
+    throw InputError("hidden_hard", "'" + setup.name + "' has no controlled axes",
+                     "a machine that follows a trajectory");
+  }
+  Trajectory trajectory = setup.trajectories.Find(setup.trajectories.fallback);
+  trajectory.duration = std::min(trajectory.duration, kTicks * setup.rates.tick());
+  return trajectory;
+}
+
+/// The same moves with other strokes, of every axis another share.
+Trajectory OtherStrokes(Trajectory trajectory, Random& random) {
+  std::map<std::string, double> shares;
+  for (Move& move : trajectory.moves) {
+    for (auto& [axis, by] : move.by) {
+      if (!shares.contains(axis)) {
+        shares[axis] = random.Sign() * random.Uniform(0.4, 0.9);
+      }
+      by *= shares[axis];
+    }
+  }
+  return trajectory;
+}
+
+/// Of a type from the catalogue, a fault parameter now and then.
+std::string DrawType(Random& random) {
+  constexpr double kFaults = 0.15;
+  if (random.Uniform(0.0, 1.0) < kFaults) return kFaultType;
+  return Effects()[random.Index(Effects().size())]->name();
+}
+
+struct Placed {
+  EffectPtr effect;
+  Site site;
+};
+
+/// A site of an outside law, of the law of that number or the next one that has any.
+Placed PlaceOutside(const Machine& machine, std::size_t number, Random& random) {
+  const SiteMap map(machine.plant(), machine.linear(), machine.channels());
+  for (;; ++number) {
+    const Effect& law = *OutsideLaws()[number % OutsideLaws().size()];
+    const std::vector<Site> sites = law.CandidateSites(map);
+    if (!sites.empty()) return {Lasting(law), sites[random.Index(sites.size())]};
+  }
+}
+
+/// A site of an effect of the catalogue; none if the machine has none.
+std::optional<Placed> PlaceKnown(const Machine& machine, const std::string& type,
+                                 Random& random) {
+  const std::vector<Candidate> sites = SitesOf(machine, type);
+  if (sites.empty()) return std::nullopt;
+  const Candidate& one = sites[random.Index(sites.size())];
+  return Placed{one.effect, {one.site, one.joint, one.channel}};
+}
+
+/// Raised to what is visible; none if even the largest is not, or nothing that runs.
+std::optional<Cause> DrawSize(const VisibleSize& visible, const Placed& placed,
+                              Random& random) {
+  constexpr int kRaises = 4;
+  constexpr double kAbove = 1.3;  // of the least, where it is raised
+  const Sized shape = placed.effect->Draw(visible.ScalesAt(placed.site), random);
+  double scale = random.Log(kLeastScale, 1.0);
+  for (int i = 0; i < kRaises; ++i) {
+    Cause cause{placed.effect, placed.site.name, shape(scale)};
+    double shown = visible.Shown(cause, visible.NoOthers());
+    if (shown >= kLeastShown) {
+      shown = std::min(shown, visible.ShownBesideSimplerLaw(cause));
+    }
+    if (shown >= kLeastShown) return cause;
+    if (scale >= 1.0) return std::nullopt;
+    // Roughly with its square.
+    const double raise = std::sqrt(kAbove * kLeastShown / std::max(shown, 1e-6));
+    scale = std::min(1.0, scale * std::max(raise, kAbove));
+  }
+  return std::nullopt;
+}
+
+bool ShowBesideEachOther(const VisibleSize& visible, const std::vector<Cause>& causes) {
+  return std::ranges::all_of(causes, [&](const Cause& cause) {
+    if (cause.effect->form() == Form::kNoise) return true;  // like nothing else
+    Eigen::MatrixXd others = visible.NoOthers();
+    for (const Cause& other : causes) {
+      if (&other == &cause || other.effect->form() == Form::kNoise) continue;
+      others.conservativeResize(Eigen::NoChange, others.cols() + 1);
+      others.rightCols(1) = visible.Innovations(other);
+    }
+    return visible.Shown(cause, others) >= kLeastShown;
+  });
+}
+
+std::optional<Cause> DrawKnown(const Machine& machine, const VisibleSize& visible,
+                               Random& random) {
+  const std::string type = DrawType(random);
+  if (type == NoiseEffect().name()) return DrawNoise(machine.channels(), random);
+  const auto placed = PlaceKnown(machine, type, random);
+  return placed ? DrawSize(visible, *placed, random) : std::nullopt;
+}
+
+/// One that is none of the others, nor their image.
+std::optional<Cause> DrawOneMore(const Machine& machine, const VisibleSize& visible,
+                                 const std::vector<Cause>& others, Random& random) {
+  const std::optional<Cause> cause = DrawKnown(machine, visible, random);
+  if (!cause) return std::nullopt;
+  const bool there = std::ranges::any_of(
+      others, [&](const Cause& other) { return Indistinguishable(other, *cause); });
+  if (there) return std::nullopt;
+  std::vector<Cause> all = others;
+  all.push_back(*cause);
+  if (!others.empty() && !ShowBesideEachOther(visible, all)) return std::nullopt;
+  return cause;
+}
+
+/// An outside law, another one where the machine shows nothing of it.
+std::optional<Cause> DrawOutside(const Machine& machine, const VisibleSize& visible,
+                                 std::size_t number, Random& random,
+                                 std::optional<Index>& joint) {
+  const Placed placed = PlaceOutside(machine, number, random);
+  joint = placed.site.joint;
+  return DrawSize(visible, placed, random);
+}
+
+/// Asks again while a draw is none or cannot be run.
+template <typename Draw>
+auto DrawUntilThere(const Draw& draw) {
+  constexpr int kDraws = 100;
+  for (int i = 0; i < kDraws; ++i) {
+    try {
+      if (auto drawn = draw()) return *std::move(drawn);
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+      // takes away more than there is
+    }
+  }
+  throw NumericalError("hidden effects: no draw of this machine can be seen");
+}
+
+}  // namespace
+
+HardPlan PlanOf(std::uint64_t seed) {
+  constexpr double kOne = 0.6;
+  constexpr double kTwo = 0.25;
+  if (seed % kEveryOutside == 0) return {.causes = 0, .outside = true};
+  const double draw = Random(seed ^ (kDrawStream << 8)).Uniform(0.0, 1.0);
+  return {.causes = draw < kOne ? 1 : draw < kOne + kTwo ? 2 : 3};
+}
+
+NumberFactors DrawNumbers(const mjModel& plant, Random& random) {
+  NumberFactors factors;
+  for (const PlantNumber& number : PlantNumbers(plant)) {
+    factors.emplace_back(number, std::exp(DoubtOf(plant, number) * random.Normal()));
+  }
+  return factors;
+}
+
+HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t seed) {
+  Random random(seed ^ kDrawStream);
+  const Setup& setup = model.setup();
+  const Trajectory trajectory = DefaultTrajectory(setup);
+  const int substeps = kFiner * setup.rates.substeps;
+  const Excitation motion = FollowTrajectory(setup, trajectory);
+  HardCase hard;
+  const auto visible = DrawUntilThere([&]() -> std::optional<VisibleSize> {
+    hard.numbers = DrawNumbers(model.plant(), random);
+    return VisibleSize(model.WithNumbers(hard.numbers), substeps, motion, seed);
+  });
+  if (plan.outside) {
+    constexpr std::size_t kSites = 5;  // that are tried of a law
+    std::size_t tried = 0;
+    hard.truth = {DrawUntilThere([&] {
+      const std::size_t number = seed / kEveryOutside + tried++ / kSites;
+      return DrawOutside(model, visible, number, random, hard.outside_joint);
+    })};
+  }
+  for (int i = 0; i < plan.causes; ++i) {
+    hard.truth.push_back(DrawUntilThere(
+        [&] { return DrawOneMore(model, visible, hard.truth, random); }));
+  }
+
+  const Machine machine = model.WithSubsteps(substeps)
+                              .WithNumbers(hard.numbers)
+                              .With(ChangesOf(hard.truth));
+  std::uint64_t noise = 1000 * seed;
+  const auto measure = [&](const Excitation& moved) {
+    RunOptions options;
+    options.seed = ++noise;
+    return Simulate(machine, moved, options);
+  };
+  const auto other = [&] {
+    return FollowTrajectory(setup, OtherStrokes(trajectory, random));
+  };
+  const bool two = random.Uniform(0.0, 1.0) < 0.5;
+  const bool validated = random.Uniform(0.0, 1.0) < 0.5;
+  hard.measurements.fit.push_back({measure(motion), model, "default"});
+  if (two) hard.measurements.fit.push_back({measure(other()), model, "other"});
+  if (validated) {
+    hard.measurements.unseen.push_back({measure(other()), model, "validation"});
+  }
+  const Excitation last = other();
+  hard.unseen = measure(last);
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  hard.unseen_clean = Simulate(machine, last, quiet);
+  return hard;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,57 @@
+#pragma once
+// Cases of the hard benchmark: a simulated measurement of a machine that is not quite its
+// model and has something hidden in it.
+//
+// - Every number of the plant is what the model says times exp(s n), n standard normal
+//   and s what is not known of it beforehand (DoubtOf); nothing is exact.
+// - The measurement is made with twice the physics steps of the model.
+// - One to three effects and fault parameters at once, or a law that the engine does not
+//   have (outside_law.h), alone. Sizes are shares of what the machine itself does
+//   (Effect::Draw), evenly in the logarithm from 0.03 to 1, raised to what the record can
+//   show at least beside the wrong numbers, the other causes and, of a law with a simpler
+//   one in it, that one (visible_size.h), or drawn anew.
+// - One record or two, the default motion and one with other strokes; in half of the
+//   cases a further one that nothing is fitted to.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "mjdiag/discovery/hypotheses/cause.h"
+#include "mjdiag/discovery/measurements.h"
+#include "mjdiag/plugin/effects/draw.h"
+#include "mjdiag/plugin/machine/machine.h"
+
+namespace mjdiag {
+
+/// What is hidden.
+struct HardPlan {
+  int causes = 1;        ///< 0 to 3, from the catalogue
+  bool outside = false;  ///< one law that is in no list instead
+};
+
+/// Of the case with that seed: outside laws in every fifth, of the others one cause in
+/// 60 %, two in 25 %, three in 15 %.
+HardPlan PlanOf(std::uint64_t seed);
+
+struct HardCase {
+  std::vector<Cause> truth;
+  /// Joint that an outside law acts on; none: the truth is from the catalogue.
+  std::optional<Eigen::Index> outside_joint;
+  NumberFactors numbers;  ///< of the machine over those of the model
+  Measurements measurements;
+  Record unseen;        ///< of one more motion, with noise
+  Record unseen_clean;  ///< the same without
+};
+
+/// What every cause shows at least (visible_size.h).
+inline constexpr double kLeastShown = 200.0;
+
+/// Numbers of a plant as they may be.
+NumberFactors DrawNumbers(const mjModel& plant, Random& random);
+
+/// The same seed, the same case. InputError on a machine without a controller, which
+/// follows no motion.
+HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t seed);
+
+}  // namespace mjdiag

@@ -1,0 +1,123 @@
+#include "mjdiag/studies/hard_outcome.h"
+
+#include <algorithm>
+#include <array>
+
+#include "mjdiag/diagnosis/statistics/distributions.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr double kLikely = 0.5;
+
+bool MayBe(const FoundCause& found, const Cause& truth) {
+  constexpr double kCompetes = 0.05;
+  return std::ranges::any_of(found.alternatives, [&](const Alternative& other) {
+    return other.probability >= kCompetes && Indistinguishable(other.cause, truth);
+  });
+}
+
+/// Takes one that `matches` out of the list; false if none does.
+template <typename Matches>
+bool TakeOut(std::vector<Cause>& causes, const Matches& matches) {
+  const auto found = std::ranges::find_if(causes, matches);
+  if (found == causes.end()) return false;
+  causes.erase(found);
+  return true;
+}
+
+}  // namespace
+
+const char* WordOf(HardVerdict verdict) {
+  switch (verdict) {
+    case HardVerdict::kRight:
+      return "right";
+    case HardVerdict::kUndecided:
+      return "undecided";
+    case HardVerdict::kWrong:
+      return "wrong";
+    case HardVerdict::kSilent:
+      return "silent";
+  }
+  return "";
+}
+
+const char* WordOf(OutsideVerdict verdict) {
+  switch (verdict) {
+    case OutsideVerdict::kNothing:
+      return "no name";
+    case OutsideVerdict::kFamily:
+      return "its family";
+    case OutsideVerdict::kFalse:
+      return "false name";
+  }
+  return "";
+}
+
+// Every cause of the truth excuses one that is named.
+HardVerdict VerdictOf(const std::vector<Cause>& truth,
+                      const std::vector<FoundCause>& found) {
+  std::vector<Cause> missing = truth;
+  std::vector<const FoundCause*> others;
+  for (const FoundCause& one : found) {
+    const bool named = TakeOut(missing, [&](const Cause& cause) {
+      return Indistinguishable(one.cause, cause);
+    });
+    if (!named) others.push_back(&one);
+  }
+  if (missing.empty() && others.empty()) return HardVerdict::kRight;
+  for (const FoundCause* one : others) {
+    if (!TakeOut(missing, [&](const Cause& cause) { return MayBe(*one, cause); })) {
+      return HardVerdict::kWrong;
+    }
+  }
+  return missing.empty() ? HardVerdict::kUndecided : HardVerdict::kSilent;
+}
+
+OutsideVerdict VerdictOf(const Effect& law, Eigen::Index joint,
+                         const std::vector<FoundCause>& found,
+                         const std::vector<Eigen::Index>& joints) {
+  OutsideVerdict verdict = OutsideVerdict::kNothing;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].probability <= kLikely) continue;
+    const bool near =
+        found[i].cause.effect->family() == law.family() && joints[i] == joint;
+    if (!near) return OutsideVerdict::kFalse;
+    verdict = OutsideVerdict::kFamily;
+  }
+  return verdict;
+}
+
+std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
+                            const std::vector<FoundCause>& found) {
+  std::vector<Cause> left = truth;
+  std::vector<Claim> claims;
+  for (const FoundCause& one : found) {
+    claims.push_back({one.probability, TakeOut(left, [&](const Cause& cause) {
+                        return Indistinguishable(one.cause, cause);
+                      })});
+  }
+  return claims;
+}
+
+std::vector<ReliabilityBin> ReliabilityOf(const std::vector<Claim>& claims) {
+  constexpr std::array kEnds = {0.0, 0.5, 0.7, 0.9, 0.99, 1.0};
+  std::vector<ReliabilityBin> bins;
+  for (std::size_t i = 0; i + 1 < kEnds.size(); ++i) {
+    ReliabilityBin bin{kEnds[i], kEnds[i + 1]};
+    for (const Claim& claim : claims) {
+      const bool above = claim.probability > bin.from || i == 0;
+      if (!above || claim.probability > bin.to) continue;
+      ++bin.claims;
+      bin.hold += claim.holds ? 1 : 0;
+      bin.mean += claim.probability;
+    }
+    if (bin.claims == 0) continue;
+    bin.mean /= bin.claims;
+    bin.interval = ProbabilityInterval(bin.claims, bin.hold, 0.95);
+    bins.push_back(bin);
+  }
+  return bins;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,94 @@
+#include "mjdiag/studies/hard_study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr double kBudget = 120.0;  // [s] of work, that of the command
+
+/// Infinite where the model cannot be run.
+double UnseenMismatch(const Machine& model, const HardCase& hard,
+                      const Changes& changes) {
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  Record simulated;
+  try {
+    simulated =
+        Simulate(model.With(changes), Replay(model.setup(), hard.unseen), quiet);
+  } catch (const NumericalError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double sum = 0.0;
+  for (const SensorSetup& sensor : model.channels().sensors) {
+    const Eigen::VectorXd& measured = hard.unseen.At(sensor.channel).samples;
+    const double floor = Rms(measured - hard.unseen_clean.At(sensor.channel).samples);
+    const double off = Rms(measured - simulated.At(sensor.channel).samples) / floor;
+    sum += off * off;
+  }
+  return std::sqrt(sum / static_cast<double>(model.channels().sensors.size()));
+}
+
+/// That a cause acts on; -1 of none of the candidates, noise for example.
+Eigen::Index JointOfCause(const std::vector<Candidate>& sites, const Cause& cause) {
+  const auto found = std::ranges::find_if(sites, [&](const Candidate& site) {
+    return SameKind({site.effect, site.site, {}}, cause);
+  });
+  return found == sites.end() ? -1 : found->joint;
+}
+
+}  // namespace
+
+bool HardOutcome::IsClaim() const {
+  return answer.verdict != DiscoveryVerdict::kNoDiscrepancy;
+}
+
+bool HardOutcome::IsWrongAbove(double probability) const {
+  return verdict == HardVerdict::kWrong &&
+         std::ranges::any_of(claims, [&](const Claim& claim) {
+           return !claim.holds && claim.probability > probability;
+         });
+}
+
+HardOutcome RunHard(const Machine& model, const HardPlan& plan, std::uint64_t seed) {
+  using Clock = std::chrono::steady_clock;
+  const HardCase hard = DrawHardCase(model, plan, seed);
+  HardOutcome outcome;
+  outcome.plan = plan;
+  outcome.truth = hard.truth;
+  outcome.fitted = hard.measurements.fit.size();
+  outcome.unseen = hard.measurements.unseen.size();
+  DiscoverOptions options;
+  options.figures = false;
+  options.doubt = true;
+  options.budget = kBudget;
+  const auto start = Clock::now();
+  outcome.answer = Discover(model, hard.measurements, options);
+  outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const std::vector<FoundCause>& found = outcome.answer.causes;
+  outcome.claims = ClaimsOf(hard.truth, found);
+  if (hard.outside_joint) {
+    const std::vector<Candidate> sites = AllSites(model);
+    std::vector<Eigen::Index> joints;
+    for (const FoundCause& one : found) {
+      joints.push_back(JointOfCause(sites, one.cause));
+    }
+    outcome.outside =
+        VerdictOf(*hard.truth.front().effect, *hard.outside_joint, found, joints);
+  } else {
+    outcome.verdict = VerdictOf(hard.truth, found);
+  }
+  outcome.before = UnseenMismatch(model, hard, {});
+  outcome.after = UnseenMismatch(model, hard, ChangesOf(outcome.answer));
+  return outcome;
+}
+
+}  // namespace mjdiag

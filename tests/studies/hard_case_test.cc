@@ -1,0 +1,165 @@
+#include "mjdiag/studies/hard_case.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mjdiag/signals/error.h"
+#include "mjdiag/studies/outside_law.h"
+#include "mjdiag/studies/visible_size.h"
+
+namespace mjdiag {
+namespace {
+
+/// With an encoder noise of a micrometre, one move of it.
+Machine Emps() {
+  return Machine(
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps",
+                {"sensors.q.noise_power=1e-15", "trajectories.default.duration=2.5"}));
+}
+
+const Eigen::VectorXd& PositionsOf(const HardCase& hard) {
+  return hard.measurements.fit.front().record.At("q").samples;
+}
+
+TEST(HardCase, IsTheSameForTheSameSeedAndAnotherForAnother) {
+  const Machine model = Emps();
+  const HardCase one = DrawHardCase(model, {.causes = 2}, 3);
+  const HardCase again = DrawHardCase(model, {.causes = 2}, 3);
+  const HardCase other = DrawHardCase(model, {.causes = 2}, 4);
+  ASSERT_EQ(one.truth.size(), 2u);
+  EXPECT_EQ(one.truth, again.truth);
+  EXPECT_EQ(one.numbers, again.numbers);
+  EXPECT_EQ(PositionsOf(one), PositionsOf(again));
+  EXPECT_EQ(one.measurements.fit.size(), again.measurements.fit.size());
+  EXPECT_NE(one.truth, other.truth);
+  EXPECT_NE(one.numbers, other.numbers);
+  EXPECT_NE(PositionsOf(one), PositionsOf(other));
+}
+
+TEST(HardCase, NumbersAreOffByAsMuchAsIsNotKnownOfThem) {
+  const Machine model = Emps();
+  Random random(1);
+  double sum = 0.0;
+  double squares = 0.0;
+  int count = 0;
+  for (int i = 0; i < 300; ++i) {
+    for (const auto& [number, factor] : DrawNumbers(model.plant(), random)) {
+      const double z = std::log(factor) / DoubtOf(model.plant(), number);
+      sum += z;
+      squares += z * z;
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, 1200);  // mass, inertia, damping and gear
+  EXPECT_NEAR(sum / count, 0.0, 0.1);
+  EXPECT_NEAR(squares / count, 1.0, 0.15);
+}
+
+TEST(HardCase, IsMeasuredOnAnotherMachineThanTheModelThatIsGiven) {
+  const Machine model = Emps();
+  const HardCase hard = DrawHardCase(model, {.causes = 0}, 1);
+  EXPECT_TRUE(hard.truth.empty());
+  const Machine& given = hard.measurements.fit.front().machine;
+  EXPECT_EQ(given.plant().body_mass[1], model.plant().body_mass[1]);
+  EXPECT_EQ(given.rates().substeps, model.rates().substeps);
+  EXPECT_EQ(given.changes(), Changes{});
+  // With the drawn numbers the model leaves what its longer steps and the noise are.
+  const auto off = [&](const Machine& machine) {
+    RunOptions quiet;
+    quiet.noise_scale = 0.0;
+    const Record record =
+        Simulate(machine, Replay(machine.setup(), hard.unseen_clean), quiet);
+    return (record.At("q").samples - hard.unseen_clean.At("q").samples).norm();
+  };
+  EXPECT_GT(off(model), 20.0 * off(model.WithNumbers(hard.numbers)));
+  EXPECT_GT(off(model.WithNumbers(hard.numbers)), 0.0);
+}
+
+TEST(HardCase, HidesALawThatIsInNoListInEveryFifth) {
+  int outside = 0;
+  std::array<int, 4> of_causes{};
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    const HardPlan plan = PlanOf(seed);
+    outside += plan.outside ? 1 : 0;
+    if (!plan.outside) ++of_causes[static_cast<std::size_t>(plan.causes)];
+  }
+  EXPECT_EQ(outside, 400);
+  EXPECT_NEAR(of_causes[1], 960, 80);
+  EXPECT_NEAR(of_causes[2], 400, 60);
+  EXPECT_NEAR(of_causes[3], 240, 50);
+}
+
+TEST(HardCase, HasAnOutsideLawOnADrivenJoint) {
+  const HardCase hard = DrawHardCase(Emps(), PlanOf(10), 10);
+  ASSERT_EQ(hard.truth.size(), 1u);
+  EXPECT_EQ(hard.outside_joint, 0);
+  EXPECT_TRUE(std::ranges::any_of(OutsideLaws(), [&](const Effect* law) {
+    return law == hard.truth.front().effect.get();
+  }));
+}
+
+TEST(HardCase, NeedsAMachineThatFollowsTrajectories) {
+  const Machine open(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/voice_coil"));
+  EXPECT_THROW(DrawHardCase(open, {}, 1), InputError);
+}
+
+TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const auto part = [&](const Cause& cause) {
+    return visible.Shown(cause, visible.NoOthers()) /
+           visible.Innovations(cause).squaredNorm();
+  };
+  // Damping may be another one by a factor of 2, ripple is in no number.
+  EXPECT_LT(part(ParseEffect("viscous_friction@load:coefficient=1")), 0.01);
+  EXPECT_GT(part(ParseEffect("force_ripple@load:amplitude=1,period=0.01")), 0.5);
+}
+
+// A simulation with steps that are half as long is late, to first order, and nothing else.
+TEST(VisibleSize, IsNotHiddenByStepsThatOnlyMakeInputsEarly) {
+  const Machine model = Emps().WithSensorNoise(Eigen::VectorXd::Constant(1, 1e-8));
+  const Cause cause = ParseEffect("coulomb_friction@load:force=2");
+  const auto shown = [&](int substeps) {
+    const VisibleSize visible(model, substeps, DefaultMotion(model.setup()), 1);
+    return visible.Shown(cause, visible.NoOthers());
+  };
+  const double same = shown(model.rates().substeps);
+  EXPECT_NEAR(shown(2 * model.rates().substeps) / same, 1.0, 0.1);
+}
+
+TEST(VisibleSize, IsNothingBesideACauseThatDoesTheSame) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const Cause cause = ParseEffect("coulomb_friction@load:force=2");
+  const Eigen::VectorXd one = visible.Innovations(cause);
+  EXPECT_GT(visible.Shown(cause, visible.NoOthers()), 200.0);
+  EXPECT_LT(visible.Shown(cause, 2.0 * one), 1e-6 * one.squaredNorm());
+}
+
+// A motor of half its force is a stage of twice its mass, damping and friction: as far as
+// these may be off, and no further, whatever the first order says.
+TEST(VisibleSize, OfAWeakMotorIsWhatWrongNumbersCost) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const Cause weak = ParseEffect("motor_constant@drive:factor=0.8");
+  EXPECT_LT(visible.Shown(weak, visible.NoOthers()), 20.0);
+}
+
+TEST(VisibleSize, OfALawWithASimplerOneInItIsWhatTellsThemApart) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const auto told = [&](const char* law) {
+    return visible.ShownBesideSimplerLaw(ParseEffect(law));
+  };
+  // What falls with speed far above all speeds does not fall.
+  EXPECT_LT(told("stribeck_friction@load:coulomb=1,breakaway=1,velocity=9"), 20.0);
+  EXPECT_GT(told("stribeck_friction@load:coulomb=1,breakaway=9,velocity=0.05"), 200.0);
+}
+
+}  // namespace
+}  // namespace mjdiag
