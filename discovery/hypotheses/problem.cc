@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjdiag/discovery/hypotheses/number_forces.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -19,6 +20,8 @@ using Eigen::VectorXd;
 
 // Periods of the slowest error of the model that a record has to hold for it to count.
 constexpr double kPeriods = 25.0;
+// Of a pass over a run for the force of a number, in physics steps.
+constexpr double kForces = 1.0;
 
 double Floor(const SensorSetup& sensor, const Eigen::MatrixXd& outputs, Index row) {
   // A signal without any noise leaves rounding.
@@ -180,14 +183,51 @@ Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
 Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
                                                       const VectorXd& z) const {
   if (free_errors_) return NumberJacobian(changes, z);
-  for (int fewer = 1; fewer < std::min(machine_.rates().substeps, 3); ++fewer) {
-    try {
-      return WithSubsteps(fewer).NumberJacobian(changes, z);
-    } catch (const NumericalError&) {
-      // Steps that long are too long for it.
+  const Changes at = WithNumbers(changes, z);
+  const auto run = Linearised(at);
+  const ObservedMotion motion = MotionOf(run->track);
+  const Machine machine = machine_.With(at);
+  const std::vector<bool> stood_for = StoodFor(changes);
+  const auto p = static_cast<Index>(numbers_.size());
+  std::vector<Eigen::MatrixXd> forces(numbers_.size());
+  ParallelForAll(static_cast<int>(p), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    if (stood_for[i]) return;
+    const DoubtedNumber& doubted = numbers_[i];
+    forces[i] = doubted.spread *
+                (doubted.is_lateness ? LatenessForce(machine_.linear().Gamma, motion)
+                                     : NumberForce(machine.plant(), machine_.channels(),
+                                                   doubted.number, motion));
+  });
+  work_->Add(kForces * RunWork() / machine_.rates().substeps * static_cast<double>(p));
+  // A force that the model has more is one that it lacks less.
+  const Index channels = run_->outputs.rows();
+  const Index block = run->dynamics.block();
+  Eigen::MatrixXd averages =
+      Eigen::MatrixXd::Zero(channels * run->dynamics.blocks(), p);
+  for (Index dof = 0; dof < machine.plant().nv; ++dof) {
+    Eigen::MatrixXd at_dof = Eigen::MatrixXd::Zero(run_->samples(), p);
+    for (Index i = 0; i < p; ++i) {
+      const Eigen::MatrixXd& force = forces[static_cast<std::size_t>(i)];
+      if (force.size() > 0) at_dof.col(i) = force.col(dof);
     }
+    if (at_dof.isZero(0.0)) continue;
+    const Eigen::MatrixXd entry =
+        VectorXd::Unit(machine.plant().nv, dof).replicate(1, p);
+    averages -= run->dynamics.OfForces(entry, at_dof);
   }
-  return NumberJacobian(changes, z);
+  averages /= std::sqrt(static_cast<double>(block));
+  Eigen::MatrixXd J(channels * run_->samples(), p);
+  for (Index k = 0; k < run_->samples(); ++k) {
+    const Index of = std::min(k / block, run->dynamics.blocks() - 1);
+    J.middleRows(channels * k, channels) = averages.middleRows(channels * of, channels);
+  }
+  for (std::size_t i = 1; i < run_->records.size(); ++i) {
+    const Index first = run_->records[i].sample;
+    J.middleRows(channels * first, channels * std::min(skip_, run_->SamplesOf(i)))
+        .setZero();
+  }
+  return J;
 }
 
 ObservedMotion DiscoveryProblem::MotionOf(const Track& track) const {

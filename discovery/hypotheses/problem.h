@@ -88,8 +88,9 @@ class DiscoveryProblem {
   /// d residual / dz at z beside those changes, (ny samples) x numbers, by differences.
   Eigen::MatrixXd NumberJacobian(const Changes& changes,
                                  const Eigen::VectorXd& z) const;
-  /// The same of runs with as few physics steps a control tick as it is stable with:
-  /// near enough to tell where a fit has to go, in a fraction of the time.
+  /// The same to first order along the run, of all numbers in one pass (number_forces.h,
+  /// error_dynamics.h): near enough to tell where a fit has to go, in a fraction of the
+  /// time.
   Eigen::MatrixXd RoughNumberJacobian(const Changes& changes,
                                       const Eigen::VectorXd& z) const;
   /// What the joints of a track did, with what was measured beside it.

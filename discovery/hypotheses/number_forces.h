@@ -1,0 +1,32 @@
+#pragma once
+// What numbers of a plant do along a motion: the generalised force by which the plant
+// acts otherwise if one of them is larger, at the same positions, velocities and
+// accelerations,
+//
+//   F = - d/d(log p) [ M(q) q'' + c(q, q') + g(q) - passive(q, q') - motors(q, q', u) ]
+//
+// Masses and inertias enter linearly, so that inverse dynamics with twice the number less
+// that with the number itself is the derivative; motors by a small difference; springs,
+// dampers, rotors and dry friction in closed form. One pass over the samples for each.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+
+#include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/setup/setup.h"
+
+namespace mjdiag {
+
+/// F, samples x nv [N, N m].
+/// @param plant  with the number as it is
+Eigen::MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
+                            const PlantNumber& number, const ObservedMotion& motion);
+
+/// The same of all inputs a second later: - Gamma du/dt, of inputs that are held.
+/// @param Gamma  nv x inputs
+Eigen::MatrixXd LatenessForce(const Eigen::MatrixXd& Gamma,
+                              const ObservedMotion& motion);
+
+}  // namespace mjdiag

@@ -1,0 +1,54 @@
+// Derivatives by numbers of a plant from one pass, against differences of whole runs.
+
+#include "mjdiag/discovery/hypotheses/number_forces.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "discovery/stage_under_test.h"
+#include "mjdiag/plugin/replay/error_dynamics.h"
+
+namespace mjdiag {
+namespace {
+
+/// Of every number, how far its derivative is from that of differences of runs, both in
+/// averages of blocks of the length that the first order has.
+void ExpectAlike(const DiscoveryProblem& problem, double share) {
+  const Eigen::Index channels = problem.run().outputs.rows();
+  const Eigen::Index block = problem.Linearised({})->dynamics.block();
+  const Eigen::MatrixXd rough =
+      Averaged(problem.RoughNumberJacobian({}, {}), channels, block);
+  const Eigen::MatrixXd exact =
+      Averaged(problem.NumberJacobian({}, {}), channels, block);
+  for (Eigen::Index i = 0; i < exact.cols(); ++i) {
+    const DoubtedNumber& doubted = problem.numbers()[static_cast<std::size_t>(i)];
+    const std::string name =
+        doubted.is_lateness
+            ? "lateness"
+            : PlantNumberName(problem.machine().plant(), doubted.number);
+    EXPECT_LT((rough.col(i) - exact.col(i)).norm(), share * exact.col(i).norm())
+        << name << " " << exact.col(i).norm();
+  }
+}
+
+TEST(NumberForces, AreWhatDifferencesOfRunsShowOnTheStage) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = WithDoubts(stage.Pose(stage.Measure({})), {});
+  ASSERT_EQ(problem.numbers().size(), 4u);  // mass, damper, motor, lateness
+  ExpectAlike(problem, 0.02);
+}
+
+TEST(NumberForces, AreWhatDifferencesOfRunsShowOnTheBonder) {
+  const Machine machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
+  const Excitation motion =
+      FollowTrajectory(machine.setup(), machine.setup().trajectories.Find("default"));
+  const DiscoveryProblem all =
+      PoseProblem(machine, Simulate(machine, motion, {}), 1.0, 0.0);
+  const DiscoveryProblem problem = WithDoubts(Beginning(all, 4000), {});
+  ASSERT_GT(problem.numbers().size(), 10u);
+  ExpectAlike(problem, 0.1);
+}
+
+}  // namespace
+}  // namespace mjdiag
