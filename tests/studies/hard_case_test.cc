@@ -7,6 +7,7 @@
 #include "mjdiag/signals/error.h"
 #include "mjdiag/studies/outside_law.h"
 #include "mjdiag/studies/visible_size.h"
+#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {
@@ -101,7 +102,10 @@ TEST(HardCase, HasAnOutsideLawOnADrivenJoint) {
 
 TEST(HardCase, NeedsAMachineThatFollowsTrajectories) {
   const Machine open(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/voice_coil"));
-  EXPECT_THROW(DrawHardCase(open, {}, 1), InputError);
+  EXPECT_NE(test::MessageOf<InputError>([&] {
+              DrawHardCase(open, {}, 1);
+            }).find("has no controlled axes"),
+            std::string::npos);
 }
 
 TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
