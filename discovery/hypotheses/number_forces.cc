@@ -1,5 +1,6 @@
 #include "mjdiag/discovery/hypotheses/number_forces.h"
 
+#include <cmath>
 #include <vector>
 
 #include "mjdiag/plugin/effects/trial_signals.h"
@@ -90,7 +91,7 @@ MatrixXd MotorForces(const mjModel& plant, const Channels& channels,
 
 /// Of a number of a joint, on its own degree of freedom.
 VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
-                      const ObservedMotion& motion) {
+                      const ObservedMotion& motion, double still) {
   const int joint = number.element;
   switch (number.kind) {
     case PlantNumberKind::kStiffness: {
@@ -102,7 +103,10 @@ VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
     case PlantNumberKind::kDamping:
       return -plant.dof_damping[dof] * motion.velocity.row(dof);
     case PlantNumberKind::kFriction:
-      return -plant.dof_frictionloss[dof] * Direction(motion.velocity.row(dof));
+      // What it holds it goes on to hold, whatever the bound.
+      return motion.velocity.row(dof).unaryExpr([&](double v) {
+        return std::abs(v) < still ? 0.0 : -plant.dof_frictionloss[dof] * Sign(v);
+      });
     default:
       return -plant.dof_armature[dof] * motion.acceleration.row(dof);
   }
@@ -111,7 +115,8 @@ VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
 }  // namespace
 
 MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
-                     const PlantNumber& number, const ObservedMotion& motion) {
+                     const PlantNumber& number, const ObservedMotion& motion,
+                     const VectorXd& still) {
   switch (number.kind) {
     case PlantNumberKind::kMass:
     case PlantNumberKind::kInertia:
@@ -122,7 +127,7 @@ MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
     default: {
       MatrixXd force = MatrixXd::Zero(motion.samples(), plant.nv);
       const int dof = plant.jnt_dofadr[number.element];
-      force.col(dof) = JointForceOf(plant, number, dof, motion);
+      force.col(dof) = JointForceOf(plant, number, dof, motion, still[dof]);
       return force;
     }
   }

@@ -21,8 +21,10 @@ namespace mjdiag {
 
 /// F, samples x nv [N, N m].
 /// @param plant  with the number as it is
+/// @param still  speeds of the joints below which dry friction holds them, nv
 Eigen::MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
-                            const PlantNumber& number, const ObservedMotion& motion);
+                            const PlantNumber& number, const ObservedMotion& motion,
+                            const Eigen::VectorXd& still);
 
 /// The same of all inputs a second later: - Gamma du/dt, of inputs that are held.
 /// @param Gamma  nv x inputs

@@ -188,6 +188,7 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
   const ObservedMotion motion = MotionOf(run->track);
   const Machine machine = machine_.With(at);
   const std::vector<bool> stood_for = StoodFor(changes);
+  const VectorXd still = StillSpeed();
   const auto p = static_cast<Index>(numbers_.size());
   std::vector<Eigen::MatrixXd> forces(numbers_.size());
   ParallelForAll(static_cast<int>(p), [&](int number) {
@@ -197,7 +198,7 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     forces[i] = doubted.spread *
                 (doubted.is_lateness ? LatenessForce(machine_.linear().Gamma, motion)
                                      : NumberForce(machine.plant(), machine_.channels(),
-                                                   doubted.number, motion));
+                                                   doubted.number, motion, still));
   });
   work_->Add(kForces * RunWork() / machine_.rates().substeps * static_cast<double>(p));
   // A force that the model has more is one that it lacks less.

@@ -86,7 +86,7 @@ std::optional<LearnedCurve> LearnCurve(const UnknownSignal& force,
   chosen[force_curve::kFactor] = static_cast<double>(factor);
   chosen[force_curve::kStill] = still;
   chosen[force_curve::kLow] = axis.low;
-  chosen[force_curve::kHigh] = axis.high;
+  chosen[force_curve::kWidth] = axis.high - axis.low;
   chosen[force_curve::kShape] = static_cast<double>(axis.shape);
   chosen[force_curve::kKnots] = axis.knots;
   const double unit = factor == CurveFactor::kVelocity && fastest > 0.0 ? fastest : 1.0;

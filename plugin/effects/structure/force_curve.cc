@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -23,7 +24,7 @@ class CurveForce final : public ActiveEffect {
         factor_(static_cast<CurveFactor>(std::lround(values[kFactor]))),
         of_(static_cast<int>(std::lround(values[kOf]))),
         still_(values[kStill]),
-        axis_{values[kLow], values[kHigh],
+        axis_{values[kLow], values[kLow] + values[kWidth],
               static_cast<CurveShapes>(std::lround(values[kShape])),
               static_cast<int>(std::lround(values[kKnots])), still_},
         values_(values.segment(kFirst, axis_.knots)) {
@@ -75,14 +76,15 @@ EffectParameter Choice(std::string name, std::string unit, double least, double 
 }
 
 std::vector<EffectParameter> Parameters() {
-  std::vector<EffectParameter> all = {Choice("variable", "1", 0.0, 3.0),
-                                      Choice("of", "1", 0.0, kAnySize, 0.0),
-                                      Choice("factor", "1", 0.0, 2.0, 0.0),
-                                      Choice("still", "m/s", 0.0, kAnySize, 0.0),
-                                      Choice("low", "of x", -kAnySize, kAnySize),
-                                      Choice("high", "of x", -kAnySize, kAnySize),
-                                      Choice("shape", "1", 0.0, 2.0, 0.0),
-                                      Choice("knots", "1", kFewestKnots, kMostKnots)};
+  std::vector<EffectParameter> all = {
+      Choice("variable", "1", 0.0, 3.0),
+      Choice("of", "1", 0.0, kAnySize, 0.0),
+      Choice("factor", "1", 0.0, 2.0, 0.0),
+      Choice("still", "m/s", 0.0, kAnySize, 0.0),
+      Choice("low", "of x", -kAnySize, kAnySize),
+      Choice("width", "of x", std::numeric_limits<double>::min(), kAnySize),
+      Choice("shape", "1", 0.0, 2.0, 0.0),
+      Choice("knots", "1", kFewestKnots, kMostKnots)};
   for (int i = 1; i <= kMostKnots; ++i) {
     all.push_back({"force_" + std::to_string(i), Role::kAmplitude, "N", -kAnySize,
                    kAnySize, 0.0});
@@ -145,10 +147,9 @@ class ForceCurveEffect final : public Effect {
                        "a number below " + std::to_string(most));
     }
     const bool split = std::lround(values[kShape]) == 2;
-    if (!(values[kHigh] > values[kLow]) ||
-        (split && !(values[kLow] < 0.0 && values[kHigh] > 0.0))) {
-      throw InputError(where, "has no curve over its low to high",
-                       split ? "low < 0 < high" : "low < high");
+    if (split && !(values[kLow] < 0.0 && values[kLow] + values[kWidth] > 0.0)) {
+      throw InputError(where, "is split at 0, where it is not",
+                       "low < 0 < low + width");
     }
     return std::make_unique<CurveForce>(model, JointOf(model, joint), values);
   }
@@ -158,7 +159,7 @@ class ForceCurveEffect final : public Effect {
     EffectValues values = EffectValues::Zero(kFirst + kMostKnots);
     values[kVariable] = static_cast<double>(CurveVariable::kVelocity);
     values[kLow] = -k.speed;
-    values[kHigh] = k.speed;
+    values[kWidth] = 2.0 * k.speed;
     values[kKnots] = kFewestKnots + 1;
     for (int i = 0; i <= kFewestKnots; ++i) {
       values[kFirst + i] = r.Uniform(-1.0, 1.0) * k.SmallForce();

@@ -5,10 +5,10 @@
 //
 //   x  a position or velocity of any joint, the command of an actuator, or time
 //   m  1, the direction of the joint, tanh(v / still), or its velocity v
-//   g  cubic between `knots` values at equal distances over low .. high, with the slopes
+//   g  cubic between `knots` values at equal distances over low .. low + width, with the slopes
 //      of Catmull and Rom (1974), held at its ends beyond. A periodic one is the same
-//      again after high - low; one that is split at 0 is two, half of the knots over
-//      low .. 0 and half over 0 .. high, and goes from one to the other within `still`,
+//      again after its width; one that is split at 0 is two, half of the knots over
+//      low .. 0 and half over 0 .. low + width, and goes from one to the other within `still`,
 //      as friction does
 //
 // It is not looked for among the laws: it is learned where none of them is left
@@ -46,7 +46,7 @@ struct CurveAxis {
 
 /// Places of the parameters of force_curve; its knots come behind them.
 namespace force_curve {
-enum Place { kVariable, kOf, kFactor, kStill, kLow, kHigh, kShape, kKnots, kFirst };
+enum Place { kVariable, kOf, kFactor, kStill, kLow, kWidth, kShape, kKnots, kFirst };
 inline constexpr int kFewestKnots = 4;
 inline constexpr int kMostKnots = 17;
 }  // namespace force_curve

@@ -13,7 +13,8 @@ namespace mjdiag {
 namespace {
 
 /// Of every number, how far its derivative is from that of differences of runs, both in
-/// averages of blocks of the length that the first order has.
+/// averages of blocks of the length that the first order has. Modes that swing between two
+/// samples are not in them: beside the largest of all derivatives they are nothing.
 void ExpectAlike(const DiscoveryProblem& problem, double share) {
   const Eigen::Index channels = problem.run().outputs.rows();
   const Eigen::Index block = problem.Linearised({})->dynamics.block();
@@ -21,13 +22,16 @@ void ExpectAlike(const DiscoveryProblem& problem, double share) {
       Averaged(problem.RoughNumberJacobian({}, {}), channels, block);
   const Eigen::MatrixXd exact =
       Averaged(problem.NumberJacobian({}, {}), channels, block);
+  constexpr double kNothing = 1e-3;
+  const double largest = exact.colwise().norm().maxCoeff();
   for (Eigen::Index i = 0; i < exact.cols(); ++i) {
     const DoubtedNumber& doubted = problem.numbers()[static_cast<std::size_t>(i)];
     const std::string name =
         doubted.is_lateness
             ? "lateness"
             : PlantNumberName(problem.machine().plant(), doubted.number);
-    EXPECT_LT((rough.col(i) - exact.col(i)).norm(), share * exact.col(i).norm())
+    EXPECT_LT((rough.col(i) - exact.col(i)).norm(),
+              share * exact.col(i).norm() + kNothing * largest)
         << name << " " << exact.col(i).norm();
   }
 }
@@ -42,7 +46,7 @@ TEST(NumberForces, AreWhatDifferencesOfRunsShowOnTheStage) {
 TEST(NumberForces, AreWhatDifferencesOfRunsShowOnTheBonder) {
   const Machine machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
   const Excitation motion =
-      FollowTrajectory(machine.setup(), machine.setup().trajectories.Find("default"));
+      FollowTrajectory(machine.setup(), machine.setup().trajectories.Find("multi"));
   const DiscoveryProblem all =
       PoseProblem(machine, Simulate(machine, motion, {}), 1.0, 0.0);
   const DiscoveryProblem problem = WithDoubts(Beginning(all, 4000), {});

@@ -33,7 +33,8 @@ std::map<std::string, double> ExampleValues(const Effect& effect) {
   double value = 1.0 / 3.0;
   for (const EffectParameter& parameter : effect.parameters()) {
     value *= 0.7;
-    values[parameter.name] = std::min(value, 0.9 * parameter.maximum);
+    values[parameter.name] =
+        std::clamp(value, parameter.minimum, 0.9 * parameter.maximum);
   }
   return values;
 }
@@ -108,6 +109,12 @@ TEST(Registry, HasAUnitAndAMeaningForEverything) {
   }
 }
 
+std::string Short(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 /// The row of an effect in docs/effects.md.
 std::string DocumentedRow(const std::string& effect) {
   const std::string page = ReadTextFile(MJDIAG_SOURCE_DIR "/docs/effects.md");
@@ -125,8 +132,13 @@ TEST(Registry, IsDocumentedWithUnitsAndBounds) {
       if (parameter.minimum == std::numeric_limits<double>::min())
         parameters += ", > 0";
       if (parameter.role == Role::kPhase) parameters += ", -2 pi to 2 pi, default 0";
-      if (parameter.minimum != 0.0) continue;
-      parameters += std::isinf(parameter.maximum) ? ", >= 0" : ", 0 to 0.1";
+      const bool bounded = std::isfinite(parameter.maximum);
+      if (bounded && parameter.role != Role::kPhase) {
+        parameters +=
+            ", " + Short(parameter.minimum) + " to " + Short(parameter.maximum);
+      } else if (parameter.minimum == 0.0) {
+        parameters += ", >= 0";
+      }
     }
     const std::string row = DocumentedRow(effect->name());
     EXPECT_THAT(row, HasSubstr("| " + parameters + " |")) << effect->name();

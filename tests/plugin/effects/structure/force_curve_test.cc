@@ -68,27 +68,27 @@ TEST(ForceCurve, PushesByWhatItIsOverTimesItsFactor) {
   // Over the position: 1 N at 0.2 m, along a line from -1 to 1.
   const std::string knots = "force_1=-5,force_2=-2.5,force_3=0,force_4=2.5,force_5=5";
   EffectBench over_position(
-      {"force_curve@q:variable=0,low=-1,high=1,knots=5," + knots});
+      {"force_curve@q:variable=0,low=-1,width=2,knots=5," + knots});
   EXPECT_NEAR(over_position.ForceAt(0.2, 7.0), 1.0, 1e-12);
   EffectBench over_velocity(
-      {"force_curve@q:variable=1,low=-1,high=1,knots=5," + knots});
+      {"force_curve@q:variable=1,low=-1,width=2,knots=5," + knots});
   EXPECT_NEAR(over_velocity.ForceAt(7.0, -0.2), -1.0, 1e-12);
   EffectBench with_direction(
-      {"force_curve@q:variable=0,factor=1,low=-1,high=1,knots=5," + knots});
+      {"force_curve@q:variable=0,factor=1,low=-1,width=2,knots=5," + knots});
   EXPECT_NEAR(with_direction.ForceAt(0.2, -3.0), -1.0, 1e-12);
   EffectBench with_velocity(
-      {"force_curve@q:variable=0,factor=2,low=-1,high=1,knots=5," + knots});
+      {"force_curve@q:variable=0,factor=2,low=-1,width=2,knots=5," + knots});
   EXPECT_NEAR(with_velocity.ForceAt(0.2, -3.0), -3.0, 1e-12);
 }
 
 TEST(ForceCurve, SaysWhatIsWrongWithItsRange) {
-  EXPECT_THROW(EffectBench({"force_curve@q:variable=0,low=1,high=1,knots=5,force_1=0,"
+  EXPECT_THROW(EffectBench({"force_curve@q:variable=0,low=1,width=0,knots=5,force_1=0,"
                             "force_2=0,force_3=0,force_4=0"}),
                InputError);
-  EXPECT_THROW(EffectBench({"force_curve@q:variable=1,low=0.1,high=1,shape=2,knots=6,"
+  EXPECT_THROW(EffectBench({"force_curve@q:variable=1,low=0.1,width=1,shape=2,knots=6,"
                             "force_1=0,force_2=0,force_3=0,force_4=0"}),
                InputError);
-  EXPECT_THROW(EffectBench({"force_curve@q:variable=1,of=7,low=-1,high=1,knots=5,"
+  EXPECT_THROW(EffectBench({"force_curve@q:variable=1,of=7,low=-1,width=2,knots=5,"
                             "force_1=0,force_2=0,force_3=0,force_4=0"}),
                InputError);
 }
