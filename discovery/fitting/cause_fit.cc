@@ -132,7 +132,8 @@ class Simulator {
       kept = std::max(kept, numbers_);
       const Changes causes = CausesAt(theta);
       const VectorXd z = theta.head(numbers_);
-      runs_ += static_cast<int>(numbers_) + 1;
+      constexpr int kOnePass = 4;
+      runs_ += rough ? kOnePass : static_cast<int>(numbers_) + 1;
       J.leftCols(numbers_) = rough ? problem_.RoughNumberJacobian(causes, z)
                                    : problem_.NumberJacobian(causes, z);
     }

@@ -15,12 +15,16 @@ CauseFit FitNumbers(const DiscoveryProblem& problem,
   constexpr int kAnew = 4;            // derivatives, for the plant may be far off
   constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
   constexpr double kSettled = 0.01;   // of the mean square
+  constexpr double kStalls = 1e-3;    // of it, in a step: new derivatives do more
   for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
     FittedModel from = fit;
     from.prior_weight = Inflation(fit.train, IndependentShare(problem, fit.residual));
-    CauseFit next = FitCauses(
-        problem, candidates, from,
-        {.iterations = 10, .jacobian = false, .secant = true, .share = share / kAnew});
+    CauseFit next = FitCauses(problem, candidates, from,
+                              {.iterations = 10,
+                               .tolerance = kStalls,
+                               .jacobian = false,
+                               .secant = true,
+                               .share = share / kAnew});
     const bool settled = fit.train - next.train < kSettled * fit.train;
     fit = std::move(next);
     if (settled) break;
