@@ -83,7 +83,7 @@ class Discoverer {
   /// Whether the fit leaves more than noise.
   bool IsMoreLeft() const;
   bool LearnCurve(const EvidenceData& data, const FittedModel& base);
-  void TakeCurve(Evidence with_curve);
+  void Take(Evidence with_force);
   std::vector<FittedModel> WithoutAlike() const;
   void LearnCurves(const SearchOptions& options);
   LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;

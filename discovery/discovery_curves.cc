@@ -83,7 +83,8 @@ bool Discoverer::IsMoreLeft() const {
 }
 
 /// A curve for what is left beside `base`, the present set or part of it, with as many
-/// knots as the evidence is for. False if there is none, or nothing that it would be over.
+/// knots as the evidence is for, or the wave that it is. False if there is none, or nothing
+/// that it would be over.
 bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
   constexpr std::array<int, 3> kKnots = {5, 9, 16};
   constexpr double kFalseAlarm = 1e-4;
@@ -100,48 +101,60 @@ bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
   // As a search that asked every variable with every factor.
   const Chance chance{kFalseAlarm, 3 * static_cast<int>(rest.variables.size()), 0.0};
   std::optional<Evidence> best;
+  const auto propose = [&](const FittedCause& cause) {
+    FittedModel start = base;
+    start.causes.push_back(cause);
+    constexpr int kIterations = 12;
+    auto fit = TryFit(problem_, candidates_, start,
+                      CompareFrom(adds ? &present.fit().jacobian : nullptr, kIterations,
+                                  1e-4, work_->Share(1)));
+    if (!fit) return false;
+    VectorXd independent = IndependentShare(problem_, fit->residual);
+    Evidence proposed =
+        adds ? present.Added(std::move(*fit), std::move(independent), chance)
+             : present.Changed(std::move(*fit));
+    if (mjdiag::Judge(present, proposed) != Judgement::kAccepted) return false;
+    if (best && proposed.Criterion(proposed.independent()) >=
+                    best->Criterion(proposed.independent())) {
+      return false;
+    }
+    best = std::move(proposed);
+    return true;
+  };
+  const auto wave = WaveOf(candidates_, rest.force, rest.signature, rest.variables,
+                           motion, rest.joint);
+  if (wave && std::ranges::find(base.causes, wave->candidate,
+                                &FittedCause::candidate) == base.causes.end()) {
+    propose(*wave);
+  }
   const std::size_t place = candidates_.size();
-  Candidate chosen;
+  std::optional<Candidate> chosen;
   LawAxis axis;
   for (const int knots : kKnots) {
     if (!work_->MayBegin(kCurve)) break;
     auto learned = mjdiag::LearnCurve(rest.force, rest.signature, rest.variables,
                                       motion, rest.joint, spread, knots);
-    if (!learned) return false;
-    axis = {std::move(learned->x), learned->over, learned->unit};
-    candidates_.resize(place);
+    if (!learned) break;
     candidates_.push_back(std::move(learned->candidate));
-    FittedModel start = base;
-    start.causes.push_back({place, learned->start});
-    constexpr int kIterations = 12;
-    auto fit = TryFit(problem_, candidates_, start,
-                      CompareFrom(adds ? &present.fit().jacobian : nullptr, kIterations,
-                                  1e-4, work_->Share(1)));
-    if (!fit) continue;
-    VectorXd independent = IndependentShare(problem_, fit->residual);
-    Evidence proposed =
-        adds ? present.Added(std::move(*fit), std::move(independent), chance)
-             : present.Changed(std::move(*fit));
-    if (mjdiag::Judge(present, proposed) != Judgement::kAccepted) continue;
-    if (best && proposed.Criterion(proposed.independent()) >=
-                    best->Criterion(proposed.independent())) {
-      continue;
+    if (propose({place, learned->start})) {
+      chosen = candidates_.back();
+      axis = {std::move(learned->x), learned->over, learned->unit};
     }
-    best = std::move(proposed);
-    chosen = candidates_.back();
+    candidates_.pop_back();
   }
-  candidates_.resize(place);
   if (!best) return false;
-  candidates_.push_back(std::move(chosen));
-  curves_[place] = {InWords(rest.force, rest.signature), std::move(axis)};
-  TakeCurve(std::move(*best));
+  if (chosen) {
+    candidates_.push_back(std::move(*chosen));
+    curves_[place] = {InWords(rest.force, rest.signature), std::move(axis)};
+  }
+  Take(std::move(*best));
   return true;
 }
 
-/// The set with the curve that came last, in the place of the present one.
-void Discoverer::TakeCurve(Evidence with_curve) {
+/// The set with the force that came last, in the place of the present one.
+void Discoverer::Take(Evidence with_force) {
   std::vector<std::vector<Hypothesis>> rivals;
-  for (const FittedCause& cause : with_curve.fit().causes) {
+  for (const FittedCause& cause : with_force.fit().causes) {
     const auto& before = search_.fit().causes;
     const auto same =
         std::ranges::find(before, cause.candidate, &FittedCause::candidate);
@@ -151,8 +164,8 @@ void Discoverer::TakeCurve(Evidence with_curve) {
         std::move(search_.rivals[static_cast<std::size_t>(same - before.begin())]);
   }
   search_.rivals = std::move(rivals);
-  search_.ladder.push_back(with_curve.fit());
-  search_.evidence = std::move(with_curve);
+  search_.ladder.push_back(with_force.fit());
+  search_.evidence = std::move(with_force);
   // No law was left before.
   search_.significant_rest = false;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/wave.h"
 #include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
@@ -47,6 +48,33 @@ MatrixXd Design(const CurveAxis& axis, const VectorXd& x, const VectorXd& factor
 }
 
 }  // namespace
+
+std::optional<FittedCause> WaveOf(const std::vector<Candidate>& candidates,
+                                  const UnknownSignal& force,
+                                  const Signature& signature,
+                                  const std::vector<MotionVariable>& variables,
+                                  const ObservedMotion& motion, Index joint) {
+  const MotionVariable* over = Find(variables, signature.variable);
+  if (over == nullptr || signature.period <= 0.0 || !signature.factor.empty()) {
+    return std::nullopt;
+  }
+  const bool own = over->kind == CurveVariable::kPosition && over->of == joint;
+  if (!own && over->kind != CurveVariable::kTime) return std::nullopt;
+  const Effect& wave = own ? ForceRipple() : FloorVibration();
+  const auto candidate = std::ranges::find_if(candidates, [&](const Candidate& one) {
+    return one.effect.get() == &wave && one.site == force.site;
+  });
+  if (candidate == candidates.end()) return std::nullopt;
+  const Eigen::ArrayXd angle =
+      kTurn / signature.period * (own ? over->value : motion.time).array();
+  MatrixXd design(angle.size(), 3);
+  design << angle.sin().matrix(), angle.cos().matrix(), VectorXd::Ones(angle.size());
+  const VectorXd parts = LeastSquares(design, force.value);
+  const auto [amplitude, phase] = AmplitudeAndPhase(parts[0], parts[1]);
+  const double shape = own ? signature.period : 1.0 / signature.period;
+  return Bounded(candidates, {static_cast<std::size_t>(candidate - candidates.begin()),
+                              Eigen::Vector3d(amplitude, shape, phase)});
+}
 
 std::optional<LearnedCurve> LearnCurve(const UnknownSignal& force,
                                        const Signature& signature,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/hypotheses/fitted_cause.h"
 #include "mjdiag/discovery/unexplained/motion_variables.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
 
@@ -25,6 +26,14 @@ struct LearnedCurve {
   std::string unit;
   Eigen::VectorXd x;
 };
+
+/// The wave of the list of laws that a periodic force over the joint's own position or
+/// over time is, where one of the candidates is that, with values to start from.
+std::optional<FittedCause> WaveOf(const std::vector<Candidate>& candidates,
+                                  const UnknownSignal& force,
+                                  const Signature& signature,
+                                  const std::vector<MotionVariable>& variables,
+                                  const ObservedMotion& motion, Eigen::Index joint);
 
 /// @param signature  of the force, significant
 /// @param joint      of the force (nv)
