@@ -1,7 +1,7 @@
 #pragma once
-// The parts of a discovery (discovery.h) while it is under way: causes in discovery.cc,
-// what has no name in discovery_curves.cc, notes in discovery_notes.cc, figures in
-// discovery_figures.cc.
+// The parts of a discovery (discovery.h) while it is under way: the search in
+// discovery.cc, what has no name in discovery_curves.cc, the answer in
+// discovery_answer.cc, notes in discovery_notes.cc, figures in discovery_figures.cc.
 
 #include <map>
 #include <memory>

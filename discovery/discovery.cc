@@ -8,14 +8,10 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
-#include "mjdiag/discovery/fitting/parameter_covariance.h"
-#include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/verdict.h"
-#include "mjdiag/discovery/unexplained/sensor_noise.h"
-#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -29,43 +25,10 @@ using Eigen::VectorXd;
 // Bandwidth of the fast observer, of the control rate.
 constexpr double kFastShare = 0.02;
 constexpr int kFurtherCauses = 3;
-constexpr double kLeastProbability = 0.01;
 
 constexpr const char* kFasterObserver = "a search behind a faster observer";
 
 }  // namespace
-
-std::vector<CauseParameter> Discoverer::DescribeParameters(
-    const FittedCause& fitted, const MatrixXd& covariance,
-    const std::vector<Interval>& intervals, Index first) const {
-  const Candidate& candidate = candidates_[fitted.candidate];
-  std::vector<CauseParameter> parameters;
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
-    const auto index = static_cast<Index>(i);
-    const Interval& interval = intervals[static_cast<std::size_t>(first) + i];
-    const double sd = std::sqrt(covariance(first + index, first + index));
-    const EffectParameter& parameter =
-        candidate.effect
-            ->parameters()[static_cast<std::size_t>(candidate.chosen.size()) + i];
-    parameters.push_back(
-        {parameter.name,
-         SiteUnit(machine_.plant(), *candidate.effect, candidate.site, parameter),
-         fitted.value[index], sd, interval.min, interval.max});
-  }
-  return parameters;
-}
-
-std::vector<Alternative> Discoverer::AlternativesOf(
-    const FittedCause& fitted, const std::vector<Hypothesis>& rivals) const {
-  std::vector<Alternative> alternatives;
-  for (const Hypothesis& other : rivals) {
-    if (other.cause.candidate == fitted.candidate) continue;
-    if (other.probability < kLeastProbability) continue;
-    alternatives.push_back(
-        {CauseOf(candidates_, other.cause), other.probability, false});
-  }
-  return alternatives;
-}
 
 DiscoveryProblem Discoverer::Pose(double bandwidth) const {
   DiscoveryProblem problem =
@@ -128,109 +91,6 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
     options.most_causes -= static_cast<int>(search_.fit().causes.size()) - before;
   }
   search_ = SearchCauses(problem_, candidates_, options, &search_);
-}
-
-void Discoverer::NameCauses() {
-  const CauseFit& fit = free_fit_ ? free_fit_->second : search_.fit();
-  const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
-  if (fit.jacobian.cols() == 0) return;
-  const MatrixXd of_all = ParameterCovariance(problem, candidates_, fit);
-  const Index numbers = fit.numbers.size();
-  NameNumbers(of_all.topLeftCorner(numbers, numbers));
-  if (fit.causes.empty()) return;
-  const Index parameters = of_all.rows() - numbers;
-  const MatrixXd covariance = of_all.bottomRightCorner(parameters, parameters);
-  Report("intervals", 0.7);
-  const std::vector<Interval> intervals =
-      ParameterIntervals(problem, candidates_, fit, covariance);
-  Index first = 0;
-  for (std::size_t i = 0; i < fit.causes.size(); ++i) {
-    FoundCause found;
-    found.cause = CauseOf(candidates_, fit.causes[i]);
-    found.parameters = DescribeParameters(fit.causes[i], covariance, intervals, first);
-    first += fit.causes[i].value.size();
-    found.probability = 1.0;
-    if (const auto words = curves_.find(fit.causes[i].candidate);
-        words != curves_.end()) {
-      found.unnamed = words->second.words;
-    }
-    for (const Hypothesis& rival : search_.rivals[i]) {
-      if (rival.cause.candidate == fit.causes[i].candidate) {
-        found.probability = rival.probability;
-      }
-    }
-    found.alternatives = AlternativesOf(fit.causes[i], search_.rivals[i]);
-    for (const Cause& twin : Twins(machine_.plant(), found.cause)) {
-      found.alternatives.insert(found.alternatives.begin(),
-                                {twin, found.probability, true});
-    }
-    discovery_.causes.push_back(std::move(found));
-  }
-}
-
-void Discoverer::NameNumbers(const MatrixXd& covariance) {
-  const double normal = TwoSidedNormalQuantile(0.05);
-  const VectorXd& z = search_.fit().numbers;
-  const std::vector<bool> stood_for =
-      problem_.StoodFor(ChangesOf(candidates_, search_.fit().causes));
-  for (Index i = 0; i < z.size(); ++i) {
-    if (stood_for[static_cast<std::size_t>(i)]) continue;
-    const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
-    const double half = normal * std::sqrt(covariance(i, i));
-    if (doubted.is_lateness) {
-      if (z[i] > half) NoteLateness(doubted.spread * z[i]);
-      continue;
-    }
-    discovery_.calibration.push_back(
-        {PlantNumberName(machine_.plant(), doubted.number), doubted.number,
-         std::exp(doubted.spread * z[i]), std::exp(doubted.spread * (z[i] - half)),
-         std::exp(doubted.spread * (z[i] + half)), doubted.spread});
-  }
-}
-
-// White noise beyond what the setup says of a sensor. Sensors of which it says nothing
-// cannot be judged.
-void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
-  for (const RaisedNoise& raised :
-       FindRaisedNoise(machine_.setup(), problem_.observer(), innovations,
-                       discovery_.train_share)) {
-    const Effect& noise = NoiseEffect();
-    const Candidate candidate{
-        .effect = Lasting(noise), .site = raised.element, .parameters = {}};
-    if (!IsChosen(candidate, options_.choice)) continue;
-    FoundCause found;
-    found.cause = {Lasting(noise), raised.element, ValuesOf({raised.sd})};
-    const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
-    found.parameters = {{noise.parameters().front().name, raised.unit, raised.sd,
-                         raised.sd_error, raised.sd - half, raised.sd + half}};
-    found.probability = 1.0;
-    discovery_.causes.push_back(std::move(found));
-  }
-}
-
-void Discoverer::Judge() {
-  for (const FittedCause& refuted : search_.refuted) {
-    discovery_.notes.push_back("not named, for data outside the fit contradict it: " +
-                               Describe(CauseOf(candidates_, refuted)));
-  }
-  const bool named = !discovery_.causes.empty();
-  discovery_.verdict = VerdictOf(search_, named, nominal_);
-  const bool has_unnamed = !std::ranges::all_of(discovery_.causes, &std::string::empty,
-                                                &FoundCause::unnamed);
-  if (has_unnamed && discovery_.verdict == DiscoveryVerdict::kExplained) {
-    discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
-  }
-  if (named && discovery_.verdict == DiscoveryVerdict::kUnexplained) {
-    std::string tried;
-    for (const FoundCause& cause : discovery_.causes) {
-      tried += (tried.empty() ? "" : ", ") + Describe(cause.cause);
-    }
-    discovery_.notes.push_back("not named, for too much of the mismatch is left: " +
-                               tried);
-    discovery_.causes.clear();
-    discovery_.calibration.clear();
-  }
-  changes_ = ChangesOf(discovery_);
 }
 
 /// Behind the observer of the problem, and a fast one where it leaves what is coloured.
