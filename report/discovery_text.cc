@@ -282,6 +282,7 @@ Table CandidateTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Cause"}, {"Candidate"}, {""}, {"Probability", true}, {"Remark"}};
   for (const FoundCause& found : discovery.causes) {
+    if (!found.unnamed.empty()) continue;  // nothing competes with it
     const std::string name = CauseName(found.cause);
     table.rows.push_back({name, name, Bar(found.probability),
                           Percent(100.0 * found.probability), "found"});

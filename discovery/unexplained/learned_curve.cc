@@ -130,6 +130,9 @@ std::optional<LearnedCurve> LearnCurve(const UnknownSignal& force,
   learned.over = over->name;
   learned.unit = over->unit;
   learned.x = x;
+  if (axis.shape == CurveShapes::kPeriodic) {
+    learned.x -= axis.high * (x / axis.high).array().floor().matrix();
+  }
   return learned;
 }
 

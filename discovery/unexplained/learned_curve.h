@@ -22,7 +22,9 @@ namespace mjdiag {
 struct LearnedCurve {
   Candidate candidate;    ///< force_curve at the joint, with so many knots
   Eigen::VectorXd start;  ///< their values
-  std::string over;       ///< what it is a curve over, with its unit and its course
+  /// What it is a curve over, with its unit and its course, of a periodic one within a
+  /// period.
+  std::string over;
   std::string unit;
   Eigen::VectorXd x;
 };
