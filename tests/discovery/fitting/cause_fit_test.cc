@@ -85,17 +85,16 @@ TEST(CauseFit, ALawThatStandsForANumberOfThePlantHasAllOfIt) {
           stage.Measure({"asymmetric_viscous_friction@load:positive=30,negative=-20"})),
       {FindPlantNumber(stage.machine.plant(), "mass@load"),
        FindPlantNumber(stage.machine.plant(), "gear@drive")});
-  ASSERT_EQ(problem.numbers().size(), 1u);
+  ASSERT_EQ(problem.numbers().size(), 2u);  // the damper, and how late inputs act
   const auto candidates = ListCandidates(stage.machine);
   const std::size_t place = Place(candidates, "asymmetric_viscous_friction@load");
-  FittedModel start = {{{place, Eigen::Vector2d(1.0, 1.0)}},
-                       Eigen::VectorXd::Constant(1, 0.3)};
+  FittedModel start = {{{place, Eigen::Vector2d(1.0, 1.0)}}, Eigen::Vector2d(0.3, 0.0)};
   const CauseFit fit = FitCauses(problem, candidates, start, {});
   EXPECT_NEAR(fit.numbers[0], 0.0, 1e-6);
   const Eigen::MatrixXd covariance = ParameterCovariance(problem, candidates, fit);
   const Eigen::Vector2d truth(30.0, -20.0);
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const double sd = std::sqrt(covariance(i + 1, i + 1));
+    const double sd = std::sqrt(covariance(i + 2, i + 2));
     EXPECT_LT(sd, 3.0);
     EXPECT_NEAR(fit.causes[0].value[i], truth[i], 4.0 * sd);
   }
