@@ -59,13 +59,18 @@ HardVerdict VerdictOf(const std::vector<Cause>& truth,
                       const std::vector<FoundCause>& found) {
   std::vector<Cause> missing = truth;
   std::vector<const FoundCause*> others;
+  bool has_unnamed = false;
   for (const FoundCause& one : found) {
+    has_unnamed |= !one.unnamed.empty();
+    if (!one.unnamed.empty()) continue;
     const bool named = TakeOut(missing, [&](const Cause& cause) {
       return Indistinguishable(one.cause, cause);
     });
     if (!named) others.push_back(&one);
   }
-  if (missing.empty() && others.empty()) return HardVerdict::kRight;
+  if (missing.empty() && others.empty()) {
+    return has_unnamed ? HardVerdict::kUndecided : HardVerdict::kRight;
+  }
   for (const FoundCause* one : others) {
     if (!TakeOut(missing, [&](const Cause& cause) { return MayBe(*one, cause); })) {
       return HardVerdict::kWrong;
@@ -79,7 +84,7 @@ OutsideVerdict VerdictOf(const Effect& law, Eigen::Index joint,
                          const std::vector<Eigen::Index>& joints) {
   OutsideVerdict verdict = OutsideVerdict::kNothing;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].probability <= kLikely) continue;
+    if (found[i].probability <= kLikely || !found[i].unnamed.empty()) continue;
     const bool near =
         found[i].cause.effect->family() == law.family() && joints[i] == joint;
     if (!near) return OutsideVerdict::kFalse;
@@ -93,6 +98,7 @@ std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
   std::vector<Cause> left = truth;
   std::vector<Claim> claims;
   for (const FoundCause& one : found) {
+    if (!one.unnamed.empty()) continue;
     claims.push_back({one.probability, TakeOut(left, [&](const Cause& cause) {
                         return Indistinguishable(one.cause, cause);
                       })});

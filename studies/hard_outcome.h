@@ -18,6 +18,8 @@
 
 namespace mjdiag {
 
+// A force without a name (FoundCause::unnamed) is no name, right or wrong: beside the right
+// names the answer is undecided, in the place of one silent.
 enum class HardVerdict { kRight, kUndecided, kWrong, kSilent };
 const char* WordOf(HardVerdict verdict);
 
@@ -25,7 +27,7 @@ HardVerdict VerdictOf(const std::vector<Cause>& truth,
                       const std::vector<FoundCause>& found);
 
 enum class OutsideVerdict {
-  kNothing,  ///< no name above 0.5
+  kNothing,  ///< no name above 0.5; a force without one is none
   kFamily,   ///< names above 0.5, all of its family at its joint
   kFalse     ///< others
 };

@@ -186,5 +186,17 @@ TEST(HardSummary, CountsEveryKindOfCaseByItself) {
   EXPECT_NEAR(tables[1].plot->points[0].y, 2.0 / 3.0, 1e-12);
 }
 
+TEST(HardVerdict, TakesAForceWithoutANameForNoName) {
+  const Cause hidden = Catalogue().front();
+  FoundCause curve = Named({Lasting(ForceCurve()), "X", {}}, 1.0);
+  curve.unnamed = "1 N rms at X that follow Y velocity";
+  EXPECT_EQ(VerdictOf({hidden}, {curve}), HardVerdict::kSilent);
+  EXPECT_EQ(VerdictOf({hidden}, {Named(hidden), curve}), HardVerdict::kUndecided);
+  EXPECT_TRUE(ClaimsOf({hidden}, {curve}).empty());
+  EXPECT_EQ(VerdictOf(CoulombFriction(), 0, {curve}, {1}), OutsideVerdict::kNothing);
+  curve.unnamed.clear();
+  EXPECT_EQ(VerdictOf({hidden}, {curve}), HardVerdict::kWrong);
+}
+
 }  // namespace
 }  // namespace mjdiag
