@@ -15,6 +15,11 @@ double SizePriorOf(const std::vector<Candidate>& candidates, const FittedCause& 
   return sum;
 }
 
+bool IsPlausible(const std::vector<Candidate>& candidates, const FittedCause& cause) {
+  constexpr double kDeviations = 3.0;
+  return SizePriorOf(candidates, cause) <= kDeviations * kDeviations;
+}
+
 double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& model) {
   double sum = model.numbers.squaredNorm();
   for (const FittedCause& cause : model.causes) {

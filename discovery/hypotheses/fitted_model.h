@@ -30,6 +30,9 @@ inline constexpr double kMissing = 0.1;
 
 /// Sum of squares of the sizes of a cause over their spread.
 double SizePriorOf(const std::vector<Candidate>& candidates, const FittedCause& cause);
+/// Whether its sizes are within three standard deviations of what machines have. Beside a
+/// rest far above noise, which no model explains, a fit is no evidence for more.
+bool IsPlausible(const std::vector<Candidate>& candidates, const FittedCause& cause);
 /// Sum of squares of z and of the sizes of the causes over their spread, and of the
 /// causes -2 log(kMissing odds): -2 log of what is known beforehand, but for a constant.
 double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& model);

@@ -191,7 +191,7 @@ Additions ProposeAdditions(const SearchData& data, const Evidence& present,
   if (!finalists.empty()) report("fit of " + NamesOf(data.candidates, finalists));
   std::vector<std::optional<CauseFit>> fits = contest.Fit(finalists);
   for (auto& fit : fits) {
-    if (fit && IsAtItsEnd(data.candidates, fit->causes.back())) fit.reset();
+    if (fit && !IsCredible(data.candidates, *fit)) fit.reset();
   }
   Additions additions;
   const std::vector<double> criteria = Criteria(data.problem, fits);

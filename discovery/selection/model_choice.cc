@@ -7,6 +7,7 @@
 #include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/comparison/noise_floor.h"
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/selection/verdict.h"
 
 namespace mjdiag {
 
@@ -50,6 +51,12 @@ double Inflation(double train, const VectorXd& independent) {
 
 double GainByChance(double probability, int trials, int freedom) {
   return ChiSquaredQuantile(probability / std::max(trials, 1), freedom);
+}
+
+bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit) {
+  const FittedCause& last = fit.causes.back();
+  return !IsAtItsEnd(candidates, last) &&
+         (fit.train <= kFarAboveNoise || IsPlausible(candidates, last));
 }
 
 int ParameterCount(const std::vector<FittedCause>& causes) {

@@ -27,15 +27,15 @@ void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
   std::rotate(place, place + 1, rivals.end());
 }
 
-/// Whether the last cause, which is not among the present ones, is at its end.
-bool IsOfAnotherLaw(const SearchData& data, const Evidence& present,
-                    const CauseFit& fit) {
+/// Whether the last cause, which is not among the present ones, is not credible.
+bool IsIncredible(const SearchData& data, const Evidence& present,
+                  const CauseFit& fit) {
   if (fit.causes.empty()) return false;
   const FittedCause& last = fit.causes.back();
   const bool is_new =
       std::ranges::find(present.fit().causes, last.candidate,
                         &FittedCause::candidate) == present.fit().causes.end();
-  return is_new && IsAtItsEnd(data.candidates, last);
+  return is_new && !IsCredible(data.candidates, fit);
 }
 
 /// The fit of other causes; none if the beginning of the record shows that they explain
@@ -57,7 +57,7 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
   if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
   auto fit = TryFit(data.problem, data.candidates, model,
                     CompareFrom(initial, 8, 1e-5, 0.5 * share));
-  if (!fit || IsOfAnotherLaw(data, present, *fit)) return std::nullopt;
+  if (!fit || IsIncredible(data, present, *fit)) return std::nullopt;
   return present.Changed(std::move(*fit));
 }
 
