@@ -82,7 +82,8 @@ class OutcomeCounts {
     if (values.empty()) return;
     const double largest = *std::ranges::max_element(values);
     table_.rows.push_back({what + ", median and largest",
-                           Cell(MedianOf(values)).text + " and " + Cell(largest).text});
+                           Cell(MedianOf(values)).text + " and " + Cell(largest).text,
+                           "", ""});
   }
   StudyTable Take() { return std::move(table_); }
 
