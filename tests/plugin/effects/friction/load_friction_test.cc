@@ -140,16 +140,16 @@ TEST(StribeckLoadFriction, FallsWithSpeed) {
 }
 
 TEST(GearLoadFriction, IsTheSumOfItsPartsAndFallsToTheDirectionalLawWithoutThem) {
-  // The motor pushes with 1 N against nothing: rest is 0.
+  // The motor pushes with 2 N against nothing: rest is 0.
   const auto gained = [](const char* effect, double speed) {
     EffectBench bench({effect});
     bench.v() = speed;
-    bench.StepUntil(0.01, 1.0);
+    bench.StepUntil(0.01, 2.0);
     return (bench.v() - speed) * EffectBench::kMass / 0.01;
   };
   const char* all =
       "gear_load_friction@q:motor_share=0.1,load_share=0.3,quadratic=0.05";
-  EXPECT_NEAR(gained(all, 5.0), 1.0 - 0.1 - 0.05, 1e-3);
+  EXPECT_NEAR(gained(all, 5.0), 2.0 - 0.1 * 2.0 - 0.05 * 4.0, 1e-3);
   const auto simpler = GearLoadFriction().Simpler(ParseEffect(all));
   EXPECT_EQ(FormatEffect(*simpler),
             "directional_load_friction@q:motor_share=0.1,load_share=0.3");
