@@ -80,8 +80,6 @@ class Discoverer {
   Rest SignatureOf(const ObservedMotion& motion,
                    const std::vector<UnknownSignal>& forces, bool for_curve) const;
   void SignRest(const ObservedMotion& motion);
-  /// Whether the fit leaves more than noise.
-  bool IsMoreLeft() const;
   bool LearnCurve(const EvidenceData& data, const FittedModel& base);
   void Take(Evidence with_force);
   std::vector<FittedModel> WithoutAlike() const;

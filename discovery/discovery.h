@@ -59,6 +59,7 @@ struct FoundCause {
   std::vector<Alternative> alternatives;  ///< of 1 % or more, likeliest first
   /// Of a force that was learned and has no name, what it is in words; else empty.
   std::string unnamed = {};
+  bool HasName() const { return unnamed.empty(); }
 };
 
 /// After each cause that was added; the first step is the plant as it was given.

@@ -141,9 +141,8 @@ void Discoverer::Judge() {
   }
   const bool named = !discovery_.causes.empty();
   discovery_.verdict = VerdictOf(search_, named, nominal_);
-  const bool has_unnamed = !std::ranges::all_of(discovery_.causes, &std::string::empty,
-                                                &FoundCause::unnamed);
-  if (has_unnamed && discovery_.verdict == DiscoveryVerdict::kExplained) {
+  const bool all_named = std::ranges::all_of(discovery_.causes, &FoundCause::HasName);
+  if (!all_named && discovery_.verdict == DiscoveryVerdict::kExplained) {
     discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
   }
   if (named && discovery_.verdict == DiscoveryVerdict::kUnexplained) {

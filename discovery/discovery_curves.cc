@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -78,10 +77,6 @@ Discoverer::Rest Discoverer::SignatureOf(const ObservedMotion& motion,
   return rest;
 }
 
-bool Discoverer::IsMoreLeft() const {
-  return search_.significant_rest || search_.fit().train > kFarAboveNoise;
-}
-
 /// A curve for what is left beside `base`, the present set or part of it, with as many
 /// knots as the evidence is for, or the wave that it is. False if there is none, or nothing
 /// that it would be over.
@@ -123,10 +118,7 @@ bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
   };
   const auto wave = WaveOf(candidates_, rest.force, rest.signature, rest.variables,
                            motion, rest.joint);
-  if (wave && std::ranges::find(base.causes, wave->candidate,
-                                &FittedCause::candidate) == base.causes.end()) {
-    propose(*wave);
-  }
+  if (wave && !Has(base.causes, wave->candidate)) propose(*wave);
   const std::size_t place = candidates_.size();
   std::optional<Candidate> chosen;
   LawAxis axis;
@@ -202,7 +194,7 @@ void Discoverer::LearnCurves(const SearchOptions& options) {
       problem_, problem_, candidates_,
       DataOf(problem_, candidates_, options.unseen, options.free_run)};
   for (int i = 0; i < kMost; ++i) {
-    if (!IsMoreLeft() || !work_->MayBegin(kCurve)) break;
+    if (!IsMoreLeft(search_) || !work_->MayBegin(kCurve)) break;
     Report(kCurve, 0.5);
     if (!LearnCurve(data.evidence, search_.fit())) break;
     while (work_->MayBegin(kCurve) && Drop(data, search_)) {

@@ -89,7 +89,7 @@ void Discoverer::SignRest(const ObservedMotion& motion) {
     return;
   }
   // Beside a curve noise may be all that is left.
-  if (!IsMoreLeft()) return;
+  if (!IsMoreLeft(search_)) return;
   const Rest rest = SignatureOf(motion, discovery_.forces_after, false);
   discovery_.unexplained = rest.signature;
   discovery_.unexplained_site = rest.signature.site;

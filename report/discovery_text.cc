@@ -64,7 +64,7 @@ std::string Join(const std::vector<std::string>& items) {
 
 /// "coulomb_friction at load (force 20.39 N)", "zeta_x = 1.2000".
 std::string WithValues(const FoundCause& found) {
-  if (!found.unnamed.empty()) return "a force without a name (" + found.unnamed + ")";
+  if (!found.HasName()) return "a force without a name (" + found.unnamed + ")";
   std::string values;
   for (const CauseParameter& parameter : found.parameters) {
     if (found.cause.effect->IsFault())
@@ -234,7 +234,7 @@ Table CauseTable(const Discovery& discovery) {
                    {"Probability", true},
                    {"Best alternative"}};
   for (const FoundCause& found : discovery.causes) {
-    if (!found.unnamed.empty()) {
+    if (!found.HasName()) {
       table.rows.push_back({found.cause.name(), found.cause.site, "curve",
                             std::to_string(found.parameters.size()) + " knots", kNone,
                             "no name", kNone});
@@ -282,7 +282,7 @@ Table CandidateTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Cause"}, {"Candidate"}, {""}, {"Probability", true}, {"Remark"}};
   for (const FoundCause& found : discovery.causes) {
-    if (!found.unnamed.empty()) continue;  // nothing competes with it
+    if (!found.HasName()) continue;  // nothing competes with it
     const std::string name = CauseName(found.cause);
     table.rows.push_back({name, name, Bar(found.probability),
                           Percent(100.0 * found.probability), "found"});

@@ -61,8 +61,8 @@ HardVerdict VerdictOf(const std::vector<Cause>& truth,
   std::vector<const FoundCause*> others;
   bool has_unnamed = false;
   for (const FoundCause& one : found) {
-    has_unnamed |= !one.unnamed.empty();
-    if (!one.unnamed.empty()) continue;
+    has_unnamed |= !one.HasName();
+    if (!one.HasName()) continue;
     const bool named = TakeOut(missing, [&](const Cause& cause) {
       return Indistinguishable(one.cause, cause);
     });
@@ -84,7 +84,7 @@ OutsideVerdict VerdictOf(const Effect& law, Eigen::Index joint,
                          const std::vector<Eigen::Index>& joints) {
   OutsideVerdict verdict = OutsideVerdict::kNothing;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].probability <= kLikely || !found[i].unnamed.empty()) continue;
+    if (found[i].probability <= kLikely || !found[i].HasName()) continue;
     const bool near =
         found[i].cause.effect->family() == law.family() && joints[i] == joint;
     if (!near) return OutsideVerdict::kFalse;
@@ -98,7 +98,7 @@ std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
   std::vector<Cause> left = truth;
   std::vector<Claim> claims;
   for (const FoundCause& one : found) {
-    if (!one.unnamed.empty()) continue;
+    if (!one.HasName()) continue;
     claims.push_back({one.probability, TakeOut(left, [&](const Cause& cause) {
                         return Indistinguishable(one.cause, cause);
                       })});

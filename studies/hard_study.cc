@@ -7,34 +7,20 @@
 
 #include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/plugin/runtime/simulation.h"
-#include "mjdiag/signals/error.h"
+#include "mjdiag/studies/hidden_effect.h"
 
 namespace mjdiag {
 namespace {
 
 constexpr double kBudget = 120.0;  // [s] of work, that of the command
 
-/// Infinite where the model cannot be run.
+/// Of all sensors; infinite where the model cannot be run.
 double UnseenMismatch(const Machine& model, const HardCase& hard,
                       const Changes& changes) {
-  RunOptions quiet;
-  quiet.noise_scale = 0.0;
-  Record simulated;
-  try {
-    simulated =
-        Simulate(model.With(changes), Replay(model.setup(), hard.unseen), quiet);
-  } catch (const NumericalError&) {
-    return std::numeric_limits<double>::infinity();
-  }
-  double sum = 0.0;
-  for (const SensorSetup& sensor : model.channels().sensors) {
-    const Eigen::VectorXd& measured = hard.unseen.At(sensor.channel).samples;
-    const double floor = Rms(measured - hard.unseen_clean.At(sensor.channel).samples);
-    const double off = Rms(measured - simulated.At(sensor.channel).samples) / floor;
-    sum += off * off;
-  }
-  return std::sqrt(sum / static_cast<double>(model.channels().sensors.size()));
+  const std::vector<double> ratios =
+      UnseenRatios(model, changes, hard.unseen, hard.unseen_clean);
+  if (ratios.empty()) return std::numeric_limits<double>::infinity();
+  return Rms(Eigen::VectorXd::Map(ratios.data(), std::ssize(ratios)));
 }
 
 /// That a cause acts on; -1 of none of the candidates, noise for example.

@@ -6,20 +6,13 @@
 #include <utility>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/signals/median.h"
+#include "mjdiag/studies/hidden_effect.h"
 
 namespace mjdiag {
 namespace {
 
-std::string ListOf(const std::vector<Cause>& causes) {
-  std::string text;
-  for (const Cause& cause : causes) {
-    text += (text.empty() ? "" : "; ") + Describe(cause);
-  }
-  return text.empty() ? "nothing" : text;
-}
-
-/// With their probabilities.
-std::string ListOf(const std::vector<FoundCause>& causes) {
+std::string ListWithProbabilities(const std::vector<FoundCause>& causes) {
   std::string text;
   for (const FoundCause& found : causes) {
     text += (text.empty() ? "" : "; ") + Describe(found.cause) + " (" +
@@ -37,13 +30,6 @@ bool IsKnown(const HardOutcome& outcome) {
 /// Share of the mismatch on unseen motion that the extended plant takes away.
 double GainOf(const HardOutcome& outcome) {
   return 1.0 - outcome.after / outcome.before;
-}
-
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 using Which = std::function<bool(const HardOutcome&)>;
@@ -81,9 +67,11 @@ class OutcomeCounts {
     }
     if (values.empty()) return;
     const double largest = *std::ranges::max_element(values);
-    table_.rows.push_back({what + ", median and largest",
-                           Cell(MedianOf(values)).text + " and " + Cell(largest).text,
-                           "", ""});
+    table_.rows.push_back(
+        {what + ", median and largest",
+         Cell(Median(Eigen::VectorXd::Map(values.data(), std::ssize(values)))).text +
+             " and " + Cell(largest).text,
+         "", ""});
   }
   StudyTable Take() { return std::move(table_); }
 
@@ -163,7 +151,7 @@ std::vector<Cell> RowOf(const HardOutcome& outcome, std::uint64_t seed) {
   return {std::to_string(seed),
           ListOf(outcome.truth),
           std::to_string(outcome.fitted) + " + " + std::to_string(outcome.unseen),
-          ListOf(outcome.answer.causes),
+          ListWithProbabilities(outcome.answer.causes),
           IsOutside(outcome) ? WordOf(outcome.outside) : WordOf(outcome.verdict),
           outcome.before,
           outcome.after,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/effects/registry.h"
@@ -208,6 +209,33 @@ std::vector<Cause> DrawEffects(const Machine& machine,
     if (LeastOwnShare(columns) >= kOwnShare * size.least) return causes;
   }
   throw NumericalError("hidden effects: no draw of these types tells them apart");
+}
+
+std::string ListOf(const std::vector<Cause>& causes) {
+  std::string text;
+  for (const Cause& cause : causes) {
+    text += (text.empty() ? "" : "; ") + Describe(cause);
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+std::vector<double> UnseenRatios(const Machine& machine, const Changes& changes,
+                                 const Record& unseen, const Record& clean) {
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  Record simulated;
+  try {
+    simulated = Simulate(machine.With(changes), Replay(machine.setup(), unseen), quiet);
+  } catch (const NumericalError&) {
+    return {};
+  }
+  std::vector<double> ratios;
+  for (const SensorSetup& sensor : machine.channels().sensors) {
+    const VectorXd& measured = unseen.At(sensor.channel).samples;
+    const double floor = Rms(measured - clean.At(sensor.channel).samples);
+    ratios.push_back(Rms(measured - simulated.At(sensor.channel).samples) / floor);
+  }
+  return ratios;
 }
 
 }  // namespace mjdiag

@@ -58,4 +58,12 @@ std::vector<Cause> DrawEffects(const Machine& machine,
                                const std::vector<std::string>& types,
                                const HiddenSize& size, std::uint64_t seed);
 
+/// "coulomb_friction@X: force = 2; zeta_x = 1.2", "nothing".
+std::string ListOf(const std::vector<Cause>& causes);
+
+/// Of every sensor, what a machine with those changes is off on a motion that was
+/// measured with noise and without, over the noise; none where it cannot be run.
+std::vector<double> UnseenRatios(const Machine& machine, const Changes& changes,
+                                 const Record& unseen, const Record& clean);
+
 }  // namespace mjdiag

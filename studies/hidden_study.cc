@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
-#include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/runtime/simulation.h"
-#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -83,26 +81,13 @@ void CountParameters(const mjModel& plant, const FoundCause& found, const Cause&
   }
 }
 
+/// The worst sensor's.
 double UnseenRatio(const Machine& machine, const HiddenCase& hidden,
                    const Discovery& answer) {
-  const Changes changes = ChangesOf(answer);
-  RunOptions options;
-  options.noise_scale = 0.0;
-  Record simulated;
-  try {
-    simulated = Simulate(machine.With(changes), Replay(machine.setup(), hidden.unseen),
-                         options);
-  } catch (const NumericalError&) {
-    return std::numeric_limits<double>::infinity();
-  }
-  double worst = 0.0;
-  for (const SensorSetup& sensor : machine.channels().sensors) {
-    const Eigen::VectorXd& measured = hidden.unseen.At(sensor.channel).samples;
-    const double floor = Rms(measured - hidden.unseen_clean.At(sensor.channel).samples);
-    worst =
-        std::max(worst, Rms(measured - simulated.At(sensor.channel).samples) / floor);
-  }
-  return worst;
+  const std::vector<double> ratios =
+      UnseenRatios(machine, ChangesOf(answer), hidden.unseen, hidden.unseen_clean);
+  return ratios.empty() ? std::numeric_limits<double>::infinity()
+                        : std::ranges::max(ratios);
 }
 
 }  // namespace

@@ -5,19 +5,13 @@
 #include <string>
 #include <utility>
 
+#include "mjdiag/studies/hidden_effect.h"
 #include "mjdiag/studies/hidden_study.h"
 
 namespace mjdiag {
 namespace {
 
-std::string List(const std::vector<Cause>& causes) {
-  std::string text;
-  for (const Cause& cause : causes)
-    text += (text.empty() ? "" : "; ") + Describe(cause);
-  return text.empty() ? "nothing" : text;
-}
-
-std::string List(const std::vector<FoundCause>& causes) {
+std::string ListOf(const std::vector<FoundCause>& causes) {
   std::string text;
   for (const FoundCause& found : causes) {
     text += (text.empty() ? "" : "; ") + Describe(found.cause);
@@ -76,8 +70,8 @@ std::vector<Cell> RowOf(const HiddenOutcome& outcome, std::uint64_t seed,
                         double seconds) {
   const bool named = !outcome.answer.causes.empty();
   return {std::to_string(seed),
-          List(outcome.hidden.truth),
-          List(outcome.answer.causes),
+          ListOf(outcome.hidden.truth),
+          ListOf(outcome.answer.causes),
           outcome.right       ? "yes"
           : outcome.undecided ? "not told apart"
                               : "no",

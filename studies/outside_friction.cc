@@ -2,15 +2,14 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 
+#include "mjdiag/plugin/effects/friction/stribeck_curve.h"
 #include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/wave.h"
 #include "mjdiag/studies/outside_law.h"
 
 namespace mjdiag {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 class Bristles final : public ActiveEffect {
  public:
@@ -20,8 +19,7 @@ class Bristles final : public ActiveEffect {
   void Push(const mjModel& model, mjData& data) noexcept override {
     const double h = model.opt.timestep;
     const double v = data.qvel[dof_];
-    const double ratio = v / values_[2];
-    const double slides = values_[0] + values_[1] * std::exp(-ratio * ratio);
+    const double slides = values_[0] + values_[1] * StribeckShare(v, values_[2]);
     if (slides <= 0.0) return;
     const double stiffness = values_[3];
     const double end = std::copysign(slides / stiffness, v);

@@ -15,21 +15,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Standard deviations that a number may be off.
-constexpr double kFarthestNumber = 10.0;
-
 DiscoveryProblem PoseOwnMotion(const Machine& machine, const Excitation& motion,
                                std::uint64_t seed) {
   RunOptions noisy;
   noisy.seed = seed;
   DiscoveryProblem problem =
       PoseProblem(machine, Simulate(machine, motion, noisy), 1.0, 0.0);
-  std::vector<DoubtedNumber> numbers;
-  for (const PlantNumber& number : PlantNumbers(machine.plant())) {
-    numbers.push_back({number, DoubtOf(machine.plant(), number)});
-  }
-  numbers.push_back(LatenessOf(machine));
-  return problem.Doubting(std::move(numbers));
+  return problem.Doubting(DoubtsOf(machine));
 }
 
 /// What numbers, and others in any amount, leave of innovations.

@@ -16,10 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Standard deviations that a number may be from where it is expected: further away it
-/// is another machine.
-constexpr double kFarthest = 10.0;
-
 /// What a parameter is compared with: steps of differences are small beside it.
 double ScaleOf(const FitParameter& parameter, double value, double duration) {
   switch (parameter.role) {
@@ -50,8 +46,9 @@ class Simulator {
         share_(options.share),
         closing_(options.closing) {
     for (const DoubtedNumber& number : problem.numbers()) {
-      const double least = number.is_lateness ? 0.0 : -kFarthest;
-      parameters_.push_back({"number", Role::kFactor, least, kFarthest, 0.0, 1.0});
+      const double least = number.is_lateness ? 0.0 : -kFarthestNumber;
+      parameters_.push_back(
+          {"number", Role::kFactor, least, kFarthestNumber, 0.0, 1.0});
     }
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
       parameters_.push_back(parameter);

@@ -34,6 +34,10 @@ bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cau
   return false;
 }
 
+bool Has(const std::vector<FittedCause>& causes, std::size_t candidate) {
+  return std::ranges::find(causes, candidate, &FittedCause::candidate) != causes.end();
+}
+
 VectorXd Flatten(const std::vector<FittedCause>& causes) {
   Index size = 0;
   for (const FittedCause& cause : causes) size += cause.value.size();

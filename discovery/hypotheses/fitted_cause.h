@@ -21,6 +21,9 @@ FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause)
 /// more, as a resonance that does not swing, or a wave longer than the stroke.
 bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cause);
 
+/// Whether one of the causes is that candidate.
+bool Has(const std::vector<FittedCause>& causes, std::size_t candidate);
+
 /// All parameters in one vector, in order of the causes, and back.
 Eigen::VectorXd Flatten(const std::vector<FittedCause>& causes);
 std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,

@@ -37,12 +37,16 @@ void AddLateness(const Machine& machine, double delay, Changes& changes) {
   }
 }
 
-}  // namespace
-
+/// What the physics steps of a simulation are off by. Positions go on with the velocity at
+/// the end of a step h, so that a force acts h / 2 before its time; a machine, which has no
+/// steps, is that late beside it. What is left is of second order in h. Known beforehand as
+/// h / 2.
 DoubtedNumber LatenessOf(const Machine& machine) {
   return {
       .number = {}, .spread = 0.5 * machine.plant().opt.timestep, .is_lateness = true};
 }
+
+}  // namespace
 
 /// Found when first asked for, by whichever copy of the problem is asked.
 struct DiscoveryProblem::Derived {
@@ -283,17 +287,22 @@ DiscoveryProblem DiscoveryProblem::Simulating(
   return changed;
 }
 
+std::vector<DoubtedNumber> DoubtsOf(const Machine& machine,
+                                    const std::vector<PlantNumber>& known) {
+  std::vector<DoubtedNumber> numbers;
+  for (const PlantNumber& number : PlantNumbers(machine.plant())) {
+    if (std::ranges::find(known, number) != known.end()) continue;
+    numbers.push_back({number, DoubtOf(machine.plant(), number)});
+  }
+  if (!numbers.empty()) numbers.push_back(LatenessOf(machine));
+  return numbers;
+}
+
 DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
                             const std::vector<PlantNumber>& known) {
   constexpr double kShows = 0.1;  // standard deviations of all innovations together
-  const mjModel& plant = problem.machine().plant();
-  std::vector<DoubtedNumber> numbers;
-  for (const PlantNumber& number : PlantNumbers(plant)) {
-    if (std::ranges::find(known, number) != known.end()) continue;
-    numbers.push_back({number, DoubtOf(plant, number)});
-  }
+  const std::vector<DoubtedNumber> numbers = DoubtsOf(problem.machine(), known);
   if (numbers.empty()) return problem;
-  numbers.push_back(LatenessOf(problem.machine()));
   const DiscoveryProblem all = problem.Doubting(numbers);
   const Eigen::MatrixXd J = all.RoughNumberJacobian({}, {});
   std::vector<DoubtedNumber> shown;

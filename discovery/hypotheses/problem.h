@@ -36,12 +36,6 @@ struct DoubtedNumber {
   bool is_lateness = false;
 };
 
-/// What the physics steps of a simulation are off by. Positions go on with the velocity at
-/// the end of a step h, so that a force acts h / 2 before its time; a machine, which has no
-/// steps, is that late beside it. What is left is of second order in h. Known beforehand as
-/// h / 2.
-DoubtedNumber LatenessOf(const Machine& machine);
-
 class DiscoveryProblem {
  public:
   /// @param machine  the nominal one
@@ -128,6 +122,15 @@ class DiscoveryProblem {
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
   std::shared_ptr<Derived> derived_;
 };
+
+/// Standard deviations that a number may be from where it is expected: further away it is
+/// another machine.
+inline constexpr double kFarthestNumber = 10.0;
+
+/// Doubts about all numbers of a plant but the known ones, and about how late inputs act;
+/// none if all are known.
+std::vector<DoubtedNumber> DoubtsOf(const Machine& machine,
+                                    const std::vector<PlantNumber>& known = {});
 
 /// The problem with doubts about all numbers of its plant but the known ones, as far as
 /// the record says anything of them.

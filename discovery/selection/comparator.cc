@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/discovery/selection/verdict.h"
+#include "mjdiag/discovery/selection/model_choice.h"
 
 namespace mjdiag {
 namespace {

@@ -7,7 +7,6 @@
 #include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/comparison/noise_floor.h"
 #include "mjdiag/diagnosis/statistics/distributions.h"
-#include "mjdiag/discovery/selection/verdict.h"
 
 namespace mjdiag {
 

@@ -35,6 +35,10 @@ double Inflation(double train, const Eigen::VectorXd& independent);
 /// is noise only, of a trial with that many degrees of freedom: chi-squared.
 double GainByChance(double probability, int trials, int freedom);
 
+/// Mean square of the innovations over sensor noise from which something is left,
+/// whatever a screening says.
+inline constexpr double kFarAboveNoise = 4.0;
+
 /// Whether its last cause may be one: its shape is not at its end, and where the fit leaves
 /// far more than noise its sizes are plausible.
 bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit);

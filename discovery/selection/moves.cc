@@ -31,10 +31,7 @@ void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
 bool IsIncredible(const SearchData& data, const Evidence& present,
                   const CauseFit& fit) {
   if (fit.causes.empty()) return false;
-  const FittedCause& last = fit.causes.back();
-  const bool is_new =
-      std::ranges::find(present.fit().causes, last.candidate,
-                        &FittedCause::candidate) == present.fit().causes.end();
+  const bool is_new = !Has(present.fit().causes, fit.causes.back().candidate);
   return is_new && !IsCredible(data.candidates, fit);
 }
 
@@ -101,11 +98,7 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   constexpr double kChance = 50.0;
   std::vector<FittedCause> others;
   const auto consider = [&](const FittedCause& other) {
-    const auto same = [&](const FittedCause& c) {
-      return c.candidate == other.candidate;
-    };
-    if (std::ranges::any_of(fit.causes, same)) return;
-    if (std::ranges::any_of(others, same)) return;
+    if (Has(fit.causes, other.candidate) || Has(others, other.candidate)) return;
     if (others.size() < kMost) others.push_back(other);
   };
   const auto simpler =
@@ -191,10 +184,8 @@ bool Simplify(const SearchData& data, HypothesisSet& set) {
     const auto simpler =
         SimplerLaw(data.problem.machine().plant(), data.candidates, causes[i]);
     if (!simpler) continue;
-    const bool known = std::ranges::any_of(causes, [&](const FittedCause& cause) {
-      return cause.candidate == simpler->candidate;
-    });
-    if (known || !data.work().MayBegin("simpler laws")) continue;
+    if (Has(causes, simpler->candidate) || !data.work().MayBegin("simpler laws"))
+      continue;
     if (ExchangeAt(data, set, i, {*simpler})) return true;
   }
   return false;

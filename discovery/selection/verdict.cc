@@ -2,7 +2,13 @@
 
 #include <algorithm>
 
+#include "mjdiag/discovery/selection/model_choice.h"
+
 namespace mjdiag {
+
+bool IsMoreLeft(const SearchResult& search) {
+  return search.significant_rest || search.fit().train > kFarAboveNoise;
+}
 
 DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal) {
   constexpr double kNamedShare = 0.9;
@@ -15,9 +21,7 @@ DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nomina
     return something ? DiscoveryVerdict::kUnexplained
                      : DiscoveryVerdict::kNoDiscrepancy;
   }
-  if (!search.significant_rest && left <= kFarAboveNoise) {
-    return DiscoveryVerdict::kExplained;
-  }
+  if (!IsMoreLeft(search)) return DiscoveryVerdict::kExplained;
   const double excess = nominal - 1.0;
   const double rest = std::max(left - 1.0, 0.0);
   const double share = excess > 0.0 ? 1.0 - rest / excess : 0.0;

@@ -15,9 +15,8 @@
 
 namespace mjdiag {
 
-/// Mean square of the innovations over sensor noise from which something is left,
-/// whatever a screening says.
-inline constexpr double kFarAboveNoise = 4.0;
+/// Whether the fit of a search leaves more than noise: what a screening says, or m > 4.
+bool IsMoreLeft(const SearchResult& search);
 
 /// @param named    whether there are causes, sensors that are noisier than known
 ///                 included

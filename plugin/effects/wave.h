@@ -17,7 +17,7 @@ inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< [rad]
 Trial WaveTrial(const Eigen::VectorXd& entry, const Eigen::VectorXd& angle,
                 double value);
 
-/// Periods of a wave over x, from half a period over the stroke on.
+/// Periods of a wave over x, from one period over the stroke on.
 /// @param finest      quarters of a period over the stroke, at most
 /// @param step        quarters from one to the next: 1 or 2 miss no maximum
 /// @param fast_below  see Sweep

@@ -24,9 +24,7 @@ class CurveForce final : public ActiveEffect {
         factor_(static_cast<CurveFactor>(std::lround(values[kFactor]))),
         of_(static_cast<int>(std::lround(values[kOf]))),
         still_(values[kStill]),
-        axis_{values[kLow], values[kLow] + values[kWidth],
-              static_cast<CurveShapes>(std::lround(values[kShape])),
-              static_cast<int>(std::lround(values[kKnots])), still_},
+        axis_(CurveAxisOf(values)),
         values_(values.segment(kFirst, axis_.knots)) {
     if (variable_ == CurveVariable::kPosition) {
       position_ = model.jnt_qposadr[model.dof_jntid[of_]];
@@ -146,8 +144,8 @@ class ForceCurveEffect final : public Effect {
       throw InputError(where, "of is " + std::to_string(std::lround(values[kOf])),
                        "a number below " + std::to_string(most));
     }
-    const bool split = std::lround(values[kShape]) == 2;
-    if (split && !(values[kLow] < 0.0 && values[kLow] + values[kWidth] > 0.0)) {
+    const CurveAxis axis = CurveAxisOf(values);
+    if (axis.shape == CurveShapes::kSplit && !(axis.low < 0.0 && axis.high > 0.0)) {
       throw InputError(where, "is split at 0, where it is not",
                        "low < 0 < low + width");
     }
@@ -185,6 +183,12 @@ CurveAxis::Weights CurveAxis::At(double x) const noexcept {
   AddPiece({low, 0.0, CurveShapes::kPlain, half}, x, 0, 1.0 - above, weights);
   AddPiece({0.0, high, CurveShapes::kPlain, half}, x, half, above, weights);
   return weights;
+}
+
+CurveAxis CurveAxisOf(const Eigen::VectorXd& values) {
+  return {values[kLow], values[kLow] + values[kWidth],
+          static_cast<CurveShapes>(std::lround(values[kShape])),
+          static_cast<int>(std::lround(values[kKnots])), values[kStill]};
 }
 
 double FactorOf(CurveFactor factor, double velocity, double still) noexcept {

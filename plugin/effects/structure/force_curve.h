@@ -51,6 +51,9 @@ inline constexpr int kFewestKnots = 4;
 inline constexpr int kMostKnots = 17;
 }  // namespace force_curve
 
+/// As the parameters say.
+CurveAxis CurveAxisOf(const Eigen::VectorXd& values);
+
 /// m for the velocity of the joint.
 double FactorOf(CurveFactor factor, double velocity, double still) noexcept;
 

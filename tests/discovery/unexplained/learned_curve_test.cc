@@ -45,11 +45,7 @@ struct Swing {
   /// The force of the curve where it begins, at every sample.
   VectorXd Predicted(const LearnedCurve& curve) const {
     const VectorXd& chosen = curve.candidate.chosen;
-    const CurveAxis axis{chosen[force_curve::kLow],
-                         chosen[force_curve::kLow] + chosen[force_curve::kWidth],
-                         static_cast<CurveShapes>(chosen[force_curve::kShape]),
-                         static_cast<int>(chosen[force_curve::kKnots]),
-                         chosen[force_curve::kStill]};
+    const CurveAxis axis = CurveAxisOf(chosen);
     VectorXd predicted = VectorXd::Zero(curve.x.size());
     for (Eigen::Index k = 0; k < predicted.size(); ++k) {
       const CurveAxis::Weights weights = axis.At(curve.x[k]);
