@@ -83,6 +83,7 @@ class Discoverer {
   bool LearnCurve(const EvidenceData& data, const FittedModel& base);
   void Take(Evidence with_force);
   std::vector<FittedModel> WithoutAlike() const;
+  std::vector<FittedModel> WithoutDoubtful() const;
   void LearnCurves(const SearchOptions& options);
   LawPlot PlotLaw(const ObservedMotion& motion, std::size_t cause) const;
   void AddLaws(const ObservedMotion& motion);

@@ -71,12 +71,15 @@ bool Discoverer::IsColoured(const CauseFit& fit) const {
 /// where these are near enough, then in those of the setup. Down to the noise the long
 /// steps have to stay near; beside a rest that is far above it anyway they need not.
 void Discoverer::Search(SearchOptions options, bool down_to_noise) {
-  const auto before = static_cast<int>(search_.fit().causes.size());
-  std::optional<DiscoveryProblem> coarse;
-  if (work_->MayBegin("further causes")) {
-    coarse = Coarsen(problem_, ChangesOf(problem_, candidates_, search_.fit()));
-  }
-  if (coarse) {
+  constexpr int kMostCoarse = 4;
+  const auto causes = [this] { return static_cast<int>(search_.fit().causes.size()); };
+  const int before = causes();
+  const int most = options.most_causes;
+  for (int i = 0; i < kMostCoarse && work_->MayBegin("further causes"); ++i) {
+    const auto coarse =
+        Coarsen(problem_, ChangesOf(problem_, candidates_, search_.fit()));
+    if (!coarse) break;
+    const int at = causes();
     SearchOptions rough = options;
     rough.last_fit = false;
     rough.serves = [&](const CauseFit& fit) {
@@ -88,7 +91,9 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
         work_->MayBegin(kFasterObserver)) {
       return;
     }
-    options.most_causes -= static_cast<int>(search_.fit().causes.size()) - before;
+    options.most_causes = std::max(0, most - (causes() - before));
+    // Long steps that are near no more may be again, shifted for what has been found.
+    if (search_.served || causes() <= at) break;
   }
   search_ = SearchCauses(problem_, candidates_, options, &search_);
 }

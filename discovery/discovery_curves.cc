@@ -185,6 +185,39 @@ std::vector<FittedModel> Discoverer::WithoutAlike() const {
   return without;
 }
 
+/// Where the laws leave something, the sets without each of them, without all at one joint,
+/// and without curves there: the force without a name may be what they imitate.
+std::vector<FittedModel> Discoverer::WithoutDoubtful() const {
+  const std::vector<FittedCause>& causes = search_.fit().causes;
+  const auto is_curve = [&](const FittedCause& cause) {
+    return curves_.contains(cause.candidate);
+  };
+  if (!IsMoreLeft(search_) && std::ranges::none_of(causes, is_curve)) return {};
+  std::map<Index, std::vector<std::size_t>> laws;  // of every joint
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    const Candidate& candidate = candidates_[causes[i].candidate];
+    if (candidate.effect->site() != SiteKind::kJoint || is_curve(causes[i])) continue;
+    laws[candidate.joint].push_back(i);
+  }
+  std::vector<FittedModel> without;
+  for (const auto& [joint, places] : laws) {
+    const auto leave_out = [&](const std::vector<std::size_t>& left_out) {
+      FittedModel model = search_.fit();
+      std::erase_if(model.causes, [&, joint = joint](const FittedCause& cause) {
+        const auto is_it = [&](std::size_t i) {
+          return causes[i].candidate == cause.candidate;
+        };
+        return std::ranges::any_of(left_out, is_it) ||
+               (is_curve(cause) && candidates_[cause.candidate].joint == joint);
+      });
+      without.push_back(std::move(model));
+    };
+    if (places.size() > 1) leave_out(places);
+    for (const std::size_t place : places) leave_out({place});
+  }
+  return without;
+}
+
 /// Laws that do not explain what they were found for may be nothing beside a curve.
 void Discoverer::LearnCurves(const SearchOptions& options) {
   constexpr int kMost = 2;
@@ -204,6 +237,18 @@ void Discoverer::LearnCurves(const SearchOptions& options) {
     if (!work_->MayBegin(kCurve)) break;
     Report(kCurve, 0.8);
     if (LearnCurve(data.evidence, base)) break;
+  }
+  constexpr int kRounds = 3;
+  for (int i = 0; i < kRounds; ++i) {
+    const std::vector<FittedModel> bases = WithoutDoubtful();
+    const bool replaced = std::ranges::any_of(bases, [&](const FittedModel& base) {
+      if (!work_->MayBegin(kCurve)) return false;
+      Report(kCurve, 0.9);
+      // A set without anything that was there before is none.
+      return base.causes.size() < search_.fit().causes.size() &&
+             LearnCurve(data.evidence, base);
+    });
+    if (!replaced) break;
   }
 }
 

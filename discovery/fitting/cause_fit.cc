@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "mjdiag/discovery/fitting/fit_coordinates.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -15,21 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// What a parameter is compared with: steps of differences are small beside it.
-double ScaleOf(const FitParameter& parameter, double value, double duration) {
-  switch (parameter.role) {
-    case Role::kPhase:
-      return 1.0;
-    case Role::kFrequency:
-      return std::min(value, 10.0 / duration);
-    case Role::kFactor:
-      // Around 1: what counts is how far it is from there.
-      return std::max(std::abs(value - 1.0), 1e-3);
-    default:
-      return std::max(std::abs(value), 1e-12);
-  }
-}
 
 /// The innovations as a function of theta, with the last run kept: Ceres asks for the
 /// value and then, at the same place, for the derivatives.
@@ -48,7 +34,7 @@ class Simulator {
     for (const DoubtedNumber& number : problem.numbers()) {
       const double least = number.is_lateness ? 0.0 : -kFarthestNumber;
       parameters_.push_back(
-          {"number", Role::kFactor, least, kFarthestNumber, 0.0, 1.0});
+          {"number", Role::kAmplitude, least, kFarthestNumber, 0.0, 1.0});
     }
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
       parameters_.push_back(parameter);
@@ -64,6 +50,7 @@ class Simulator {
     return residual_;
   }
 
+  double Used() const { return runs_ * problem_.RunWork(); }
   /// Whether the fit was asked to end, or has done its share of the work. Where no run
   /// is under way the latter is the same every time.
   bool IsOver() const { return IsStopped() || Used() > share_; }
@@ -100,7 +87,6 @@ class Simulator {
   }
 
  private:
-  double Used() const { return runs_ * problem_.RunWork(); }
   bool IsStopped() const { return !closing_ && problem_.work()->IsStopped(); }
   bool Allows(Index runs) const {
     return !IsStopped() &&
@@ -129,7 +115,8 @@ class Simulator {
       kept = std::max(kept, numbers_);
       const Changes causes = CausesAt(theta);
       const VectorXd z = theta.head(numbers_);
-      constexpr int kOnePass = 4;
+      constexpr int kOnePass = 4;  // as many runs
+      rough = rough && numbers_ + 1 > kOnePass;
       runs_ += rough ? kOnePass : static_cast<int>(numbers_) + 1;
       J.leftCols(numbers_) = rough ? problem_.RoughNumberJacobian(causes, z)
                                    : problem_.NumberJacobian(causes, z);
@@ -232,22 +219,25 @@ class Simulator {
 
 class InnovationCost final : public ceres::CostFunction {
  public:
-  InnovationCost(Simulator& simulator, Index first, Index count, Index parameters)
-      : simulator_(simulator), first_(first), count_(count) {
+  InnovationCost(Simulator& simulator, Index first, Index count, Index parameters,
+                 const FitCoordinates& coordinates)
+      : simulator_(simulator), first_(first), count_(count), coordinates_(coordinates) {
     set_num_residuals(static_cast<int>(count));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
   }
   bool Evaluate(const double* const* blocks, double* residuals,
                 double** jacobians) const override {
     const Index size = parameter_block_sizes()[0];
-    const VectorXd theta = Eigen::Map<const VectorXd>(blocks[0], size);
+    const VectorXd theta =
+        coordinates_.ToTheta(Eigen::Map<const VectorXd>(blocks[0], size));
     try {
       Eigen::Map<VectorXd>(residuals, count_) =
           simulator_.Residual(theta).segment(first_, count_);
       if (jacobians == nullptr || jacobians[0] == nullptr) return true;
       using RowMajor =
           Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      MatrixXd J = simulator_.StepJacobian(theta).middleRows(first_, count_);
+      const MatrixXd J = simulator_.StepJacobian(theta).middleRows(first_, count_) *
+                         coordinates_.SlopeAt(theta).asDiagonal();
       if (!J.allFinite()) return false;
       if (size == 1) {
         Eigen::Map<VectorXd>(jacobians[0], count_) = J.col(0);
@@ -268,6 +258,7 @@ class InnovationCost final : public ceres::CostFunction {
   Simulator& simulator_;
   Index first_;
   Index count_;
+  const FitCoordinates& coordinates_;
 };
 
 /// Ends a fit that is over with the values it has.
@@ -286,7 +277,9 @@ class EndWhenOver final : public ceres::IterationCallback {
 /// What is known beforehand: of every parameter with a spread its distance from nothing.
 class PriorCost final : public ceres::CostFunction {
  public:
-  PriorCost(const std::vector<FitParameter>& parameters, double weight) {
+  PriorCost(const std::vector<FitParameter>& parameters,
+            const FitCoordinates& coordinates, double weight)
+      : coordinates_(coordinates) {
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       if (!std::isfinite(parameters[i].spread)) continue;
       known_.push_back({static_cast<int>(i), parameters[i].nothing,
@@ -298,12 +291,15 @@ class PriorCost final : public ceres::CostFunction {
   bool Evaluate(const double* const* blocks, double* residuals,
                 double** jacobians) const override {
     const int size = parameter_block_sizes()[0];
+    const VectorXd theta =
+        coordinates_.ToTheta(Eigen::Map<const VectorXd>(blocks[0], size));
+    const VectorXd along = coordinates_.SlopeAt(theta);
     double* J = jacobians == nullptr ? nullptr : jacobians[0];
     if (J != nullptr) std::fill_n(J, num_residuals() * size, 0.0);
     for (std::size_t row = 0; row < known_.size(); ++row) {
       const auto& [place, nothing, slope] = known_[row];
-      residuals[row] = slope * (blocks[0][place] - nothing);
-      if (J != nullptr) J[static_cast<int>(row) * size + place] = slope;
+      residuals[row] = slope * (theta[place] - nothing);
+      if (J != nullptr) J[static_cast<int>(row) * size + place] = slope * along[place];
     }
     return true;
   }
@@ -314,19 +310,19 @@ class PriorCost final : public ceres::CostFunction {
     double nothing;
     double slope;
   };
+  const FitCoordinates& coordinates_;
   std::vector<Known> known_;
 };
 
-void SetBounds(ceres::Problem& problem, double* theta,
-               const std::vector<FitParameter>& parameters) {
+void SetBounds(ceres::Problem& problem, double* x,
+               const std::vector<FitParameter>& parameters,
+               const FitCoordinates& coordinates) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const int index = static_cast<int>(i);
-    if (std::isfinite(parameters[i].lower)) {
-      problem.SetParameterLowerBound(theta, index, parameters[i].lower);
-    }
-    if (std::isfinite(parameters[i].upper)) {
-      problem.SetParameterUpperBound(theta, index, parameters[i].upper);
-    }
+    const double lower = coordinates.Bound(index, parameters[i].lower);
+    const double upper = coordinates.Bound(index, parameters[i].upper);
+    if (std::isfinite(lower)) problem.SetParameterLowerBound(x, index, lower);
+    if (std::isfinite(upper)) problem.SetParameterUpperBound(x, index, upper);
   }
 }
 
@@ -348,6 +344,11 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   fit.causes = start.causes;
   fit.prior_weight = start.prior_weight;
   fit.numbers = start.numbers.size() > 0 ? start.numbers : VectorXd::Zero(numbers);
+  const std::vector<bool> stood_for =
+      problem.StoodFor(ChangesOf(candidates, start.causes));
+  for (Index i = 0; i < numbers; ++i) {
+    if (stood_for[static_cast<std::size_t>(i)]) fit.numbers[i] = 0.0;
+  }
   // What is held out need not be run while the fit goes on.
   const DiscoveryProblem seen = problem.TrainPart();
   Simulator simulator(seen, candidates, start.causes, options);
@@ -362,20 +363,25 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     }
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    InnovationCost cost(simulator, first, count, theta.size());
+    const FitCoordinates coordinates =
+        numbers > 0 ? FitCoordinates::About(simulator.parameters(), theta,
+                                            seen.FittedDuration())
+                    : FitCoordinates::Plain(theta.size());
+    VectorXd x = coordinates.FromTheta(theta);
+    InnovationCost cost(simulator, first, count, theta.size(), coordinates);
     ceres::Problem least_squares(ownership);
-    least_squares.AddResidualBlock(&cost, nullptr, theta.data());
-    SetBounds(least_squares, theta.data(), simulator.parameters());
-    PriorCost prior(simulator.parameters(), start.prior_weight);
+    least_squares.AddResidualBlock(&cost, nullptr, x.data());
+    SetBounds(least_squares, x.data(), simulator.parameters(), coordinates);
+    PriorCost prior(simulator.parameters(), coordinates, start.prior_weight);
     if (prior.num_residuals() > 0) {
-      least_squares.AddResidualBlock(&prior, nullptr, theta.data());
+      least_squares.AddResidualBlock(&prior, nullptr, x.data());
     }
     const int size = static_cast<int>(theta.size());
     if (options.held && size == 1) {
-      least_squares.SetParameterBlockConstant(theta.data());
+      least_squares.SetParameterBlockConstant(x.data());
     } else if (options.held) {
       const int held = static_cast<int>(numbers + *options.held);
-      least_squares.SetManifold(theta.data(), new ceres::SubsetManifold(size, {held}));
+      least_squares.SetManifold(x.data(), new ceres::SubsetManifold(size, {held}));
     }
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
@@ -383,9 +389,15 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     solver.function_tolerance = options.tolerance;
     solver.parameter_tolerance = 1e-9;
     solver.logging_type = ceres::SILENT;
-    // What the data tell of single numbers would hold back those combinations that only
-    // what is known beforehand tells.
-    if (numbers > 0) solver.initial_trust_region_radius = 1e14;
+    if (numbers > 0) {
+      // Combinations that only what is known beforehand tells are the ones that a step
+      // goes too far along: steps are held back in its units, not in those of what the
+      // data tell of single parameters.
+      solver.jacobi_scaling = false;
+      solver.min_lm_diagonal = 1.0;
+      solver.max_lm_diagonal = 1.0;
+      solver.initial_trust_region_radius = 1.0;
+    }
     // With bounds Ceres searches along every step; a cubic would ask for J there.
     solver.line_search_interpolation_type = ceres::BISECTION;
     solver.max_num_line_search_step_size_iterations = 3;
@@ -394,12 +406,13 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &least_squares, &summary);
     fit.cut = summary.termination_type == ceres::USER_SUCCESS;
-    if (fit.cut) problem.work()->CutShort();
+    if (fit.cut && !options.only_betters) problem.work()->CutShort();
     // Asked to end in the midst of a step, of which nothing is left.
     if (!summary.IsSolutionUsable() && simulator.IsOver()) throw CutShort();
     if (!summary.IsSolutionUsable()) {
       throw NumericalError("fit: the run with the first values diverges");
     }
+    theta = coordinates.ToTheta(x);
     fit.numbers = theta.head(numbers);
     fit.causes = WithValues(start.causes, theta.tail(values.size()));
   }
@@ -412,6 +425,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
                      ? simulator.Residual(theta)
                      : problem.Residual(ChangesOf(problem, candidates, fit));
   fit.prior = PriorOf(candidates, fit);
+  fit.spent = simulator.Used();
   fit.train = MeanSquare(fit.residual, channels, problem.skip(), problem.train());
   fit.held_out = MeanSquare(fit.residual, channels, problem.train(), samples);
   return fit;
@@ -437,7 +451,7 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
   } catch (const InputError&) {
     return std::nullopt;
   } catch (const CutShort&) {
-    problem.work()->CutShort();
+    if (!options.only_betters) problem.work()->CutShort();
     return std::nullopt;
   }
 }

@@ -29,6 +29,7 @@ struct CauseFit : FittedModel {
   double train = 0.0;        ///< mean square of the train part
   double held_out = 0.0;     ///< of the rest; 0 without
   bool cut = false;          ///< ended by its share of the work, or asked to
+  double spent = 0.0;        ///< work [s]
 };
 
 struct FitOptions {
@@ -46,8 +47,9 @@ struct FitOptions {
   /// Place of a parameter of the causes that keeps its value.
   std::optional<Eigen::Index> held = std::nullopt;
   /// Work that it may do [s]: then it ends with the values it has, and no further move
-  /// is begun (Work::CutShort).
+  /// is begun (Work::CutShort), unless it only betters what is known already.
   double share = Work::kUnlimited;
+  bool only_betters = false;
   /// Whether it goes on where the discovery was asked to end: what has to be known of
   /// an answer.
   bool closing = false;

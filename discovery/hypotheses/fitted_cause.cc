@@ -21,10 +21,18 @@ FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause)
 }
 
 bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cause) {
-  constexpr double kAt = 1e-6;  // of the bound
+  constexpr double kAt = 1e-6;       // of the bound
+  constexpr double kNothing = 1e-3;  // of the size that is expected
+  const auto& parameters = candidates[cause.candidate].parameters;
+  const auto sizes =
+      std::ranges::count(parameters, Role::kAmplitude, &FitParameter::role);
   Index i = 0;
-  for (const FitParameter& parameter : candidates[cause.candidate].parameters) {
+  for (const FitParameter& parameter : parameters) {
     const double value = cause.value[i++];
+    if (parameter.role == Role::kAmplitude && sizes > 1 && parameter.lower == 0.0 &&
+        std::isfinite(parameter.spread) && value <= kNothing * parameter.spread) {
+      return true;
+    }
     if (!IsShape(parameter.role) || parameter.role == Role::kPhase) continue;
     const double upper = parameter.upper;
     const double lower = parameter.lower;

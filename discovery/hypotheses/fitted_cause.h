@@ -17,8 +17,9 @@ struct FittedCause {
 /// With values within the bounds of its parameters.
 FittedCause Bounded(const std::vector<Candidate>& candidates, FittedCause cause);
 
-/// Whether its shape is as far as it may be: the fit asks for what is no such law any
-/// more, as a resonance that does not swing, or a wave longer than the stroke.
+/// Whether its shape is as far as it may be, or one of its sizes is nothing, which may not
+/// be below: the fit asks for what is no such law any more, as a resonance that does not
+/// swing, a wave longer than the stroke, or friction that falls with the load.
 bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cause);
 
 /// Whether one of the causes is that candidate.

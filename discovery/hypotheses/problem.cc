@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -27,6 +28,21 @@ double Floor(const SensorSetup& sensor, const Eigen::MatrixXd& outputs, Index ro
   // A signal without any noise leaves rounding.
   const double rounding = 1e-12 * outputs.row(row).cwiseAbs().maxCoeff();
   return std::max({sensor.resolution / std::sqrt(12.0), rounding, 1e-15});
+}
+
+/// Samples after which an observer has forgotten where it began: the machine may have moved
+/// then, or stood where a wrong encoder did not read it, to exp(-5) of it. Not more than
+/// a tenth of the shortest record.
+Index SettlingSamples(double hertz, const MeasuredRun& run) {
+  constexpr double kForgotten = 5.0;
+  constexpr Index kShare = 10;
+  Index shortest = run.samples();
+  for (std::size_t i = 0; i < run.records.size(); ++i) {
+    shortest = std::min(shortest, run.SamplesOf(i));
+  }
+  const double seconds = kForgotten / (2.0 * std::numbers::pi * hertz);
+  const auto samples = static_cast<Index>(std::ceil(seconds / run.sample_time));
+  return std::min(samples, shortest / kShare);
 }
 
 /// All inputs that much later [s].
@@ -100,7 +116,9 @@ VectorXd DiscoveryProblem::Scaled(const Track& track) const {
     const Index first = run_->records[i].sample;
     scaled.middleCols(first, std::min(skip_, run_->SamplesOf(i))).setZero();
   }
-  return Eigen::Map<const VectorXd>(scaled.data(), scaled.size());
+  VectorXd stacked = Eigen::Map<const VectorXd>(scaled.data(), scaled.size());
+  if (shift_ && !free_errors_) stacked += *shift_;
+  return stacked;
 }
 
 std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
@@ -254,13 +272,24 @@ DiscoveryProblem DiscoveryProblem::TrainPart() const {
 
 DiscoveryProblem DiscoveryProblem::WithSubsteps(int substeps) const {
   DiscoveryProblem changed = *this;
+  if (!in_steps_of_setup_) {
+    changed.in_steps_of_setup_ = std::make_shared<const Machine>(machine_);
+  }
   changed.machine_ = machine_.WithSubsteps(substeps);
   changed.derived_ = std::make_shared<Derived>();
   return changed;
 }
 
+DiscoveryProblem DiscoveryProblem::Shifted(VectorXd shift) const {
+  DiscoveryProblem changed = *this;
+  changed.shift_ = std::make_shared<const VectorXd>(std::move(shift));
+  changed.derived_ = std::make_shared<Derived>();
+  return changed;
+}
+
 DiscoveryProblem DiscoveryProblem::WithRun(MeasuredRun run) const {
-  return DiscoveryProblem(machine_, observer_, std::move(run), skip_, train_)
+  return DiscoveryProblem(in_steps_of_setup_ ? *in_steps_of_setup_ : machine_,
+                          observer_, std::move(run), skip_, train_)
       .Charging(work_)
       .Doubting(numbers_);
 }
@@ -344,8 +373,9 @@ DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
   const double share = run.records.size() > 1 ? 1.0 : train_share;
   const auto train =
       static_cast<Index>(std::lround(share * static_cast<double>(run.samples())));
-  return {machine, observer, std::move(run), machine.setup().compare.skip_samples,
-          train};
+  const Index skip = std::max<Index>(machine.setup().compare.skip_samples,
+                                     SettlingSamples(hertz, run));
+  return {machine, observer, std::move(run), skip, train};
 }
 
 DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
@@ -355,10 +385,12 @@ DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
 }
 
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
-  return DiscoveryProblem(problem.machine(), problem.observer(),
-                          Part(problem.run(), 0, samples), problem.skip(), samples)
-      .Charging(problem.work())
-      .Doubting(problem.numbers());
+  DiscoveryProblem changed = problem;
+  changed.run_ = std::make_shared<const MeasuredRun>(Part(problem.run(), 0, samples));
+  changed.train_ = samples;
+  changed.derived_ = std::make_shared<DiscoveryProblem::Derived>();
+  if (!problem.shift_) return changed;
+  return changed.Shifted(problem.shift_->head(problem.run().outputs.rows() * samples));
 }
 
 double MeanSquare(const VectorXd& residual, Index channels, Index first, Index last) {

@@ -98,7 +98,10 @@ class DiscoveryProblem {
   /// With the same physics in that many steps a control tick. The observer, which is
   /// designed on whole ticks, stays.
   DiscoveryProblem WithSubsteps(int substeps) const;
-  /// With another run of the machine behind the same observer.
+  /// With that added to its scaled innovations: what longer steps make of a run, as far as
+  /// it does not depend on what is fitted.
+  DiscoveryProblem Shifted(Eigen::VectorXd shift) const;
+  /// With another run of the machine behind the same observer, in the steps of the setup.
   DiscoveryProblem WithRun(MeasuredRun run) const;
   /// With its runs counted as that work.
   DiscoveryProblem Charging(std::shared_ptr<Work> work) const;
@@ -110,6 +113,8 @@ class DiscoveryProblem {
       std::function<Eigen::MatrixXd(const Changes&)> errors) const;
 
  private:
+  friend DiscoveryProblem Beginning(const DiscoveryProblem& problem,
+                                    Eigen::Index samples);
   struct Derived;
 
   Machine machine_;
@@ -119,6 +124,8 @@ class DiscoveryProblem {
   Eigen::Index train_;
   std::vector<DoubtedNumber> numbers_;
   std::function<Eigen::MatrixXd(const Changes&)> free_errors_;
+  std::shared_ptr<const Eigen::VectorXd> shift_;      // none: 0
+  std::shared_ptr<const Machine> in_steps_of_setup_;  // none: machine_ is
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
   std::shared_ptr<Derived> derived_;
 };

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/discovery/selection/settled_fit.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -42,6 +42,19 @@ struct Entry : FittedModel {
   double criterion = std::numeric_limits<double>::infinity();
 };
 
+/// Places of the fits that there are, best first.
+std::vector<std::size_t> OrderOf(const DiscoveryProblem& problem,
+                                 const std::vector<std::optional<CauseFit>>& fits) {
+  const std::vector<double> criteria = Criteria(problem, fits);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i]) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::less<>(),
+                           [&](std::size_t i) { return criteria[i]; });
+  return order;
+}
+
 /// Sets that compete for being the present one with one more hypothesis.
 class Contest {
  public:
@@ -54,10 +67,12 @@ class Contest {
  private:
   void FitToBeginning(std::vector<Entry>& entries, std::size_t count,
                       int iterations) const;
-  /// Jacobian of what has been found, if anything has.
+  /// Jacobian of what has been found, if it has one and is still that beside one more
+  /// cause: what explains much changes what numbers of the plant do.
   const MatrixXd* FoundJacobian() const {
-    const MatrixXd& J = present_.fit().jacobian;
-    return J.cols() > 0 ? &J : nullptr;
+    const CauseFit& fit = present_.fit();
+    if (fit.numbers.size() > 0 && fit.train > kFarAboveNoise) return nullptr;
+    return fit.jacobian.cols() > 0 ? &fit.jacobian : nullptr;
   }
 
   const SearchData& data_;
@@ -117,16 +132,27 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   return entries;
 }
 
-/// On the whole train part.
+/// On the whole train part; the best of them to their ends.
 std::vector<std::optional<CauseFit>> Contest::Fit(
     const std::vector<Entry>& entries) const {
+  constexpr std::size_t kToTheEnd = 3;
   std::vector<std::optional<CauseFit>> fits(entries.size());
   const double share = data_.work().Share(static_cast<int>(entries.size()));
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fits[i] = TryFit(data_.problem, data_.candidates, entries[i],
-                     CompareFrom(FoundJacobian(), 8, 1e-4, share));
+    FitOptions options = CompareFrom(FoundJacobian(), 5, 1e-4, share);
+    options.only_betters = true;
+    fits[i] = TryFit(data_.problem, data_.candidates, entries[i], options);
   });
+  std::vector<std::size_t> order = OrderOf(data_.problem, fits);
+  if (order.size() > kToTheEnd) order.resize(kToTheEnd);
+  ParallelFor(static_cast<int>(order.size()), [&](int number) {
+    auto& fit = fits[order[static_cast<std::size_t>(number)]];
+    fit = Settled(data_.problem, data_.candidates, std::move(*fit), share);
+  });
+  // The others may be cut short without harm.
+  order = OrderOf(data_.problem, fits);
+  if (!order.empty() && fits[order.front()]->cut) data_.work().CutShort();
   return fits;
 }
 
@@ -143,7 +169,8 @@ std::string NamesOf(const std::vector<Candidate>& candidates,
 }  // namespace
 
 std::vector<Start> Shortlist(const Evidence& present, const Screening& screening,
-                             const Chance& chance, int most) {
+                             const Chance& chance, int most,
+                             const std::vector<std::size_t>& forbidden) {
   const double most_rest = MostRest(present, screening);
   std::vector<Start> list;
   std::vector<Start> more;
@@ -152,6 +179,8 @@ std::vector<Start> Shortlist(const Evidence& present, const Screening& screening
       return other.candidate == start.cause.candidate;
     };
     if (std::ranges::any_of(present.fit().causes, same)) continue;
+    if (std::ranges::find(forbidden, start.cause.candidate) != forbidden.end())
+      continue;
     if (!present
              .SignificanceOf(start.gain, start.freedom, chance, present.independent())
              .IsMoreThanChance()) {
@@ -190,17 +219,14 @@ Additions ProposeAdditions(const SearchData& data, const Evidence& present,
   }
   if (!finalists.empty()) report("fit of " + NamesOf(data.candidates, finalists));
   std::vector<std::optional<CauseFit>> fits = contest.Fit(finalists);
-  for (auto& fit : fits) {
-    if (fit && !IsCredible(data.candidates, *fit)) fit.reset();
-  }
   Additions additions;
+  for (auto& fit : fits) {
+    if (!fit || IsCredible(data.candidates, *fit)) continue;
+    additions.incredible.push_back(std::move(*fit));
+    fit.reset();
+  }
   const std::vector<double> criteria = Criteria(data.problem, fits);
-  std::vector<std::size_t> order(fits.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::less<>(),
-                           [&](std::size_t i) { return criteria[i]; });
-  for (const std::size_t i : order) {
-    if (!fits[i]) continue;
+  for (const std::size_t i : OrderOf(data.problem, fits)) {
     additions.hypotheses.push_back({fits[i]->causes.back(), criteria[i], 0.0});
     additions.fits.push_back(std::move(*fits[i]));
   }

@@ -17,13 +17,16 @@ namespace mjdiag {
 /// Starts that are worth a fit beside the present set: more than chance, and near
 /// enough to the best of them. The best start of every candidate first, then second
 /// ones, so that a flexible law with many starts does not crowd out a simple one.
-/// @param most  of the first, and twice as many as of the second
+/// @param most       of the first, and twice as many as of the second
+/// @param forbidden  candidates that are not on it
 std::vector<Start> Shortlist(const Evidence& present, const Screening& screening,
-                             const Chance& chance, int most);
+                             const Chance& chance, int most,
+                             const std::vector<std::size_t>& forbidden = {});
 
 /// Sets with one more hypothesis each.
 struct Additions {
   std::vector<CauseFit> fits;  ///< best first; the new one is the last of their causes
+  std::vector<CauseFit> incredible;  ///< of which no name is worth anything
   /// What competes for the place: the new ones of `fits`, in the same order, then those
   /// that were too far behind for a fit.
   std::vector<Hypothesis> hypotheses;

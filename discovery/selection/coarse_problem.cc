@@ -46,6 +46,19 @@ std::optional<DiscoveryProblem> Coarsen(const DiscoveryProblem& problem,
     DiscoveryProblem coarse = problem.WithSubsteps(fewer);
     if (IsNearTo(exact, coarse, problem, changes)) return coarse;
   }
+  if (problem.numbers().empty()) return std::nullopt;
+  constexpr double kOfNoise = 100.0;
+  constexpr double kOfRest = 0.1;
+  const double most =
+      std::max(kOfNoise * Insignificant(problem, exact), kOfRest * exact.squaredNorm());
+  for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
+    const DiscoveryProblem coarse = problem.WithSubsteps(fewer);
+    try {
+      const VectorXd shift = exact - coarse.Residual(changes);
+      if (shift.squaredNorm() < most) return coarse.Shifted(shift);
+    } catch (const NumericalError&) {
+    }
+  }
   return std::nullopt;
 }
 

@@ -9,6 +9,7 @@
 #include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/comparator.h"
 #include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/discovery/selection/settled_fit.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -49,12 +50,18 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
     return Deviance(fit.residual, present.independent(), data.problem.skip(),
                     data.beginning.train());
   };
-  const auto rough = TryFit(data.beginning, data.candidates, model,
-                            CompareFrom(initial, 8, 1e-3, 0.5 * share));
-  if (!rough || early(*rough) - early(present.fit()) > kFar) return std::nullopt;
+  auto rough = TryFit(data.beginning, data.candidates, model,
+                      CompareFrom(initial, 8, 1e-3, 0.5 * share));
+  const auto is_far = [&] { return early(*rough) - early(present.fit()) > kFar; };
+  if (rough && is_far() && present.fit().numbers.size() > 0) {
+    *rough = Settled(data.beginning, data.candidates, std::move(*rough), 0.5 * share);
+  }
+  if (!rough || is_far()) return std::nullopt;
   auto fit = TryFit(data.problem, data.candidates, model,
                     CompareFrom(initial, 8, 1e-5, 0.5 * share));
-  if (!fit || IsIncredible(data, present, *fit)) return std::nullopt;
+  if (!fit) return std::nullopt;
+  *fit = Settled(data.problem, data.candidates, std::move(*fit), 0.5 * share);
+  if (IsIncredible(data, present, *fit)) return std::nullopt;
   return present.Changed(std::move(*fit));
 }
 
@@ -99,6 +106,7 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   std::vector<FittedCause> others;
   const auto consider = [&](const FittedCause& other) {
     if (Has(fit.causes, other.candidate) || Has(others, other.candidate)) return;
+    if (data.IsForbidden(other.candidate)) return;
     if (others.size() < kMost) others.push_back(other);
   };
   const auto simpler =
@@ -183,7 +191,7 @@ bool Simplify(const SearchData& data, HypothesisSet& set) {
     const std::vector<FittedCause>& causes = set.fit().causes;
     const auto simpler =
         SimplerLaw(data.problem.machine().plant(), data.candidates, causes[i]);
-    if (!simpler) continue;
+    if (!simpler || data.IsForbidden(simpler->candidate)) continue;
     if (Has(causes, simpler->candidate) || !data.work().MayBegin("simpler laws"))
       continue;
     if (ExchangeAt(data, set, i, {*simpler})) return true;

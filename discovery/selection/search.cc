@@ -23,6 +23,7 @@ using Eigen::VectorXd;
 constexpr const char* kFurther = "further causes";
 constexpr const char* kNeeded = "whether every cause is needed";
 constexpr const char* kRepeatable = "whether runs are repeatable";
+constexpr const char* kWithout = "searches without single causes";
 constexpr const char* kLastFit = "last fit";
 
 Index BeginningLength(const DiscoveryProblem& problem) {
@@ -33,13 +34,21 @@ Index BeginningLength(const DiscoveryProblem& problem) {
                   problem.skip() + std::max(kShortest, problem.train() / 4));
 }
 
+/// The values that a search without cause i starts from.
+CauseFit WithoutCause(const CauseFit& fit, std::size_t i) {
+  CauseFit rest;
+  static_cast<FittedModel&>(rest) = ModelWithout(fit, i);
+  return rest;
+}
+
 /// A search under way.
 class Search {
  public:
   Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
          const SearchOptions& options, const SearchResult* before)
       : data_{problem, Beginning(problem, BeginningLength(problem)), candidates,
-              DataOf(problem, candidates, options.unseen, options.free_run)},
+              DataOf(problem, candidates, options.unseen, options.free_run),
+              options.forbidden},
         options_(options) {
     if (before == nullptr) return;
     found_before_ = before->fit();
@@ -48,6 +57,7 @@ class Search {
     result_.numbers_alone = before->numbers_alone;
     result_.refuted = before->refuted;
     result_.exchanged = before->exchanged;
+    result_.searched_without = before->searched_without;
   }
 
   SearchResult Run();
@@ -63,6 +73,9 @@ class Search {
   CauseFit FitFoundBefore() const;
   void FitCausesFoundBefore();
   bool Keep(Additions additions, const Chance& chance);
+  void Take(Evidence proposed, std::vector<Hypothesis> rivals, std::size_t i);
+  bool Confirm();
+  void GiveUpWhatIsAhead();
   void MeetUnsteadiness();
   bool AddCause();
   void AddCauses();
@@ -73,12 +86,18 @@ class Search {
   }
   void Settle();
   bool TryExchange();
+  void ExchangeCauses();
+  bool SearchWithout();
   void FitClosely();
 
   const SearchData data_;
   const SearchOptions& options_;
   FittedModel found_before_;
   SearchResult result_;
+  /// Where causes of the present set were added against unseen data: how many, and what
+  /// there was before them.
+  int ahead_ = 0;
+  SearchResult confirmed_;
   double unsteadiness_ = 0.0;
   int rounds_ = 0;
 };
@@ -115,27 +134,59 @@ void Search::FitCausesFoundBefore() {
   result_.evidence = {data_.evidence, std::move(fit), std::move(independent)};
 }
 
-/// Adds the first of the hypotheses that is accepted; false if none is.
+/// Adds the first of the hypotheses that is accepted; else, ahead of what confirms it,
+/// the first that only unseen data turn down. False if there is neither.
 bool Search::Keep(Additions additions, const Chance& chance) {
+  constexpr int kMostAhead = 2;
+  std::optional<std::size_t> ahead;
+  std::vector<Evidence> proposed;
   for (std::size_t i = 0; i < additions.fits.size(); ++i) {
     CauseFit& fit = additions.fits[i];
     VectorXd independent = IndependentShare(data_.problem, fit.residual);
-    Evidence proposed =
-        result_.evidence.Added(std::move(fit), std::move(independent), chance);
-    const Judgement judgement = Judge(result_.evidence, proposed);
-    if (judgement == Judgement::kUnseen) {
-      result_.refuted.push_back(proposed.fit().causes.back());
+    proposed.push_back(
+        result_.evidence.Added(std::move(fit), std::move(independent), chance));
+    const Judgement judgement = Judge(result_.evidence, proposed[i]);
+    if (judgement == Judgement::kAccepted) {
+      Take(std::move(proposed[i]), std::move(additions.hypotheses), i);
+      return true;
     }
-    if (judgement != Judgement::kAccepted) continue;
-    std::vector<Hypothesis> rivals = std::move(additions.hypotheses);
-    rivals.erase(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(i));
-    Rank(rivals);
-    result_.rivals.push_back(std::move(rivals));
-    result_.ladder.push_back(proposed.fit());
-    result_.evidence = std::move(proposed);
-    return true;
+    if (judgement != Judgement::kUnseen) continue;
+    result_.refuted.push_back(proposed[i].fit().causes.back());
+    if (!ahead) ahead = i;
   }
-  return false;
+  if (!ahead || ahead_ >= kMostAhead) return false;
+  if (ahead_++ == 0) confirmed_ = result_;
+  Take(std::move(proposed[*ahead]), std::move(additions.hypotheses), *ahead);
+  return true;
+}
+
+/// @param rivals  in the order of the sets that were proposed, of which it is number i
+void Search::Take(Evidence proposed, std::vector<Hypothesis> rivals, std::size_t i) {
+  rivals.erase(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(i));
+  Rank(rivals);
+  result_.rivals.push_back(std::move(rivals));
+  result_.ladder.push_back(proposed.fit());
+  result_.evidence = std::move(proposed);
+}
+
+/// Whether unseen data agree with the present set, if it was ahead of them.
+bool Search::Confirm() {
+  if (ahead_ == 0) return true;
+  if (Judge(confirmed_.evidence, result_.evidence) != Judgement::kAccepted) {
+    return false;
+  }
+  ahead_ = 0;
+  return true;
+}
+
+/// Goes back to where unseen data last agreed.
+void Search::GiveUpWhatIsAhead() {
+  if (Confirm()) return;
+  confirmed_.refuted = std::move(result_.refuted);
+  confirmed_.significant_rest = true;
+  confirmed_.exchanged = result_.exchanged;
+  result_ = std::move(confirmed_);
+  ahead_ = 0;
 }
 
 /// If the course of the machine depends on the last digit, the fit is looked for around
@@ -162,7 +213,7 @@ bool Search::AddCause() {
       data_.problem, data_.candidates, present.fit(), present.fit().jacobian, kStarts);
   const Chance chance = ChanceOf(screening.trials);
   const std::vector<Start> shortlist =
-      Shortlist(present, screening, chance, options_.shortlist);
+      Shortlist(present, screening, chance, options_.shortlist, data_.forbidden);
   result_.significant_rest = !shortlist.empty();
   if (shortlist.empty() || rounds_++ >= options_.most_causes) return false;
   if (!work().MayBegin(kFurther)) return false;
@@ -170,17 +221,19 @@ bool Search::AddCause() {
       ProposeAdditions(data_, present, shortlist,
                        [this](const std::string& what) { Report(what, 0.5); });
   // What the first order promises may not be there.
-  result_.significant_rest =
-      additions.fits.empty() ||
-      std::ranges::any_of(additions.fits, [&](const CauseFit& after) {
-        return present.SignificanceOf(after, chance, present.independent())
-            .IsMoreThanChance();
-      });
+  const auto is_significant = [&](const CauseFit& after) {
+    return present.SignificanceOf(after, chance, present.independent())
+        .IsMoreThanChance();
+  };
+  result_.significant_rest = (additions.fits.empty() && additions.incredible.empty()) ||
+                             std::ranges::any_of(additions.fits, is_significant) ||
+                             std::ranges::any_of(additions.incredible, is_significant);
   if (!Keep(std::move(additions), chance)) {
     work().MayBegin(kFurther);  // kept if their fits were cut short
     return false;
   }
   result_.exchanged = false;
+  result_.searched_without = false;
   return true;
 }
 
@@ -202,7 +255,11 @@ void Search::AddCauses() {
     result_.served = !options_.serves || options_.serves(result_.fit());
     return result_.served;
   };
-  while (work().MayBegin(kFurther) && serves() && AddCause()) Settle();
+  while (work().MayBegin(kFurther) && serves() && AddCause()) {
+    Settle();
+    Confirm();
+  }
+  GiveUpWhatIsAhead();
 }
 
 /// True if another candidate came into the place of a cause.
@@ -210,6 +267,58 @@ bool Search::TryExchange() {
   if (result_.fit().causes.empty()) return false;
   Report(kOthers, 0.9);
   return Exchange(data_, result_);
+}
+
+void Search::ExchangeCauses() {
+  constexpr int kExchanges = 4;
+  for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
+    if (!result_.fit().causes.empty() && !work().MayBegin(kOthers)) break;
+    if (TryExchange()) {
+      Settle();
+      AddCauses();
+    } else {
+      result_.exchanged = true;
+    }
+  }
+}
+
+/// Searches that may not take one of the causes, from the others; true if the set of one
+/// is better.
+bool Search::SearchWithout() {
+  constexpr double kWhite = 0.9;
+  constexpr double kFarOff = 30.0;  // times what is left: seen by its shape
+  constexpr double kOfBudget = 0.5;
+  const auto is_plain = [&] {
+    return result_.fit().causes.size() < 2 &&
+           IndependentShare(data_.problem, result_.fit().residual).minCoeff() > kWhite;
+  };
+  bool found = false;
+  std::size_t i = result_.fit().causes.size();
+  while (!result_.searched_without && i > 0 && !is_plain() &&
+         work().used() < kOfBudget * work().limit() && work().MayBegin(kWithout)) {
+    --i;
+    SearchResult start = result_;
+    start.evidence = result_.evidence.Changed(WithoutCause(result_.fit(), i));
+    start.rivals.erase(start.rivals.begin() + static_cast<std::ptrdiff_t>(i));
+    SearchOptions options = options_;
+    options.forbidden.push_back(result_.fit().causes[i].candidate);
+    options.exchange = false;
+    options.last_fit = false;
+    options.preliminary = nullptr;
+    const bool has_others = result_.fit().causes.size() > 1;
+    options.serves = [&, has_others](const CauseFit& fit) {
+      return !has_others || fit.train < kFarOff * std::max(1.0, result_.fit().train);
+    };
+    SearchResult other = SearchCauses(data_.problem, data_.candidates, options, &start);
+    if (Judge(result_.evidence, other.evidence) != Judgement::kAccepted) continue;
+    result_ = std::move(other);
+    result_.served = true;
+    result_.exchanged = false;
+    found = true;
+    i = result_.fit().causes.size();
+  }
+  if (i == 0) result_.searched_without = true;
+  return found;
 }
 
 void Search::FitClosely() {
@@ -236,20 +345,17 @@ SearchResult Search::Run() {
   if (options_.preliminary && options_.preliminary(result_.fit())) {
     return std::move(result_);
   }
-  constexpr int kExchanges = 4;
-  for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
-    if (!result_.fit().causes.empty() && !work().MayBegin(kOthers)) break;
-    if (TryExchange()) {
-      Settle();
-      AddCauses();
-    } else {
-      result_.exchanged = true;
-    }
+  if (options_.exchange) {
+    ExchangeCauses();
+    if (SearchWithout()) ExchangeCauses();
   }
   if (options_.last_fit && result_.fit().jacobian.cols() > 0 &&
       work().MayBegin(kLastFit)) {
     FitClosely();
   }
+  std::erase_if(result_.refuted, [&](const FittedCause& cause) {
+    return Has(result_.fit().causes, cause.candidate);
+  });
   return std::move(result_);
 }
 

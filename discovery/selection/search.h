@@ -12,9 +12,15 @@
 //   where the course of the machine depends on the last digit, looks for a better fit
 //   around the one that derivatives led to (unsteady_fit.h).
 //
+// Where unseen data turn down what explains the fitted part, it may be half of the truth:
+// up to two such hypotheses are added ahead, and taken back if what comes with them does
+// not make unseen data agree with all of them.
+//
 // When a round adds nothing each hypothesis is exchanged on trial (moves.h); if one is,
-// rounds go on, four times at most. In the end all values are fitted once more, as
-// closely as possible.
+// rounds go on, four times at most. What came first was chosen while everything else was
+// missing: for each hypothesis a search of its own, which may not take it, starts from the
+// others, and its set is judged as any other. In the end all values are fitted once more,
+// as closely as possible.
 //
 // Where the work that the discovery may do is used up, or it was asked to end (work.h),
 // no further move is begun, and those under way end with the sets they have.
@@ -51,6 +57,10 @@ struct SearchOptions {
   std::function<bool(const CauseFit& fit)> serves;
   /// Whether to fit the causes once more in the end, as closely as possible.
   bool last_fit = true;
+  /// Whether other causes are tried in the place of each, and other sets without it.
+  bool exchange = true;
+  /// Candidates that are not looked at.
+  std::vector<std::size_t> forbidden;
   /// What is tried, which share of a round is done, and the best set so far.
   std::function<void(const std::string& what, double fraction, const CauseFit& best)>
       progress;
@@ -65,8 +75,9 @@ struct SearchResult : HypothesisSet {
   std::vector<FittedCause> refuted;
   /// Whether the problem served to the end (SearchOptions::serves).
   bool served = true;
-  /// Whether other causes have been tried in the place of each.
+  /// Whether other causes have been tried in the place of each, and other sets without it.
   bool exchanged = false;
+  bool searched_without = false;
   /// Whether a screening of what is left shows any candidate to be significant.
   bool significant_rest = false;
 };

@@ -1,6 +1,8 @@
 #pragma once
 // What a search works on, and its moves (addition.h, moves.h).
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
@@ -14,6 +16,11 @@ struct SearchData {
   DiscoveryProblem beginning;  ///< of the problem, for what shows early
   const std::vector<Candidate>& candidates;
   EvidenceData evidence;
+  std::vector<std::size_t> forbidden = {};  ///< candidates that are not looked at
+
+  bool IsForbidden(std::size_t candidate) const {
+    return std::ranges::find(forbidden, candidate) != forbidden.end();
+  }
 
   Work& work() const { return *problem.work(); }
 };

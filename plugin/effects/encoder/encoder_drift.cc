@@ -29,7 +29,7 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
     return ValuesOf({2e-3 * k.stroke / k.duration});
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    return Proportional(r.Sign() * 0.02 * k.stroke / k.duration);
+    return Proportional(r.Sign() * 4e-3 * k.stroke / k.duration);
   }
 };
 

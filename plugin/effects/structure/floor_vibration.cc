@@ -40,10 +40,13 @@ class FloorVibrationEffect final : public JointForceEffect {
   EffectValues Spread(const Scales& k) const override {
     return ValuesOf({k.mass, kAnySize, kAnySize});
   }
-  Sized Draw(const Scales&, Random& r) const override {
+  Sized Draw(const Scales& k, Random& r) const override {
+    constexpr double kShaking = 2.0;  // [m/s^2], a fifth of gravity
     const double frequency = r.Log(8.0, 200.0);
     const double phase = r.Uniform(-std::numbers::pi, std::numbers::pi);
-    return [=](double s) { return ValuesOf({s * 2000.0, frequency, phase}); };
+    return [=, mass = k.mass](double s) {
+      return ValuesOf({s * kShaking * mass, frequency, phase});
+    };
   }
 };
 
