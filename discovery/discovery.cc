@@ -150,6 +150,7 @@ void Discoverer::SearchAll() {
     problem_ = WithDoubts(problem_, KnownNumbers());
   }
   SearchBehindObservers(options);
+  work_->EndLaws();
   LearnCurves(options);
   FitFree();
   work_->EndSearch();

@@ -6,8 +6,8 @@
 namespace mjdiag {
 namespace {
 
-// Of the budget, for intervals and figures of what a search has found.
-constexpr double kForTheRest = 0.15;
+// Of the budget: the rest is for intervals and figures of what a search has found.
+constexpr double kOfSearch = 0.85;
 constexpr double kCores = 2.0;
 
 }  // namespace
@@ -28,8 +28,7 @@ void Work::Add(double seconds) { nanoseconds_ += std::llround(1e9 * seconds); }
 double Work::used() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
 
 double Work::Left() const {
-  const double all = searching_ ? (1.0 - kForTheRest) * limit_ : limit_;
-  return std::max(all - used(), 0.0);
+  return std::max(part_ * limit_ - used(), 0.0);
 }
 
 bool Work::MayBegin(const std::string& what, double seconds) {
@@ -40,9 +39,13 @@ bool Work::MayBegin(const std::string& what, double seconds) {
 
 double Work::Share(int count) const { return Left() / std::max(count, 1); }
 
-void Work::EndSearch() {
+void Work::EndLaws() { EndWith(kOfSearch); }
+
+void Work::EndSearch() { EndWith(1.0); }
+
+void Work::EndWith(double part) {
   if (cut_ && left_out_.empty()) left_out_.emplace_back("the end of a fit");
-  searching_ = false;
+  part_ = part;
   cut_ = false;
 }
 

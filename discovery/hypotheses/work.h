@@ -50,19 +50,22 @@ class Work {
   /// What each of `count` parts of a move may use, so that together they do not use
   /// more than is left.
   double Share(int count) const;
-  /// The search is over: from now on what was kept for the rest may be used as well.
+  /// The search among laws is over, or all of it: from now on what was kept for forces
+  /// without a name, or for the answer, may be used as well.
+  void EndLaws();
   void EndSearch();
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
   double Left() const;
+  void EndWith(double part);
 
   double limit_;
   std::function<bool()> stop_;
   // Whole numbers, whose sum does not depend on their order.
   std::atomic<std::int64_t> nanoseconds_ = 0;
   std::atomic<bool> cut_ = false;
-  bool searching_ = true;
+  double part_ = 0.7;  // of the limit, that may be used by now
   std::vector<std::string> left_out_;
 };
 

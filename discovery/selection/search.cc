@@ -286,8 +286,9 @@ void Search::ExchangeCauses() {
 /// is better.
 bool Search::SearchWithout() {
   constexpr double kWhite = 0.9;
-  constexpr double kFarOff = 30.0;  // times what is left: seen by its shape
-  constexpr double kOfBudget = 0.5;
+  constexpr double kFarOff = 30.0;       // times what is left: seen by its shape
+  constexpr double kOfBudget = 0.5;      // that may be used when one begins,
+  constexpr double kMostOfBudget = 0.7;  // and goes on
   const auto is_plain = [&] {
     return result_.fit().causes.size() < 2 &&
            IndependentShare(data_.problem, result_.fit().residual).minCoeff() > kWhite;
@@ -307,7 +308,8 @@ bool Search::SearchWithout() {
     options.preliminary = nullptr;
     const bool has_others = result_.fit().causes.size() > 1;
     options.serves = [&, has_others](const CauseFit& fit) {
-      return !has_others || fit.train < kFarOff * std::max(1.0, result_.fit().train);
+      const bool near = fit.train < kFarOff * std::max(1.0, result_.fit().train);
+      return (near || !has_others) && work().used() < kMostOfBudget * work().limit();
     };
     SearchResult other = SearchCauses(data_.problem, data_.candidates, options, &start);
     if (Judge(result_.evidence, other.evidence) != Judgement::kAccepted) continue;

@@ -23,8 +23,12 @@ TEST(Work, EndsWhenItIsUsedUpAndKeepsWhatIsLeftOut) {
 
 TEST(Work, KeepsAPartForWhatComesAfterTheSearch) {
   Work work(10.0);
-  work.Add(9.0);
+  work.Add(8.0);
   EXPECT_FALSE(work.MayBegin("further causes"));
+  work.EndLaws();
+  EXPECT_TRUE(work.MayBegin("a curve"));
+  work.Add(1.0);
+  EXPECT_FALSE(work.MayBegin("a curve"));
   work.EndSearch();
   EXPECT_TRUE(work.MayBegin("intervals"));
   EXPECT_NEAR(work.Share(2), 0.5, 1e-9);
