@@ -60,6 +60,7 @@ void Publish(const OutputOptions& options, const std::string& name,
 
 void AddNotes(const std::vector<std::string>& notes, nlohmann::json& document,
               std::string& text) {
+  if (notes.empty()) return;
   document["notes"] = notes;
   for (const std::string& note : notes) text += "\nnote: " + note + "\n";
 }

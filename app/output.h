@@ -43,8 +43,8 @@ void Publish(const OutputOptions& options, const std::string& name,
              const nlohmann::json& document, const std::string& text,
              const std::function<NamedPage()>& page = {});
 
-/// What one should know about the records that a command read: `notes` of the document,
-/// below the text and on the page.
+/// What one should know about the records that a command read, if anything: `notes` of
+/// the document, below the text and on the page.
 void AddNotes(const std::vector<std::string>& notes, nlohmann::json& document,
               std::string& text);
 void AddNotes(const std::vector<std::string>& notes, Page& page);
