@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -101,48 +102,53 @@ double UnlikeCommand(const Setup& setup, const Record& record, const AxisSetup& 
   return std::min((input - command).norm(), (input + command).norm()) / input.norm();
 }
 
-constexpr double kLikeCommand = 0.4;
-constexpr double kLiker = 2.0;  // than the record as it is
+/// What the controllers saw: UnlikeCommand of a record and of one without a mistake.
+struct Sight {
+  double as_is = 0.0;
+  double corrected = 0.0;
 
-/// Whether the controllers saw the reading with the other sign.
-/// @param otherwise  what is thought where they command neither
-bool SawFlipped(const Setup& setup, const Record& measured, const AxisSetup& axis,
-                bool otherwise) {
-  const double as_is = UnlikeCommand(setup, measured, axis);
-  const double flipped =
-      UnlikeCommand(setup, WithScaled(measured, axis.sensor, -1.0), axis);
-  if (flipped < kLikeCommand && kLiker * flipped < as_is) return true;
-  return as_is >= kLikeCommand && otherwise;
+  /// None if they command the recorded input for neither.
+  std::optional<bool> WasMistaken() const {
+    constexpr double kLike = 0.4;
+    constexpr double kLiker = 2.0;
+    if (corrected < kLike && kLiker * corrected < as_is) return true;
+    if (as_is < kLike) return false;
+    return std::nullopt;
+  }
+};
+
+/// @param factor  of the reading over its reference; either may be the mistaken one
+Sight Look(const Setup& setup, const Record& measured, const AxisSetup& axis,
+           double factor) {
+  const auto with = [&](const std::string& channel, double correction) {
+    return UnlikeCommand(setup, WithScaled(measured, channel, correction), axis);
+  };
+  return {UnlikeCommand(setup, measured, axis),
+          std::min(with(axis.sensor, 1.0 / factor), with(ReferenceOf(axis), factor))};
 }
 
-/// Of a reading whose size is nearer to a mistake than to its reference: whether the
-/// controllers saw it, or its reference, without that mistake. A loop need not follow.
-std::optional<Mistake> SawInOtherUnits(const Setup& setup, const Record& measured,
-                                       const AxisSetup& axis,
-                                       const Likeness& likeness) {
+/// Of a reading whose size is nearer to a mistake than to its reference: the one that the
+/// controllers did not see. A loop need not follow.
+std::optional<Mistake> UnseenMistake(const Setup& setup, const Record& measured,
+                                     const AxisSetup& axis, const Likeness& likeness) {
   std::optional<Mistake> found;
-  std::optional<double> as_is;
-  double best = kLikeCommand;
+  double best = std::numeric_limits<double>::infinity();
   const bool angle = IsAngle(setup.channels.Sensor(axis.sensor).unit);
   for (const Mistake& size : MistakesOf(angle)) {
     const double half = std::sqrt(std::max(size.factor, 1.0 / size.factor));
     if (!IsAbout(likeness.factor, size.factor, half)) continue;
-    if (!as_is) as_is = UnlikeCommand(setup, measured, axis);
     for (const Mistake& mistake : {size, Flipped(size)}) {
-      for (const Record& corrected :
-           {WithScaled(measured, axis.sensor, 1.0 / mistake.factor),
-            WithScaled(measured, ReferenceOf(axis), mistake.factor)}) {
-        const double unlike = UnlikeCommand(setup, corrected, axis);
-        if (!(unlike < best && kLiker * unlike < *as_is)) continue;
-        best = unlike;
-        found = mistake;
-      }
+      const Sight sight = Look(setup, measured, axis, mistake.factor);
+      if (!sight.WasMistaken().value_or(false) || sight.corrected >= best) continue;
+      best = sight.corrected;
+      found = mistake;
     }
   }
   return found;
 }
 
-/// Refuses the reading of an axis for what it is like.
+/// Refuses the reading of an axis for what it is like. A machine that is stuck, or beyond
+/// its bandwidth, may move like that, too: then the controllers saw what is recorded.
 void JudgeReading(const Setup& setup, const Record& measured, const AxisSetup& axis,
                   const Likeness& likeness, const std::string& against,
                   const std::string& otherwise) {
@@ -151,12 +157,14 @@ void JudgeReading(const Setup& setup, const Record& measured, const AxisSetup& a
   const SensorSetup& sensor = setup.channels.Sensor(axis.sensor);
   const bool alike = std::abs(likeness.correlation) > kLike;
   const auto mistake = FindMistake(likeness, IsAngle(sensor.unit) ? kFarOff : 0.0);
-  if (mistake && alike) {
+  if (mistake && alike &&
+      Look(setup, measured, axis, mistake->factor).WasMistaken().value_or(true)) {
     RefuseUnit(axis.sensor, sensor.unit, *mistake, against, otherwise);
   }
   if (likeness.correlation > kUnlike) return;
-  if (SawFlipped(setup, measured, axis,
-                 alike && likeness.broad && IsAbout(likeness.factor, 1.0, kSameSize))) {
+  const bool seems =
+      alike && likeness.broad && IsAbout(likeness.factor, 1.0, kSameSize);
+  if (Look(setup, measured, axis, -1.0).WasMistaken().value_or(seems)) {
     RefuseSign(axis.sensor, against, otherwise);
   }
 }
@@ -257,7 +265,7 @@ bool CheckAgainstReferences(const Setup& setup, const Record& measured) {
                                     CountedSamples(setup, measured, reference));
     const std::string against = "its reference '" + reference + "'";
     JudgeReading(setup, measured, axis, likeness, against, "'" + reference + "'");
-    if (const auto mistake = SawInOtherUnits(setup, measured, axis, likeness)) {
+    if (const auto mistake = UnseenMistake(setup, measured, axis, likeness)) {
       RefuseUnit(axis.sensor, setup.channels.Sensor(axis.sensor).unit, *mistake,
                  against, "'" + reference + "'");
     }

@@ -122,6 +122,18 @@ TEST(OutOfPhase, IsNotFlipped) {
   EXPECT_THAT(machine.Check(record), IsEmpty());
 }
 
+// A shaft that is stuck moves about a fiftieth of its reference, in rad.
+TEST(StuckShaft, IsNotInDegrees) {
+  const CheckedMachine machine("servo");
+  const Record record = machine.Run("linear_stiffness@shaft:stiffness=22");
+  const Likeness likeness = Liken(record.At("q").samples, record.At("q_ref").samples);
+  ASSERT_GT(likeness.correlation, 0.9);
+  ASSERT_NEAR(likeness.factor, 1.0 / kPerRad, 0.5 / kPerRad);
+  EXPECT_NO_THROW(machine.Check(record));
+  EXPECT_THAT(machine.Refusal(Scaled(machine.Run(), "q", 1.0 / kPerRad)),
+              HasSubstr("'q' reads pi / 180 times"));
+}
+
 /// The voice coil under several sines, below and above its resonance at 13.8 Hz.
 class OpenLoopUnits : public ::testing::Test {
  protected:
