@@ -116,8 +116,9 @@ void RunCalibration(CalibrateCommand& command) {
   setup.calibration.reset();
   const Machine machine(setup);
   std::vector<Record> records;
+  std::vector<std::string> notes;
   for (const std::string& file : command.records) {
-    records.push_back(ReadRecord(file, setup.record));
+    records.push_back(ReadMeasured(setup, file, notes));
   }
   PrepareOutput(command.output);
   CalibrationReport report;
@@ -138,8 +139,10 @@ void RunCalibration(CalibrateCommand& command) {
   CopySetup(setup_file, folder);
   WriteCalibration(folder / kCalibrationFile, report.calibration);
   WriteFilters(folder / kCalibratedFilters, design);
-  Publish(command.output, "calibration_report", CalibrationDocument(command, report),
-          CalibrationText(command, report));
+  nlohmann::json document = CalibrationDocument(command, report);
+  std::string text = CalibrationText(command, report);
+  AddNotes(notes, document, text);
+  Publish(command.output, "calibration_report", document, text);
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ std::string DerivedTable(const Comparison& comparison) {
 void Compare(const CompareOptions& options) {
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
-  const Record measured = ReadRecord(options.record, subject.setup().record);
+  std::vector<std::string> notes;
+  const Record measured = ReadMeasured(subject.setup(), options.record, notes);
   if (options.open_loop) {
     subject.machine =
         subject.machine.WithSetup(WithoutControllers(subject.machine.setup()));
@@ -68,11 +69,14 @@ void Compare(const CompareOptions& options) {
   document.update(ToJson(subject));
   document["record"] = options.record;
   document["command"] = CommandLine();
-  const std::string text = ComparisonVerdict(comparison) + "\n\n" +
-                           ChannelTable(comparison) + DerivedTable(comparison);
+  std::string text = ComparisonVerdict(comparison) + "\n\n" + ChannelTable(comparison) +
+                     DerivedTable(comparison);
+  AddNotes(notes, document, text);
   const RunDescription run{CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
   Publish(options.output, "compare", document, text, [&] {
-    return NamedPage{"compare", ComparisonPage(comparison, run)};
+    NamedPage page{"compare", ComparisonPage(comparison, run)};
+    AddNotes(notes, page.page);
+    return page;
   });
 }
 

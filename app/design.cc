@@ -107,8 +107,9 @@ NamedPage PageOfDesign(const Machine& machine, const DiagnosisDesign& design,
 void Design(const DesignOptions& options) {
   const Machine machine = LoadSubject(options.machine).nominal;
   PrepareOutput(options.output);
+  std::vector<std::string> notes;  // of records, and there is none
   const PreparedDiagnosis prepared =
-      Prepare(machine, options.source, MakeExcitation(machine.setup(), {}));
+      Prepare(machine, options.source, MakeExcitation(machine.setup(), {}, notes));
   const DesignFacts facts = FactsOf(machine, options.method == "lp");
   auto document = nlohmann::json::parse(FiltersJson(prepared.design));
   document["command"] = CommandLine();

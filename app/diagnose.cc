@@ -21,7 +21,8 @@ struct DiagnoseOptions {
 
 void Diagnose(const DiagnoseOptions& options) {
   const Machine machine = LoadSubject(options.machine).nominal;
-  const Record record = ReadRecord(options.record, machine.setup().record);
+  std::vector<std::string> notes;
+  const Record record = ReadMeasured(machine.setup(), options.record, notes);
   const Excitation motion =
       NeedsMotion(options.source) ? Replay(machine.setup(), record) : Excitation{};
   PrepareOutput(options.output);
@@ -30,8 +31,13 @@ void Diagnose(const DiagnoseOptions& options) {
   auto document = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
-  Publish(options.output, "diagnosis", document, Describe(diagnosis.result),
-          [&] { return PageOf(prepared.design, diagnosis, document["record"]); });
+  std::string text = Describe(diagnosis.result);
+  AddNotes(notes, document, text);
+  Publish(options.output, "diagnosis", document, text, [&] {
+    NamedPage page = PageOf(prepared.design, diagnosis, document["record"]);
+    AddNotes(notes, page.page);
+    return page;
+  });
 }
 
 }  // namespace

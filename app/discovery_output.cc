@@ -34,6 +34,7 @@ std::string NotesText(const std::vector<std::string>& notes) {
 
 std::string Describe(const Discovery& discovery) {
   return DiscoveryAnswer(discovery) + "\n" + Section("Causes", CauseTable(discovery)) +
+         Section("Explanations", ExplanationTable(discovery)) +
          Section("Numbers of the plant", CalibrationTable(discovery)) +
          Section("After each cause", LadderTable(discovery)) +
          Section("After each cause, on the validation record",

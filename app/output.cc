@@ -58,6 +58,19 @@ void Publish(const OutputOptions& options, const std::string& name,
   }
 }
 
+void AddNotes(const std::vector<std::string>& notes, nlohmann::json& document,
+              std::string& text) {
+  if (notes.empty()) return;
+  document["notes"] = notes;
+  for (const std::string& note : notes) text += "\nnote: " + note + "\n";
+}
+
+void AddNotes(const std::vector<std::string>& notes, Page& page) {
+  if (notes.empty()) return;
+  page.AddHeading("Notes");
+  for (const std::string& note : notes) page.AddParagraph(note);
+}
+
 RecordFormat ParseRecordFormat(const std::string& name) {
   if (name == "mat") return RecordFormat::kMat5;
   if (name == "mat73") return RecordFormat::kMat73;

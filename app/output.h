@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/record_file.h"
@@ -41,6 +42,12 @@ void PrepareOutput(const OutputOptions& options);
 void Publish(const OutputOptions& options, const std::string& name,
              const nlohmann::json& document, const std::string& text,
              const std::function<NamedPage()>& page = {});
+
+/// What one should know about the records that a command read, if anything: `notes` of
+/// the document, below the text and on the page.
+void AddNotes(const std::vector<std::string>& notes, nlohmann::json& document,
+              std::string& text);
+void AddNotes(const std::vector<std::string>& notes, Page& page);
 
 /// "csv", "mat" (v5) or "mat73" to format and file extension.
 RecordFormat ParseRecordFormat(const std::string& name);

@@ -68,8 +68,9 @@ struct TitledRecord {
 
 /// The healthy machine, and beside it the one with the faults and effects asked for.
 std::vector<TitledRecord> SimulateRuns(const Subject& subject,
-                                       const MotionOptions& motion) {
-  const Excitation excitation = MakeExcitation(subject.setup(), motion);
+                                       const MotionOptions& motion,
+                                       std::vector<std::string>& notes) {
+  const Excitation excitation = MakeExcitation(subject.setup(), motion, notes);
   RunOptions faulty = subject.options;
   SetMotion(motion, faulty);
   faulty.log_joints = true;
@@ -88,10 +89,11 @@ std::vector<TitledRecord> SimulateRuns(const Subject& subject,
 
 /// Of a measurement, which has encoders but no joints, the joints are estimated.
 std::vector<TitledRecord> ReadRuns(const Machine& machine,
-                                   const std::vector<std::string>& files) {
+                                   const std::vector<std::string>& files,
+                                   std::vector<std::string>& notes) {
   std::vector<TitledRecord> runs;
   for (const std::string& file : files) {
-    Record record = ReadRecord(file, machine.setup().record);
+    Record record = ReadMeasured(machine.setup(), file, notes);
     const bool logged = std::ranges::any_of(
         record.channels(),
         [](const Channel& channel) { return channel.name.starts_with("joint."); });
@@ -184,8 +186,10 @@ DiagnosisOverlay DiagnosisOf(const RenderOptions& options, const Machine& machin
   source.nominal.linear = options.motion.linear;
   Excitation motion;
   if (NeedsMotion(source)) {
-    motion = options.records.empty() ? MakeExcitation(machine.setup(), options.motion)
-                                     : Replay(machine.setup(), record);
+    std::vector<std::string> known;
+    motion = options.records.empty()
+                 ? MakeExcitation(machine.setup(), options.motion, known)
+                 : Replay(machine.setup(), record);
   }
   return OverlayOf(machine, Prepare(machine, source, motion), record, runs.size() - 1);
 }
@@ -196,13 +200,14 @@ void Render(RenderOptions options) {
   for (const std::string& text : options.amplify) {
     ParseAmplification(text, options.clip.picture);
   }
-  const std::vector<TitledRecord> titled = options.records.empty()
-                                               ? std::vector<TitledRecord>()
-                                               : ReadRuns(machine, options.records);
+  std::vector<std::string> notes;
+  const std::vector<TitledRecord> titled =
+      options.records.empty() ? std::vector<TitledRecord>()
+                              : ReadRuns(machine, options.records, notes);
   PrepareOutput(options.output);
   CheckPicture(machine.plant(), options.clip.picture);
   const std::vector<TitledRecord> records =
-      titled.empty() ? SimulateRuns(subject, options.motion) : titled;
+      titled.empty() ? SimulateRuns(subject, options.motion, notes) : titled;
   std::vector<ClipRun> runs;
   runs.reserve(records.size());
   for (const TitledRecord& run : records) runs.push_back({run.title, &run.record});
@@ -243,6 +248,7 @@ void Render(RenderOptions options) {
     text = "clip: " + (folder / "clip.mp4").string() + " (" +
            std::to_string(summary.frames) + " frames, " + summary.codec + ")\n";
   }
+  AddNotes(notes, document, text);
   Publish(options.output, "render", document, text);
 }
 

@@ -66,7 +66,8 @@ void Simulate(const SimulateOptions& options) {
   SetMotion(options.motion, subject.options);
   CheckMode(subject.setup().control, subject.options.mode);
   subject.options.log_joints = options.log_joints;
-  const Excitation excitation = MakeExcitation(subject.setup(), options.motion);
+  std::vector<std::string> notes;
+  const Excitation excitation = MakeExcitation(subject.setup(), options.motion, notes);
   PrepareOutput(options.output);
 
   std::optional<PreparedDiagnosis> prepared;
@@ -132,6 +133,7 @@ void Simulate(const SimulateOptions& options) {
       return PageOf(prepared->design, diagnosis, "simulated: " + Describe(subject));
     };
   }
+  AddNotes(notes, document, text);
   Publish(options.output, "simulate", document, text, page);
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "app/format.h"
 #include "app/progress.h"
+#include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/quantity.h"
@@ -139,9 +141,19 @@ Subject LoadSubject(const MachineOptions& options) {
   return subject;
 }
 
-Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion) {
+Record ReadMeasured(const Setup& setup, const std::string& file,
+                    std::vector<std::string>& notes) {
+  MeasuredFile measured = mjdiag::ReadMeasured(setup, file);
+  for (const std::string& note : measured.notes) {
+    notes.push_back(std::filesystem::path(file).filename().string() + ": " + note);
+  }
+  return std::move(measured.record);
+}
+
+Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion,
+                          std::vector<std::string>& notes) {
   if (!motion.replay.empty()) {
-    Record record = ReadRecord(motion.replay, setup.record);
+    Record record = ReadMeasured(setup, motion.replay, notes);
     if (motion.duration > 0.0) {
       const auto wanted = static_cast<Eigen::Index>(
           std::max(1.0, motion.duration / record.sample_time() + 0.5));

@@ -52,8 +52,14 @@ void AddMotionOptions(CLI::App& command, MotionOptions& options);
 /// InputError on a fault or effect that the machine does not have.
 Subject LoadSubject(const MachineOptions& options);
 
+/// A record that a command was given; what one should know about it comes behind the
+/// notes, with the name of the file.
+Record ReadMeasured(const Setup& setup, const std::string& file,
+                    std::vector<std::string>& notes);
+
 /// The trajectory (cut to the duration) or the replayed record.
-Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion);
+Excitation MakeExcitation(const Setup& setup, const MotionOptions& motion,
+                          std::vector<std::string>& notes);
 /// Mode, noise and seed into the run's options.
 void SetMotion(const MotionOptions& motion, RunOptions& options);
 /// A run as the options want it, with a progress bar named `label`.

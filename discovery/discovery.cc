@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
@@ -253,9 +254,10 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     for (const MeasuredRecord& one : records) {
       const bool named = split.Several() && !one.name.empty();
       const std::string of = named ? one.name + ": " : role;
-      for (const std::string& note : CheckRecord(one.machine, one.record)) {
-        notes.push_back(of + note);
-      }
+      std::vector<std::string> of_record = one.notes;
+      std::ranges::copy(CheckRecord(one.machine, one.record),
+                        std::back_inserter(of_record));
+      for (const std::string& note : of_record) notes.push_back(of + note);
     }
   };
   check(split.fit, "");

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "mjdiag/signals/record_file.h"
+#include "mjdiag/plugin/setup/measured_file.h"
 
 namespace mjdiag {
 
@@ -19,9 +19,10 @@ Measurements ReadMeasurements(const Machine& nominal,
     all.insert(all.end(), one.overrides.begin(), one.overrides.end());
     const Machine during =
         one.overrides.empty() ? nominal : nominal.WithSetup(ReadSetup(setup, all));
+    MeasuredFile measured = ReadMeasured(during.setup(), one.file);
     (one.fit ? measurements.fit : measurements.unseen)
-        .push_back({ReadRecord(one.file, during.setup().record), during,
-                    one.file.filename().string()});
+        .push_back({std::move(measured.record), during, one.file.filename().string(),
+                    std::move(measured.notes)});
   }
   return measurements;
 }

@@ -18,7 +18,8 @@ struct MeasuredRecord {
   /// The machine as it was during the record: controllers with other gains, for example.
   /// Its plant, its rates and its channels are those of all records.
   Machine machine;
-  std::string name{};  ///< of its file
+  std::string name{};                ///< of its file
+  std::vector<std::string> notes{};  ///< of how the file became the record
 };
 
 struct Measurements {

@@ -1,7 +1,9 @@
 #include "mjdiag/report/discovery_json.h"
 
 #include <cmath>
+#include <utility>
 
+#include "mjdiag/discovery/explanations.h"
 #include "mjdiag/plugin/effects/effect.h"
 
 namespace mjdiag {
@@ -31,14 +33,19 @@ json ParametersOf(const FoundCause& found) {
   return parameters;
 }
 
+json IdentityOf(const Cause& cause) {
+  return {{"effect", cause.name()},
+          {"site", cause.site},
+          {"fault", cause.effect->IsFault()}};
+}
+
 json AlternativesOf(const FoundCause& found) {
   json alternatives = json::array();
   for (const Alternative& alternative : found.alternatives) {
-    alternatives.push_back({{"effect", alternative.cause.name()},
-                            {"site", alternative.cause.site},
-                            {"fault", alternative.cause.effect->IsFault()},
-                            {"probability", Finite(alternative.probability)},
-                            {"indistinguishable", alternative.indistinguishable}});
+    json one = IdentityOf(alternative.cause);
+    one["probability"] = Finite(alternative.probability);
+    one["indistinguishable"] = alternative.indistinguishable;
+    alternatives.push_back(std::move(one));
   }
   return alternatives;
 }
@@ -46,15 +53,25 @@ json AlternativesOf(const FoundCause& found) {
 json CausesOf(const Discovery& discovery) {
   json causes = json::array();
   for (const FoundCause& found : discovery.causes) {
-    causes.push_back({{"effect", found.cause.name()},
-                      {"site", found.cause.site},
-                      {"fault", found.cause.effect->IsFault()},
-                      {"parameters", ParametersOf(found)},
-                      {"probability", Finite(found.probability)},
-                      {"alternatives", AlternativesOf(found)},
-                      {"unnamed", TextOrNull(found.unnamed)}});
+    json cause = IdentityOf(found.cause);
+    cause["parameters"] = ParametersOf(found);
+    cause["probability"] = Finite(found.probability);
+    cause["alternatives"] = AlternativesOf(found);
+    cause["unnamed"] = TextOrNull(found.unnamed);
+    causes.push_back(std::move(cause));
   }
   return causes;
+}
+
+json ExplanationList(const Discovery& discovery) {
+  json explanations = json::array();
+  for (const CauseSet& explanation : ExplanationsOf(discovery.causes)) {
+    json causes = json::array();
+    for (const Cause& cause : explanation.causes) causes.push_back(IdentityOf(cause));
+    explanations.push_back(
+        {{"probability", Finite(explanation.probability)}, {"causes", causes}});
+  }
+  return explanations;
 }
 
 json CalibrationOf(const Discovery& discovery) {
@@ -160,6 +177,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
           {"causes", CausesOf(discovery)},
+          {"explanations", ExplanationList(discovery)},
           {"calibration", CalibrationOf(discovery)},
           {"mismatch",
            {{"before", FiguresOf(discovery.mismatch_before)},

@@ -13,6 +13,8 @@ namespace mjdiag {
 /// the design:
 ///
 ///   causes[].fault, parameters.<name>.sd, alternatives[].indistinguishable
+///   explanations [{probability, causes: [{effect, site, fault}]}]: all sets of causes
+///                that the record leaves possible, likeliest first (explanations.h)
 ///   units        {channel: unit of its mismatch and floor}
 ///   whiteness    {before, after}: share of the innovations' power that is white
 ///   train_share  of the record that fits saw

@@ -60,6 +60,11 @@ constexpr const char* kHowToReadCauses =
     "of the cause among all candidates that could take its place; candidates below 1 % "
     "are not listed.";
 
+constexpr const char* kHowToReadExplanations =
+    "What the record leaves possible: the causes that were found, and sets in which "
+    "one "
+    "of them is exchanged for a candidate of its place. Sets below 1 % are not listed.";
+
 void AddCauses(Page& page, const Discovery& discovery) {
   if (discovery.causes.empty()) return;
   page.AddHeading("Causes");
@@ -67,6 +72,11 @@ void AddCauses(Page& page, const Discovery& discovery) {
   page.AddHeading("Candidates");
   page.AddTable(CandidateTable(discovery));
   page.AddParagraph(kHowToReadCauses);
+  const Table explanations = ExplanationTable(discovery);
+  if (explanations.rows.empty()) return;
+  page.AddHeading("Explanations");
+  page.AddTable(explanations);
+  page.AddParagraph(kHowToReadExplanations);
 }
 
 void AddCalibration(Page& page, const Discovery& discovery) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <set>
 
+#include "mjdiag/discovery/explanations.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -258,6 +259,20 @@ Table CauseTable(const Discovery& discovery) {
       row[4] = IntervalText(parameter);
       table.rows.push_back(row);
     }
+  }
+  return table;
+}
+
+Table ExplanationTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Explanation"}, {""}, {"Probability", true}};
+  const std::vector<CauseSet> explanations = ExplanationsOf(discovery.causes);
+  if (explanations.size() < 2) return table;
+  for (const CauseSet& explanation : explanations) {
+    std::vector<std::string> causes;
+    for (const Cause& cause : explanation.causes) causes.push_back(CauseName(cause));
+    table.rows.push_back({Join(causes), Bar(explanation.probability),
+                          Percent(100.0 * explanation.probability)});
   }
   return table;
 }

@@ -33,6 +33,8 @@ std::optional<double> TimesFloor(const std::map<std::string, double>& rms,
 Table CauseTable(const Discovery& discovery);
 /// Every cause and who else could have been in its place.
 Table CandidateTable(const Discovery& discovery);
+/// All sets of causes that survive; no rows if there is one alone.
+Table ExplanationTable(const Discovery& discovery);
 /// The numbers of the plant that are others than the model says.
 Table CalibrationTable(const Discovery& discovery);
 /// Errors of the record after each cause that was added.

@@ -119,6 +119,45 @@ class Selector {
   Selection selection_;
 };
 
+/// The columns of a file that were asked for, in SI units.
+class SelectedColumns {
+ public:
+  SelectedColumns(const std::filesystem::path& file,
+                  const std::optional<ColumnMap>& map)
+      : source_(Open(file)), selection_(Selector(file.string(), *source_).Select(map)) {
+    values_ = source_->Read(selection_.columns);
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      values_[i] *= selection_.units[i].factor;
+    }
+  }
+
+  const Eigen::VectorXd& times() const { return values_.front(); }
+  /// Where the time of a sample stands.
+  std::function<std::string(Index)> Places() const {
+    return [this](Index k) { return source_->Place(selection_.columns.front(), k); };
+  }
+  Record OnGrid(const SampleGrid& grid,
+                const std::map<std::string, Course>& courses) const {
+    Record record(grid.time.sample_time, grid.time.start);
+    for (std::size_t i = 1; i < values_.size(); ++i) {
+      const std::string& channel = selection_.channels[i];
+      const auto course = courses.find(channel);
+      record.Add(
+          {channel, selection_.units[i].si,
+           grid.IsOfFile()
+               ? values_[i]
+               : Resample(times(), values_[i], grid,
+                          course == courses.end() ? Course::kSmooth : course->second)});
+    }
+    return record;
+  }
+
+ private:
+  std::unique_ptr<RecordSource> source_;
+  Selection selection_;
+  std::vector<Eigen::VectorXd> values_;  ///< the times first
+};
+
 std::string At(const std::filesystem::path& file, const Channel& channel) {
   return file.string() + ": channel \"" + channel.name + "\"";
 }
@@ -152,18 +191,20 @@ void RequireWritable(const std::filesystem::path& file, const Channel& channel) 
 
 Record ReadRecord(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map) {
-  const std::unique_ptr<RecordSource> source = Open(file);
-  const Selection selection = Selector(file.string(), *source).Select(map);
-  std::vector<Eigen::VectorXd> values = source->Read(selection.columns);
-  const UniformTime time = FitUniformTime(
-      values.front() * selection.units.front().factor,
-      [&](Index k) { return source->Place(selection.columns.front(), k); });
-  Record record(time.sample_time, time.start);
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    record.Add({selection.channels[i], selection.units[i].si,
-                values[i] * selection.units[i].factor});
-  }
-  return record;
+  const SelectedColumns columns(file, map);
+  const UniformTime time = FitUniformTime(columns.times(), columns.Places());
+  return columns.OnGrid({time, columns.times().size(), ""}, {});
+}
+
+MeasuredFile ReadMeasuredFile(const std::filesystem::path& file,
+                              const std::optional<ColumnMap>& map,
+                              const Resampling& resampling) {
+  const SelectedColumns columns(file, map);
+  const SampleGrid grid =
+      ChooseGrid(columns.times(), resampling.sample_time, columns.Places());
+  MeasuredFile measured{columns.OnGrid(grid, resampling.courses), {}};
+  if (!grid.IsOfFile()) measured.notes.push_back(grid.note);
+  return measured;
 }
 
 void WriteRecord(const std::filesystem::path& file, const Record& record,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mjdiag/signals/record.h"
+#include "mjdiag/signals/resampling.h"
 
 namespace mjdiag {
 
@@ -39,6 +40,19 @@ struct ColumnMap {
 /// the uniform grid), truncated MAT, a MAT variable that is not a real vector.
 Record ReadRecord(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map = std::nullopt);
+
+/// A record, and what one should know about how the file became one, sentences for
+/// people.
+struct MeasuredFile {
+  Record record;
+  std::vector<std::string> notes;
+};
+
+/// The same of a file whose times may be irregular, or at another rate than is wanted: it
+/// is then resampled, with a note. InputError as ReadRecord and ChooseGrid.
+MeasuredFile ReadMeasuredFile(const std::filesystem::path& file,
+                              const std::optional<ColumnMap>& map,
+                              const Resampling& resampling);
 
 /// Writes all channels and the time, to a temporary name that is renamed at the end.
 /// Reading the file back gives bitwise the same samples. InputError on what could not

@@ -77,28 +77,46 @@ double SimplestSampleTime(const VectorXd& times) {
                    "every time within 1 % of a sample of the uniform grid");
 }
 
-}  // namespace
+struct Fit {
+  UniformTime grid;
+  Index worst = 0;  ///< sample, by its distance from the grid
+  bool fits = true;
+};
 
-UniformTime FitUniformTime(const VectorXd& times,
-                           const std::function<std::string(Index)>& place) {
+Fit FitGrid(const VectorXd& times, const std::function<std::string(Index)>& place) {
   if (times.size() < 2) {
     throw InputError(place(0), "has " + std::to_string(times.size()) + " samples",
                      "at least two");
   }
   RequireIncreasing(times, place);
-  const UniformTime grid{times[0], SimplestSampleTime(times)};
-  Index worst = 0;
+  Fit fit{{times[0], SimplestSampleTime(times)}};
   double largest = 0.0;
   for (Index k = 0; k < times.size(); ++k) {
-    const double off =
-        std::abs(times[k] - (grid.start + static_cast<double>(k) * grid.sample_time));
+    const double off = std::abs(
+        times[k] - (fit.grid.start + static_cast<double>(k) * fit.grid.sample_time));
     if (off > largest) {
       largest = off;
-      worst = k;
+      fit.worst = k;
     }
   }
-  if (largest > kTolerance * grid.sample_time) ThrowNotUniform(times, worst, place);
-  return grid;
+  fit.fits = largest <= kTolerance * fit.grid.sample_time;
+  return fit;
+}
+
+}  // namespace
+
+UniformTime FitUniformTime(const VectorXd& times,
+                           const std::function<std::string(Index)>& place) {
+  const Fit fit = FitGrid(times, place);
+  if (!fit.fits) ThrowNotUniform(times, fit.worst, place);
+  return fit.grid;
+}
+
+std::optional<UniformTime> FindUniformTime(
+    const VectorXd& times, const std::function<std::string(Index)>& place) {
+  const Fit fit = FitGrid(times, place);
+  if (!fit.fits) return std::nullopt;
+  return fit.grid;
 }
 
 }  // namespace mjdiag

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace mjdiag {
@@ -24,5 +25,10 @@ struct UniformTime {
 /// time more than 1 % of a sample off the grid; it names the place and both intervals.
 UniformTime FitUniformTime(const Eigen::VectorXd& times,
                            const std::function<std::string(Eigen::Index)>& place);
+
+/// The same, or none if a time is off the grid.
+std::optional<UniformTime> FindUniformTime(
+    const Eigen::VectorXd& times,
+    const std::function<std::string(Eigen::Index)>& place);
 
 }  // namespace mjdiag

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <set>
 
 #include "mjdiag/discovery/checks/clock_drift.h"
+#include "mjdiag/discovery/checks/nominal_run.h"
+#include "mjdiag/discovery/checks/unit_check.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/plugin/replay/tracking.h"
-#include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
@@ -69,22 +69,19 @@ class RecordCheck {
     CheckFinite();
     ToMeasuredRun(setup(), measured_);  // names what the replay lacks
     for (const SensorSetup& sensor : setup().channels.sensors) CheckHeld(sensor);
-    CheckReadingUnits();
-    SimulateNominal(closed_loop());
-    if (simulated_) CheckUnits();
-    if (simulated_ && !closed_loop()) SimulateNominal(true);
+    const bool from_readings =
+        CheckAgainstReferences(setup(), measured_) && closed_loop();
+    SimulateNominal(from_readings);
+    if (simulated_) CheckAgainstPlant(machine_, measured_, *simulated_);
+    if (simulated_ && !from_readings) SimulateNominal(true);
     for (const SensorSetup& sensor : setup().channels.sensors) CheckSaturation(sensor);
     if (simulated_) CheckClocks(setup(), measured_, *simulated_);
     return notes_;
   }
 
  private:
-  VectorXd Counted(const Record& record, const std::string& channel) const {
-    const VectorXd& samples = record.At(channel).samples;
-    return samples.tail(samples.size() - skip_);
-  }
   VectorXd Reading(const std::string& channel) const {
-    return Counted(measured_, channel);
+    return CountedSamples(setup(), measured_, channel);
   }
   std::string Place(Index counted) const {
     const double time = measured_.start_time() +
@@ -98,11 +95,7 @@ class RecordCheck {
   void CheckFinite() const;
   void CheckHeld(const SensorSetup& sensor) const;
   void CheckSaturation(const SensorSetup& sensor) const;
-  void CheckReadingUnits() const;
-  void CheckUnits() const;
-  /// @param start  from the first readings; else from rest at the equilibrium, for
-  ///               readings in wrong units would start far away
-  void SimulateNominal(bool start);
+  void SimulateNominal(bool from_readings);
   const VectorXd* Expected(const SensorSetup& sensor) const;
 
   const Machine& machine_;
@@ -292,131 +285,13 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   }
 }
 
-struct Likeness {
-  double factor = 1.0;       ///< measured over expected, of standard deviations
-  double correlation = 0.0;  ///< without the means
-};
-
-Likeness Liken(VectorXd measured, VectorXd expected) {
-  measured.array() -= measured.mean();
-  expected.array() -= expected.mean();
-  const double product = measured.norm() * expected.norm();
-  if (!(product > 0.0) || !std::isfinite(product)) return {};
-  return {measured.norm() / expected.norm(), measured.dot(expected) / product};
-}
-
-/// A factor by which units are mistaken.
-struct Mistake {
-  double factor = 1.0;
-  std::string name;  ///< of the factor
-  double tolerance = 1.0;
-  std::string prefix;  ///< of the unit in the record
-};
-
-std::optional<Mistake> FindMistake(double factor, bool angle) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  std::vector<Mistake> mistakes = {{1e3, "1000", 2.0, "m"},
-                                   {1e6, "1000000", 2.0, "u"},
-                                   {1e-3, "0.001", 2.0, "k"},
-                                   {1e-6, "0.000001", 2.0, "M"}};
-  if (angle) {
-    mistakes.push_back({kDegrees, "180 / pi", 1.1, ""});
-    mistakes.push_back({1.0 / kDegrees, "pi / 180", 1.1, ""});
-  }
-  for (const Mistake& mistake : mistakes) {
-    if (std::abs(std::log(factor / mistake.factor)) <= std::log(mistake.tolerance)) {
-      return mistake;
-    }
-  }
-  return std::nullopt;
-}
-
-/// @param against   what it is held against, for people
-/// @param otherwise  where else the mistake may lie, with its unit
-[[noreturn]] void RefuseUnit(const std::string& channel, const std::string& unit,
-                             const Mistake& mistake, const std::string& against,
-                             const std::string& otherwise) {
-  const std::string taken =
-      mistake.prefix.empty()
-          ? (mistake.factor > 1.0 ? std::string("degrees taken for rad")
-                                  : std::string("rad taken for degrees"))
-          : mistake.prefix + unit + " taken for " + unit;
-  throw InputError("record",
-                   "wrong units: " + Quoted(channel) + " reads " + mistake.name +
-                       " times " + against + ": " + taken + ", or " + otherwise +
-                       " the other way round?",
-                   "SI; a column under [record.channels] may give the unit");
-}
-
-bool IsAngle(const std::string& unit) { return unit.starts_with("rad"); }
-
-void RecordCheck::CheckReadingUnits() const {
-  constexpr double kLike = 0.9;
-  for (const AxisSetup& axis : setup().control.axes) {
-    const SensorSetup& sensor = setup().channels.Sensor(axis.sensor);
-    const std::string reference = axis.name + "_ref";
-    const Likeness likeness = Liken(Reading(axis.sensor), Reading(reference));
-    const auto mistake = FindMistake(likeness.factor, IsAngle(sensor.unit));
-    if (mistake && likeness.correlation > kLike) {
-      RefuseUnit(axis.sensor, sensor.unit, *mistake,
-                 "what its reference " + Quoted(reference) + " does",
-                 Quoted(reference));
-    }
-  }
-}
-
-void RecordCheck::SimulateNominal(bool start) {
-  // A record in wrong units asks for far too much; limits would hide by how much.
-  Setup unlimited = setup();
-  for (SensorSetup& sensor : unlimited.channels.sensors) sensor.resolution = 0.0;
-  for (ActuatorSetup& actuator : unlimited.channels.actuators) actuator.limit = 0.0;
-  for (AxisSetup& axis : unlimited.control.axes) {
-    if (axis.nested) axis.nested->saturation = 0.0;
-  }
-  RunOptions options;
-  options.noise_scale = 0.0;
+void RecordCheck::SimulateNominal(bool from_readings) {
   try {
-    Excitation excitation = Replay(unlimited, measured_);
-    if (!start) excitation.start.clear();
-    simulated_ = Simulate(machine_.WithSetup(unlimited), excitation, options);
+    simulated_ = NominalRun(machine_, measured_, from_readings);
   } catch (const NumericalError& error) {
     simulated_.reset();
     notes_.push_back("units and clocks of the record are not checked: the plant as " +
                      std::string("given does not run along it (") + error.what() + ")");
-  }
-}
-
-void RecordCheck::CheckUnits() const {
-  constexpr double kInputLike = 0.5;
-  constexpr double kReadingLike = 0.7;
-  if (closed_loop()) {
-    for (const AxisSetup& axis : setup().control.axes) {
-      const Likeness likeness =
-          Liken(Reading(axis.actuator), Counted(*simulated_, axis.actuator));
-      const auto mistake = FindMistake(
-          likeness.factor, IsAngle(setup().channels.Sensor(axis.sensor).unit));
-      if (!mistake || likeness.correlation < kInputLike) continue;
-      RefuseUnit(axis.actuator, setup().channels.Actuator(axis.actuator).unit, *mistake,
-                 "what the plant needs for that motion",
-                 Quoted(axis.sensor) + " and " + Quoted(axis.name + "_ref"));
-    }
-    return;
-  }
-  std::string inputs;
-  for (const ActuatorSetup& actuator : setup().channels.actuators) {
-    inputs += (inputs.empty() ? "" : ", ") + Quoted(actuator.channel);
-  }
-  for (const SensorSetup& sensor : setup().channels.sensors) {
-    // Differences: offsets of force let free axes drift away.
-    const VectorXd measured = Reading(sensor.channel);
-    const VectorXd simulated = Counted(*simulated_, sensor.channel);
-    const Index span = std::max<Index>(1, measured.size() / 500);
-    const Index count = measured.size() - span;
-    const Likeness likeness = Liken(measured.tail(count) - measured.head(count),
-                                    simulated.tail(count) - simulated.head(count));
-    const auto mistake = FindMistake(likeness.factor, IsAngle(sensor.unit));
-    if (!mistake || likeness.correlation < kReadingLike) continue;
-    RefuseUnit(sensor.channel, sensor.unit, *mistake, "what the plant does", inputs);
   }
 }
 

@@ -12,12 +12,7 @@
 //                 noisy elsewhere, or should move there (by its reference in closed
 //                 loop, by the simulated plant in open loop) and comes and goes at a
 //                 steady speed
-//   wrong units   a channel of the shape of what it should be (correlation) but about
-//                 10^3, 10^6, 10^-3 or 10^-6 times it (within a factor of 2), for
-//                 angles also 180 / pi or pi / 180 times (within 10 %). In closed loop
-//                 readings are held against references, and inputs against those of
-//                 the simulated plant on the measured reference; in open loop readings
-//                 against the simulated plant under the measured input.
+//   wrong units   and flipped signs: see unit_check.h
 //   clock drift   see clock_drift.h
 //
 // Whatever a physical cause does has to pass: stiction holds a reading, but does not

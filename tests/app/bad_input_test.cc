@@ -59,10 +59,10 @@ TEST_F(BadInput, NotANumberIsPlaced) {
   EXPECT_THAT(Emps(record), AllOf(HasSubstr("r.csv: line 3"), HasSubstr("qm")));
 }
 
-TEST_F(BadInput, NonUniformTimeIsPlaced) {
+TEST_F(BadInput, LongGapInTheTimesIsPlaced) {
   const std::string record =
       folder_.Write("r.csv", std::string(kHeader) +
-                                 "0,0,0,0\n0.001,0,0,0\n0.0025,0,0,0\n0.0035,0,0,0\n");
+                                 "0,0,0,0\n0.001,0,0,0\n0.006,0,0,0\n0.007,0,0,0\n");
   EXPECT_THAT(Emps(record), HasSubstr("r.csv: line 4"));
 }
 

@@ -1,4 +1,4 @@
-// The walk of docs/own-machine.md, line by line as it stands there.
+// The walks of docs/own-machine.md, line by line as they stand there.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,29 +28,44 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// A folder in which the document's "out/voice_coil" lies.
+/// What a reader types who follows the document, its "out" being a folder of the test.
 class OwnMachine : public ::testing::Test {
  protected:
-  /// The line of a code block of the document that begins so, without its indent.
-  std::string Line(const std::string& beginning) const {
+  /// The lines of code blocks of a section that are commands, without their indent.
+  static std::vector<std::string> Lines(const std::string& section) {
     std::istringstream document(
         ReadAll(fs::path(MJDIAG_SOURCE_DIR) / "docs" / "own-machine.md"));
+    std::vector<std::string> lines;
+    bool inside = false;
     for (std::string line; std::getline(document, line);) {
-      if (line.rfind("    " + beginning, 0) == 0) {
-        return Replaced(line.substr(4), "out/voice_coil", folder_.path().string());
+      if (line.starts_with("## ")) inside = line.starts_with("## " + section);
+      if (!inside) continue;
+      for (const char* program : {"mjdiag ", "awk ", "mkdir "}) {
+        if (line.starts_with(std::string("    ") + program)) {
+          lines.push_back(line.substr(4));
+        }
       }
     }
-    ADD_FAILURE() << "no line '" << beginning << "'";
-    return "";
+    EXPECT_FALSE(lines.empty()) << section;
+    return lines;
   }
-  CommandResult Walk(const std::string& command) const {
-    const std::string line = Line("mjdiag " + command);
-    return RunCommand(line.substr(std::string("mjdiag ").size()));
+  /// Types a line; FOLDER is where the reader has records.
+  CommandResult Type(const std::string& line, const std::string& folder = "") const {
+    const std::string here = Replaced(Replaced(line, "FOLDER", folder), "out/",
+                                      folder_.path().string() + "/");
+    const std::string program = "mjdiag ";
+    if (here.starts_with(program)) return RunCommand(here.substr(program.size()));
+    return {std::system(here.c_str()), "", here};
   }
-  void Measure() const {
-    ASSERT_EQ(std::system(Line("awk ").c_str()), 0);
-    const CommandResult measured = Walk("simulate");
-    ASSERT_EQ(measured.status, 0) << measured.err;
+  /// All lines of a section that need no records of others.
+  std::vector<CommandResult> Walk(const std::string& section) const {
+    std::vector<CommandResult> results;
+    for (const std::string& line : Lines(section)) {
+      if (line.find("FOLDER") != std::string::npos) continue;
+      results.push_back(Type(line));
+      EXPECT_EQ(results.back().status, 0) << line << "\n" << results.back().err;
+    }
+    return results;
   }
   json Json(const std::string& file) const {
     return json::parse(ReadAll(folder_ / file));
@@ -60,14 +75,16 @@ class OwnMachine : public ::testing::Test {
 };
 
 TEST_F(OwnMachine, WalkEndsAtTheHiddenCause) {
-  Measure();
-  EXPECT_EQ(Walk("compare").status, 0);
-  EXPECT_EQ(Json("compared/compare.json")["channels"]["x"]["exceeds_noise"], true);
+  Walk("3.");
+  Walk("4.");
+  EXPECT_EQ(Json("voice_coil/compared/compare.json")["channels"]["x"]["exceeds_noise"],
+            true);
 
-  const CommandResult found = Walk("discover");
-  ASSERT_EQ(found.status, 0) << found.err;
-  EXPECT_THAT(found.out, StartsWith("Found: cubic_stiffness at stage (coefficient "));
-  const json discovery = Json("found/discovery.json");
+  const std::vector<CommandResult> found = Walk("5.");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].out,
+              StartsWith("Found: cubic_stiffness at stage (coefficient "));
+  const json discovery = Json("voice_coil/found/discovery.json");
   EXPECT_EQ(discovery["verdict"], "explained");
   ASSERT_EQ(discovery["causes"].size(), 1u) << discovery["causes"].dump(2);
   const json& cause = discovery["causes"][0];
@@ -79,32 +96,88 @@ TEST_F(OwnMachine, WalkEndsAtTheHiddenCause) {
   EXPECT_NEAR(coefficient["value"], kHidden, 6.0 * coefficient["sd"].get<double>());
   EXPECT_LT(coefficient["sd"], 0.01 * kHidden);
   EXPECT_GT(discovery["gain"]["validation"], 0.99);
-  EXPECT_THAT(ReadAll(folder_ / "found/report.html"), HasSubstr("cubic_stiffness"));
+  EXPECT_EQ(discovery["explanations"][0]["causes"][0]["effect"], "cubic_stiffness");
+  EXPECT_THAT(ReadAll(folder_ / "voice_coil/found/report.html"),
+              HasSubstr("cubic_stiffness"));
 
   EXPECT_TRUE(fs::exists(discovery["extended_plant"].get<std::string>()));
-  const std::string again =
-      Line("mjdiag compare --setup " + std::string("out/voice_coil/found"));
-  EXPECT_EQ(RunCommand(again.substr(7)).status, 0);
-  EXPECT_EQ(Json("checked/compare.json")["channels"]["x"]["exceeds_noise"], false);
+  Walk("6.");
+  EXPECT_EQ(Json("voice_coil/checked/compare.json")["channels"]["x"]["exceeds_noise"],
+            false);
+}
+
+TEST_F(OwnMachine, WatchSeesTheWornGuide) {
+  Walk("3.");
+  const std::vector<CommandResult> watched = Walk("7.");
+  ASSERT_FALSE(watched.empty());
+  EXPECT_THAT(watched.back().out, StartsWith("Detected: zeta = 1.05"));
 }
 
 TEST_F(OwnMachine, NamesNothingWhereNothingIsHidden) {
-  ASSERT_EQ(std::system(Line("awk ").c_str()), 0);
-  const std::string out = folder_.path().string();
-  const std::string machine = "--setup mjcf/voice_coil ";
-  ASSERT_EQ(RunCommand("simulate " + machine + "--replay '" + out +
-                       "/current.csv' --out '" + out + "/measured'")
-                .status,
-            0);
+  for (const std::string& line : Lines("3.")) {
+    // The machine without what is hidden in it.
+    const std::size_t hidden =
+        line.find(" --effect cubic_stiffness@stage:coefficient=4e6");
+    ASSERT_EQ(hidden == std::string::npos, !line.starts_with("mjdiag simulate"));
+    EXPECT_EQ(
+        Type(Replaced(line, " --effect cubic_stiffness@stage:coefficient=4e6", ""))
+            .status,
+        0);
+  }
+  const std::string out = folder_.path().string() + "/voice_coil/";
   const CommandResult found =
-      RunCommand("discover " + machine + "--record '" + out +
-                 "/measured/record.csv' --out '" + out + "/found' --json");
+      RunCommand("discover --setup mjcf/voice_coil --record '" + out +
+                 "measured/record.csv' --out '" + out + "found' --json");
   EXPECT_EQ(found.status, 0) << found.err;
   const json discovery = json::parse(found.out);
   EXPECT_EQ(discovery["verdict"], "no_discrepancy");
   EXPECT_EQ(discovery["causes"], json::array());
+  EXPECT_EQ(discovery["explanations"], json::array());
   EXPECT_TRUE(discovery["extended_plant"].is_null());
-  EXPECT_FALSE(fs::exists(folder_ / "found/extended"));
+  EXPECT_FALSE(fs::exists(folder_ / "voice_coil/found/extended"));
+}
+
+// With the records of the servo, which are not of this project: MJDIAG_SERVO_DATA.
+TEST_F(OwnMachine, WalkOfTheServoNamesItsFriction) {
+  const char* named = std::getenv("MJDIAG_SERVO_DATA");
+  if (named == nullptr || !fs::exists(fs::path(named) / "sin_sin_kp200.csv")) {
+    ASSERT_EQ(std::getenv("CI"), nullptr) << "no servo data";
+    GTEST_SKIP() << "no servo data: MJDIAG_SERVO_DATA names no folder with them";
+  }
+  const std::string records = fs::canonical(named).string();
+  std::vector<std::string> programs;
+  for (const std::string& line : Lines("8.")) {
+    const CommandResult result = Type(line, records);
+    EXPECT_EQ(result.status, 0) << line << "\n" << result.err;
+    programs.push_back(line.substr(7, line.find(' ', 7) - 7));
+  }
+  EXPECT_EQ(programs,
+            (std::vector<std::string>{"compare", "discover", "report", "compare"}));
+
+  const json discovery = Json("servo/found/discovery.json");
+  EXPECT_NE(discovery["verdict"], "no_discrepancy");
+  ASSERT_FALSE(discovery["causes"].empty());
+  for (const json& cause : discovery["causes"]) {
+    // The bench stands still, and the encoder of a servo is a good one.
+    for (const char* nonsense : {"floor_vibration", "encoder_scale", "encoder_drift",
+                                 "encoder_periodic_error"}) {
+      EXPECT_NE(cause["effect"], nonsense);
+    }
+    EXPECT_EQ(cause["site"].get<std::string>().empty(), false) << cause.dump();
+  }
+  EXPECT_THAT(discovery["causes"].dump(), HasSubstr("friction"))
+      << "every servo has it";
+  double before = 0.0;
+  double after = 0.0;
+  for (const json& record : discovery["records"]) {
+    if (record["role"] != "validation") continue;
+    before += record["before"]["q"]["mae"].get<double>();
+    after += record["replay"]["q"]["mae"].get<double>();
+  }
+  EXPECT_LT(after, 0.5 * before) << "mean absolute error on records that no fit saw";
+  EXPECT_TRUE(fs::exists(folder_ / "servo/found/report.html"));
+  EXPECT_LT(Json("servo/checked/compare.json")["channels"]["q"]["mae"],
+            Json("servo/naive/compare.json")["channels"]["q"]["mae"].get<double>());
 }
 
 TEST_F(OwnMachine, SetupOfTheDocumentIsTheOneOfTheFolder) {

@@ -47,6 +47,21 @@ TEST(DiscoveryJson, GivesAFaultByItsNameAndValue) {
   EXPECT_EQ(fault.at("alternatives").at(0).at("indistinguishable"), true);
 }
 
+TEST(DiscoveryJson, GivesAllExplanationsTheLikeliestFirst) {
+  const json explanations = ToJson(SampleDiscovery(), "").at("explanations");
+  // Friction or its runner-up, the motor by either of its names.
+  ASSERT_EQ(explanations.size(), 3u);
+  double sum = 0.0;
+  for (const json& one : explanations) sum += one.at("probability").get<double>();
+  EXPECT_NEAR(sum, 1.0, 0.01);
+  EXPECT_EQ(explanations[0]["causes"], json::parse(R"([
+              {"effect": "coulomb_friction", "site": "load", "fault": false},
+              {"effect": "eta", "site": "drive", "fault": true}])"));
+  EXPECT_EQ(explanations[1]["causes"][1]["effect"], "motor_constant");
+  EXPECT_EQ(explanations[2]["causes"][0]["effect"], "stribeck_friction");
+  EXPECT_EQ(ToJson(Discovery(), "").at("explanations"), json::array());
+}
+
 TEST(DiscoveryJson, HasNoPlantWithoutAPath) {
   EXPECT_TRUE(ToJson(SampleDiscovery(), "").at("extended_plant").is_null());
 }

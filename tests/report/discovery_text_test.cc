@@ -90,6 +90,21 @@ TEST(DiscoveryTables, HaveARowForEveryParameter) {
               "motor_constant at drive, alike"}));
 }
 
+TEST(ExplanationTable, HasARowForEverySetThatSurvives) {
+  const Table table = ExplanationTable(SampleDiscovery());
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_THAT(table.rows[1],
+              ElementsAre("coulomb_friction at load and motor_constant at "
+                          "drive",
+                          "█████░░░░░", "49.1 %"));
+}
+
+TEST(ExplanationTable, IsLeftOutWhereOneSetSurvives) {
+  Discovery discovery = SampleDiscovery();
+  for (FoundCause& found : discovery.causes) found.alternatives.clear();
+  EXPECT_TRUE(ExplanationTable(discovery).rows.empty());
+}
+
 TEST(DiscoveryTables, ListEveryCandidateOfAPlace) {
   const Table table = CandidateTable(SampleDiscovery());
   ASSERT_EQ(table.rows.size(), 5u);

@@ -7,20 +7,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <numbers>
 
+#include "discovery/checks/checked_machine.h"
 #include "mjdiag/discovery/checks/clock_drift.h"
-#include "mjdiag/plugin/runtime/simulation.h"
-#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
-#include "support/changes.h"
 #include "support/gaussian_noise.h"
-#include "support/message_of.h"
 
 namespace mjdiag {
 namespace {
+
+using test::InputOf;
+using test::Scaled;
+using test::WithChanged;
+using Subject = test::CheckedMachine;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -29,51 +30,9 @@ using ::testing::IsEmpty;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// A machine with its default run as the measured record.
-struct Subject {
-  Machine machine;
-
-  explicit Subject(const std::string& name,
-                   const std::vector<std::string>& overrides = {})
-      : machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/" + name, overrides)) {}
-
-  Machine With(const std::string& effect) const {
-    return effect.empty() ? machine : machine.With(test::With({effect}));
-  }
-  Record Run(const std::string& effect = "", double noise_scale = 1.0) const {
-    RunOptions options;
-    options.noise_scale = noise_scale;
-    const Trajectories& motions = machine.setup().trajectories;
-    return Simulate(With(effect),
-                    FollowTrajectory(machine.setup(), motions.Find(motions.fallback)),
-                    options);
-  }
-  std::vector<std::string> Check(const Record& record) const {
-    return CheckRecord(machine, record);
-  }
-  std::string Refusal(const Record& record) const {
-    return test::MessageOf<InputError>([&] { Check(record); });
-  }
-};
-
-/// The same record with one channel changed.
-Record With(const Record& record, const std::string& name,
-            const std::function<void(VectorXd&)>& change) {
-  Record changed(record.sample_time(), record.start_time());
-  for (Channel channel : record.channels()) {
-    if (channel.name == name) change(channel.samples);
-    changed.Add(std::move(channel));
-  }
-  return changed;
-}
-
-Record Scaled(const Record& record, const std::string& name, double factor) {
-  return With(record, name, [&](VectorXd& x) { x *= factor; });
-}
-
 /// What a clock records that gains `drift` samples over the record.
 Record Drifting(const Record& record, const std::string& name, double drift) {
-  return With(record, name, [&](VectorXd& x) {
+  return WithChanged(record, name, [&](VectorXd& x) {
     const VectorXd true_samples = x;
     const auto last = static_cast<double>(x.size() - 1);
     for (Index k = 0; k < x.size(); ++k) {
@@ -142,7 +101,7 @@ TEST_F(EmpsRecord, WithTooFewSamplesIsRefused) {
 
 TEST_F(EmpsRecord, WithSamplesThatAreNoNumbersIsRefused) {
   for (const std::string channel : {"q", "u", "q_ref"}) {
-    const Record record = With(*record_, channel, [](VectorXd& x) {
+    const Record record = WithChanged(*record_, channel, [](VectorXd& x) {
       x[1234] = std::nan("");
       x[2000] = std::numeric_limits<double>::infinity();
     });
@@ -153,7 +112,7 @@ TEST_F(EmpsRecord, WithSamplesThatAreNoNumbersIsRefused) {
 }
 
 TEST_F(EmpsRecord, ThatHoldsSamplesIsRefused) {
-  const Record record = With(*record_, "q", [](VectorXd& x) {
+  const Record record = WithChanged(*record_, "q", [](VectorXd& x) {
     x.segment(1000, 7).setConstant(x[1000]);
     x.segment(3500, 40).setConstant(x[3500]);
   });
@@ -176,7 +135,7 @@ TEST(QuantisedRecord, Passes) {
 TEST(QuantisedRecord, ThatSaturatesInMotionIsRefused) {
   const Subject subject("emps", {"sensors.q.resolution=1e-6"});
   const Record record =
-      With(subject.Run(), "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
+      WithChanged(subject.Run(), "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
   EXPECT_THAT(subject.Refusal(record),
               HasSubstr("saturated: 'q' sits at exactly 0.15"));
 }
@@ -184,16 +143,18 @@ TEST(QuantisedRecord, ThatSaturatesInMotionIsRefused) {
 TEST(QuantisedRecord, WithoutNoiseThatSaturatesAtRestPasses) {
   const Subject subject("emps", {"sensors.q.resolution=1e-6"});
   const double rest = subject.Run().At("q").samples[2600];
-  const Record record =
-      With(subject.Run(), "q", [&](VectorXd& x) { x = x.cwiseMin(rest - 1e-6); });
+  const Record record = WithChanged(subject.Run(), "q",
+                                    [&](VectorXd& x) { x = x.cwiseMin(rest - 1e-6); });
   EXPECT_THAT(subject.Check(record), IsEmpty());
 }
 
 TEST_F(EmpsRecord, WithASaturatedEncoderIsRefused) {
-  const Record high = With(*record_, "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
+  const Record high =
+      WithChanged(*record_, "q", [](VectorXd& x) { x = x.cwiseMin(0.15); });
   EXPECT_THAT(subject_->Refusal(high),
               HasSubstr("saturated: 'q' sits at exactly 0.15 m for "));
-  const Record low = With(*record_, "q", [](VectorXd& x) { x = x.cwiseMax(0.02); });
+  const Record low =
+      WithChanged(*record_, "q", [](VectorXd& x) { x = x.cwiseMax(0.02); });
   EXPECT_THAT(subject_->Refusal(low),
               HasSubstr("saturated: 'q' sits at exactly 0.02 m for "));
 }
@@ -202,32 +163,8 @@ TEST_F(EmpsRecord, WithASaturatedEncoderIsRefused) {
 TEST_F(EmpsRecord, ThatLosesItsNoiseAtTheEndOfTheStrokeIsRefused) {
   const double limit = record_->At("q").samples[2600] - 1e-6;
   const Record record =
-      With(*record_, "q", [&](VectorXd& x) { x = x.cwiseMin(limit); });
+      WithChanged(*record_, "q", [&](VectorXd& x) { x = x.cwiseMin(limit); });
   EXPECT_THAT(subject_->Refusal(record), HasSubstr("saturated: 'q'"));
-}
-
-TEST_F(EmpsRecord, WithAReadingInWrongUnitsIsRefusedByTheFactor) {
-  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "q", 1e3)),
-              AllOf(HasSubstr("wrong units: 'q' reads 1000 times"),
-                    HasSubstr("mm taken for m")));
-  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "q", 1e6)),
-              HasSubstr("'q' reads 1000000 times"));
-  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "q_ref", 1e3)),
-              HasSubstr("'q' reads 0.001 times what its reference 'q_ref' does"));
-}
-
-TEST_F(EmpsRecord, WithAnInputInWrongUnitsIsRefusedByTheFactor) {
-  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "u", 1e3)),
-              AllOf(HasSubstr("wrong units: 'u' reads 1000 times"),
-                    HasSubstr("mV taken for V")));
-  EXPECT_THAT(subject_->Refusal(Scaled(*record_, "u", 1e-3)),
-              HasSubstr("'u' reads 0.001 times"));
-}
-
-TEST_F(EmpsRecord, WithReadingAndReferenceInMillimetresIsRefused) {
-  const Record record = Scaled(Scaled(*record_, "q", 1e3), "q_ref", 1e3);
-  EXPECT_THAT(subject_->Refusal(record),
-              AllOf(HasSubstr("'u' reads 0.001 times"), HasSubstr("'q' and 'q_ref'")));
 }
 
 TEST_F(EmpsRecord, WithDriftingClocksIsRefused) {
@@ -243,7 +180,7 @@ TEST_F(EmpsRecord, WithDriftingClocksIsRefused) {
 
 TEST_F(EmpsRecord, WithAConstantLagOrAQuarterSampleOfDriftPasses) {
   EXPECT_THAT(subject_->Check(Drifting(*record_, "q", 0.25)), IsEmpty());
-  const Record late = With(*record_, "u", [](VectorXd& x) {
+  const Record late = WithChanged(*record_, "u", [](VectorXd& x) {
     x.tail(x.size() - 3) = x.head(x.size() - 3).eval();
   });
   EXPECT_THAT(subject_->Check(late), IsEmpty());
@@ -253,16 +190,12 @@ TEST_F(EmpsRecord, WithAConstantLagOrAQuarterSampleOfDriftPasses) {
 class OpenLoopRecord : public ::testing::Test {
  protected:
   Record Run(const std::string& effect = "") const {
-    constexpr Index kSamples = 20000;
-    VectorXd current(kSamples);
-    for (Index k = 0; k < kSamples; ++k) {
-      const double t = static_cast<double>(k) * subject_.machine.rates().tick();
-      current[k] = 0.3 * std::sin(2.0 * std::numbers::pi * (2.0 + 3.5 * t) * t);
-    }
-    Excitation excitation;
-    excitation.inputs = Record(subject_.machine.rates().tick());
-    excitation.inputs.Add({"i", "A", current});
-    return Simulate(subject_.With(effect), excitation, {});
+    return subject_.Run(
+        InputOf(subject_.machine, 20000,
+                [](double t) {
+                  return 0.3 * std::sin(2.0 * std::numbers::pi * (2.0 + 3.5 * t) * t);
+                }),
+        effect);
   }
   const Subject subject_{"voice_coil"};
 };
@@ -281,15 +214,6 @@ TEST_F(OpenLoopRecord, PassesWithWhateverCauseIsInIt) {
     EXPECT_NO_THROW(notes = subject_.Check(record)) << effect;
     EXPECT_THAT(notes, IsEmpty()) << effect;
   }
-}
-
-TEST_F(OpenLoopRecord, InWrongUnitsIsRefusedByTheFactor) {
-  const Record record = Run("coulomb_friction@stage:force=0.3");
-  EXPECT_THAT(subject_.Refusal(Scaled(record, "x", 1e3)),
-              AllOf(HasSubstr("'x' reads 1000 times what the plant does"),
-                    HasSubstr("mm taken for m, or 'i'")));
-  EXPECT_THAT(subject_.Refusal(Scaled(record, "i", 1e3)),
-              HasSubstr("'x' reads 0.001 times what the plant does"));
 }
 
 TEST_F(OpenLoopRecord, WithDriftingClocksIsRefused) {

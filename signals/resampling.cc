@@ -1,0 +1,130 @@
+#include "mjdiag/signals/resampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/signals/median.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kSameRate = 1e-4;
+constexpr double kNearRate = 0.2;
+constexpr double kLongestGap = 3.5;  // samples: two are missing
+constexpr double kMissing = 1.5;
+
+std::string Irregularity(const VectorXd& intervals, double usual) {
+  VectorXd around(intervals.size());
+  Index count = 0;
+  Index missing = 0;
+  for (const double interval : intervals) {
+    if (interval < kMissing * usual) {
+      around[count++] = interval / usual - 1.0;
+    } else {
+      missing += std::lround(interval / usual) - 1;
+    }
+  }
+  const double sd = std::sqrt(around.head(count).squaredNorm() /
+                              static_cast<double>(std::max<Index>(count, 1)));
+  return "time stamps are irregular (their intervals vary by " +
+         FormatNumber(100.0 * sd, 2) + " %" +
+         (missing > 0 ? ", " + std::to_string(missing) + " samples are missing" : "") +
+         ")";
+}
+
+/// The last sample that is not after the time; the first before all of them.
+Index LastBefore(const VectorXd& times, double time) {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  return std::max<Index>(after - times.begin() - 1, 0);
+}
+
+/// Lagrange's cubic through the two samples on either side, fewer at the ends. Relative to
+/// the sample before, so that a signal that rests does so exactly.
+double SmoothAt(const VectorXd& times, const VectorXd& x, double time) {
+  const Index k = std::min(LastBefore(times, time), x.size() - 2);
+  const Index first = std::max<Index>(k - 1, 0);
+  const Index last = std::min<Index>(k + 2, x.size() - 1);
+  double sum = 0.0;
+  for (Index i = first; i <= last; ++i) {
+    double weight = 1.0;
+    for (Index j = first; j <= last; ++j) {
+      if (j != i) weight *= (time - times[j]) / (times[i] - times[j]);
+    }
+    sum += weight * (x[i] - x[k]);
+  }
+  return x[k] + sum;
+}
+
+double StraightAt(const VectorXd& times, const VectorXd& x, double time) {
+  const Index k = std::min(LastBefore(times, time), x.size() - 2);
+  return x[k] + (time - times[k]) / (times[k + 1] - times[k]) * (x[k + 1] - x[k]);
+}
+
+double MeanHeld(const VectorXd& times, const VectorXd& x, double begin, double end) {
+  Index k = LastBefore(times, begin);
+  const double base = x[k];
+  double sum = 0.0;
+  for (double from = begin; from < end; ++k) {
+    const bool last = k + 1 >= x.size();
+    const double until = last ? end : std::min(end, std::max(from, times[k + 1]));
+    sum += (until - from) * (x[k] - base);
+    from = until;
+    if (last) break;
+  }
+  return base + sum / (end - begin);
+}
+
+}  // namespace
+
+SampleGrid ChooseGrid(const VectorXd& times, double sample_time,
+                      const std::function<std::string(Index)>& place) {
+  const std::optional<UniformTime> uniform = FindUniformTime(times, place);
+  if (uniform) {
+    const double off = std::abs(uniform->sample_time / sample_time - 1.0);
+    if (off <= kSameRate || off > kNearRate) return {*uniform, times.size(), ""};
+  }
+  const Index last = times.size() - 1;
+  const VectorXd intervals = times.tail(last) - times.head(last);
+  const double usual = Median(intervals);
+  if (!uniform && (intervals.maxCoeff() > kLongestGap * usual ||
+                   std::abs(usual / sample_time - 1.0) > kNearRate)) {
+    FitUniformTime(times, place);  // says where
+  }
+  const std::string why =
+      uniform ? "the sample time is " +
+                    FormatNumber(
+                        100.0 * std::abs(uniform->sample_time / sample_time - 1.0), 2) +
+                    " % off the control tick"
+              : Irregularity(intervals, usual);
+  const double ticks = (times[last] - times[0]) / sample_time;
+  return {{times[0], sample_time},
+          static_cast<Index>(std::floor(ticks + kSameRate)) + 1,
+          why + ": resampled to " + FormatQuantity(sample_time, "s")};
+}
+
+VectorXd Resample(const VectorXd& times, const VectorXd& samples,
+                  const SampleGrid& grid, Course course) {
+  const double tick = grid.time.sample_time;
+  // What is held changes at a sample, also where rounding puts that before or behind it.
+  const double rounding = kSameRate * tick;
+  return VectorXd::NullaryExpr(grid.samples, [&](Index k) {
+    const double time = grid.time.start + static_cast<double>(k) * tick;
+    switch (course) {
+      case Course::kSmooth:
+        return SmoothAt(times, samples, time);
+      case Course::kStraight:
+        return StraightAt(times, samples, time);
+      case Course::kHeld:
+        return MeanHeld(times, samples, time + rounding, time + tick + rounding);
+      case Course::kSwitched:
+        return samples[LastBefore(times, time + 0.5 * tick)];
+    }
+    return 0.0;
+  });
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,54 @@
+#pragma once
+// Measured at irregular times, or by another clock than that of the controllers: the
+// signals between their samples, on a uniform grid.
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mjdiag/signals/uniform_time.h"
+
+namespace mjdiag {
+
+/// What a signal does between its samples.
+enum class Course {
+  kSmooth,    ///< a cubic through four samples: sensors, references
+  kStraight,  ///< goes straight to the next one
+  kHeld,      ///< keeps its sample, as the output of a controller does
+  kSwitched   ///< the same, and has no values but those of its samples
+};
+
+struct Resampling {
+  double sample_time = 0.0;               ///< wanted, the control tick [s]
+  std::map<std::string, Course> courses;  ///< of channels; others are smooth
+};
+
+/// Where the samples of a record are to be.
+struct SampleGrid {
+  UniformTime time;
+  Eigen::Index samples = 0;
+  std::string
+      note;  ///< why they are not those of the file, for people; empty: they are
+
+  bool IsOfFile() const { return note.empty(); }
+};
+
+/// The times themselves where they are uniform (FitUniformTime) and at the wanted rate, or
+/// so far from it (20 %) that it must be a mistake; else a grid of the wanted sample time
+/// from the first to the last of them.
+/// @param times  [s], one a sample
+/// @param place  where sample k stands, for messages
+/// InputError as FitUniformTime, but irregular times are refused only where more than two
+/// samples are missing in a row or the usual interval is not the wanted one.
+SampleGrid ChooseGrid(const Eigen::VectorXd& times, double sample_time,
+                      const std::function<std::string(Eigen::Index)>& place);
+
+/// The signal at the times of the grid. What is held becomes its mean over a tick, so that
+/// an input has the same impulse; a switch has the value of the middle of the tick.
+/// @param times  of `samples`, increasing
+Eigen::VectorXd Resample(const Eigen::VectorXd& times, const Eigen::VectorXd& samples,
+                         const SampleGrid& grid, Course course);
+
+}  // namespace mjdiag
