@@ -49,6 +49,16 @@ bool IsAnswer(const MotionVariable& variable, const MechanicalModel& model,
   return !variable.kind && variable.factor == CurveFactor::kNone;
 }
 
+/// Whether a force without a name does what the laws do in whose place it came, however
+/// many knots it has.
+bool ExplainsAsWell(const Evidence& laws, const Evidence& curve) {
+  constexpr double kChance = 10.0;  // units of the deviance
+  const double more = curve.Noise() * (curve.fit().train - laws.fit().train);
+  const VectorXd& independent = curve.independent();
+  return more <= kChance * std::max(1.0, laws.fit().train) &&
+         curve.Unseen(independent) <= laws.Unseen(independent) + kChance;
+}
+
 }  // namespace
 
 Discoverer::Rest Discoverer::SignatureOf(const ObservedMotion& motion,
@@ -85,6 +95,9 @@ bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
   constexpr double kFalseAlarm = 1e-4;
   const Evidence present(data, search_.fit(), search_.evidence.independent());
   const bool adds = base.causes.size() == present.hypotheses();
+  // So many laws of one variable are the series of another one.
+  constexpr std::size_t kSeries = 3;
+  const bool is_series = base.causes.size() + kSeries <= present.hypotheses();
   const Track track = problem_.Follow(ChangesOf(problem_, candidates_, base));
   const ObservedMotion motion = problem_.MotionOf(track);
   const Rest rest = SignatureOf(motion, UnexplainedIn(track), true);
@@ -108,7 +121,10 @@ bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
     Evidence proposed =
         adds ? present.Added(std::move(*fit), std::move(independent), chance)
              : present.Changed(std::move(*fit));
-    if (mjdiag::Judge(present, proposed) != Judgement::kAccepted) return false;
+    if (mjdiag::Judge(present, proposed) != Judgement::kAccepted &&
+        !(is_series && ExplainsAsWell(present, proposed))) {
+      return false;
+    }
     if (best && proposed.Criterion(proposed.independent()) >=
                     best->Criterion(proposed.independent())) {
       return false;
@@ -163,7 +179,9 @@ void Discoverer::Take(Evidence with_force) {
 }
 
 /// Of the causes that are functions of one variable of one joint alone, the sets of
-/// several: what many laws describe together may be one that has no name.
+/// several: what many laws describe together may be one that has no name. A force that is
+/// smooth has a series, of which quadratic and cubic stiffness are terms, and if there are
+/// three of them it only has to explain as much.
 std::vector<FittedModel> Discoverer::WithoutAlike() const {
   std::map<std::pair<Index, LawVariable>, std::vector<std::size_t>> alike;
   const std::vector<FittedCause>& causes = search_.fit().causes;

@@ -27,9 +27,7 @@ void Work::Add(double seconds) { nanoseconds_ += std::llround(1e9 * seconds); }
 
 double Work::used() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
 
-double Work::Left() const {
-  return std::max(part_ * limit_ - used(), 0.0);
-}
+double Work::Left() const { return std::max(part_ * limit_ - used(), 0.0); }
 
 bool Work::MayBegin(const std::string& what, double seconds) {
   if (!cut_ && Left() > seconds && !IsStopped()) return true;
