@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "mjdiag/discovery/selection/model_choice.h"
+#include "mjdiag/discovery/selection/settled_fit.h"
 
 namespace mjdiag {
 
@@ -16,6 +17,7 @@ CauseFit FitNumbers(const DiscoveryProblem& problem,
   constexpr double kNoiseOnly = 1.2;  // mean square at which noise is all that is left
   constexpr double kSettled = 0.01;   // of the mean square
   constexpr double kStalls = 1e-3;    // of it, in a step: new derivatives do more
+  bool moved = false;
   for (int i = 0; i < kAnew && fit.train > kNoiseOnly; ++i) {
     FittedModel from = fit;
     from.prior_weight = Inflation(fit.train, IndependentShare(problem, fit.residual));
@@ -27,9 +29,10 @@ CauseFit FitNumbers(const DiscoveryProblem& problem,
                                .share = share / kAnew});
     const bool settled = fit.train - next.train < kSettled * fit.train;
     fit = std::move(next);
+    moved = true;
     if (settled) break;
   }
-  return fit;
+  return moved ? Settled(problem, candidates, std::move(fit), share) : fit;
 }
 
 }  // namespace mjdiag

@@ -14,10 +14,13 @@ DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nomina
   constexpr double kNamedShare = 0.9;
   const double left = search.fit().train;
   if (!named) {
-    // Numbers may hide that something is there, but not from the noise.
-    const bool left_over = search.fit().numbers.size() > 0 && left > kFarAboveNoise;
-    const bool something =
-        !search.ladder.empty() || search.significant_rest || left_over;
+    // Numbers may hide that something is there, but not from the noise; causes that were
+    // dropped beside them were nothing else.
+    const bool has_numbers = search.fit().numbers.size() > 0;
+    const bool left_over = has_numbers && left > kFarAboveNoise;
+    const bool found =
+        has_numbers ? !search.fit().causes.empty() : !search.ladder.empty();
+    const bool something = found || search.significant_rest || left_over;
     return something ? DiscoveryVerdict::kUnexplained
                      : DiscoveryVerdict::kNoDiscrepancy;
   }

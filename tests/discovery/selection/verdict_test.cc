@@ -26,6 +26,15 @@ TEST(Verdict, IsUnexplainedWhereSomethingIsThereAndNothingIsNamed) {
   EXPECT_EQ(VerdictOf(dropped, false, 3.0), DiscoveryVerdict::kUnexplained);
 }
 
+TEST(Verdict, IsNoDiscrepancyWhereWhatWasFoundIsNothingBesideNumbersOfThePlant) {
+  CauseFit fit = Left(1.0, false).fit();
+  fit.numbers = Eigen::VectorXd::Zero(1);
+  SearchResult dropped;
+  dropped.evidence = {{}, fit, Eigen::VectorXd::Ones(1)};
+  dropped.ladder.emplace_back();
+  EXPECT_EQ(VerdictOf(dropped, false, 3.0), DiscoveryVerdict::kNoDiscrepancy);
+}
+
 TEST(Verdict, IsUnexplainedWhereNumbersOfThePlantLeaveMoreThanNoise) {
   const auto beside = [](double left) {
     CauseFit fit = Left(left, false).fit();
