@@ -151,7 +151,11 @@ bool Search::Keep(Additions additions, const Chance& chance) {
       return true;
     }
     if (judgement != Judgement::kUnseen) continue;
-    result_.refuted.push_back(proposed[i].fit().causes.back());
+    const FittedCause& refuted = proposed[i].fit().causes.back();
+    std::erase_if(result_.refuted, [&](const FittedCause& before) {
+      return before.candidate == refuted.candidate;
+    });
+    result_.refuted.push_back(refuted);
     if (!ahead) ahead = i;
   }
   if (!ahead || ahead_ >= kMostAhead) return false;

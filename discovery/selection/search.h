@@ -71,7 +71,8 @@ struct SearchResult : HypothesisSet {
   std::vector<FittedModel> ladder;
   /// The numbers of the plant without any cause.
   Eigen::VectorXd numbers_alone;
-  /// Those that explained the train part best but not what a fit did not see.
+  /// Those that explained the train part best but not what a fit did not see, each as it
+  /// was last.
   std::vector<FittedCause> refuted;
   /// Whether the problem served to the end (SearchOptions::serves).
   bool served = true;

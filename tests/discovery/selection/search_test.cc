@@ -1,9 +1,11 @@
 #include "mjdiag/discovery/selection/search.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
+#include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 
 namespace mjdiag {
@@ -86,6 +88,27 @@ TEST(SearchCauses, GoOnFromWhatASearchBeforeThemFound) {
   EXPECT_EQ(found.ladder.size(), 1u);
   ASSERT_EQ(found.refuted.size(), 1u);
   EXPECT_EQ(found.refuted[0].candidate, refuted.candidate);
+}
+
+// The spring alone makes the damper and the motor take over what the gears take, where
+// they are fitted and nowhere else: what is held out turns it down.
+TEST(SearchCauses, GoOnFromHalfOfTheTruth) {
+  const test::StageUnderTest stage;
+  const Record measured = stage.Measure(
+      {"cubic_stiffness@load:coefficient=100",
+       "gear_load_friction@load:motor_share=0.01,load_share=0.005,quadratic=1e-5"});
+  const DiscoveryProblem problem = WithDoubts(stage.Pose(measured), {});
+  auto candidates = ListCandidates(stage.machine);
+  BoundByRecord(candidates, stage.machine, problem.MotionOf(problem.Nominal()));
+  SearchOptions options;
+  options.exchange = false;
+  const SearchResult found = SearchCauses(problem, candidates, options);
+  std::vector<std::string> names;
+  for (const FittedCause& cause : found.fit().causes) {
+    names.push_back(Describe(candidates[cause.candidate]));
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("cubic_stiffness@load",
+                                                   "gear_load_friction@load"));
 }
 
 }  // namespace
