@@ -49,6 +49,15 @@ bool IsAnswer(const MotionVariable& variable, const MechanicalModel& model,
   return !variable.kind && variable.factor == CurveFactor::kNone;
 }
 
+FittedModel ModelWithout(FittedModel model, const std::vector<std::size_t>& places) {
+  std::vector<FittedCause> left;
+  for (std::size_t i = 0; i < model.causes.size(); ++i) {
+    if (std::ranges::find(places, i) == places.end()) left.push_back(model.causes[i]);
+  }
+  model.causes = std::move(left);
+  return model;
+}
+
 /// Whether a force without a name does what the laws do in whose place it came, however
 /// many knots it has.
 bool ExplainsAsWell(const Evidence& laws, const Evidence& curve) {
@@ -193,12 +202,7 @@ std::vector<FittedModel> Discoverer::WithoutAlike() const {
   }
   std::vector<FittedModel> without;
   for (const auto& [of, places] : alike) {
-    if (places.size() < 2) continue;
-    FittedModel model = search_.fit();
-    for (std::size_t k = places.size(); k-- > 0;) {
-      model.causes = Without(model.causes, places[k]);
-    }
-    without.push_back(std::move(model));
+    if (places.size() >= 2) without.push_back(ModelWithout(search_.fit(), places));
   }
   return without;
 }
@@ -207,28 +211,21 @@ std::vector<FittedModel> Discoverer::WithoutAlike() const {
 /// and without curves there: the force without a name may be what they imitate.
 std::vector<FittedModel> Discoverer::WithoutDoubtful() const {
   const std::vector<FittedCause>& causes = search_.fit().causes;
-  const auto is_curve = [&](const FittedCause& cause) {
-    return curves_.contains(cause.candidate);
-  };
-  if (!IsMoreLeft(search_) && std::ranges::none_of(causes, is_curve)) return {};
   std::map<Index, std::vector<std::size_t>> laws;  // of every joint
+  std::map<Index, std::vector<std::size_t>> curves;
   for (std::size_t i = 0; i < causes.size(); ++i) {
     const Candidate& candidate = candidates_[causes[i].candidate];
-    if (candidate.effect->site() != SiteKind::kJoint || is_curve(causes[i])) continue;
-    laws[candidate.joint].push_back(i);
+    const bool is_curve = curves_.contains(causes[i].candidate);
+    if (!is_curve && candidate.effect->site() != SiteKind::kJoint) continue;
+    (is_curve ? curves : laws)[candidate.joint].push_back(i);
   }
+  if (!IsMoreLeft(search_) && curves.empty()) return {};
   std::vector<FittedModel> without;
   for (const auto& [joint, places] : laws) {
-    const auto leave_out = [&](const std::vector<std::size_t>& left_out) {
-      FittedModel model = search_.fit();
-      std::erase_if(model.causes, [&, joint = joint](const FittedCause& cause) {
-        const auto is_it = [&](std::size_t i) {
-          return causes[i].candidate == cause.candidate;
-        };
-        return std::ranges::any_of(left_out, is_it) ||
-               (is_curve(cause) && candidates_[cause.candidate].joint == joint);
-      });
-      without.push_back(std::move(model));
+    const auto leave_out = [&, joint = joint](std::vector<std::size_t> left_out) {
+      const std::vector<std::size_t>& too = curves[joint];
+      left_out.insert(left_out.end(), too.begin(), too.end());
+      without.push_back(ModelWithout(search_.fit(), left_out));
     };
     if (places.size() > 1) leave_out(places);
     for (const std::size_t place : places) leave_out({place});
@@ -262,9 +259,7 @@ void Discoverer::LearnCurves(const SearchOptions& options) {
     const bool replaced = std::ranges::any_of(bases, [&](const FittedModel& base) {
       if (!work_->MayBegin(kCurve)) return false;
       Report(kCurve, 0.9);
-      // A set without anything that was there before is none.
-      return base.causes.size() < search_.fit().causes.size() &&
-             LearnCurve(data.evidence, base);
+      return LearnCurve(data.evidence, base);
     });
     if (!replaced) break;
   }

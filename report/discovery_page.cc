@@ -62,8 +62,8 @@ constexpr const char* kHowToReadCauses =
 
 constexpr const char* kHowToReadExplanations =
     "What the record leaves possible: the causes that were found, and sets in which "
-    "one "
-    "of them is exchanged for a candidate of its place. Sets below 1 % are not listed.";
+    "one of them is exchanged for a candidate of its place. Sets below 1 % are not "
+    "listed.";
 
 void AddCauses(Page& page, const Discovery& discovery) {
   if (discovery.causes.empty()) return;

@@ -29,8 +29,8 @@ struct Resampling {
 struct SampleGrid {
   UniformTime time;
   Eigen::Index samples = 0;
-  std::string
-      note;  ///< why they are not those of the file, for people; empty: they are
+  /// Why they are not those of the file, for people; empty: they are.
+  std::string note;
 
   bool IsOfFile() const { return note.empty(); }
 };

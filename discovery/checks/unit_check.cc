@@ -27,8 +27,8 @@ constexpr double kSameSize = 3.0;
 struct Mistake {
   double factor = 1.0;  ///< with its sign
   std::string name;     ///< of the factor
-  std::string
-      prefix{};  ///< of the unit in the record; empty: an angle, or the sign alone
+  /// Of the unit in the record; empty: an angle, or the sign alone.
+  std::string prefix{};
 };
 
 bool IsAngle(const std::string& unit) { return unit.starts_with("rad"); }

@@ -19,14 +19,14 @@ double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) 
          IndependentShare(problem, residual).minCoeff();
 }
 
-/// @param exact  innovations of the problem
-bool IsNearTo(const VectorXd& exact, const DiscoveryProblem& coarse,
-              const DiscoveryProblem& problem, const Changes& changes) {
+/// What the innovations of the coarse problem are off by; none where it cannot be run.
+/// @param exact  innovations of the problem itself
+std::optional<VectorXd> OffBy(const VectorXd& exact, const DiscoveryProblem& coarse,
+                              const Changes& changes) {
   try {
-    return (coarse.Residual(changes) - exact).squaredNorm() <
-           Insignificant(problem, exact);
+    return exact - coarse.Residual(changes);
   } catch (const NumericalError&) {
-    return false;
+    return std::nullopt;
   }
 }
 
@@ -34,32 +34,30 @@ bool IsNearTo(const VectorXd& exact, const DiscoveryProblem& coarse,
 
 bool IsNear(const DiscoveryProblem& coarse, const DiscoveryProblem& problem,
             const Changes& changes) {
-  return IsNearTo(problem.Residual(changes), coarse, problem, changes);
+  const VectorXd exact = problem.Residual(changes);
+  const auto off = OffBy(exact, coarse, changes);
+  return off && off->squaredNorm() < Insignificant(problem, exact);
 }
 
 std::optional<DiscoveryProblem> Coarsen(const DiscoveryProblem& problem,
                                         const Changes& changes) {
   const int substeps = problem.machine().rates().substeps;
   if (substeps < 2) return std::nullopt;
-  const VectorXd exact = problem.Residual(changes);
-  for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
-    DiscoveryProblem coarse = problem.WithSubsteps(fewer);
-    if (IsNearTo(exact, coarse, problem, changes)) return coarse;
-  }
-  if (problem.numbers().empty()) return std::nullopt;
   constexpr double kOfNoise = 100.0;
   constexpr double kOfRest = 0.1;
-  const double most =
-      std::max(kOfNoise * Insignificant(problem, exact), kOfRest * exact.squaredNorm());
+  const VectorXd exact = problem.Residual(changes);
+  const double near = Insignificant(problem, exact);
+  const double most = std::max(kOfNoise * near, kOfRest * exact.squaredNorm());
+  std::optional<DiscoveryProblem> shifted;
   for (int fewer = 1; fewer < std::min(substeps, 3); ++fewer) {
     const DiscoveryProblem coarse = problem.WithSubsteps(fewer);
-    try {
-      const VectorXd shift = exact - coarse.Residual(changes);
-      if (shift.squaredNorm() < most) return coarse.Shifted(shift);
-    } catch (const NumericalError&) {
-    }
+    const auto off = OffBy(exact, coarse, changes);
+    if (!off) continue;
+    if (off->squaredNorm() < near) return coarse;
+    const bool may_be_shifted = !problem.numbers().empty() && off->squaredNorm() < most;
+    if (!shifted && may_be_shifted) shifted = coarse.Shifted(*off);
   }
-  return std::nullopt;
+  return shifted;
 }
 
 }  // namespace mjdiag

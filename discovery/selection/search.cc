@@ -189,6 +189,7 @@ void Search::GiveUpWhatIsAhead() {
   confirmed_.refuted = std::move(result_.refuted);
   confirmed_.significant_rest = true;
   confirmed_.exchanged = result_.exchanged;
+  confirmed_.served = result_.served;
   result_ = std::move(confirmed_);
   ahead_ = 0;
 }
