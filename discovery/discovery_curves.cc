@@ -49,15 +49,6 @@ bool IsAnswer(const MotionVariable& variable, const MechanicalModel& model,
   return !variable.kind && variable.factor == CurveFactor::kNone;
 }
 
-FittedModel ModelWithout(FittedModel model, const std::vector<std::size_t>& places) {
-  std::vector<FittedCause> left;
-  for (std::size_t i = 0; i < model.causes.size(); ++i) {
-    if (std::ranges::find(places, i) == places.end()) left.push_back(model.causes[i]);
-  }
-  model.causes = std::move(left);
-  return model;
-}
-
 /// Whether a force without a name does what the laws do in whose place it came, however
 /// many knots it has.
 bool ExplainsAsWell(const Evidence& laws, const Evidence& curve) {

@@ -108,7 +108,7 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
     return std::ranges::find(forces, plot.site, &UnknownSignal::site);
   };
   if (at(discovery_.forces_before) == discovery_.forces_before.end()) return plot;
-  const std::vector<FittedCause> others = Without(search_.fit().causes, cause);
+  const std::vector<FittedCause> others = Without(search_.fit().causes, {cause});
   const auto forces =
       others.empty() ? discovery_.forces_before
                      : UnexplainedIn(problem_.Follow(ChangesOf(

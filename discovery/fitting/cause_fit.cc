@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "mjdiag/discovery/fitting/fit_coordinates.h"
 #include "mjdiag/discovery/fitting/prior_cost.h"
@@ -417,18 +418,22 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
   }
 }
 
-FittedModel ModelWithout(const CauseFit& fit, std::size_t i) {
-  return {Without(fit.causes, i), fit.numbers, fit.prior_weight};
+FittedModel ModelWithout(const FittedModel& fit,
+                         const std::vector<std::size_t>& places) {
+  return {Without(fit.causes, places), fit.numbers, fit.prior_weight};
 }
 
-MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i) {
-  const MatrixXd& all = fit.jacobian;
-  Index first = fit.numbers.size();
-  for (std::size_t k = 0; k < i; ++k) first += fit.causes[k].value.size();
-  const Index count = fit.causes[i].value.size();
-  MatrixXd rest(all.rows(), all.cols() - count);
-  rest << all.leftCols(first), all.rightCols(all.cols() - first - count);
-  return rest;
+MatrixXd JacobianWithout(const CauseFit& fit, const std::vector<std::size_t>& places) {
+  if (fit.jacobian.cols() == 0) return fit.jacobian;
+  std::vector<Index> columns(static_cast<std::size_t>(fit.numbers.size()));
+  std::iota(columns.begin(), columns.end(), 0);
+  Index next = fit.numbers.size();
+  for (std::size_t i = 0; i < fit.causes.size(); ++i) {
+    for (Index k = 0; k < fit.causes[i].value.size(); ++k, ++next) {
+      if (std::ranges::find(places, i) == places.end()) columns.push_back(next);
+    }
+  }
+  return fit.jacobian(Eigen::all, columns);
 }
 
 }  // namespace mjdiag

@@ -84,8 +84,10 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const std::vector<Candidate>& candidates,
                                const FittedModel& start, const FitOptions& options);
 
-/// A fit but for its cause i: the rest, and J of it.
-FittedModel ModelWithout(const CauseFit& fit, std::size_t i);
-Eigen::MatrixXd JacobianWithout(const CauseFit& fit, std::size_t i);
+/// A fit but for its causes in some places: the rest, and J of it.
+FittedModel ModelWithout(const FittedModel& fit,
+                         const std::vector<std::size_t>& places);
+Eigen::MatrixXd JacobianWithout(const CauseFit& fit,
+                                const std::vector<std::size_t>& places);
 
 }  // namespace mjdiag

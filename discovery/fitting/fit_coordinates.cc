@@ -26,8 +26,13 @@ double ScaleOf(const FitParameter& parameter, double value, double duration) {
     case Role::kFactor:
       // Around 1: what counts is how far it is from there.
       return std::max(std::abs(value - 1.0), 1e-3);
-    default:
-      return std::max(std::abs(value), 1e-12);
+    default: {
+      // What is nothing so far has to show what it would do.
+      constexpr double kLittle = 1e-2;
+      const double little =
+          std::isfinite(parameter.spread) ? kLittle * parameter.spread : 0.0;
+      return std::max({std::abs(value), little, 1e-12});
+    }
   }
 }
 
@@ -45,7 +50,8 @@ FitCoordinates FitCoordinates::About(const std::vector<FitParameter>& parameters
     const auto place = static_cast<std::size_t>(i);
     const FitParameter& parameter = parameters[place];
     // Numbers of the plant are logs of factors already, and of both signs.
-    const bool is_log = IsMultiple(parameter.role) && theta[i] > 0.0;
+    const bool is_log =
+        IsMultiple(parameter.role) && parameter.lower >= 0.0 && theta[i] > 0.0;
     const bool is_shape = is_log && parameter.role != Role::kFactor;
     own.is_log_[place] = is_log;
     own.units_[i] = is_shape ? 1.0

@@ -43,8 +43,8 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   std::vector<FittedCause> others;
   for (Start& start :
        BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
-                   left - (moved - left) / kStep, JacobianWithout(fit, i),
-                   ModelWithout(fit, i), kMostPeriods)) {
+                   left - (moved - left) / kStep, JacobianWithout(fit, {i}),
+                   ModelWithout(fit, {i}), kMostPeriods)) {
     start.cause.candidate = causes[i].candidate;
     others.push_back(Bounded(candidates, std::move(start.cause)));
   }

@@ -98,9 +98,13 @@ Changes ChangesOf(const std::vector<Candidate>& candidates,
   return ChangesOf(list);
 }
 
-std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i) {
-  causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(i));
-  return causes;
+std::vector<FittedCause> Without(const std::vector<FittedCause>& causes,
+                                 const std::vector<std::size_t>& places) {
+  std::vector<FittedCause> left;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    if (std::ranges::find(places, i) == places.end()) left.push_back(causes[i]);
+  }
+  return left;
 }
 
 }  // namespace mjdiag

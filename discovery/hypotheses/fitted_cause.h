@@ -38,7 +38,8 @@ Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitte
 Changes ChangesOf(const std::vector<Candidate>& candidates,
                   const std::vector<FittedCause>& causes);
 
-/// All causes but number i.
-std::vector<FittedCause> Without(std::vector<FittedCause> causes, std::size_t i);
+/// All causes but those in these places.
+std::vector<FittedCause> Without(const std::vector<FittedCause>& causes,
+                                 const std::vector<std::size_t>& places);
 
 }  // namespace mjdiag

@@ -1,11 +1,11 @@
 #include "mjdiag/discovery/screening/screener.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
+#include "mjdiag/discovery/screening/bounded_regression.h"
 #include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
@@ -106,23 +106,20 @@ std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& respo
   }
   const VectorXd size = phi.colwise().squaredNorm();
   if (found_.cols() > 0 && !trial.fast) phi -= found_ * (found_.transpose() * phi);
-  MatrixXd G = phi.transpose() * phi;
-  // A column that what has been found explains already says nothing.
+  const MatrixXd G = phi.transpose() * phi;
+  // A column that what has been found explains already says nothing: of a law that
+  // contains a found one it is what that does.
   constexpr double kIndependent = 1e-8;
-  for (Index i = 0; i < G.cols(); ++i) {
-    if (!(G(i, i) > kIndependent * size[i])) return std::nullopt;
-  }
-  const VectorXd scale = G.diagonal().cwiseSqrt().cwiseInverse();
-  G = scale.asDiagonal() * G * scale.asDiagonal();
-  const VectorXd b = scale.asDiagonal() * (phi.transpose() * residual);
-  const Eigen::LDLT<MatrixXd> solver(G);
-  if (solver.vectorD().minCoeff() < 1e-10) return std::nullopt;
-  const VectorXd amplitude = solver.solve(b);
-  const TrialValues values = trial.values(scale.asDiagonal() * amplitude);
+  const Eigen::ArrayX<bool> explained =
+      !(G.diagonal().array() > kIndependent * size.array());
+  const auto best =
+      RegressBounded(G, phi.transpose() * residual, trial.least, explained);
+  if (!best) return std::nullopt;
+  const TrialValues values = trial.values(best->amplitude);
   if (!values) return std::nullopt;
   Start start;
   start.cause.value = *values;
-  start.gain = b.dot(amplitude);
+  start.gain = best->gain;
   start.freedom = static_cast<int>(G.cols());
   return start;
 }

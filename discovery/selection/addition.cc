@@ -63,6 +63,7 @@ class Contest {
 
   std::vector<Entry> Preview(const std::vector<Start>& shortlist) const;
   std::vector<std::optional<CauseFit>> Fit(const std::vector<Entry>& entries) const;
+  void Simplify(std::vector<std::optional<CauseFit>>& fits) const;
 
  private:
   void FitToBeginning(std::vector<Entry>& entries, std::size_t count,
@@ -156,6 +157,27 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
   return fits;
 }
 
+/// Adds to the fits those of simpler laws that others are where they ended.
+void Contest::Simplify(std::vector<std::optional<CauseFit>>& fits) const {
+  constexpr int kIterations = 5;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i] || IsCredible(data_.candidates, *fits[i])) continue;
+    FittedModel at_its_end = *fits[i];
+    const auto simpler = data_.SimplerThan(at_its_end.causes.back(), at_its_end);
+    const auto is_same = [&](const std::optional<CauseFit>& fit) {
+      return fit && fit->causes.back().candidate == simpler->candidate;
+    };
+    if (!simpler || std::ranges::any_of(fits, is_same)) continue;
+    at_its_end.causes.back() = *simpler;
+    const double share = data_.work().Share(1);
+    FitOptions options = CompareFrom(FoundJacobian(), kIterations, 1e-4, share);
+    options.only_betters = true;
+    auto fit = TryFit(data_.problem, data_.candidates, at_its_end, options);
+    if (!fit) continue;
+    fits.push_back(Settled(data_.problem, data_.candidates, std::move(*fit), share));
+  }
+}
+
 std::string NamesOf(const std::vector<Candidate>& candidates,
                     const std::vector<Entry>& entries) {
   std::string names;
@@ -219,6 +241,7 @@ Additions ProposeAdditions(const SearchData& data, const Evidence& present,
   }
   if (!finalists.empty()) report("fit of " + NamesOf(data.candidates, finalists));
   std::vector<std::optional<CauseFit>> fits = contest.Fit(finalists);
+  contest.Simplify(fits);
   Additions additions;
   for (auto& fit : fits) {
     if (!fit || IsCredible(data.candidates, *fit)) continue;

@@ -1,15 +1,16 @@
 #include "mjdiag/discovery/selection/moves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
-#include "mjdiag/discovery/fitting/nested_law.h"
+#include "mjdiag/discovery/fitting/screening_in_place.h"
 #include "mjdiag/discovery/fitting/wave_period.h"
-#include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/comparator.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/settled_fit.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -37,7 +38,8 @@ bool IsIncredible(const SearchData& data, const Evidence& present,
 }
 
 /// The fit of other causes; none if the beginning of the record shows that they explain
-/// far less than the present ones.
+/// far less than the present ones. Of a law that the fit takes to an end of its
+/// parameters that of the simpler one, which it is there.
 /// @param jacobian  of the first of the causes
 /// @param share     of the work that is left, for both fits
 std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
@@ -61,16 +63,21 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                     CompareFrom(initial, 8, 1e-5, 0.5 * share));
   if (!fit) return std::nullopt;
   *fit = Settled(data.problem, data.candidates, std::move(*fit), 0.5 * share);
-  if (IsIncredible(data, present, *fit)) return std::nullopt;
-  return present.Changed(std::move(*fit));
+  if (!IsIncredible(data, present, *fit)) return present.Changed(std::move(*fit));
+  const auto simpler = data.SimplerThan(fit->causes.back(), *fit);
+  if (!simpler || Has(present.fit().causes, simpler->candidate)) return std::nullopt;
+  FittedModel at_its_end = *fit;
+  at_its_end.causes.back() = *simpler;
+  return ProposeUnlessFar(data, present, at_its_end, jacobian, share - fit->spent);
 }
 
-/// Sets with others in place i. The new one comes last, for the Jacobian of those
+/// Sets with others in these places. The new one comes last, for the Jacobian of those
 /// before it is known.
-Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::size_t i,
+Proposals ProposeInPlace(const SearchData& data, const Evidence& present,
+                         const std::vector<std::size_t>& places,
                          const std::vector<FittedCause>& others) {
-  const FittedModel rest = ModelWithout(present.fit(), i);
-  const MatrixXd jacobian = JacobianWithout(present.fit(), i);
+  const FittedModel rest = ModelWithout(present.fit(), places);
+  const MatrixXd jacobian = JacobianWithout(present.fit(), places);
   Proposals proposals(others.size());
   const double share = data.work().Share(static_cast<int>(others.size()));
   ParallelFor(static_cast<int>(others.size()), [&](int number) {
@@ -82,6 +89,17 @@ Proposals ProposeInPlace(const SearchData& data, const Evidence& present, std::s
   return proposals;
 }
 
+/// Whether a set without cause i is worth no fit: to first order, which is rough, it is
+/// far worse many times over.
+bool IsIndispensable(const SearchData& data, const Evidence& present, std::size_t i) {
+  constexpr double kFar = 1000.0;  // in units of the deviance
+  const CauseFit& fit = present.fit();
+  const double loss = LossWithout(data.problem, data.candidates, fit, i);
+  const double rest = FittedValues(data.problem) * std::max(1.0, fit.train);
+  const double values = present.Noise() * present.independent().mean();
+  return values * std::log1p(loss / rest) > kFar;
+}
+
 /// Sets without each of the hypotheses.
 Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
   const CauseFit& fit = present.fit();
@@ -89,10 +107,32 @@ Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
   const double share = data.work().Share(static_cast<int>(proposals.size()));
   ParallelFor(static_cast<int>(proposals.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    proposals[i] = ProposeUnlessFar(data, present, ModelWithout(fit, i),
-                                    JacobianWithout(fit, i), share);
+    if (IsIndispensable(data, present, i)) return;
+    proposals[i] = ProposeUnlessFar(data, present, ModelWithout(fit, {i}),
+                                    JacobianWithout(fit, {i}), share);
   });
   return proposals;
+}
+
+/// Those that a screening finds to explain at least so much, best first.
+std::vector<FittedCause> Explaining(const SearchData& data, const CauseFit& fit,
+                                    const Screening& screening, double least) {
+  std::vector<FittedCause> others;
+  for (const Start& start : screening.starts) {
+    if (start.gain < least) break;
+    const std::size_t candidate = start.cause.candidate;
+    if (Has(fit.causes, candidate) || data.IsForbidden(candidate)) continue;
+    others.push_back(Bounded(data.candidates, start.cause));
+  }
+  return others;
+}
+
+/// What a screening has to promise of hypotheses that may explain as much: of what the
+/// present ones explain, for the first order is rough for large effects.
+double NearlyAll(double explained) {
+  constexpr double kNearly = 0.8;
+  constexpr double kChance = 50.0;
+  return kNearly * explained - kChance;
 }
 
 /// Hypotheses that are worth a fit in the place of cause i: a simpler law of the same
@@ -100,26 +140,36 @@ Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
 std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
                                    std::size_t i) {
   constexpr std::size_t kMost = 3;
-  // Of what the cause explains; the first order is rough for large effects.
-  constexpr double kNearly = 0.8;
-  constexpr double kChance = 50.0;
   std::vector<FittedCause> others;
-  const auto consider = [&](const FittedCause& other) {
-    if (Has(fit.causes, other.candidate) || Has(others, other.candidate)) return;
-    if (data.IsForbidden(other.candidate)) return;
-    if (others.size() < kMost) others.push_back(other);
-  };
-  const auto simpler =
-      SimplerLaw(data.problem.machine().plant(), data.candidates, fit.causes[i]);
-  if (simpler) consider(*simpler);
-  const Screening without = ScreenBeside(
-      data.problem, data.candidates, ModelWithout(fit, i), JacobianWithout(fit, i), 1);
-  const double explained = without.rest - FittedValues(data.problem) * fit.train;
-  for (const Start& start : without.starts) {
-    if (start.gain < kNearly * explained - kChance) break;
-    consider(Bounded(data.candidates, start.cause));
+  if (const auto simpler = data.SimplerThan(fit.causes[i], fit)) {
+    others.push_back(*simpler);
+  }
+  const Screening without = ScreenInPlace(data.problem, data.candidates, fit, {i}, 1);
+  const double explained = ExplainedBy(data.problem, fit, without);
+  for (FittedCause& other : Explaining(data, fit, without, NearlyAll(explained))) {
+    if (others.size() == kMost) break;
+    if (!Has(others, other.candidate)) others.push_back(std::move(other));
   }
   return others;
+}
+
+/// Hypotheses that promise more than cause i, by more than chance.
+std::vector<FittedCause> BetterFor(const SearchData& data, const Evidence& present,
+                                   std::size_t i, const Chance& chance) {
+  constexpr std::size_t kMost = 2;
+  const CauseFit& fit = present.fit();
+  const Screening without = ScreenInPlace(data.problem, data.candidates, fit, {i}, 1);
+  // What the first order is off by is much the same for laws that explain alike.
+  const auto own = std::ranges::find(without.starts, fit.causes[i].candidate,
+                                     [](const Start& s) { return s.cause.candidate; });
+  const double explained =
+      own == without.starts.end() ? ExplainedBy(data.problem, fit, without) : own->gain;
+  const double by_chance =
+      GainByChance(chance.probability, without.trials, 1) * present.Inflation();
+  std::vector<FittedCause> better =
+      Explaining(data, fit, without, explained + by_chance + chance.unsteadiness);
+  if (better.size() > kMost) better.resize(kMost);
+  return better;
 }
 
 /// The rivals of cause i after others have been tried in its place. Those that were not
@@ -165,16 +215,37 @@ bool ChangePeriod(const SearchData& data, HypothesisSet& set, std::size_t i) {
   if (!HasPeriod(data.candidates[fit.causes[i].candidate])) return false;
   if (!data.work().MayBegin("other periods")) return false;
   const auto others = OtherPeriods(data.problem, data.candidates, fit, i);
-  return TakeInPlace(set, i, ProposeInPlace(data, set.evidence, i, others));
+  return TakeInPlace(set, i, ProposeInPlace(data, set.evidence, {i}, others));
 }
 
 bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i,
                 const std::vector<FittedCause>& others) {
-  Proposals proposals = ProposeInPlace(data, set.evidence, i, others);
+  if (others.empty()) return false;
+  Proposals proposals = ProposeInPlace(data, set.evidence, {i}, others);
   // Fits that were cut short say nothing of how probable the rivals are.
   if (!data.work().MayBegin(kOthers)) return false;
   RankRivals(set, i, others, proposals);
   return TakeInPlace(set, i, std::move(proposals));
+}
+
+/// Puts one hypothesis in the place of two that act at one joint.
+bool MergeAt(const SearchData& data, HypothesisSet& set, std::size_t i, std::size_t j) {
+  constexpr std::size_t kMost = 2;
+  const CauseFit& fit = set.fit();
+  const Screening without =
+      ScreenInPlace(data.problem, data.candidates, fit, {i, j}, 1);
+  std::vector<FittedCause> others = Explaining(
+      data, fit, without, NearlyAll(ExplainedBy(data.problem, fit, without)));
+  if (others.size() > kMost) others.resize(kMost);
+  if (others.empty()) return false;
+  Proposals proposals = ProposeInPlace(data, set.evidence, {i, j}, others);
+  const auto best = BestOf(set.evidence, proposals);
+  if (!best) return false;
+  set.evidence = std::move(*proposals[*best]);
+  set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(j));
+  set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(i));
+  set.rivals.push_back({{set.fit().causes.back(), set.evidence.Criterion(), 1.0}});
+  return true;
 }
 
 }  // namespace
@@ -188,12 +259,8 @@ void ChangePeriods(const SearchData& data, HypothesisSet& set) {
 
 bool Simplify(const SearchData& data, HypothesisSet& set) {
   for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
-    const std::vector<FittedCause>& causes = set.fit().causes;
-    const auto simpler =
-        SimplerLaw(data.problem.machine().plant(), data.candidates, causes[i]);
-    if (!simpler || data.IsForbidden(simpler->candidate)) continue;
-    if (Has(causes, simpler->candidate) || !data.work().MayBegin("simpler laws"))
-      continue;
+    const auto simpler = data.SimplerThan(set.fit().causes[i], set.fit());
+    if (!simpler || !data.work().MayBegin("simpler laws")) continue;
     if (ExchangeAt(data, set, i, {*simpler})) return true;
   }
   return false;
@@ -213,6 +280,30 @@ bool Exchange(const SearchData& data, HypothesisSet& set) {
   for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
     if (!data.work().MayBegin(kOthers)) break;
     if (ExchangeAt(data, set, i, OthersFor(data, set.fit(), i))) return true;
+  }
+  return false;
+}
+
+bool Better(const SearchData& data, HypothesisSet& set, const Chance& chance) {
+  for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
+    if (!data.work().MayBegin(kBetter)) break;
+    if (ExchangeAt(data, set, i, BetterFor(data, set.evidence, i, chance))) return true;
+  }
+  return false;
+}
+
+bool Merge(const SearchData& data, HypothesisSet& set) {
+  const std::vector<FittedCause>& causes = set.fit().causes;
+  const auto joint = [&](std::size_t i) {
+    const Candidate& candidate = data.candidates[causes[i].candidate];
+    return candidate.effect->element() == mjOBJ_JOINT ? candidate.joint : -1;
+  };
+  for (std::size_t i = 0; i + 1 < causes.size(); ++i) {
+    for (std::size_t j = i + 1; j < causes.size(); ++j) {
+      if (joint(i) < 0 || joint(i) != joint(j)) continue;
+      if (!data.work().MayBegin(kOthers)) return false;
+      if (MergeAt(data, set, i, j)) return true;
+    }
   }
   return false;
 }

@@ -37,7 +37,7 @@ Index BeginningLength(const DiscoveryProblem& problem) {
 /// The values that a search without cause i starts from.
 CauseFit WithoutCause(const CauseFit& fit, std::size_t i) {
   CauseFit rest;
-  static_cast<FittedModel&>(rest) = ModelWithout(fit, i);
+  static_cast<FittedModel&>(rest) = ModelWithout(fit, {i});
   return rest;
 }
 
@@ -220,8 +220,10 @@ bool Search::AddCause() {
   const std::vector<Start> shortlist =
       Shortlist(present, screening, chance, options_.shortlist, data_.forbidden);
   result_.significant_rest = !shortlist.empty();
-  if (shortlist.empty() || rounds_++ >= options_.most_causes) return false;
-  if (!work().MayBegin(kFurther)) return false;
+  if (shortlist.empty()) return false;
+  Report(kBetter, 0.2);
+  if (Better(data_, result_, chance)) return true;
+  if (rounds_++ >= options_.most_causes || !work().MayBegin(kFurther)) return false;
   Additions additions =
       ProposeAdditions(data_, present, shortlist,
                        [this](const std::string& what) { Report(what, 0.5); });
@@ -271,7 +273,7 @@ void Search::AddCauses() {
 bool Search::TryExchange() {
   if (result_.fit().causes.empty()) return false;
   Report(kOthers, 0.9);
-  return Exchange(data_, result_);
+  return Exchange(data_, result_) || Merge(data_, result_);
 }
 
 void Search::ExchangeCauses() {

@@ -4,9 +4,10 @@
 //
 // A round
 //
-//   screens all candidates on what is left, and fits the best of them beside what has
-//   been found (addition.h); in the order of their criteria they are judged, and the
-//   first that is accepted is added;
+//   screens all candidates on what is left; where one shows, it may be what another
+//   hypothesis in the place of one does (moves.h), or else the best of them are fitted
+//   beside what has been found (addition.h); in the order of their criteria they are
+//   judged, and the first that is accepted is added;
 //   tries other periods for waves and simpler laws, and drops what has become superfluous
 //   (moves.h);
 //   where the course of the machine depends on the last digit, looks for a better fit
@@ -16,8 +17,8 @@
 // up to two such hypotheses are added ahead, and taken back if what comes with them does
 // not make unseen data agree with all of them.
 //
-// When a round adds nothing each hypothesis is exchanged on trial (moves.h); if one is,
-// rounds go on, four times at most. What came first was chosen while everything else was
+// When a round adds nothing each hypothesis is exchanged on trial, and two for one
+// (moves.h); if one is, rounds go on, four times at most. What came first was chosen while everything else was
 // missing: for each hypothesis a search of its own, which may not take it, starts from the
 // others, and its set is judged as any other. In the end all values are fitted once more,
 // as closely as possible.

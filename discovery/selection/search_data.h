@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
@@ -21,6 +22,10 @@ struct SearchData {
   bool IsForbidden(std::size_t candidate) const {
     return std::ranges::find(forbidden, candidate) != forbidden.end();
   }
+
+  /// SimplerLaw of a cause, if it may stand beside the others of its model.
+  std::optional<FittedCause> SimplerThan(const FittedCause& cause,
+                                         const FittedModel& model) const;
 
   Work& work() const { return *problem.work(); }
 };

@@ -44,12 +44,11 @@ MatrixXd SiteMotion::MotorEntry(Index columns) const {
 }
 
 Trial LinearTrial(MatrixXd signals, MatrixXd entry, double offset, bool not_negative) {
+  Amplitudes least;
+  if (not_negative) least = Amplitudes::Constant(signals.cols(), -offset);
   return {std::move(signals), std::move(entry),
-          [offset, not_negative](const Amplitudes& a) -> TrialValues {
-            VectorXd values = offset + a.array();
-            if (not_negative && values.minCoeff() < 0.0) return std::nullopt;
-            return values;
-          }};
+          [offset](const Amplitudes& a) -> TrialValues { return offset + a.array(); },
+          std::move(least)};
 }
 
 }  // namespace mjdiag

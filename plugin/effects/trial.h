@@ -26,6 +26,8 @@ struct Trial {
   Eigen::MatrixXd signals;  ///< samples x amplitudes: force or error of the reading
   Eigen::MatrixXd entry;    ///< nq x amplitudes, of forces; empty: errors of a reading
   std::function<TrialValues(const Amplitudes&)> values;
+  /// What each amplitude is at least, at most 0; of no size: anything.
+  Amplitudes least = {};
   /// An error of readings that is far too fast for the observer to follow: it shows in
   /// the innovations as it is.
   bool fast = false;
@@ -66,7 +68,7 @@ struct SiteMotion {
 };
 
 /// One amplitude for each parameter, in their order, and no shape: value = offset +
-/// amplitude.
+/// amplitude, which may be asked to be at least 0.
 Trial LinearTrial(Eigen::MatrixXd signals, Eigen::MatrixXd entry, double offset = 0.0,
                   bool not_negative = false);
 

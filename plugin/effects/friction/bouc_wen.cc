@@ -84,16 +84,18 @@ class BoucWenEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<BoucWenForce>(model.jnt_dofadr[joint], values);
   }
-  // As Dahl friction; what hardens shows in the fit.
+  // As Dahl friction, with a little that hardens, by which the fit sees what more does.
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     std::vector<Trial> trials;
     for (const double length : LogGrid(1e-2 * Range(q), 0.5 * Range(q), 4)) {
-      trials.push_back({-Follow(q, length), at.JointEntry(),
-                        [length](const Amplitudes& a) -> TrialValues {
-                          if (a[0] <= 0.0) return std::nullopt;
-                          return ValuesOf({a[0], 1.0 / length, 0.0, 1.0});
-                        }});
+      trials.push_back(
+          {-Follow(q, length), at.JointEntry(),
+           [length](const Amplitudes& a) -> TrialValues {
+             if (a[0] <= 0.0) return std::nullopt;
+             constexpr double kHardens = 0.1;
+             return ValuesOf({a[0], (1.0 - kHardens) / length, kHardens / length, 1.0});
+           }});
     }
     return trials;
   }

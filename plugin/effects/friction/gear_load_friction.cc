@@ -58,10 +58,7 @@ class GearLoadFrictionEffect final : public VaryingFrictionEffect<GearBound> {
     parts.col(0) = load.motor.cwiseAbs().cwiseProduct(s);
     parts.col(1) = load.rest.cwiseAbs().cwiseProduct(s);
     parts.col(2) = (load.motor - load.rest).cwiseAbs2().cwiseProduct(s);
-    return {{parts, at.JointEntry(3), [](const Amplitudes& a) -> TrialValues {
-               if (a[0] + a[1] <= 0.0) return std::nullopt;
-               return a.cwiseMax(0.0);
-             }}};
+    return {LinearTrial(parts, at.JointEntry(3), 0.0, true)};
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(DirectionalLoadFriction()), self.site,

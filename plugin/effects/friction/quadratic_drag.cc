@@ -23,8 +23,12 @@ class QuadraticDragEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return -values[0] * v * std::abs(v);
   }
+  // Nothing that a plant has of its own grows with the square of the velocity: drag that
+  // falls below it would push.
+  double Least(const mjModel&, Eigen::Index, std::size_t) const override { return 0.0; }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.v().cwiseProduct(at.v().cwiseAbs()), at.JointEntry())};
+    return {LinearTrial(-at.v().cwiseProduct(at.v().cwiseAbs()), at.JointEntry(), 0.0,
+                        true)};
   }
   Sized Draw(const Scales& k, Random&) const override {
     return Proportional(k.SmallForce() / (k.speed * k.speed));

@@ -1,6 +1,5 @@
 #include "mjdiag/plugin/effects/friction/stribeck_curve.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "mjdiag/plugin/effects/effect.h"
@@ -21,11 +20,12 @@ std::vector<Trial> StribeckTrials(const SiteMotion& at, const Eigen::VectorXd& s
     Eigen::MatrixXd parts(v.size(), 2);
     parts.col(0) = slide;
     parts.col(1) = slide.array() * (-(v.array() / velocity).square()).exp();
-    trials.push_back(
-        {parts, at.JointEntry(2), [velocity](const Amplitudes& a) -> TrialValues {
-           if (a[1] <= 0.0 || a[0] < -0.1 * a[1]) return std::nullopt;
-           return ValuesOf({std::max(a[0], 0.0), a[1], velocity});
-         }});
+    trials.push_back({parts, at.JointEntry(2),
+                      [velocity](const Amplitudes& a) -> TrialValues {
+                        if (a[1] <= 0.0) return std::nullopt;
+                        return ValuesOf({a[0], a[1], velocity});
+                      },
+                      Amplitudes::Zero(2)});
   }
   return trials;
 }

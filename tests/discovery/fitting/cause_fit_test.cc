@@ -5,6 +5,7 @@
 #include "discovery/candidate_place.h"
 #include "discovery/stage_under_test.h"
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
+#include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -129,6 +130,22 @@ TEST(ParameterCovariance, OfWhatNothingIsToldTakesNothingFromTheOthers) {
   EXPECT_TRUE(std::isfinite(covariance(0, 0)));
   EXPECT_LT(std::sqrt(covariance(0, 0)), 1.0);
   EXPECT_EQ(covariance(0, 2), 0.0);
+}
+
+// A part of a law that is nothing at the start, as a law that becomes a simpler one
+// there has, and more in truth.
+TEST(CauseFit, MovesAwayFromNothing) {
+  const test::StageUnderTest stage;
+  const DiscoveryProblem problem = stage.Pose(
+      stage.Measure({"stribeck_friction@load:coulomb=12,breakaway=8,velocity=0.01"}));
+  auto candidates = ListCandidates(stage.machine);
+  BoundByRecord(candidates, stage.machine, problem.MotionOf(problem.Nominal()));
+  const std::size_t place = Place(candidates, "stribeck_friction@load");
+  const CauseFit fit =
+      FitCauses(problem, candidates, {{{place, Eigen::Vector3d(13.0, 0.0, 0.01)}}},
+                {30, 1e-8, true, nullptr});
+  EXPECT_NEAR(fit.causes[0].value[1], 8.0, 0.1);
+  EXPECT_NEAR(fit.train, 1.0, 0.1);
 }
 
 }  // namespace

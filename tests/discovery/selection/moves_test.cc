@@ -126,5 +126,45 @@ TEST(Drop, LeavesWhatUnseenDataNeed) {
   EXPECT_FALSE(Drop(found.data, found.set));
 }
 
+// The small part of a law that the other explains for itself.
+TEST(Better, PutsTheLargerLawInThePlaceOfTheOneThatItContains) {
+  Found found({"stribeck_friction@load:coulomb=3,breakaway=1,velocity=0.02"},
+              {{"coulomb_friction@load", VectorXd::Constant(1, 3.0)}});
+  ASSERT_TRUE(Better(found.data, found.set, {}));
+  ASSERT_EQ(found.set.fit().causes.size(), 1u);
+  EXPECT_EQ(found.Name(0), "stribeck_friction@load");
+  EXPECT_NEAR(found.set.fit().causes[0].value[1], 1.0, 0.1);
+  ASSERT_EQ(found.set.rivals.size(), 1u);
+}
+
+TEST(Better, LeavesACauseThatNothingExplainsBetterThan) {
+  Found found({"coulomb_friction@load:force=3"},
+              {{"coulomb_friction@load", VectorXd::Constant(1, 3.0)}});
+  EXPECT_FALSE(Better(found.data, found.set, {}));
+  EXPECT_EQ(found.Name(0), "coulomb_friction@load");
+}
+
+TEST(Merge, PutsALawInThePlaceOfItsParts) {
+  Found found(
+      {"gear_load_friction@load:motor_share=0.05,load_share=0.03,quadratic=1e-3"},
+      {{"directional_load_friction@load", Eigen::Vector2d(0.05, 0.03)},
+       {"quadratic_load_friction@load", VectorXd::Constant(1, 1e-3)}});
+  ASSERT_TRUE(Merge(found.data, found.set));
+  ASSERT_EQ(found.set.fit().causes.size(), 1u);
+  EXPECT_EQ(found.Name(0), "gear_load_friction@load");
+  EXPECT_NEAR(found.set.fit().causes[0].value[2], 1e-3, 1e-4);
+  ASSERT_EQ(found.set.rivals.size(), 1u);
+  EXPECT_EQ(found.set.rivals[0].front().cause.candidate,
+            test::Place(found.candidates, "gear_load_friction@load"));
+}
+
+TEST(Merge, LeavesTwoThatAreTwo) {
+  Found found({"quadratic_drag@load:coefficient=20", "force_offset@load:force=0.05"},
+              {{"quadratic_drag@load", VectorXd::Constant(1, 20.0)},
+               {"force_offset@load", VectorXd::Constant(1, 0.05)}});
+  EXPECT_FALSE(Merge(found.data, found.set));
+  EXPECT_EQ(found.set.fit().causes.size(), 2u);
+}
+
 }  // namespace
 }  // namespace mjdiag
