@@ -92,6 +92,19 @@ MatrixXd Screener::Responses(const std::vector<Trial>& trials, std::size_t first
       .bottomRows(channels_ * blocks_);
 }
 
+bool Screener::IsFast(const Trial& trial) const {
+  constexpr double kKept = 0.9;  // of its squares, in the means of blocks
+  if (!trial.fast || block_ == 1) return false;
+  const MatrixXd signals = trial.signals.topRows(block_ * (skip_ + blocks_));
+  return Averaged(signals, 1, block_).squaredNorm() < kKept * signals.squaredNorm();
+}
+
+std::size_t Screener::Slow(const Sweep& sweep) const {
+  const auto slow = [&](double value) { return !IsFast(sweep.make(value)); };
+  return static_cast<std::size_t>(std::ranges::partition_point(sweep.values, slow) -
+                                  sweep.values.begin());
+}
+
 /// The part of a fast trial in its own sensor, every sample.
 MatrixXd Screener::Fast(const Trial& trial, const Candidate& candidate) const {
   return dynamics_.weight()[candidate.channel] *
@@ -105,7 +118,7 @@ std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& respo
     phi = WithNumbers(phi, MatrixXd::Zero(residual.size() - phi.rows(), phi.cols()));
   }
   const VectorXd size = phi.colwise().squaredNorm();
-  if (found_.cols() > 0 && !trial.fast) phi -= found_ * (found_.transpose() * phi);
+  if (found_.cols() > 0 && !IsFast(trial)) phi -= found_ * (found_.transpose() * phi);
   const MatrixXd G = phi.transpose() * phi;
   // A column that what has been found explains already says nothing: of a law that
   // contains a found one it is what that does.
@@ -130,14 +143,14 @@ void Screener::ForEachResponse(const std::vector<Trial>& trials,
                                const Candidate& candidate, const Take& take) const {
   std::size_t first = 0;
   while (first < trials.size()) {
-    if (trials[first].fast) {
+    if (IsFast(trials[first])) {
       take(first, Fast(trials[first], candidate));
       ++first;
       continue;
     }
     std::size_t last = first;
     Index columns = 0;
-    while (last < trials.size() && columns < kBatch && !trials[last].fast) {
+    while (last < trials.size() && columns < kBatch && !IsFast(trials[last])) {
       columns += trials[last++].signals.cols();
     }
     const MatrixXd responses = Responses(trials, first, last, candidate);
@@ -156,7 +169,7 @@ std::vector<std::optional<Start>> Screener::Judge(const std::vector<Trial>& tria
   std::vector<std::optional<Start>> starts(trials.size());
   const Eigen::Map<const MatrixXd> channels(full_.data(), channels_, block_ * blocks_);
   ForEachResponse(trials, candidate, [&](std::size_t t, const auto& response) {
-    starts[t] = trials[t].fast
+    starts[t] = IsFast(trials[t])
                     ? Regress(trials[t], response, channels.row(candidate.channel))
                     : Regress(trials[t], response, residual_);
   });
@@ -167,8 +180,9 @@ std::vector<std::optional<Start>> Screener::Judge(const std::vector<Trial>& tria
 /// <e, r> = <signal, g> with g the adjoint, or r itself for what is fast.
 std::vector<double> Screener::Common(const Sweep& sweep,
                                      const Candidate& candidate) const {
+  const std::size_t slow = Slow(sweep);
   VectorXd of_fast = VectorXd::Zero(problem_.train());
-  if (sweep.fast_below > 0.0) {  // a sensor; joints have no channel
+  if (slow < sweep.values.size()) {  // a sensor; joints have no channel
     const Eigen::Map<const MatrixXd> channels(full_.data(), channels_,
                                               block_ * blocks_);
     of_fast.segment(block_ * skip_, block_ * blocks_) =
@@ -194,7 +208,7 @@ std::vector<double> Screener::Common(const Sweep& sweep,
   Charge(kPerSample * problem_.train(), static_cast<Index>(sweep.values.size()));
   std::vector<double> common;
   for (std::size_t i = 0; i < sweep.values.size(); ++i) {
-    const VectorXd& weight = sweep.values[i] < sweep.fast_below ? of_fast : of_slow;
+    const VectorXd& weight = i < slow ? of_slow : of_fast;
     common.push_back(std::norm((wave * weight.array()).sum()));
     wave *= turn;
   }

@@ -56,6 +56,10 @@ class Screener {
   void ForEachResponse(const std::vector<Trial>& trials, const Candidate& candidate,
                        const Take& take) const;
   void Charge(Eigen::Index numbers, Eigen::Index count) const;
+  /// Whether a trial that may be too fast for the means of blocks is.
+  bool IsFast(const Trial& trial) const;
+  /// How many values of a sweep, from the first on, make trials that are not.
+  std::size_t Slow(const Sweep& sweep) const;
   Eigen::MatrixXd Fast(const Trial& trial, const Candidate& candidate) const;
   std::vector<double> Common(const Sweep& sweep, const Candidate& candidate) const;
   Eigen::MatrixXd Responses(const std::vector<Trial>& trials, std::size_t first,

@@ -21,6 +21,27 @@ double UpperRms(const VectorXd& signal, double sample_time) {
   return std::sqrt(2.0 * BandPower(spectrum, 0.5 * highest, highest));
 }
 
+/// Whether the mean squares of short parts of a signal differ by more than those of white
+/// noise do, which is 2 / n of their square in variance, and by more than a fraction of
+/// what the whole has more than `expected`.
+bool IsUnsteady(const VectorXd& signal, double expected) {
+  constexpr Index kPart = 64;
+  constexpr double kSigmas = 5.0;
+  constexpr double kFraction = 0.25;
+  const Index parts = signal.size() / kPart;
+  if (parts < 2) return false;
+  const VectorXd square =
+      signal.head(kPart * parts).reshaped(kPart, parts).colwise().squaredNorm() / kPart;
+  const double mean = square.mean();
+  const double variance =
+      (square.array() - mean).square().sum() / static_cast<double>(parts - 1);
+  const double by_chance = 2.0 * mean * mean / static_cast<double>(kPart);
+  // Of a variance of normal values; these are nearly that.
+  const double error = by_chance * std::sqrt(2.0 / static_cast<double>(parts - 1));
+  const double more = kFraction * (mean - expected * expected);
+  return variance - by_chance > std::max(kSigmas * error, more * more);
+}
+
 }  // namespace
 
 std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& observer,
@@ -48,6 +69,9 @@ std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& obs
     const double upper =
         UpperRms(innovations.row(row).head(n).transpose(), setup.rates.tick());
     if (rms - upper > std::max(kSigmas * error, kLeast * rms)) continue;
+    if (IsUnsteady(innovations.row(row).head(n).transpose() / colouring, expected)) {
+      continue;
+    }
     const double raised = std::sqrt(rms * rms - expected * expected);
     found.push_back({sensor.element, sensor.unit, raised, error * rms / raised});
   }

@@ -22,7 +22,9 @@ struct RaisedNoise {
 /// Sensors whose noise exceeds that of the setup by more than five standard deviations
 /// of its estimate, and by more than a fiftieth. Sensors without noise in the setup are
 /// left out: nothing is known of them. So are those that have less in the upper half of
-/// the band than in all of it: what machines do beside their models is slow.
+/// the band than in all of it: what machines do beside their models is slow; and those in
+/// which what is more is not there all the time: a model lacks something now and then, as
+/// where a guide begins to slide.
 std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& observer,
                                          const Eigen::MatrixXd& innovations,
                                          double share);

@@ -34,7 +34,6 @@ Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step
   }
   sweep.angle = kCoarsest * kTurn / (4.0 * range) * x;
   sweep.increment = step * kTurn / (4.0 * range) * x;
-  sweep.fast_below = fast_below;
   sweep.make = [entry, x, fast_below](double period) {
     Trial trial = WaveTrial(entry, kTurn / period * x, period);
     trial.fast = period < fast_below;

@@ -20,7 +20,7 @@ Trial WaveTrial(const Eigen::VectorXd& entry, const Eigen::VectorXd& angle,
 /// Periods of a wave over x, from one period over the stroke on.
 /// @param finest      quarters of a period over the stroke, at most
 /// @param step        quarters from one to the next: 1 or 2 miss no maximum
-/// @param fast_below  see Sweep
+/// @param fast_below  periods below which trials may be `fast`
 Sweep PeriodSweep(const Eigen::VectorXd& entry, const Eigen::VectorXd& x, int finest,
                   int step, double fast_below);
 

@@ -60,7 +60,7 @@ const std::vector<SmallEffect>& SmallEffects() {
       {"force_ripple@load", "force_ripple@load:amplitude=0.05,period=0.024,phase=0.3"},
       {"encoder_periodic_error@load_encoder",
        "encoder_periodic_error@load_encoder:amplitude=2e-8,period=0.004,phase=1",
-       0.25}};
+       0.1}};
   return effects;
 }
 

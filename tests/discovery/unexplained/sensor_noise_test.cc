@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/gaussian_noise.h"
 #include "support/stage.h"
 
@@ -37,6 +39,22 @@ TEST(SensorNoise, ASlowRestIsNoSensorNoise) {
   const Eigen::VectorXd rest =
       GaussianNoise(kSamples, 1e-8, 3) + GaussianNoise(kSamples, 1.118e-8, 4, 0.95);
   EXPECT_TRUE(FindIn(rest).empty());
+}
+
+// As strong as above in all, and white, but in a tenth of the time only.
+TEST(SensorNoise, ARestThatComesAndGoesIsNoSensorNoise) {
+  Eigen::VectorXd more = GaussianNoise(kSamples, 1.118e-8 * std::sqrt(10.0), 6);
+  for (Eigen::Index k = 0; k < kSamples; ++k) {
+    if (k % 1000 >= 100) more[k] = 0.0;
+  }
+  EXPECT_TRUE(FindIn(GaussianNoise(kSamples, 1e-8, 5) + more).empty());
+}
+
+// 200 draws; of white noise five standard deviations are met by chance once in 10^5.
+TEST(SensorNoise, WhiteNoiseIsSteady) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    EXPECT_EQ(FindIn(GaussianNoise(kSamples, 1.2e-8, seed)).size(), 1u) << seed;
+  }
 }
 
 }  // namespace
