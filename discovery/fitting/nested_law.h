@@ -20,4 +20,9 @@ std::optional<FittedCause> SimplerLaw(const mjModel& plant,
                                       const std::vector<Candidate>& candidates,
                                       const FittedCause& cause);
 
+/// A law that contains another one, with the values next to its own, in proportion, with
+/// which it becomes that one as it is.
+FittedCause Containing(const mjModel& plant, const std::vector<Candidate>& candidates,
+                       FittedCause larger, const FittedCause& simpler);
+
 }  // namespace mjdiag

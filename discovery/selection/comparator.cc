@@ -29,7 +29,10 @@ Judgement Judge(const Evidence& present, const Evidence& proposed) {
     return proposed.FreeRun() <= present.FreeRun() + kWorse ? Judgement::kAccepted
                                                             : Judgement::kUnseen;
   }
-  const double allowed = larger ? 0.0 : gain;
+  // Where what is known beforehand speaks for a cause, data that it explains no better
+  // than numbers that are far off do need not speak for it, too.
+  const double known = std::max(0.0, present.fit().prior - proposed.fit().prior);
+  const double allowed = larger ? known : gain;
   return proposed.Unseen(independent) <= present.Unseen(independent) + allowed
              ? Judgement::kAccepted
              : Judgement::kUnseen;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjdiag/discovery/fitting/nested_law.h"
 #include "mjdiag/discovery/fitting/screening_in_place.h"
 #include "mjdiag/discovery/fitting/wave_period.h"
 #include "mjdiag/discovery/selection/comparator.h"
@@ -153,7 +154,8 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   return others;
 }
 
-/// Hypotheses that promise more than cause i, by more than chance.
+/// Hypotheses that promise more than cause i, by more than chance, and the best law that
+/// contains it: what that has beyond it may not show to first order.
 std::vector<FittedCause> BetterFor(const SearchData& data, const Evidence& present,
                                    std::size_t i, const Chance& chance) {
   constexpr std::size_t kMost = 2;
@@ -169,6 +171,17 @@ std::vector<FittedCause> BetterFor(const SearchData& data, const Evidence& prese
   std::vector<FittedCause> better =
       Explaining(data, fit, without, explained + by_chance + chance.unsteadiness);
   if (better.size() > kMost) better.resize(kMost);
+  const mjModel& plant = data.problem.machine().plant();
+  const auto contains = [&](const FittedCause& other) {
+    const auto simpler = SimplerLaw(plant, data.candidates, other);
+    return simpler && simpler->candidate == fit.causes[i].candidate;
+  };
+  const std::vector<FittedCause> all =
+      Explaining(data, fit, without, NearlyAll(explained));
+  const auto larger = std::ranges::find_if(all, contains);
+  if (larger != all.end() && !Has(better, larger->candidate)) {
+    better.push_back(Containing(plant, data.candidates, *larger, fit.causes[i]));
+  }
   return better;
 }
 

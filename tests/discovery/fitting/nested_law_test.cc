@@ -42,5 +42,26 @@ TEST_F(NestedLaw, ASimpleLawHasNone) {
   EXPECT_FALSE(SimplerOf("coulomb_friction@load", Eigen::VectorXd::Constant(1, 3.0)));
 }
 
+TEST_F(NestedLaw, ALargerLawContainsTheSimplerAsItIs) {
+  const auto larger = [&](const std::string& name, const Eigen::VectorXd& value,
+                          const std::string& simpler, const Eigen::VectorXd& as) {
+    const FittedCause found = Containing(stage_.machine.plant(), candidates_,
+                                         {test::Place(candidates_, name), value},
+                                         {test::Place(candidates_, simpler), as});
+    const auto back = SimplerLaw(stage_.machine.plant(), candidates_, found);
+    EXPECT_TRUE(back && back->value.isApprox(as, 1e-6)) << name;
+    return found.value;
+  };
+  const Eigen::VectorXd hysteresis =
+      larger("bouc_wen@load", Eigen::Vector4d(75.0, 66.5, 7.4, 1.0),
+             "presliding_hysteresis@load", Eigen::Vector2d(2.9, 645.0));
+  EXPECT_DOUBLE_EQ(hysteresis[2], 7.4);
+  EXPECT_DOUBLE_EQ(hysteresis[3], 1.0);
+  const Eigen::VectorXd drag =
+      larger("asymmetric_viscous_friction@load", Eigen::Vector2d(10.0, 40.0), "zeta",
+             Eigen::VectorXd::Constant(1, 1.2));
+  EXPECT_GT(drag[1], drag[0]);  // in proportion
+}
+
 }  // namespace
 }  // namespace mjdiag
