@@ -10,10 +10,10 @@
 // 2. what is added is more than chance:   k' <= k, or
 //    (N (m - m') - unsteadiness) / inflation > chi-squared quantile of the best trial,
 //    N values, m their mean square; inflation = max(1, m) / least independent share;
-// 3. unseen data agree:   U' - U <= 0 if k' > k, else C - C'
-//    a larger set must not spoil them; one that is no larger must not lose there more
-//    than it gains where it was fitted. Data on which neither set can be run say
-//    nothing;
+// 3. unseen data agree:   U' - U <= max(0, P - P') if k' > k, else C - C'
+//    a larger set must not spoil them, by more than what is known beforehand, P =
+//    PriorOf, speaks for it; one that is no larger must not lose there more than it gains
+//    where it was fitted. Data on which neither set can be run say nothing;
 // 4. in the place of that, where the present set leaves far more than noise and there are
 //    unseen records, their free simulation agrees:   F' - F <= 0.02, F its log rms
 //    (record_replay.h). What is left then is physics that neither set has: an observer

@@ -233,7 +233,6 @@ bool ChangePeriod(const SearchData& data, HypothesisSet& set, std::size_t i) {
 
 bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i,
                 const std::vector<FittedCause>& others) {
-  if (others.empty()) return false;
   Proposals proposals = ProposeInPlace(data, set.evidence, {i}, others);
   // Fits that were cut short say nothing of how probable the rivals are.
   if (!data.work().MayBegin(kOthers)) return false;
@@ -300,7 +299,8 @@ bool Exchange(const SearchData& data, HypothesisSet& set) {
 bool Better(const SearchData& data, HypothesisSet& set, const Chance& chance) {
   for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
     if (!data.work().MayBegin(kBetter)) break;
-    if (ExchangeAt(data, set, i, BetterFor(data, set.evidence, i, chance))) return true;
+    const auto better = BetterFor(data, set.evidence, i, chance);
+    if (!better.empty() && ExchangeAt(data, set, i, better)) return true;
   }
   return false;
 }

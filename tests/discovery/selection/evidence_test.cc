@@ -144,6 +144,26 @@ TEST(Comparator, RejectsAnAdditionThatSpoilsThePartHeldOut) {
             Judgement::kUnseen);
 }
 
+// Numbers that are far off fit as well as the cause: 700 samples, 80 and 20 units of what
+// is known beforehand.
+TEST(Comparator, LetsWhatIsKnownBeforehandSpeakForAnAdditionOnUnseenData) {
+  CauseFit far_off = FitOf({}, 1.0, 1.0);
+  far_off.prior = 80.0;
+  const Evidence present(kRecord, far_off, VectorXd::Ones(1));
+  const auto judge = [&](double held_out) {
+    CauseFit fit = FitOf({0}, 1.0, held_out);
+    fit.prior = 20.0;
+    return Judge(present, Adding(present, fit));
+  };
+  const auto lost = [](double held_out) {
+    return 300.0 * 2.0 * std::log(held_out);  // n log s^2 where m = s^2 > 1
+  };
+  ASSERT_LT(lost(1.10), 60.0);
+  ASSERT_GT(lost(1.11), 60.0);
+  EXPECT_EQ(judge(1.10), Judgement::kAccepted);
+  EXPECT_EQ(judge(1.11), Judgement::kUnseen);
+}
+
 TEST(Comparator, RejectsAnAdditionThatSpoilsAnotherRecord) {
   int replays = 0;
   const Evidence present = Present({}, 2.0, 2.0, WithOtherRecord({1.0, 4.0}, replays));
