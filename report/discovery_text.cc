@@ -265,14 +265,14 @@ Table CauseTable(const Discovery& discovery) {
 
 Table ExplanationTable(const Discovery& discovery) {
   Table table;
-  table.columns = {{"Explanation"}, {""}, {"Probability", true}};
+  table.columns = {{"Probability", true}, {""}, {"Explanation"}};
   const std::vector<CauseSet> explanations = ExplanationsOf(discovery.causes);
   if (explanations.size() < 2) return table;
   for (const CauseSet& explanation : explanations) {
     std::vector<std::string> causes;
     for (const Cause& cause : explanation.causes) causes.push_back(CauseName(cause));
-    table.rows.push_back({Join(causes), Bar(explanation.probability),
-                          Percent(100.0 * explanation.probability)});
+    table.rows.push_back({Percent(100.0 * explanation.probability),
+                          Bar(explanation.probability), Join(causes)});
   }
   return table;
 }

@@ -94,9 +94,8 @@ TEST(ExplanationTable, HasARowForEverySetThatSurvives) {
   const Table table = ExplanationTable(SampleDiscovery());
   ASSERT_EQ(table.rows.size(), 3u);
   EXPECT_THAT(table.rows[1],
-              ElementsAre("coulomb_friction at load and motor_constant at "
-                          "drive",
-                          "█████░░░░░", "49.1 %"));
+              ElementsAre("49.1 %", "█████░░░░░",
+                          "coulomb_friction at load and motor_constant at drive"));
 }
 
 TEST(ExplanationTable, IsLeftOutWhereOneSetSurvives) {
