@@ -423,8 +423,8 @@ FittedModel ModelWithout(const FittedModel& fit,
   return {Without(fit.causes, places), fit.numbers, fit.prior_weight};
 }
 
-MatrixXd JacobianWithout(const CauseFit& fit, const std::vector<std::size_t>& places) {
-  if (fit.jacobian.cols() == 0) return fit.jacobian;
+std::vector<Index> ColumnsWithout(const FittedModel& fit,
+                                  const std::vector<std::size_t>& places) {
   std::vector<Index> columns(static_cast<std::size_t>(fit.numbers.size()));
   std::iota(columns.begin(), columns.end(), 0);
   Index next = fit.numbers.size();
@@ -433,7 +433,12 @@ MatrixXd JacobianWithout(const CauseFit& fit, const std::vector<std::size_t>& pl
       if (std::ranges::find(places, i) == places.end()) columns.push_back(next);
     }
   }
-  return fit.jacobian(Eigen::all, columns);
+  return columns;
+}
+
+MatrixXd JacobianWithout(const CauseFit& fit, const std::vector<std::size_t>& places) {
+  if (fit.jacobian.cols() == 0) return fit.jacobian;
+  return fit.jacobian(Eigen::all, ColumnsWithout(fit, places));
 }
 
 }  // namespace mjdiag

@@ -84,9 +84,12 @@ std::optional<CauseFit> TryFit(const DiscoveryProblem& problem,
                                const std::vector<Candidate>& candidates,
                                const FittedModel& start, const FitOptions& options);
 
-/// A fit but for its causes in some places: the rest, and J of it.
+/// A fit but for its causes in some places: the rest, which columns of J belong to it, and
+/// J of it.
 FittedModel ModelWithout(const FittedModel& fit,
                          const std::vector<std::size_t>& places);
+std::vector<Eigen::Index> ColumnsWithout(const FittedModel& fit,
+                                         const std::vector<std::size_t>& places);
 Eigen::MatrixXd JacobianWithout(const CauseFit& fit,
                                 const std::vector<std::size_t>& places);
 

@@ -25,50 +25,56 @@ bool Enlarge(const Candidate& candidate, FittedCause& cause, double share) {
 
 }  // namespace
 
-Screening ScreenInPlace(const DiscoveryProblem& problem,
-                        const std::vector<Candidate>& candidates, const CauseFit& fit,
-                        const std::vector<std::size_t>& places, int starts_each) {
+std::optional<VectorXd> InnovationsWithout(const DiscoveryProblem& problem,
+                                           const std::vector<Candidate>& candidates,
+                                           const CauseFit& fit,
+                                           const std::vector<std::size_t>& places) {
   constexpr double kStep = 1e-3;
-  const FittedModel rest = ModelWithout(fit, places);
-  const Eigen::MatrixXd jacobian = JacobianWithout(fit, places);
   FittedModel more = fit;
   const bool have_sizes = std::ranges::all_of(places, [&](std::size_t i) {
     FittedCause& cause = more.causes[i];
     return Enlarge(candidates[cause.candidate], cause, kStep);
   });
-  if (!have_sizes) {
-    return ScreenBeside(problem, candidates, rest, jacobian, starts_each);
-  }
+  if (!have_sizes) return std::nullopt;
   const DiscoveryProblem seen = problem.TrainPart();
   const VectorXd left = fit.residual.head(seen.run().outputs.size());
   const VectorXd moved = seen.Residual(ChangesOf(seen, candidates, more));
+  return left - (moved - left) / kStep;
+}
+
+Screening ScreenInPlace(const DiscoveryProblem& problem,
+                        const std::vector<Candidate>& candidates, const CauseFit& fit,
+                        const std::vector<std::size_t>& places, int starts_each) {
+  const FittedModel rest = ModelWithout(fit, places);
+  const Eigen::MatrixXd jacobian = JacobianWithout(fit, places);
+  const auto innovations = InnovationsWithout(problem, candidates, fit, places);
+  if (!innovations) {
+    return ScreenBeside(problem, candidates, rest, jacobian, starts_each);
+  }
+  const DiscoveryProblem seen = problem.TrainPart();
   const auto run = seen.Linearised(ChangesOf(seen, candidates, fit));
   const auto& [track, dynamics] = *run;
-  return Screen(seen, candidates, seen.MotionOf(track), dynamics,
-                left - (moved - left) / kStep, jacobian, rest, starts_each);
+  return Screen(seen, candidates, seen.MotionOf(track), dynamics, *innovations,
+                jacobian, rest, starts_each);
 }
 
 double LossWithout(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates, const CauseFit& fit,
                    std::size_t i) {
-  FittedCause twice = fit.causes[i];
-  if (!Enlarge(candidates[twice.candidate], twice, 1.0)) return 0.0;
-  const Index all = fit.numbers.size() + Flatten(fit.causes).size();
-  if (fit.jacobian.cols() != all) return 0.0;
-  std::vector<Index> own;
-  std::vector<Index> others;
-  Index first = fit.numbers.size();
-  for (std::size_t k = 0; k < i; ++k) first += fit.causes[k].value.size();
-  for (Index k = 0; k < all; ++k) {
-    (k >= first && k < first + twice.value.size() ? own : others).push_back(k);
-  }
+  std::vector<FittedCause> twice = fit.causes;
+  if (!Enlarge(candidates[twice[i].candidate], twice[i], 1.0)) return 0.0;
+  VectorXd sizes = VectorXd::Zero(fit.jacobian.cols());
+  const VectorXd of_causes = Flatten(twice) - Flatten(fit.causes);
+  if (sizes.size() != fit.numbers.size() + of_causes.size()) return 0.0;
   const ScaledInformation information = InformationOf(problem, candidates, fit);
   const Eigen::MatrixXd& M = information.matrix;
-  const VectorXd size =
-      (twice.value - fit.causes[i].value).cwiseQuotient(information.scale(own));
-  const double alone = size.dot(M(own, own) * size);
+  sizes.tail(of_causes.size()) = of_causes;
+  sizes = sizes.cwiseQuotient(information.scale);
+  const VectorXd pull = M * sizes;
+  const double alone = sizes.dot(pull);
+  const std::vector<Index> others = ColumnsWithout(fit, {i});
   if (others.empty()) return alone;
-  const VectorXd taken = M(others, own) * size;
+  const VectorXd taken = pull(others);
   const VectorXd over =
       M(others, others).completeOrthogonalDecomposition().solve(taken);
   return alone - taken.dot(over);

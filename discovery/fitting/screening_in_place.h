@@ -7,6 +7,8 @@
 //
 // which is the derivative by one factor that all of their sizes have in common.
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "mjdiag/discovery/fitting/cause_fit.h"
@@ -20,6 +22,12 @@ namespace mjdiag {
 Screening ScreenInPlace(const DiscoveryProblem& problem,
                         const std::vector<Candidate>& candidates, const CauseFit& fit,
                         const std::vector<std::size_t>& places, int starts_each);
+
+/// Innovations of the train part without what causes in some places do, to first order;
+/// none where one of them has no size.
+std::optional<Eigen::VectorXd> InnovationsWithout(
+    const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+    const CauseFit& fit, const std::vector<std::size_t>& places);
 
 /// What the causes in these places explain of what is left without them, of which the
 /// screening says how much that is: squared innovations, less what is known beforehand.

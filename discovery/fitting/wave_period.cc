@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "mjdiag/discovery/screening/screening.h"
+#include "mjdiag/discovery/fitting/screening_in_place.h"
 
 namespace mjdiag {
 namespace {
 
 using Eigen::Index;
-using Eigen::VectorXd;
 
 // Periods that are fitted.
 constexpr int kMostPeriods = 4;
@@ -26,26 +25,21 @@ std::vector<FittedCause> OtherPeriods(const DiscoveryProblem& problem,
   // Where nothing but noise is left no resonance is better; of waves, which are sharp,
   // the right one may still be.
   constexpr double kLeft = 1.005;
-  constexpr double kStep = 1e-3;
-  std::vector<FittedCause> causes = fit.causes;
-  const Candidate& wave = candidates[causes[i].candidate];
+  const Candidate& wave = candidates[fit.causes[i].candidate];
   const bool sharp =
       PlaceOf(wave, Role::kPhase) < static_cast<Index>(wave.parameters.size());
   if (!sharp && fit.train < kLeft) return {};
+  const auto innovations = InnovationsWithout(problem, candidates, fit, {i});
+  if (!innovations) return {};
   const DiscoveryProblem seen = problem.TrainPart();
-  const double present = causes[i].value[PeriodPlace(wave)];
-  causes[i].value[PlaceOf(wave, Role::kAmplitude)] *= 1.0 + kStep;
-  const VectorXd left = fit.residual.head(seen.run().outputs.size());
-  const VectorXd moved =
-      seen.Residual(ChangesOf(seen, candidates, {causes, fit.numbers}));
+  const double present = fit.causes[i].value[PeriodPlace(wave)];
   const auto run = seen.Linearised(ChangesOf(seen, candidates, fit));
   const auto& [track, dynamics] = *run;
   std::vector<FittedCause> others;
   for (Start& start :
-       BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics,
-                   left - (moved - left) / kStep, JacobianWithout(fit, {i}),
-                   ModelWithout(fit, {i}), kMostPeriods)) {
-    start.cause.candidate = causes[i].candidate;
+       BetterWaves(seen, wave, present, seen.MotionOf(track), dynamics, *innovations,
+                   JacobianWithout(fit, {i}), ModelWithout(fit, {i}), kMostPeriods)) {
+    start.cause.candidate = fit.causes[i].candidate;
     others.push_back(Bounded(candidates, std::move(start.cause)));
   }
   return others;

@@ -3,9 +3,7 @@
 // periods explain nearly the same (aliases), and the first screening, beside a plant
 // without the wave, is too rough to tell them apart. Beside the plant with the wave in
 // it the first order is good to the noise, so the wave is screened again there, on what
-// is left plus what it explains itself,
-//
-//   e - a de/da,   e innovations, a its amplitude
+// is left plus what it explains itself (screening_in_place.h).
 
 #include <vector>
 

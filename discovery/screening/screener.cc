@@ -94,7 +94,7 @@ MatrixXd Screener::Responses(const std::vector<Trial>& trials, std::size_t first
 
 bool Screener::IsFast(const Trial& trial) const {
   constexpr double kKept = 0.9;  // of its squares, in the means of blocks
-  if (!trial.fast || block_ == 1) return false;
+  if (trial.entry.size() > 0 || block_ == 1) return false;
   const MatrixXd signals = trial.signals.topRows(block_ * (skip_ + blocks_));
   return Averaged(signals, 1, block_).squaredNorm() < kKept * signals.squaredNorm();
 }
@@ -112,13 +112,13 @@ MatrixXd Screener::Fast(const Trial& trial, const Candidate& candidate) const {
 }
 
 std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& response,
-                                       const VectorXd& residual) const {
+                                       const VectorXd& residual, bool fast) const {
   MatrixXd phi = trial.summed ? MatrixXd(response.rowwise().sum()) : response;
   if (residual.size() > phi.rows()) {
     phi = WithNumbers(phi, MatrixXd::Zero(residual.size() - phi.rows(), phi.cols()));
   }
   const VectorXd size = phi.colwise().squaredNorm();
-  if (found_.cols() > 0 && !IsFast(trial)) phi -= found_ * (found_.transpose() * phi);
+  if (found_.cols() > 0 && !fast) phi -= found_ * (found_.transpose() * phi);
   const MatrixXd G = phi.transpose() * phi;
   // A column that what has been found explains already says nothing: of a law that
   // contains a found one it is what that does.
@@ -137,27 +137,30 @@ std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& respo
   return start;
 }
 
-/// take(t, response of trial t) for all trials in order, filtered many at a time.
+/// take(t, response of trial t, whether that is fast) for all trials in order, filtered
+/// many at a time.
 template <typename Take>
 void Screener::ForEachResponse(const std::vector<Trial>& trials,
                                const Candidate& candidate, const Take& take) const {
+  std::vector<bool> fast;
+  for (const Trial& trial : trials) fast.push_back(IsFast(trial));
   std::size_t first = 0;
   while (first < trials.size()) {
-    if (IsFast(trials[first])) {
-      take(first, Fast(trials[first], candidate));
+    if (fast[first]) {
+      take(first, Fast(trials[first], candidate), true);
       ++first;
       continue;
     }
     std::size_t last = first;
     Index columns = 0;
-    while (last < trials.size() && columns < kBatch && !IsFast(trials[last])) {
+    while (last < trials.size() && columns < kBatch && !fast[last]) {
       columns += trials[last++].signals.cols();
     }
     const MatrixXd responses = Responses(trials, first, last, candidate);
     Index next = 0;
     for (std::size_t t = first; t < last; ++t) {
       const Index width = trials[t].signals.cols();
-      take(t, responses.middleCols(next, width));
+      take(t, responses.middleCols(next, width), false);
       next += width;
     }
     first = last;
@@ -168,11 +171,12 @@ std::vector<std::optional<Start>> Screener::Judge(const std::vector<Trial>& tria
                                                   const Candidate& candidate) const {
   std::vector<std::optional<Start>> starts(trials.size());
   const Eigen::Map<const MatrixXd> channels(full_.data(), channels_, block_ * blocks_);
-  ForEachResponse(trials, candidate, [&](std::size_t t, const auto& response) {
-    starts[t] = IsFast(trials[t])
-                    ? Regress(trials[t], response, channels.row(candidate.channel))
-                    : Regress(trials[t], response, residual_);
-  });
+  ForEachResponse(
+      trials, candidate, [&](std::size_t t, const auto& response, bool fast) {
+        starts[t] =
+            fast ? Regress(trials[t], response, channels.row(candidate.channel), true)
+                 : Regress(trials[t], response, residual_, false);
+      });
   return starts;
 }
 
@@ -224,7 +228,7 @@ std::vector<double> Screener::RoughGains(const Sweep& sweep,
     sample.push_back(sweep.make(sweep.values[i]));
   }
   std::vector<double> judged;  // log
-  ForEachResponse(sample, candidate, [&](std::size_t, const auto& response) {
+  ForEachResponse(sample, candidate, [&](std::size_t, const auto& response, bool) {
     judged.push_back(std::log(std::max(response.squaredNorm(), 1e-300)));
   });
   std::vector<double> gains = Common(sweep, candidate);

@@ -51,12 +51,14 @@ class Screener {
                             const std::vector<double>& places) const;
   std::vector<double> BestPlaces(const Sweep& sweep, const std::vector<double>& places,
                                  const Candidate& candidate, std::size_t count) const;
-  /// take(t, response of trial t) for all trials in order, filtered many at a time.
+  /// take(t, response of trial t, whether that is fast) for all trials in order, filtered
+  /// many at a time.
   template <typename Take>
   void ForEachResponse(const std::vector<Trial>& trials, const Candidate& candidate,
                        const Take& take) const;
   void Charge(Eigen::Index numbers, Eigen::Index count) const;
-  /// Whether a trial that may be too fast for the means of blocks is.
+  /// Whether a trial is an error of readings that is too fast for the means of blocks: no
+  /// observer follows it, and it shows in the innovations as it is.
   bool IsFast(const Trial& trial) const;
   /// How many values of a sweep, from the first on, make trials that are not.
   std::size_t Slow(const Sweep& sweep) const;
@@ -65,7 +67,7 @@ class Screener {
   Eigen::MatrixXd Responses(const std::vector<Trial>& trials, std::size_t first,
                             std::size_t last, const Candidate& candidate) const;
   std::optional<Start> Regress(const Trial& trial, const Eigen::MatrixXd& response,
-                               const Eigen::VectorXd& residual) const;
+                               const Eigen::VectorXd& residual, bool fast) const;
 
   const DiscoveryProblem& problem_;
   const ErrorDynamics& dynamics_;

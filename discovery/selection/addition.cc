@@ -68,6 +68,7 @@ class Contest {
  private:
   void FitToBeginning(std::vector<Entry>& entries, std::size_t count,
                       int iterations) const;
+  std::optional<CauseFit> FirstFit(const FittedModel& model, double share) const;
   /// Jacobian of what has been found, if it has one and is still that beside one more
   /// cause: what explains much changes what numbers of the plant do.
   const MatrixXd* FoundJacobian() const {
@@ -133,6 +134,14 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   return entries;
 }
 
+/// On the whole train part, far enough to compare it.
+std::optional<CauseFit> Contest::FirstFit(const FittedModel& model,
+                                          double share) const {
+  FitOptions options = CompareFrom(FoundJacobian(), 5, 1e-4, share);
+  options.only_betters = true;
+  return TryFit(data_.problem, data_.candidates, model, options);
+}
+
 /// On the whole train part; the best of them to their ends.
 std::vector<std::optional<CauseFit>> Contest::Fit(
     const std::vector<Entry>& entries) const {
@@ -141,9 +150,7 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
   const double share = data_.work().Share(static_cast<int>(entries.size()));
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    FitOptions options = CompareFrom(FoundJacobian(), 5, 1e-4, share);
-    options.only_betters = true;
-    fits[i] = TryFit(data_.problem, data_.candidates, entries[i], options);
+    fits[i] = FirstFit(entries[i], share);
   });
   std::vector<std::size_t> order = OrderOf(data_.problem, fits);
   if (order.size() > kToTheEnd) order.resize(kToTheEnd);
@@ -159,20 +166,15 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
 
 /// Adds to the fits those of simpler laws that others are where they ended.
 void Contest::Simplify(std::vector<std::optional<CauseFit>>& fits) const {
-  constexpr int kIterations = 5;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     if (!fits[i] || IsCredible(data_.candidates, *fits[i])) continue;
-    FittedModel at_its_end = *fits[i];
-    const auto simpler = data_.SimplerThan(at_its_end.causes.back(), at_its_end);
+    const auto simpler = data_.AtItsEnd(*fits[i]);
     const auto is_same = [&](const std::optional<CauseFit>& fit) {
-      return fit && fit->causes.back().candidate == simpler->candidate;
+      return fit && fit->causes.back().candidate == simpler->causes.back().candidate;
     };
     if (!simpler || std::ranges::any_of(fits, is_same)) continue;
-    at_its_end.causes.back() = *simpler;
     const double share = data_.work().Share(1);
-    FitOptions options = CompareFrom(FoundJacobian(), kIterations, 1e-4, share);
-    options.only_betters = true;
-    auto fit = TryFit(data_.problem, data_.candidates, at_its_end, options);
+    auto fit = FirstFit(*simpler, share);
     if (!fit) continue;
     fits.push_back(Settled(data_.problem, data_.candidates, std::move(*fit), share));
   }

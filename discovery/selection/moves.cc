@@ -65,11 +65,11 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
   if (!fit) return std::nullopt;
   *fit = Settled(data.problem, data.candidates, std::move(*fit), 0.5 * share);
   if (!IsIncredible(data, present, *fit)) return present.Changed(std::move(*fit));
-  const auto simpler = data.SimplerThan(fit->causes.back(), *fit);
-  if (!simpler || Has(present.fit().causes, simpler->candidate)) return std::nullopt;
-  FittedModel at_its_end = *fit;
-  at_its_end.causes.back() = *simpler;
-  return ProposeUnlessFar(data, present, at_its_end, jacobian, share - fit->spent);
+  const auto simpler = data.AtItsEnd(*fit);
+  if (!simpler || Has(present.fit().causes, simpler->causes.back().candidate)) {
+    return std::nullopt;
+  }
+  return ProposeUnlessFar(data, present, *simpler, jacobian, share - fit->spent);
 }
 
 /// Sets with others in these places. The new one comes last, for the Jacobian of those
@@ -115,25 +115,46 @@ Proposals ProposeDrops(const SearchData& data, const Evidence& present) {
   return proposals;
 }
 
-/// Those that a screening finds to explain at least so much, best first.
-std::vector<FittedCause> Explaining(const SearchData& data, const CauseFit& fit,
-                                    const Screening& screening, double least) {
-  std::vector<FittedCause> others;
-  for (const Start& start : screening.starts) {
-    if (start.gain < least) break;
+/// What could stand in the place of some of the causes.
+struct Substitutes {
+  std::vector<Start> starts;  ///< best first
+  int trials = 0;             ///< of which they are the best
+  double explained = 0.0;     ///< by the causes themselves
+  /// What the screening promises of a cause that is alone in its place: what the first
+  /// order is off by is much the same for laws that explain alike. Else as `explained`.
+  double promised = 0.0;
+};
+
+Substitutes SubstitutesFor(const SearchData& data, const CauseFit& fit,
+                           const std::vector<std::size_t>& places) {
+  Screening without = ScreenInPlace(data.problem, data.candidates, fit, places, 1);
+  Substitutes found;
+  found.trials = without.trials;
+  found.explained = ExplainedBy(data.problem, fit, without);
+  found.promised = found.explained;
+  for (Start& start : without.starts) {
     const std::size_t candidate = start.cause.candidate;
+    if (places.size() == 1 && candidate == fit.causes[places.front()].candidate) {
+      found.promised = start.gain;
+    }
     if (Has(fit.causes, candidate) || data.IsForbidden(candidate)) continue;
-    others.push_back(Bounded(data.candidates, start.cause));
+    start.cause = Bounded(data.candidates, std::move(start.cause));
+    found.starts.push_back(std::move(start));
   }
-  return others;
+  return found;
 }
 
-/// What a screening has to promise of hypotheses that may explain as much: of what the
-/// present ones explain, for the first order is rough for large effects.
-double NearlyAll(double explained) {
+/// Those that explain nearly so much, best first: the first order is rough for large
+/// effects.
+std::vector<FittedCause> Explaining(const Substitutes& substitutes, double explained) {
   constexpr double kNearly = 0.8;
   constexpr double kChance = 50.0;
-  return kNearly * explained - kChance;
+  std::vector<FittedCause> others;
+  for (const Start& start : substitutes.starts) {
+    if (start.gain < kNearly * explained - kChance) break;
+    others.push_back(start.cause);
+  }
+  return others;
 }
 
 /// Hypotheses that are worth a fit in the place of cause i: a simpler law of the same
@@ -145,9 +166,8 @@ std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
   if (const auto simpler = data.SimplerThan(fit.causes[i], fit)) {
     others.push_back(*simpler);
   }
-  const Screening without = ScreenInPlace(data.problem, data.candidates, fit, {i}, 1);
-  const double explained = ExplainedBy(data.problem, fit, without);
-  for (FittedCause& other : Explaining(data, fit, without, NearlyAll(explained))) {
+  const Substitutes found = SubstitutesFor(data, fit, {i});
+  for (FittedCause& other : Explaining(found, found.explained)) {
     if (others.size() == kMost) break;
     if (!Has(others, other.candidate)) others.push_back(std::move(other));
   }
@@ -160,24 +180,21 @@ std::vector<FittedCause> BetterFor(const SearchData& data, const Evidence& prese
                                    std::size_t i, const Chance& chance) {
   constexpr std::size_t kMost = 2;
   const CauseFit& fit = present.fit();
-  const Screening without = ScreenInPlace(data.problem, data.candidates, fit, {i}, 1);
-  // What the first order is off by is much the same for laws that explain alike.
-  const auto own = std::ranges::find(without.starts, fit.causes[i].candidate,
-                                     [](const Start& s) { return s.cause.candidate; });
-  const double explained =
-      own == without.starts.end() ? ExplainedBy(data.problem, fit, without) : own->gain;
-  const double by_chance =
-      GainByChance(chance.probability, without.trials, 1) * present.Inflation();
-  std::vector<FittedCause> better =
-      Explaining(data, fit, without, explained + by_chance + chance.unsteadiness);
-  if (better.size() > kMost) better.resize(kMost);
+  const Substitutes found = SubstitutesFor(data, fit, {i});
+  const Chance best{chance.probability, found.trials, chance.unsteadiness};
+  std::vector<FittedCause> better;
+  for (const Start& start : found.starts) {
+    const Significance more = present.SignificanceOf(start.gain - found.promised, 1,
+                                                     best, present.independent());
+    if (better.size() == kMost || !more.IsMoreThanChance()) break;
+    better.push_back(start.cause);
+  }
   const mjModel& plant = data.problem.machine().plant();
   const auto contains = [&](const FittedCause& other) {
     const auto simpler = SimplerLaw(plant, data.candidates, other);
     return simpler && simpler->candidate == fit.causes[i].candidate;
   };
-  const std::vector<FittedCause> all =
-      Explaining(data, fit, without, NearlyAll(explained));
+  const std::vector<FittedCause> all = Explaining(found, found.promised);
   const auto larger = std::ranges::find_if(all, contains);
   if (larger != all.end() && !Has(better, larger->candidate)) {
     better.push_back(Containing(plant, data.candidates, *larger, fit.causes[i]));
@@ -244,10 +261,8 @@ bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i,
 bool MergeAt(const SearchData& data, HypothesisSet& set, std::size_t i, std::size_t j) {
   constexpr std::size_t kMost = 2;
   const CauseFit& fit = set.fit();
-  const Screening without =
-      ScreenInPlace(data.problem, data.candidates, fit, {i, j}, 1);
-  std::vector<FittedCause> others = Explaining(
-      data, fit, without, NearlyAll(ExplainedBy(data.problem, fit, without)));
+  const Substitutes found = SubstitutesFor(data, fit, {i, j});
+  std::vector<FittedCause> others = Explaining(found, found.explained);
   if (others.size() > kMost) others.resize(kMost);
   if (others.empty()) return false;
   Proposals proposals = ProposeInPlace(data, set.evidence, {i, j}, others);

@@ -77,6 +77,11 @@ class Search {
   bool Confirm();
   void GiveUpWhatIsAhead();
   void MeetUnsteadiness();
+  /// What was tried in the place of causes was tried beside others.
+  void NoteChange() {
+    result_.exchanged = false;
+    result_.searched_without = false;
+  }
   bool AddCause();
   void AddCauses();
   void DropSuperfluous() {
@@ -222,7 +227,10 @@ bool Search::AddCause() {
   result_.significant_rest = !shortlist.empty();
   if (shortlist.empty()) return false;
   Report(kBetter, 0.2);
-  if (Better(data_, result_, chance)) return true;
+  if (Better(data_, result_, chance)) {
+    NoteChange();
+    return true;
+  }
   if (rounds_++ >= options_.most_causes || !work().MayBegin(kFurther)) return false;
   Additions additions =
       ProposeAdditions(data_, present, shortlist,
@@ -239,8 +247,7 @@ bool Search::AddCause() {
     work().MayBegin(kFurther);  // kept if their fits were cut short
     return false;
   }
-  result_.exchanged = false;
-  result_.searched_without = false;
+  NoteChange();
   return true;
 }
 

@@ -18,10 +18,10 @@
 // not make unseen data agree with all of them.
 //
 // When a round adds nothing each hypothesis is exchanged on trial, and two for one
-// (moves.h); if one is, rounds go on, four times at most. What came first was chosen while everything else was
-// missing: for each hypothesis a search of its own, which may not take it, starts from the
-// others, and its set is judged as any other. In the end all values are fitted once more,
-// as closely as possible.
+// (moves.h); if one is, rounds go on, four times at most. What came first was chosen while
+// everything else was missing: for each hypothesis a search of its own, which may not take
+// it, starts from the others, and its set is judged as any other. In the end all values
+// are fitted once more, as closely as possible.
 //
 // Where the work that the discovery may do is used up, or it was asked to end (work.h),
 // no further move is begun, and those under way end with the sets they have.

@@ -12,4 +12,12 @@ std::optional<FittedCause> SearchData::SimplerThan(const FittedCause& cause,
   return simpler;
 }
 
+std::optional<FittedModel> SearchData::AtItsEnd(const FittedModel& model) const {
+  const auto simpler = SimplerThan(model.causes.back(), model);
+  if (!simpler) return std::nullopt;
+  FittedModel at_its_end = model;
+  at_its_end.causes.back() = *simpler;
+  return at_its_end;
+}
+
 }  // namespace mjdiag

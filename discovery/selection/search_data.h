@@ -27,6 +27,9 @@ struct SearchData {
   std::optional<FittedCause> SimplerThan(const FittedCause& cause,
                                          const FittedModel& model) const;
 
+  /// The model with the law that its last cause is, if it is at an end of its parameters.
+  std::optional<FittedModel> AtItsEnd(const FittedModel& model) const;
+
   Work& work() const { return *problem.work(); }
 };
 

@@ -54,24 +54,21 @@ std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& obs
   for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
     const SensorSetup& sensor = setup.channels.sensors[i];
     const auto row = static_cast<Index>(i);
+    const VectorXd seen = innovations.row(row).head(n);
     const double expected =
         std::hypot(sensor.noise_sd, sensor.resolution / std::sqrt(12.0));
     if (sensor.noise_sd <= 0.0 || n < 2) continue;
     // What the observer makes of white noise of unit standard deviation.
     const double colouring = observer.innovation_sd[row] / observer.noise_sd[row];
     const double rms =
-        std::sqrt(innovations.row(row).head(n).squaredNorm() / static_cast<double>(n)) /
-        colouring;
+        std::sqrt(seen.squaredNorm() / static_cast<double>(n)) / colouring;
     const double error = rms / std::sqrt(2.0 * static_cast<double>(n));
     if (rms - expected < std::max(kSigmas * error, kLeast * expected)) continue;
     // The mean square of half of the band is less certain by sqrt(2), that of their
     // difference as that of the whole.
-    const double upper =
-        UpperRms(innovations.row(row).head(n).transpose(), setup.rates.tick());
+    const double upper = UpperRms(seen, setup.rates.tick());
     if (rms - upper > std::max(kSigmas * error, kLeast * rms)) continue;
-    if (IsUnsteady(innovations.row(row).head(n).transpose() / colouring, expected)) {
-      continue;
-    }
+    if (IsUnsteady(seen / colouring, expected)) continue;
     const double raised = std::sqrt(rms * rms - expected * expected);
     found.push_back({sensor.element, sensor.unit, raised, error * rms / raised});
   }

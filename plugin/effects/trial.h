@@ -28,20 +28,15 @@ struct Trial {
   std::function<TrialValues(const Amplitudes&)> values;
   /// What each amplitude is at least, at most 0; of no size: anything.
   Amplitudes least = {};
-  /// An error of readings that may be far too fast for the observer to follow, and then
-  /// shows in the innovations as it is.
-  bool fast = false;
   bool summed = false;  ///< all signals have one amplitude: one fault, several joints
 };
 
 /// Trials over one parameter that has to be met closely: a period or a frequency. Each
 /// is the sine and the cosine of an angle, which grows evenly from one to the next.
 struct Sweep {
-  /// In order, close enough to miss no maximum. Those whose trials may be `fast` come
-  /// last.
-  std::vector<double> values;
-  Eigen::VectorXd angle;      ///< of the first value, samples [rad]
-  Eigen::VectorXd increment;  ///< from one value to the next, samples [rad]
+  std::vector<double> values;  ///< slowest first, close enough to miss no maximum
+  Eigen::VectorXd angle;       ///< of the first value, samples [rad]
+  Eigen::VectorXd increment;   ///< from one value to the next, samples [rad]
   std::function<Trial(double)> make;
 };
 

@@ -23,8 +23,7 @@ Trial WaveTrial(const VectorXd& entry, const VectorXd& angle, double value) {
   return trial;
 }
 
-Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step,
-                  double fast_below) {
+Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step) {
   const double range = Range(x);
   Sweep sweep;
   // What does not come round once is no wave.
@@ -34,10 +33,8 @@ Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step
   }
   sweep.angle = kCoarsest * kTurn / (4.0 * range) * x;
   sweep.increment = step * kTurn / (4.0 * range) * x;
-  sweep.make = [entry, x, fast_below](double period) {
-    Trial trial = WaveTrial(entry, kTurn / period * x, period);
-    trial.fast = period < fast_below;
-    return trial;
+  sweep.make = [entry, x](double period) {
+    return WaveTrial(entry, kTurn / period * x, period);
   };
   return sweep;
 }

@@ -18,11 +18,10 @@ Trial WaveTrial(const Eigen::VectorXd& entry, const Eigen::VectorXd& angle,
                 double value);
 
 /// Periods of a wave over x, from one period over the stroke on.
-/// @param finest      quarters of a period over the stroke, at most
-/// @param step        quarters from one to the next: 1 or 2 miss no maximum
-/// @param fast_below  periods below which trials may be `fast`
+/// @param finest  quarters of a period over the stroke, at most
+/// @param step    quarters from one to the next: 1 or 2 miss no maximum
 Sweep PeriodSweep(const Eigen::VectorXd& entry, const Eigen::VectorXd& x, int finest,
-                  int step, double fast_below);
+                  int step);
 
 /// Frequencies of a wave over time, as close as a record of `duration` [s] tells apart.
 Sweep FrequencySweep(const Eigen::VectorXd& entry, const ObservedMotion& motion,

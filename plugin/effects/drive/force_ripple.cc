@@ -31,7 +31,7 @@ class ForceRippleEffect final : public JointForceEffect {
     constexpr int kFinest = 240;  // more than a motor has poles
     const Eigen::VectorXd q = at.q();
     if (Range(q) == 0.0) return std::nullopt;
-    return PeriodSweep(at.JointEntry(), q, kFinest, 1, 0.0);
+    return PeriodSweep(at.JointEntry(), q, kFinest, 1);
   }
   EffectValues Spread(const Scales& k) const override {
     return ValuesOf({0.1 * k.force, kAnySize, kAnySize});

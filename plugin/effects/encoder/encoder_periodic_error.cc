@@ -42,8 +42,7 @@ class EncoderPeriodicErrorEffect final : public ReadingErrorEffect {
     constexpr int kFinest = 1600;  // far more than a motor has poles
     const Eigen::VectorXd y = WithoutOwnNoise(at.y());
     if (Range(y) == 0.0) return std::nullopt;
-    // What goes by faster than that the observer does not follow by far.
-    return PeriodSweep({}, y, kFinest, 2, Range(y) / 6.0);
+    return PeriodSweep({}, y, kFinest, 2);
   }
   EffectValues Spread(const Scales& k) const override {
     return ValuesOf({2e-3 * k.stroke, kAnySize, kAnySize});
