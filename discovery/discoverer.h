@@ -44,12 +44,16 @@ class Discoverer {
     Report(what, fraction, search_.fit());
   }
   bool IsColoured(const CauseFit& fit) const;
-  void Search(SearchOptions options, bool down_to_noise);
+  void Search(const DiscoveryProblem& problem, SearchOptions options,
+              bool down_to_noise);
+  void SearchBeginning(SearchOptions options);
   void SearchBehindObservers(SearchOptions options);
   std::vector<PlantNumber> KnownNumbers() const;
   /// FreeRun of the records that no fit sees.
   double UnseenFree(const Changes& changes) const;
   void SearchAll();
+  /// Discovery::complete. Where a force without a name is among the causes it is 0.
+  double Completeness() const;
   void MeasureNominal();
   void CompleteJacobian();
   void FitFree();

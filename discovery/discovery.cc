@@ -11,6 +11,7 @@
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
+#include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -68,24 +69,26 @@ bool Discoverer::IsColoured(const CauseFit& fit) const {
          IndependentShare(problem_, fit.residual).minCoeff() < 0.5;
 }
 
-/// Goes on from the causes found so far, behind the present observer: in long steps
+/// Goes on from the causes found so far, behind the observer of the problem: in long steps
 /// where these are near enough, then in those of the setup. Down to the noise the long
 /// steps have to stay near; beside a rest that is far above it anyway they need not.
-void Discoverer::Search(SearchOptions options, bool down_to_noise) {
+void Discoverer::Search(const DiscoveryProblem& problem, SearchOptions options,
+                        bool down_to_noise) {
   constexpr int kMostCoarse = 4;
   const auto causes = [this] { return static_cast<int>(search_.fit().causes.size()); };
   const int before = causes();
   const int most = options.most_causes;
   for (int i = 0; i < kMostCoarse && work_->MayBegin("further causes"); ++i) {
     const auto coarse =
-        Coarsen(problem_, ChangesOf(problem_, candidates_, search_.fit()));
+        Coarsen(problem, ChangesOf(problem, candidates_, search_.fit()));
     if (!coarse) break;
     const int at = causes();
     SearchOptions rough = options;
     rough.last_fit = false;
     rough.serves = [&](const CauseFit& fit) {
+      if (options.serves && !options.serves(fit)) return false;
       return !down_to_noise ||
-             IsNear(*coarse, problem_, ChangesOf(problem_, candidates_, fit));
+             IsNear(*coarse, problem, ChangesOf(problem, candidates_, fit));
     };
     search_ = SearchCauses(*coarse, candidates_, rough, &search_);
     if (search_.served && options.preliminary && options.preliminary(search_.fit()) &&
@@ -96,15 +99,34 @@ void Discoverer::Search(SearchOptions options, bool down_to_noise) {
     // Long steps that are near no more may be again, shifted for what has been found.
     if (search_.served || causes() <= at) break;
   }
-  search_ = SearchCauses(problem_, candidates_, options, &search_);
+  search_ = SearchCauses(problem, candidates_, options, &search_);
+}
+
+/// Where runs are so long that a search of the whole record would use up the work, it goes
+/// on from one of its beginning, whose own choices it looks at again.
+void Discoverer::SearchBeginning(SearchOptions options) {
+  constexpr double kRuns = 400.0;  // of a search among some numbers and causes
+  if (problem_.numbers().empty() || kRuns * problem_.RunWork() < work_->limit()) return;
+  const DiscoveryProblem beginning = BeginningOf(problem_);
+  if (beginning.run().samples() == problem_.train()) return;
+  options.last_fit = false;
+  options.exchange = false;
+  options.unseen = nullptr;
+  options.free_run = nullptr;
+  options.serves = [this](const CauseFit&) {
+    constexpr double kShare = 0.35;  // the whole record takes more than its beginning
+    return work_->used() < kShare * work_->limit();
+  };
+  Search(beginning, options, true);
 }
 
 /// Behind the observer of the problem, and a fast one where it leaves what is coloured.
 void Discoverer::SearchBehindObservers(SearchOptions options) {
+  SearchBeginning(options);
   options.preliminary = [this](const CauseFit& fit) {
     return options_.bandwidth == 0.0 && IsColoured(fit);
   };
-  Search(options, true);
+  Search(problem_, options, true);
   if (!options.preliminary(search_.fit()) || !work_->MayBegin(kFasterObserver)) return;
   std::vector<DoubtedNumber> numbers = problem_.numbers();
   problem_ = Pose(kFastShare * machine_.rates().control).Doubting(std::move(numbers));
@@ -112,7 +134,7 @@ void Discoverer::SearchBehindObservers(SearchOptions options) {
   // Every further one takes longer than all before it.
   options.most_causes = std::min(options.most_causes, kFurtherCauses);
   options.preliminary = nullptr;
-  Search(options, false);
+  Search(problem_, options, false);
 }
 
 std::vector<PlantNumber> Discoverer::KnownNumbers() const {
@@ -197,6 +219,15 @@ void Discoverer::CompleteJacobian() {
       FitCauses(problem_, candidates_, fit, {.iterations = 0, .closing = true}));
 }
 
+double Discoverer::Completeness() const {
+  const auto has_no_name = [&](const FittedCause& cause) {
+    return curves_.contains(cause.candidate);
+  };
+  if (std::ranges::any_of(search_.fit().causes, has_no_name)) return 0.0;
+  return ProbabilityOfNoise(
+      NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
+}
+
 Discovery Discoverer::Run() {
   discovery_.setup = machine_.setup().name;
   discovery_.train_share = static_cast<double>(problem_.train()) /
@@ -205,6 +236,7 @@ Discovery Discoverer::Run() {
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();
   SearchAll();
+  discovery_.complete = Completeness();
   NameCauses();
   const std::array plants{Changes{}, ChangesOf(problem_, candidates_, search_.fit())};
   std::array<Track, 2> tracks;
@@ -213,7 +245,9 @@ Discovery Discoverer::Run() {
     tracks[i] = problem_.Follow(plants[i]);
   });
   const auto& [nominal, found] = tracks;
-  if (!search_.significant_rest) AddNoiseCauses(found.innovations);
+  if (!search_.significant_rest && IsComplete(discovery_.complete)) {
+    AddNoiseCauses(found.innovations);
+  }
   Judge();
 
   const Track final = discovery_.causes.empty() ? nominal

@@ -112,6 +112,9 @@ struct Discovery {
   std::string setup;  ///< its name
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
+  /// How probable it is that noise is all that the causes leave, and no law that is in no
+  /// list is among them (completeness.h); their probabilities count it.
+  double complete = 1.0;
   /// All numbers of the plant that were in doubt, as they are beside the causes.
   std::vector<CalibratedNumber> calibration;
   std::optional<Signature> unexplained;  ///< of what is left, if anything is

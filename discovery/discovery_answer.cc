@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
+#include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
@@ -90,6 +91,12 @@ void Discoverer::NameCauses() {
       found.alternatives.insert(found.alternatives.begin(),
                                 {twin, found.probability, true});
     }
+    if (found.HasName()) {
+      found.probability = AmongAllLaws(found.probability, discovery_.complete);
+      for (Alternative& other : found.alternatives) {
+        other.probability = AmongAllLaws(other.probability, discovery_.complete);
+      }
+    }
     discovery_.causes.push_back(std::move(found));
   }
 }
@@ -140,7 +147,8 @@ void Discoverer::Judge() {
                                Describe(CauseOf(candidates_, refuted)));
   }
   const bool named = !discovery_.causes.empty();
-  discovery_.verdict = VerdictOf(search_, named, nominal_);
+  discovery_.verdict =
+      VerdictOf(search_, named, nominal_, IsComplete(discovery_.complete));
   const bool all_named = std::ranges::all_of(discovery_.causes, &FoundCause::HasName);
   if (!all_named && discovery_.verdict == DiscoveryVerdict::kExplained) {
     discovery_.verdict = DiscoveryVerdict::kPartlyExplained;

@@ -18,10 +18,13 @@ namespace mjdiag {
 
 struct CauseSet {
   std::vector<Cause> causes;
-  double probability = 0.0;  ///< among all of these sets
+  double probability = 0.0;
 };
 
 /// Likeliest first, at most 8 and each of 1 % or more; none if nothing is named.
-std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named);
+/// @param complete  Discovery::complete: the rest is the probability of sets with a law that
+///                  is in no list
+std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named,
+                                     double complete = 1.0);
 
 }  // namespace mjdiag

@@ -65,7 +65,8 @@ json CausesOf(const Discovery& discovery) {
 
 json ExplanationList(const Discovery& discovery) {
   json explanations = json::array();
-  for (const CauseSet& explanation : ExplanationsOf(discovery.causes)) {
+  for (const CauseSet& explanation :
+       ExplanationsOf(discovery.causes, discovery.complete)) {
     json causes = json::array();
     for (const Cause& cause : explanation.causes) causes.push_back(IdentityOf(cause));
     explanations.push_back(
@@ -176,6 +177,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
   return {{"schema", "mjdiag.discovery/1"},
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
+          {"complete", Finite(discovery.complete)},
           {"causes", CausesOf(discovery)},
           {"explanations", ExplanationList(discovery)},
           {"calibration", CalibrationOf(discovery)},

@@ -14,6 +14,8 @@ namespace mjdiag {
 namespace {
 
 constexpr const char* kNone = "-";
+constexpr const char* kUnlisted = "a law that is in no list";
+constexpr double kConsidered = 0.05;
 
 std::string Percent(double percent) { return FormatNumber(percent) + " %"; }
 
@@ -99,6 +101,16 @@ std::string SignatureText(const Discovery& discovery) {
 }
 
 std::string BestAlternative(const FoundCause& found) {
+  double others = 1.0 - found.probability;
+  double likeliest = 0.0;
+  for (const Alternative& alternative : found.alternatives) {
+    if (alternative.indistinguishable) continue;
+    others -= alternative.probability;
+    likeliest = std::max(likeliest, alternative.probability);
+  }
+  if (others >= kConsidered && others > likeliest) {
+    return std::string(kUnlisted) + ", " + Percent(100.0 * others);
+  }
   if (found.alternatives.empty()) return kNone;
   const Alternative& best = found.alternatives.front();
   if (best.indistinguishable) {
@@ -266,13 +278,20 @@ Table CauseTable(const Discovery& discovery) {
 Table ExplanationTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Probability", true}, {""}, {"Explanation"}};
-  const std::vector<CauseSet> explanations = ExplanationsOf(discovery.causes);
-  if (explanations.size() < 2) return table;
+  const std::vector<CauseSet> explanations =
+      ExplanationsOf(discovery.causes, discovery.complete);
+  double others = 1.0;
+  for (const CauseSet& explanation : explanations) others -= explanation.probability;
+  const bool may_be_others = !explanations.empty() && others >= kConsidered;
+  if (explanations.size() < 2 && !may_be_others) return table;
   for (const CauseSet& explanation : explanations) {
     std::vector<std::string> causes;
     for (const Cause& cause : explanation.causes) causes.push_back(CauseName(cause));
     table.rows.push_back({Percent(100.0 * explanation.probability),
                           Bar(explanation.probability), Join(causes)});
+  }
+  if (may_be_others) {
+    table.rows.push_back({Percent(100.0 * others), Bar(others), kUnlisted});
   }
   return table;
 }

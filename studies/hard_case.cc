@@ -92,7 +92,11 @@ std::optional<Cause> DrawSize(const VisibleSize& visible, const Placed& placed,
     if (shown >= kLeastShown) {
       shown = std::min(shown, visible.ShownBesideSimplerLaw(cause));
     }
-    if (shown >= kLeastShown) return cause;
+    if (shown >= kLeastShown) {
+      // What another law shows as well has no right name.
+      if (visible.ShownBesideOtherLaws(cause) < kLeastTold) return std::nullopt;
+      return cause;
+    }
     if (scale >= 1.0) return std::nullopt;
     // Roughly with its square.
     const double raise = std::sqrt(kAbove * kLeastShown / std::max(shown, 1e-6));

@@ -9,7 +9,8 @@
 //   have (outside_law.h), alone. Sizes are shares of what the machine itself does
 //   (Effect::Draw), evenly in the logarithm from 0.03 to 1, raised to what the record can
 //   show at least beside the wrong numbers, the other causes and, of a law with a simpler
-//   one in it, that one (visible_size.h), or drawn anew.
+//   one in it, that one (visible_size.h), or drawn anew. What another law of the catalogue
+//   shows as well is drawn anew, too.
 // - One record or two, the default motion and one with other strokes; in half of the
 //   cases a further one that nothing is fitted to.
 
@@ -46,6 +47,8 @@ struct HardCase {
 
 /// What every cause shows at least (visible_size.h).
 inline constexpr double kLeastShown = 200.0;
+/// The same beside any other single law: five standard deviations.
+inline constexpr double kLeastTold = 25.0;
 
 /// Numbers of a plant as they may be.
 NumberFactors DrawNumbers(const mjModel& plant, Random& random);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
@@ -122,6 +123,23 @@ double VisibleSize::ShownBesideSimplerLaw(const Cause& cause) const {
              {.iterations = 12, .tolerance = 1e-4, .jacobian = false, .secant = true});
   if (!fit) return kInfinity;
   return (FittedValues(quiet) * fit->train + fit->numbers.squaredNorm()) / inflation_;
+}
+
+double VisibleSize::ShownBesideOtherLaws(const Cause& cause) const {
+  const DiscoveryProblem quiet =
+      WithQuietRunOf(problem_.machine().With(ChangesOf({cause})));
+  const std::vector<Candidate> candidates = ListCandidates(problem_.machine());
+  const auto run = quiet.Linearised({});
+  const auto& [track, dynamics] = *run;
+  FittedModel nominal;
+  nominal.numbers = VectorXd::Zero(numbers_.cols());
+  const Screening screening = Screen(quiet, candidates, quiet.MotionOf(track), dynamics,
+                                     quiet.Residual({}), numbers_, nominal, 1);
+  for (const Start& start : screening.starts) {  // best first
+    if (Indistinguishable(CauseOf(candidates, start.cause), cause)) continue;
+    return (screening.rest - start.gain) / inflation_;
+  }
+  return screening.rest / inflation_;
 }
 
 }  // namespace mjdiag

@@ -37,6 +37,9 @@ class VisibleSize {
   /// that explain most of it; infinite where there is no such law. Less than that and the
   /// simpler law is what there is.
   double ShownBesideSimplerLaw(const Cause& cause) const;
+  /// The same beside whichever other law of the catalogue shows most of it, to first order:
+  /// where that is nothing, no record of this motion tells the two apart.
+  double ShownBesideOtherLaws(const Cause& cause) const;
   Eigen::MatrixXd NoOthers() const { return {numbers_.rows(), 0}; }
 
  private:

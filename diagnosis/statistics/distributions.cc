@@ -54,6 +54,10 @@ double ChiSquaredQuantile(double probability, double dof) {
   return bm::quantile(bm::complement(ChiSquared(dof), probability));
 }
 
+double ChiSquaredExceedance(double x, double dof) {
+  return bm::cdf(bm::complement(ChiSquared(dof), x));
+}
+
 double FQuantile(double probability, double dof1, double dof2) {
   // The quantile of Boost's F, but for its warning: there `rest` is not set beforehand.
   double rest = 0.0;

@@ -36,6 +36,9 @@ double StudentExceedance(double x, double dof);
 /// @param dof          > 0
 double ChiSquaredQuantile(double probability, double dof);
 
+/// P(chi-squared > x). @param x  0 or more  @param dof  > 0
+double ChiSquaredExceedance(double x, double dof);
+
 /// Of Fisher's F: the ratio of two estimates of the same variance or density, each as a
 /// chi-squared variable divided by its degrees of freedom.
 /// @param probability  0 to 1

@@ -16,7 +16,8 @@ void AddSitesOf(const EffectPtr& effect, const SiteMap& map,
     for (const EffectParameter& p : effect->parameters()) {
       const double least = effect->Least(map.plant(), site.joint, i++);
       const double nothing = p.role == Role::kFactor ? 1.0 : 0.0;
-      candidate.parameters.push_back({p.name, p.role, least, p.maximum, nothing});
+      const double most = std::min(p.maximum, p.plausible);
+      candidate.parameters.push_back({p.name, p.role, least, most, nothing});
     }
     candidates.push_back(std::move(candidate));
   }

@@ -393,6 +393,14 @@ DiscoveryProblem Beginning(const DiscoveryProblem& problem, Index samples) {
   return changed.Shifted(problem.shift_->head(problem.run().outputs.rows() * samples));
 }
 
+DiscoveryProblem BeginningOf(const DiscoveryProblem& problem) {
+  constexpr Index kShortest = 4000;
+  const Index quarter = problem.skip() + std::max(kShortest, problem.train() / 4);
+  return Beginning(problem, problem.run().records.size() > 1
+                                ? problem.train()
+                                : std::min(problem.train(), quarter));
+}
+
 double MeanSquare(const VectorXd& residual, Index channels, Index first, Index last) {
   if (last <= first) return 0.0;
   return residual.segment(channels * first, channels * (last - first)).squaredNorm() /

@@ -158,6 +158,9 @@ DiscoveryProblem PoseProblem(const Machine& machine, const Record& measured,
 
 /// The problem cut to the first `samples` samples, all of them for the fit.
 DiscoveryProblem Beginning(const DiscoveryProblem& problem, Eigen::Index samples);
+/// As much of the part that fits see as shows most of what a machine does: a quarter of a
+/// long record; of several records all, for each shows something that the others do not.
+DiscoveryProblem BeginningOf(const DiscoveryProblem& problem);
 
 /// Mean square of the rows of samples first .. last - 1.
 double MeanSquare(const Eigen::VectorXd& residual, Eigen::Index channels,

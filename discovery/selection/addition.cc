@@ -152,8 +152,15 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
     const auto i = static_cast<std::size_t>(number);
     fits[i] = FirstFit(entries[i], share);
   });
-  std::vector<std::size_t> order = OrderOf(data_.problem, fits);
-  if (order.size() > kToTheEnd) order.resize(kToTheEnd);
+  // Of several starts of one candidate the best.
+  std::vector<std::size_t> order;
+  for (const std::size_t i : OrderOf(data_.problem, fits)) {
+    const auto same = [&](std::size_t k) {
+      return entries[k].causes.back().candidate == entries[i].causes.back().candidate;
+    };
+    if (std::ranges::none_of(order, same)) order.push_back(i);
+    if (order.size() == kToTheEnd) break;
+  }
   ParallelFor(static_cast<int>(order.size()), [&](int number) {
     auto& fit = fits[order[static_cast<std::size_t>(number)]];
     fit = Settled(data_.problem, data_.candidates, std::move(*fit), share);

@@ -40,16 +40,21 @@ double Evidence::Criterion(const VectorXd& independent) const {
   return mjdiag::Criterion(fit_, independent, data_.skip, data_.train);
 }
 
+const VectorXd& Evidence::Replayed() const {
+  if (!replayed_) replayed_ = data_.replay ? data_.replay(fit_) : VectorXd();
+  return *replayed_;
+}
+
 double Evidence::Unseen(const VectorXd& independent) const {
   const double held_out =
       data_.train < data_.samples
           ? Deviance(fit_.residual, independent, data_.train, data_.samples)
           : 0.0;
   if (!data_.replay) return held_out;
-  if (!replayed_) replayed_ = data_.replay(fit_);
-  if (replayed_->size() == 0) return std::numeric_limits<double>::infinity();
-  return held_out + Deviance(*replayed_, independent, data_.skip,
-                             replayed_->size() / independent.size());
+  const VectorXd& replayed = Replayed();
+  if (replayed.size() == 0) return std::numeric_limits<double>::infinity();
+  return held_out + Deviance(replayed, independent, data_.skip,
+                             replayed.size() / independent.size());
 }
 
 double Evidence::FreeRun() const {

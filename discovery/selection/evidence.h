@@ -88,6 +88,10 @@ class Evidence {
   /// Of the part held out and of other records; infinite where those cannot be run.
   double Unseen(const Eigen::VectorXd& independent) const;
 
+  /// Scaled innovations of other records; of no size without any, or where they cannot be
+  /// run.
+  const Eigen::VectorXd& Replayed() const;
+
   bool HasFreeRun() const { return static_cast<bool>(data_.free_run); }
   /// Log of what free simulation of unseen records leaves; 0 without such records.
   double FreeRun() const;

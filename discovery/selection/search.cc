@@ -26,14 +26,6 @@ constexpr const char* kRepeatable = "whether runs are repeatable";
 constexpr const char* kWithout = "searches without single causes";
 constexpr const char* kLastFit = "last fit";
 
-Index BeginningLength(const DiscoveryProblem& problem) {
-  // Each of several records shows something that the others do not.
-  if (problem.run().records.size() > 1) return problem.train();
-  constexpr Index kShortest = 4000;
-  return std::min(problem.train(),
-                  problem.skip() + std::max(kShortest, problem.train() / 4));
-}
-
 /// The values that a search without cause i starts from.
 CauseFit WithoutCause(const CauseFit& fit, std::size_t i) {
   CauseFit rest;
@@ -46,7 +38,7 @@ class Search {
  public:
   Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
          const SearchOptions& options, const SearchResult* before)
-      : data_{problem, Beginning(problem, BeginningLength(problem)), candidates,
+      : data_{problem, BeginningOf(problem), candidates,
               DataOf(problem, candidates, options.unseen, options.free_run),
               options.forbidden},
         options_(options) {

@@ -10,7 +10,8 @@ bool IsMoreLeft(const SearchResult& search) {
   return search.significant_rest || search.fit().train > kFarAboveNoise;
 }
 
-DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal) {
+DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal,
+                           bool noise) {
   constexpr double kNamedShare = 0.9;
   const double left = search.fit().train;
   if (!named) {
@@ -24,7 +25,7 @@ DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nomina
     return something ? DiscoveryVerdict::kUnexplained
                      : DiscoveryVerdict::kNoDiscrepancy;
   }
-  if (!IsMoreLeft(search)) return DiscoveryVerdict::kExplained;
+  if (!IsMoreLeft(search) && noise) return DiscoveryVerdict::kExplained;
   const double excess = nominal - 1.0;
   const double rest = std::max(left - 1.0, 0.0);
   const double share = excess > 0.0 ? 1.0 - rest / excess : 0.0;

@@ -5,7 +5,8 @@
 //
 //   no discrepancy    nothing was named, nothing significant was found, and numbers of
 //                     the plant, where they are in doubt, leave m <= 4
-//   explained         causes are named, nothing significant is left, m <= 4
+//   explained         causes are named, nothing significant is left, m <= 4, and the rest
+//                     is like noise (completeness.h)
 //   partly explained  else, if they take away 1 - (m - 1) / (m_0 - 1) >= 0.9
 //   unexplained       else: below that share of the excess over noise causes are not an
 //                     explanation but the best of the wrong ones
@@ -21,6 +22,8 @@ bool IsMoreLeft(const SearchResult& search);
 /// @param named    whether there are causes, sensors that are noisier than known
 ///                 included
 /// @param nominal  m_0
-DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal);
+/// @param noise    whether the rest is like noise
+DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal,
+                           bool noise);
 
 }  // namespace mjdiag

@@ -37,6 +37,8 @@ struct EffectParameter {
   double minimum;
   double maximum;
   std::optional<double> fallback{};  ///< the value if none is given; none: required
+  /// The most that is named: what has more of it is other physics.
+  double plausible = std::numeric_limits<double>::infinity();
 };
 
 /// What an effect can act at.

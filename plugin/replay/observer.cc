@@ -30,11 +30,10 @@ VectorXd ForceNoise(const MechanicalModel& model, const VectorXd& noise_sd,
   return sd;
 }
 
-/// sd of e = (I - C (z I - A + L C)^-1 L) n for white n of sd r, by the impulse
-/// response's energy.
-VectorXd InnovationSd(const StateSpace& tick, const MatrixXd& L,
+/// Covariance of the predicted state less the true one, by sensor noise alone.
+MatrixXd StateByNoise(const StateSpace& tick, const MatrixXd& L,
                       const VectorXd& noise_sd) {
-  MatrixXd state = L * noise_sd.asDiagonal();
+  const MatrixXd state = L * noise_sd.asDiagonal();
   const MatrixXd F = tick.A - L * tick.C;
   // Sum of C F^k L by doubling of the controllability Gramian.
   MatrixXd gramian = state * state.transpose();
@@ -45,6 +44,14 @@ VectorXd InnovationSd(const StateSpace& tick, const MatrixXd& L,
     power = power * power;
     if (added.norm() <= 1e-14 * gramian.norm()) break;
   }
+  return gramian;
+}
+
+/// sd of e = (I - C (z I - A + L C)^-1 L) n for white n of sd r, by the impulse
+/// response's energy.
+VectorXd InnovationSd(const StateSpace& tick, const MatrixXd& L,
+                      const VectorXd& noise_sd) {
+  const MatrixXd gramian = StateByNoise(tick, L, noise_sd);
   const VectorXd fed_back = (tick.C * gramian * tick.C.transpose()).diagonal();
   return (noise_sd.cwiseAbs2() + fed_back).cwiseSqrt();
 }
@@ -92,6 +99,20 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
   observer.innovation_covariance = noise_sd.asDiagonal() * S * noise_sd.asDiagonal();
   observer.innovation_sd = InnovationSd(observer.tick, observer.L, noise_sd);
   return observer;
+}
+
+VectorXd NoiseCorrelation(const Observer& observer, Index sensor, Index lags) {
+  const MatrixXd& C = observer.tick.C;
+  const MatrixXd F = observer.tick.A - observer.L * C;
+  const MatrixXd S = StateByNoise(observer.tick, observer.L, observer.noise_sd);
+  const double r = observer.noise_sd[sensor];
+  VectorXd next = F * S * C.row(sensor).transpose() - r * r * observer.L.col(sensor);
+  VectorXd correlation(lags);
+  for (Index l = 0; l < lags; ++l) {
+    correlation[l] = C.row(sensor).dot(next);
+    next = F * next;
+  }
+  return correlation / (C.row(sensor).dot(S * C.row(sensor).transpose()) + r * r);
 }
 
 }  // namespace mjdiag

@@ -44,4 +44,12 @@ struct Observer {
 Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
                         const Eigen::VectorXd& noise_sd, double bandwidth);
 
+/// Autocorrelation of the innovations of a sensor at 1 .. lags ticks if sensor noise is all
+/// there is: they are coloured, for the gain is made for a machine with force noise. With
+/// F = A - L C and S the covariance of the state by that noise alone,
+///
+///   rho_l = C F^(l-1) (F S C^T - L R) / (C S C^T + R)
+Eigen::VectorXd NoiseCorrelation(const Observer& observer, Eigen::Index sensor,
+                                 Eigen::Index lags);
+
 }  // namespace mjdiag

@@ -121,6 +121,19 @@ TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
   EXPECT_GT(part(ParseEffect("force_ripple@load:amplitude=1,period=0.01")), 0.5);
 }
 
+// A stage that nothing holds follows a reading that drifts: damping makes a constant force
+// of its speed.
+TEST(VisibleSize, IsNothingBesideALawThatDoesTheSame) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const Cause drift = ParseEffect("encoder_drift@load_encoder:rate=1e-3");
+  EXPECT_GT(visible.Shown(drift, visible.NoOthers()), kLeastShown);
+  EXPECT_LT(visible.ShownBesideOtherLaws(drift), kLeastTold);
+  const Cause ripple = ParseEffect("force_ripple@load:amplitude=10,period=0.01");
+  EXPECT_GT(visible.ShownBesideOtherLaws(ripple), kLeastShown);
+}
+
 // A simulation with steps that are half as long is late, to first order, and nothing else.
 TEST(VisibleSize, IsNotHiddenByStepsThatOnlyMakeInputsEarly) {
   const Machine model = Emps().WithSensorNoise(Eigen::VectorXd::Constant(1, 1e-8));

@@ -25,6 +25,10 @@ class SpringWithMemory final : public ActiveEffect {
   JointOf joint_;
 };
 
+/// Just after a turn a cable is a few times as stiff as over its whole stroke; what is
+/// stiffer is friction that creeps before it slides.
+constexpr double kMostLoss = 10.0;
+
 class HystereticStiffnessEffect final : public Effect {
  public:
   HystereticStiffnessEffect()
@@ -32,7 +36,12 @@ class HystereticStiffnessEffect final : public Effect {
                 .family = Family::kFriction,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
-                               NotNegative("loss", Role::kRatio, "1"),
+                               {.name = "loss",
+                                .role = Role::kRatio,
+                                .unit = "1",
+                                .minimum = 0.0,
+                                .maximum = std::numeric_limits<double>::infinity(),
+                                .plausible = kMostLoss},
                                Positive("length", Role::kLength, "m")},
                 .meaning = "-stiffness (q + loss z), z follows q over that length: a "
                            "cable, a hose",
@@ -58,6 +67,11 @@ class HystereticStiffnessEffect final : public Effect {
     return trials;
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
+    const double loses = self.values[0] * self.values[1];
+    if (self.values[1] >= kMostLoss) {
+      return PlacedEffect{Lasting(PreslidingHysteresis()), self.site,
+                          ValuesOf({loses * self.values[2], loses})};
+    }
     return PlacedEffect{Lasting(LinearStiffness()), self.site, self.values.head(1)};
   }
   EffectValues Spread(const Scales&) const override {

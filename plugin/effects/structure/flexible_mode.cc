@@ -45,15 +45,21 @@ class Appendage final : public ActiveEffect {
 class FlexibleModeEffect final : public Effect {
  public:
   FlexibleModeEffect()
-      : Effect({.name = "flexible_mode",
-                .family = Family::kStructure,
-                .variable = LawVariable::kAcceleration,
-                .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
-                               Positive("frequency", Role::kFrequency, "Hz"),
-                               // What does not swing is no mode.
-                               {"damping_ratio", Role::kRatio, "1", 0.0, 1.0}},
-                .meaning = "a mass on a spring and a damper on the joint",
-                .odds = kSome}) {}
+      : Effect(
+            {.name = "flexible_mode",
+             .family = Family::kStructure,
+             .variable = LawVariable::kAcceleration,
+             .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
+                            Positive("frequency", Role::kFrequency, "Hz"),
+                            // Joints of machines damp by some per cent, rubber by 20.
+                            {.name = "damping_ratio",
+                             .role = Role::kRatio,
+                             .unit = "1",
+                             .minimum = 0.0,
+                             .maximum = 1.0,
+                             .plausible = 0.3}},
+             .meaning = "a mass on a spring and a damper on the joint",
+             .odds = kSome}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,

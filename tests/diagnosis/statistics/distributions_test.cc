@@ -52,6 +52,15 @@ TEST(StudentExceedance, IsTheUpperTail) {
   EXPECT_EQ(StudentExceedance(std::numeric_limits<double>::infinity(), 7.0), 0.0);
 }
 
+TEST(ChiSquaredExceedance, IsWhatTheQuantileIsExceededWith) {
+  for (const double dof : {1.0, 3.0, 40.0}) {
+    for (const double probability : {0.5, 1e-4, 1e-30}) {
+      const double x = ChiSquaredQuantile(probability, dof);
+      EXPECT_NEAR(ChiSquaredExceedance(x, dof) / probability, 1.0, 1e-6);
+    }
+  }
+}
+
 TEST(ChiSquaredQuantile, IsExceededWithThatProbability) {
   ExpectClose(ChiSquaredQuantile(0.05, 1.0), 3.8414588206941285);
   ExpectClose(ChiSquaredQuantile(1e-4, 1.0), 15.136705226623397);

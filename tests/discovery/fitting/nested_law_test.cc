@@ -38,6 +38,19 @@ TEST_F(NestedLaw, TheFaultParameterStandsForTheSymmetricLawThatItIs) {
   EXPECT_NEAR(simpler->value[0], 1.1, 1e-12);
 }
 
+TEST_F(NestedLaw, ACableThatLosesMoreThanCablesDoIsFriction) {
+  const auto spring =
+      SimplerOf("hysteretic_stiffness@load", Eigen::Vector3d(4.0, 2.0, 0.01));
+  ASSERT_TRUE(spring);
+  EXPECT_EQ(spring->candidate, test::Place(candidates_, "linear_stiffness@load"));
+  const auto friction =
+      SimplerOf("hysteretic_stiffness@load", Eigen::Vector3d(4.0, 10.0, 0.01));
+  ASSERT_TRUE(friction);
+  EXPECT_EQ(friction->candidate,
+            test::Place(candidates_, "presliding_hysteresis@load"));
+  EXPECT_TRUE(friction->value.isApprox(Eigen::Vector2d(0.4, 40.0)));
+}
+
 TEST_F(NestedLaw, ASimpleLawHasNone) {
   EXPECT_FALSE(SimplerOf("coulomb_friction@load", Eigen::VectorXd::Constant(1, 3.0)));
 }

@@ -37,5 +37,15 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
             Parameter(before, "coulomb_friction@load", "force").upper);
 }
 
+TEST(ListCandidates, EndWhereALawBecomesOtherPhysics) {
+  const test::StageUnderTest stage;
+  const auto candidates = ListCandidates(stage.machine);
+  EXPECT_EQ(Parameter(candidates, "flexible_mode@load", "damping_ratio").upper, 0.3);
+  // Simulated it may be more.
+  EXPECT_EQ(ParseEffect("flexible_mode@load:mass=1,frequency=20,damping_ratio=0.9")
+                .Value("damping_ratio"),
+            0.9);
+}
+
 }  // namespace
 }  // namespace mjdiag

@@ -16,14 +16,16 @@ SearchResult Left(double train, bool significant_rest) {
 }
 
 TEST(Verdict, IsNoDiscrepancyWhereNothingWasFound) {
-  EXPECT_EQ(VerdictOf(Left(1.0, false), false, 1.0), DiscoveryVerdict::kNoDiscrepancy);
+  EXPECT_EQ(VerdictOf(Left(1.0, false), false, 1.0, true),
+            DiscoveryVerdict::kNoDiscrepancy);
 }
 
 TEST(Verdict, IsUnexplainedWhereSomethingIsThereAndNothingIsNamed) {
-  EXPECT_EQ(VerdictOf(Left(3.0, true), false, 3.0), DiscoveryVerdict::kUnexplained);
+  EXPECT_EQ(VerdictOf(Left(3.0, true), false, 3.0, true),
+            DiscoveryVerdict::kUnexplained);
   SearchResult dropped = Left(3.0, false);
   dropped.ladder.emplace_back();
-  EXPECT_EQ(VerdictOf(dropped, false, 3.0), DiscoveryVerdict::kUnexplained);
+  EXPECT_EQ(VerdictOf(dropped, false, 3.0, true), DiscoveryVerdict::kUnexplained);
 }
 
 TEST(Verdict, IsNoDiscrepancyWhereWhatWasFoundIsNothingBesideNumbersOfThePlant) {
@@ -32,7 +34,7 @@ TEST(Verdict, IsNoDiscrepancyWhereWhatWasFoundIsNothingBesideNumbersOfThePlant) 
   SearchResult dropped;
   dropped.evidence = {{}, fit, Eigen::VectorXd::Ones(1)};
   dropped.ladder.emplace_back();
-  EXPECT_EQ(VerdictOf(dropped, false, 3.0), DiscoveryVerdict::kNoDiscrepancy);
+  EXPECT_EQ(VerdictOf(dropped, false, 3.0, true), DiscoveryVerdict::kNoDiscrepancy);
 }
 
 TEST(Verdict, IsUnexplainedWhereNumbersOfThePlantLeaveMoreThanNoise) {
@@ -41,24 +43,29 @@ TEST(Verdict, IsUnexplainedWhereNumbersOfThePlantLeaveMoreThanNoise) {
     fit.numbers = Eigen::VectorXd::Zero(1);
     SearchResult result;
     result.evidence = {{}, fit, Eigen::VectorXd::Ones(1)};
-    return VerdictOf(result, false, 50.0);
+    return VerdictOf(result, false, 50.0, true);
   };
   EXPECT_EQ(beside(3.9), DiscoveryVerdict::kNoDiscrepancy);
   EXPECT_EQ(beside(4.1), DiscoveryVerdict::kUnexplained);
 }
 
 TEST(Verdict, IsExplainedWhereCausesLeaveNoise) {
-  EXPECT_EQ(VerdictOf(Left(1.1, false), true, 50.0), DiscoveryVerdict::kExplained);
+  EXPECT_EQ(VerdictOf(Left(1.1, false), true, 50.0, true),
+            DiscoveryVerdict::kExplained);
 }
 
 TEST(Verdict, IsPartlyExplainedWhereCausesTakeMostOfIt) {
-  EXPECT_EQ(VerdictOf(Left(1.1, true), true, 50.0), DiscoveryVerdict::kPartlyExplained);
-  EXPECT_EQ(VerdictOf(Left(4.1, false), true, 50.0),
+  EXPECT_EQ(VerdictOf(Left(1.1, true), true, 50.0, true),
+            DiscoveryVerdict::kPartlyExplained);
+  EXPECT_EQ(VerdictOf(Left(1.1, false), true, 50.0, false),
+            DiscoveryVerdict::kPartlyExplained);
+  EXPECT_EQ(VerdictOf(Left(4.1, false), true, 50.0, true),
             DiscoveryVerdict::kPartlyExplained);
 }
 
 TEST(Verdict, IsUnexplainedWhereCausesLeaveMoreThanATenth) {
-  EXPECT_EQ(VerdictOf(Left(6.0, true), true, 50.0), DiscoveryVerdict::kUnexplained);
+  EXPECT_EQ(VerdictOf(Left(6.0, true), true, 50.0, true),
+            DiscoveryVerdict::kUnexplained);
 }
 
 }  // namespace
