@@ -54,6 +54,7 @@ class Discoverer {
   void SearchAll();
   /// Discovery::complete. Where a force without a name is among the causes it is 0.
   double Completeness() const;
+  void NoteIncompleteness();
   void MeasureNominal();
   void CompleteJacobian();
   void FitFree();

@@ -275,6 +275,7 @@ Discovery Discoverer::Run() {
     discovery_.colour_after =
         1.0 - IndependentShare(problem_, problem_.Scaled(final)).mean();
   }
+  NoteIncompleteness();
   NoteBudget();
   return std::move(discovery_);
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -93,6 +94,16 @@ void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& riv
     }
     discovery_.notes.push_back(note);
   }
+}
+
+void Discoverer::NoteIncompleteness() {
+  if (IsComplete(discovery_.complete)) return;
+  if (std::ranges::none_of(discovery_.causes, &FoundCause::HasName)) return;
+  discovery_.notes.push_back(
+      "what the causes leave is not the noise of the sensors: they are the nearest of "
+      "the laws that are known, and one that is in no list, or was not found, is in "
+      "the "
+      "machine; their values serve to simulate it, their names are not certain");
 }
 
 /// What the search did not come to, and how it does.

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "mjdiag/discovery/explanations.h"
+#include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -228,7 +229,9 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
       return FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
       return FoundText(discovery) + UnseenText(discovery) +
-             (discovery.unexplained ? " Something is left." : " Noise is left.") +
+             (discovery.unexplained || !IsComplete(discovery.complete)
+                  ? " Something is left."
+                  : " Noise is left.") +
              SignatureText(discovery);
     case DiscoveryVerdict::kUnexplained:
       return "Something is there that no known cause explains." +

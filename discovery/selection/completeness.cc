@@ -72,7 +72,7 @@ double NoiseValue(const DiscoveryProblem& problem, const VectorXd& innovations,
 }
 
 double ProbabilityOfNoise(double p) {
-  constexpr double kBefore = 0.99;  // P_0
+  constexpr double kBefore = 0.95;  // P_0
   constexpr double e = std::numbers::e;
   const double B = p <= 0.0 ? 0.0 : p < 1.0 / e ? -e * p * std::log(p) : 1.0;
   return B / (B + (1.0 - kBefore) / kBefore);
@@ -81,7 +81,7 @@ double ProbabilityOfNoise(double p) {
 bool IsComplete(double complete) { return complete >= 0.5; }
 
 double AmongAllLaws(double named, double complete) {
-  constexpr double kRightAllTheSame = 0.4;
+  constexpr double kRightAllTheSame = 0.15;
   return named * (complete + (1.0 - complete) * kRightAllTheSame);
 }
 

@@ -6,11 +6,11 @@
 //   Q = n sum over l = 1 .. m of (r_l - rho_l)^2,   chi-squared with m degrees of freedom
 //
 // r_l is the autocorrelation of the innovations of a sensor, rho_l what noise alone makes
-// of it behind the observer [Box and Pierce 1970]. What no fit saw is as large as what the
+// of it behind the observer [Box 1970]. What no fit saw is as large as what the
 // fit left, by the F-distribution. The smallest p of these many (Bonferroni) makes the
 // Bayes factor of noise against anything at most
 //
-//   B = -e p ln p,   p < 1/e, else 1                    [Sellke, Bayarri and Berger 2001]
+//   B = -e p ln p,   p < 1/e, else 1                    [Sellke 2001]
 //
 // and with it P = B / (B + (1 - P_0) / P_0) is the probability that nothing is missing.
 

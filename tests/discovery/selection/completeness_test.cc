@@ -53,7 +53,7 @@ TEST_F(Completeness, TheLevelOfNoiseDoesNotMatter) {
 TEST(ProbabilityOfNoise, FallsWithItsP) {
   EXPECT_DOUBLE_EQ(ProbabilityOfNoise(1.0), ProbabilityOfNoise(0.5));
   EXPECT_GT(ProbabilityOfNoise(0.5), ProbabilityOfNoise(0.01));
-  EXPECT_GT(ProbabilityOfNoise(0.01), 0.9);
+  EXPECT_GT(ProbabilityOfNoise(0.01), 0.7);
   EXPECT_LT(ProbabilityOfNoise(1e-6), 0.01);
   EXPECT_EQ(ProbabilityOfNoise(0.0), 0.0);
   EXPECT_TRUE(IsComplete(ProbabilityOfNoise(0.01)));
