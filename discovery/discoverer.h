@@ -52,7 +52,8 @@ class Discoverer {
   /// FreeRun of the records that no fit sees.
   double UnseenFree(const Changes& changes) const;
   void SearchAll();
-  /// Discovery::complete. Where a force without a name is among the causes it is 0.
+  /// Discovery::complete. Where a force without a name, or a law at its end, is among the
+  /// causes it is 0.
   double Completeness() const;
   void NoteIncompleteness();
   void MeasureNominal();

@@ -220,10 +220,10 @@ void Discoverer::CompleteJacobian() {
 }
 
 double Discoverer::Completeness() const {
-  const auto has_no_name = [&](const FittedCause& cause) {
-    return curves_.contains(cause.candidate);
+  const auto is_stopgap = [&](const FittedCause& cause) {
+    return curves_.contains(cause.candidate) || IsAtItsEnd(candidates_, cause);
   };
-  if (std::ranges::any_of(search_.fit().causes, has_no_name)) return 0.0;
+  if (std::ranges::any_of(search_.fit().causes, is_stopgap)) return 0.0;
   return ProbabilityOfNoise(
       NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
 }

@@ -105,17 +105,22 @@ std::optional<Cause> DrawSize(const VisibleSize& visible, const Placed& placed,
   return std::nullopt;
 }
 
-bool ShowBesideEachOther(const VisibleSize& visible, const std::vector<Cause>& causes) {
-  return std::ranges::all_of(causes, [&](const Cause& cause) {
-    if (cause.effect->form() == Form::kNoise) return true;  // like nothing else
-    Eigen::MatrixXd others = visible.NoOthers();
-    for (const Cause& other : causes) {
-      if (&other == &cause || other.effect->form() == Form::kNoise) continue;
-      others.conservativeResize(Eigen::NoChange, others.cols() + 1);
-      others.rightCols(1) = visible.Innovations(other);
-    }
-    return visible.Shown(cause, others) >= kLeastShown;
+/// Whether each shows beside the others, and by its name.
+bool ShowBesideEachOther(const VisibleSize& visible, std::vector<Cause> causes) {
+  std::erase_if(causes, [](const Cause& cause) {
+    return cause.effect->form() == Form::kNoise;  // like nothing else
   });
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    Eigen::MatrixXd others = visible.NoOthers();
+    for (std::size_t k = 0; k < causes.size(); ++k) {
+      if (k == i) continue;
+      others.conservativeResize(Eigen::NoChange, others.cols() + 1);
+      others.rightCols(1) = visible.Innovations(causes[k]);
+    }
+    if (visible.Shown(causes[i], others) < kLeastShown) return false;
+    if (visible.ShownBesideOtherLaws(causes, i) < kLeastTold) return false;
+  }
+  return true;
 }
 
 std::optional<Cause> DrawKnown(const Machine& machine, const VisibleSize& visible,

@@ -10,7 +10,7 @@
 //   (Effect::Draw), evenly in the logarithm from 0.03 to 1, raised to what the record can
 //   show at least beside the wrong numbers, the other causes and, of a law with a simpler
 //   one in it, that one (visible_size.h), or drawn anew. What another law of the catalogue
-//   shows as well is drawn anew, too.
+//   shows as well, with the other causes there, is drawn anew, too.
 // - One record or two, the default motion and one with other strokes; in half of the
 //   cases a further one that nothing is fitted to.
 
@@ -47,8 +47,9 @@ struct HardCase {
 
 /// What every cause shows at least (visible_size.h).
 inline constexpr double kLeastShown = 200.0;
-/// The same beside any other single law: five standard deviations.
-inline constexpr double kLeastTold = 25.0;
+/// The same beside any other single law: five standard deviations, and what up to three
+/// parameters that the other has not cost in a criterion, log n = 8 each.
+inline constexpr double kLeastTold = 50.0;
 
 /// Numbers of a plant as they may be.
 NumberFactors DrawNumbers(const mjModel& plant, Random& random);

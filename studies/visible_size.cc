@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "mjdiag/discovery/fitting/cause_fit.h"
+#include "mjdiag/discovery/fitting/screening_in_place.h"
 #include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/signals/decompositions.h"
@@ -69,6 +71,16 @@ Explained Explain(const DiscoveryProblem& problem, const MatrixXd& J,
   return best;
 }
 
+/// The candidate that is of the kind of a cause and at its place.
+std::optional<std::size_t> PlaceOf(const std::vector<Candidate>& candidates,
+                                   const Cause& cause) {
+  const auto place = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
+    return SameKind({candidate.effect, candidate.site, {}}, cause);
+  });
+  if (place == candidates.end()) return std::nullopt;
+  return static_cast<std::size_t>(place - candidates.begin());
+}
+
 }  // namespace
 
 VisibleSize::VisibleSize(const Machine& machine, int substeps, const Excitation& motion,
@@ -112,17 +124,10 @@ double VisibleSize::ShownBesideSimplerLaw(const Cause& cause) const {
   if (!simpler) return kInfinity;
   const Machine& machine = problem_.machine();
   const std::vector<Candidate> candidates = AllSites(machine);
-  const auto law = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
-    return SameKind({candidate.effect, candidate.site, {}}, *simpler);
-  });
-  if (law == candidates.end()) return kInfinity;
-  const auto place = static_cast<std::size_t>(law - candidates.begin());
+  const auto place = PlaceOf(candidates, *simpler);
+  if (!place) return kInfinity;
   const DiscoveryProblem quiet = WithQuietRunOf(machine.With(ChangesOf({cause})));
-  const auto fit =
-      TryFit(quiet, candidates, {{Bounded(candidates, {place, simpler->values})}},
-             {.iterations = 12, .tolerance = 1e-4, .jacobian = false, .secant = true});
-  if (!fit) return kInfinity;
-  return (FittedValues(quiet) * fit->train + fit->numbers.squaredNorm()) / inflation_;
+  return LeftBy(quiet, candidates, {{Bounded(candidates, {*place, simpler->values})}});
 }
 
 double VisibleSize::ShownBesideOtherLaws(const Cause& cause) const {
@@ -140,6 +145,41 @@ double VisibleSize::ShownBesideOtherLaws(const Cause& cause) const {
     return (screening.rest - start.gain) / inflation_;
   }
   return screening.rest / inflation_;
+}
+
+double VisibleSize::ShownBesideOtherLaws(const std::vector<Cause>& all,
+                                         std::size_t one) const {
+  const DiscoveryProblem quiet =
+      WithQuietRunOf(problem_.machine().With(ChangesOf(all)));
+  const std::vector<Candidate> candidates = ListCandidates(problem_.machine());
+  FittedModel truth;
+  truth.numbers = VectorXd::Zero(numbers_.cols());
+  for (const Cause& cause : all) {
+    const auto place = PlaceOf(candidates, cause);
+    if (!place) return std::numeric_limits<double>::infinity();
+    truth.causes.push_back({*place, cause.values});
+  }
+  const CauseFit fit = FitCauses(quiet, candidates, truth, {.iterations = 0});
+  const Screening screening = ScreenInPlace(quiet, candidates, fit, {one}, 1);
+  const auto best = std::ranges::find_if(screening.starts, [&](const Start& start) {
+    return !Has(fit.causes, start.cause.candidate) &&
+           !Indistinguishable(CauseOf(candidates, start.cause), all[one]);
+  });
+  if (best == screening.starts.end()) return std::numeric_limits<double>::infinity();
+  // The first order, by which it is found, is off by a share of what large causes do.
+  FittedModel other = ModelWithout(fit, {one});
+  other.causes.push_back(Bounded(candidates, best->cause));
+  return LeftBy(quiet, candidates, other);
+}
+
+double VisibleSize::LeftBy(const DiscoveryProblem& quiet,
+                           const std::vector<Candidate>& candidates,
+                           const FittedModel& model) const {
+  const auto fit =
+      TryFit(quiet, candidates, model,
+             {.iterations = 12, .tolerance = 1e-4, .jacobian = false, .secant = true});
+  if (!fit) return std::numeric_limits<double>::infinity();
+  return (FittedValues(quiet) * fit->train + fit->numbers.squaredNorm()) / inflation_;
 }
 
 }  // namespace mjdiag

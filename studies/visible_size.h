@@ -12,8 +12,10 @@
 // that hides as much (Inflation of model_choice.h).
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/hypotheses/fitted_model.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/effects/scales.h"
 #include "mjdiag/plugin/runtime/simulation.h"
@@ -40,9 +42,16 @@ class VisibleSize {
   /// The same beside whichever other law of the catalogue shows most of it, to first order:
   /// where that is nothing, no record of this motion tells the two apart.
   double ShownBesideOtherLaws(const Cause& cause) const;
+  /// The same of one of several causes, with the others there: what the record shows of it
+  /// beside the law in its place that shows most of it, with the values that explain most
+  /// of it. None of them is noise.
+  double ShownBesideOtherLaws(const std::vector<Cause>& all, std::size_t one) const;
   Eigen::MatrixXd NoOthers() const { return {numbers_.rows(), 0}; }
 
  private:
+  /// What a fit of that model leaves of the innovations.
+  double LeftBy(const DiscoveryProblem& quiet, const std::vector<Candidate>& candidates,
+                const FittedModel& model) const;
   DiscoveryProblem WithQuietRunOf(const Machine& measured) const;
 
   Excitation motion_;

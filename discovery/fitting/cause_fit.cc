@@ -361,8 +361,9 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
       solver.initial_trust_region_radius = 1.0;
     }
     // With bounds Ceres searches along every step; a cubic would ask for J there.
-    solver.line_search_interpolation_type = ceres::BISECTION;
-    solver.max_num_line_search_step_size_iterations = 3;
+    solver.line_search_interpolation_type = ceres::QUADRATIC;
+    solver.max_num_line_search_step_size_iterations = 5;
+    solver.use_nonmonotonic_steps = true;
     EndWhenOver end(simulator);
     solver.callbacks.push_back(&end);
     ceres::Solver::Summary summary;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjdiag/discovery/fitting/first_values.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/settled_fit.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -15,6 +16,9 @@ namespace mjdiag {
 namespace {
 
 using Eigen::MatrixXd;
+
+// Effects are small where so much is left, times the power of the noise.
+constexpr double kSmall = 1.5;
 
 /// Squared innovations that a start leaves to first order, not less than noise does.
 double RestOf(const Evidence& present, const Start& start) {
@@ -53,6 +57,11 @@ std::vector<std::size_t> OrderOf(const DiscoveryProblem& problem,
   std::ranges::stable_sort(order, std::less<>(),
                            [&](std::size_t i) { return criteria[i]; });
   return order;
+}
+
+/// Whether what a fit adds is credible; it comes last.
+bool AddsCredibly(const std::vector<Candidate>& candidates, const CauseFit& fit) {
+  return IsCredible(candidates, fit, fit.causes.back());
 }
 
 /// Sets that compete for being the present one with one more hypothesis.
@@ -113,7 +122,6 @@ void Contest::FitToBeginning(std::vector<Entry>& entries, std::size_t count,
 /// exact enough for them and holds for the whole train part; large ones, for which the
 /// first order is not, by a fit on the beginning of the record.
 std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
-  constexpr double kSmall = 1.5;  // times the power of the noise
   std::vector<Entry> entries;
   for (const Start& start : shortlist) {
     Entry entry{
@@ -127,6 +135,15 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   }
   std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
   if (present_.fit().train < kSmall) return entries;
+  const MatrixXd& jacobian = present_.fit().jacobian;
+  const double enough =
+      MeanSquare(present_.fit().residual, data_.problem.run().outputs.rows(),
+                 data_.problem.skip(), data_.beginning.train());
+  ParallelFor(static_cast<int>(entries.size()), [&](int number) {
+    Entry& entry = entries[static_cast<std::size_t>(number)];
+    static_cast<FittedModel&>(entry) =
+        WithFirstValues(data_.beginning, data_.candidates, entry, &jacobian, enough);
+  });
   // Those that a few steps show to be worse than most get no more of them.
   constexpr std::size_t kBetter = 6;
   FitToBeginning(entries, entries.size(), 2);
@@ -139,7 +156,12 @@ std::optional<CauseFit> Contest::FirstFit(const FittedModel& model,
                                           double share) const {
   FitOptions options = CompareFrom(FoundJacobian(), 5, 1e-4, share);
   options.only_betters = true;
-  return TryFit(data_.problem, data_.candidates, model, options);
+  const bool was_begun = present_.fit().train >= kSmall;
+  const FittedModel start =
+      was_begun ? model
+                : WithFirstValues(data_.problem, data_.candidates, model,
+                                  FoundJacobian(), present_.fit().train);
+  return TryFit(data_.problem, data_.candidates, start, options);
 }
 
 /// On the whole train part; the best of them to their ends.
@@ -174,7 +196,7 @@ std::vector<std::optional<CauseFit>> Contest::Fit(
 /// Adds to the fits those of simpler laws that others are where they ended.
 void Contest::Simplify(std::vector<std::optional<CauseFit>>& fits) const {
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!fits[i] || IsCredible(data_.candidates, *fits[i])) continue;
+    if (!fits[i] || AddsCredibly(data_.candidates, *fits[i])) continue;
     const auto simpler = data_.AtItsEnd(*fits[i]);
     const auto is_same = [&](const std::optional<CauseFit>& fit) {
       return fit && fit->causes.back().candidate == simpler->causes.back().candidate;
@@ -253,7 +275,7 @@ Additions ProposeAdditions(const SearchData& data, const Evidence& present,
   contest.Simplify(fits);
   Additions additions;
   for (auto& fit : fits) {
-    if (!fit || IsCredible(data.candidates, *fit)) continue;
+    if (!fit || AddsCredibly(data.candidates, *fit)) continue;
     additions.incredible.push_back(std::move(*fit));
     fit.reset();
   }

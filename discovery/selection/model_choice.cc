@@ -52,10 +52,10 @@ double GainByChance(double probability, int trials, int freedom) {
   return ChiSquaredQuantile(probability / std::max(trials, 1), freedom);
 }
 
-bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit) {
-  const FittedCause& last = fit.causes.back();
-  return !IsAtItsEnd(candidates, last) &&
-         (fit.train <= kFarAboveNoise || IsPlausible(candidates, last));
+bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit,
+                const FittedCause& cause) {
+  return !IsAtItsEnd(candidates, cause) &&
+         (fit.train <= kFarAboveNoise || IsPlausible(candidates, cause));
 }
 
 int ParameterCount(const std::vector<FittedCause>& causes) {

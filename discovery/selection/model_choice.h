@@ -39,9 +39,10 @@ double GainByChance(double probability, int trials, int freedom);
 /// whatever a screening says.
 inline constexpr double kFarAboveNoise = 4.0;
 
-/// Whether its last cause may be one: its shape is not at its end, and where the fit leaves
-/// far more than noise its sizes are plausible.
-bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit);
+/// Whether that cause of the fit may be one: its shape is not at its end, and where the fit
+/// leaves far more than noise its sizes are plausible.
+bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit,
+                const FittedCause& cause);
 
 int ParameterCount(const std::vector<FittedCause>& causes);
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjdiag/discovery/fitting/first_values.h"
 #include "mjdiag/discovery/fitting/nested_law.h"
 #include "mjdiag/discovery/fitting/screening_in_place.h"
 #include "mjdiag/discovery/fitting/wave_period.h"
@@ -25,6 +26,8 @@ using Proposals = std::vector<std::optional<Evidence>>;
 // Hypotheses that are less probable beside all other causes are no alternatives.
 constexpr double kConsidered = 1e-3;
 
+constexpr const char* kAtItsEnd = "laws at their end";
+
 void MoveToEnd(std::vector<std::vector<Hypothesis>>& rivals, std::size_t i) {
   const auto place = rivals.begin() + static_cast<std::ptrdiff_t>(i);
   std::rotate(place, place + 1, rivals.end());
@@ -35,7 +38,16 @@ bool IsIncredible(const SearchData& data, const Evidence& present,
                   const CauseFit& fit) {
   if (fit.causes.empty()) return false;
   const bool is_new = !Has(present.fit().causes, fit.causes.back().candidate);
-  return is_new && !IsCredible(data.candidates, fit);
+  return is_new && !IsCredible(data.candidates, fit, fit.causes.back());
+}
+
+/// The fit of a set, as far as sets are compared.
+std::optional<CauseFit> FitToCompare(const SearchData& data, const FittedModel& model,
+                                     const MatrixXd* jacobian, double share) {
+  auto fit = TryFit(data.problem, data.candidates, model,
+                    CompareFrom(jacobian, 8, 1e-5, share));
+  if (fit) *fit = Settled(data.problem, data.candidates, std::move(*fit), share);
+  return fit;
 }
 
 /// The fit of other causes; none if the beginning of the record shows that they explain
@@ -48,22 +60,29 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
                                          const FittedModel& model,
                                          const MatrixXd& jacobian, double share) {
   constexpr double kFar = 60.0;  // in units of the deviance
+  constexpr double kNear = 1.2;  // times what the present ones leave
   const MatrixXd* initial = jacobian.cols() > 0 ? &jacobian : nullptr;
   const auto early = [&](const CauseFit& fit) {
     return Deviance(fit.residual, present.independent(), data.problem.skip(),
                     data.beginning.train());
   };
-  auto rough = TryFit(data.beginning, data.candidates, model,
+  const double near =
+      kNear * MeanSquare(present.fit().residual, data.problem.run().outputs.rows(),
+                         data.problem.skip(), data.beginning.train());
+  const bool is_new = !model.causes.empty() &&
+                      !Has(present.fit().causes, model.causes.back().candidate);
+  const FittedModel start =
+      is_new ? WithFirstValues(data.beginning, data.candidates, model, initial, near)
+             : model;
+  auto rough = TryFit(data.beginning, data.candidates, start,
                       CompareFrom(initial, 8, 1e-3, 0.5 * share));
   const auto is_far = [&] { return early(*rough) - early(present.fit()) > kFar; };
   if (rough && is_far() && present.fit().numbers.size() > 0) {
     *rough = Settled(data.beginning, data.candidates, std::move(*rough), 0.5 * share);
   }
   if (!rough || is_far()) return std::nullopt;
-  auto fit = TryFit(data.problem, data.candidates, model,
-                    CompareFrom(initial, 8, 1e-5, 0.5 * share));
+  auto fit = FitToCompare(data, *rough, initial, 0.5 * share);
   if (!fit) return std::nullopt;
-  *fit = Settled(data.problem, data.candidates, std::move(*fit), 0.5 * share);
   if (!IsIncredible(data, present, *fit)) return present.Changed(std::move(*fit));
   const auto simpler = data.AtItsEnd(*fit);
   if (!simpler || Has(present.fit().causes, simpler->causes.back().candidate)) {
@@ -157,19 +176,38 @@ std::vector<FittedCause> Explaining(const Substitutes& substitutes, double expla
   return others;
 }
 
+/// The best of these that contains cause i as a simpler law, with values next to its own.
+std::optional<FittedCause> LargerThan(const SearchData& data, const FittedCause& cause,
+                                      const std::vector<FittedCause>& others) {
+  const mjModel& plant = data.problem.machine().plant();
+  const auto contains = [&](const FittedCause& other) {
+    const auto simpler = SimplerLaw(plant, data.candidates, other);
+    return simpler && simpler->candidate == cause.candidate;
+  };
+  const auto larger = std::ranges::find_if(others, contains);
+  if (larger == others.end()) return std::nullopt;
+  return Containing(plant, data.candidates, *larger, cause);
+}
+
 /// Hypotheses that are worth a fit in the place of cause i: a simpler law of the same
-/// kind, and what a screening without that cause finds to explain nearly as much.
+/// kind, the best that contains it, and what a screening without that cause finds to
+/// explain nearly as much.
 std::vector<FittedCause> OthersFor(const SearchData& data, const CauseFit& fit,
                                    std::size_t i) {
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kMost = 4;
   std::vector<FittedCause> others;
   if (const auto simpler = data.SimplerThan(fit.causes[i], fit)) {
     others.push_back(*simpler);
   }
   const Substitutes found = SubstitutesFor(data, fit, {i});
-  for (FittedCause& other : Explaining(found, found.explained)) {
+  const std::vector<FittedCause> all =
+      Explaining(found, std::min(found.explained, found.promised));
+  if (auto larger = LargerThan(data, fit.causes[i], all)) {
+    others.push_back(std::move(*larger));
+  }
+  for (const FittedCause& other : all) {
     if (others.size() == kMost) break;
-    if (!Has(others, other.candidate)) others.push_back(std::move(other));
+    if (!Has(others, other.candidate)) others.push_back(other);
   }
   return others;
 }
@@ -189,16 +227,8 @@ std::vector<FittedCause> BetterFor(const SearchData& data, const Evidence& prese
     if (better.size() == kMost || !more.IsMoreThanChance()) break;
     better.push_back(start.cause);
   }
-  const mjModel& plant = data.problem.machine().plant();
-  const auto contains = [&](const FittedCause& other) {
-    const auto simpler = SimplerLaw(plant, data.candidates, other);
-    return simpler && simpler->candidate == fit.causes[i].candidate;
-  };
-  const std::vector<FittedCause> all = Explaining(found, found.promised);
-  const auto larger = std::ranges::find_if(all, contains);
-  if (larger != all.end() && !Has(better, larger->candidate)) {
-    better.push_back(Containing(plant, data.candidates, *larger, fit.causes[i]));
-  }
+  auto larger = LargerThan(data, fit.causes[i], Explaining(found, found.promised));
+  if (larger && !Has(better, larger->candidate)) better.push_back(std::move(*larger));
   return better;
 }
 
@@ -275,6 +305,34 @@ bool MergeAt(const SearchData& data, HypothesisSet& set, std::size_t i, std::siz
   return true;
 }
 
+/// Takes cause i out of the set, or puts the law that it is at its end in its place, even
+/// if that is worse; false if neither can be fitted.
+bool GiveUp(const SearchData& data, HypothesisSet& set, std::size_t i) {
+  const CauseFit& fit = set.fit();
+  const MatrixXd jacobian = JacobianWithout(fit, {i});
+  const MatrixXd* initial = jacobian.cols() > 0 ? &jacobian : nullptr;
+  std::vector<FittedModel> models{ModelWithout(fit, {i})};
+  if (const auto simpler = data.SimplerThan(fit.causes[i], fit)) {
+    models.push_back(models.front());
+    models.back().causes.push_back(*simpler);
+  }
+  const double share = data.work().Share(static_cast<int>(models.size()));
+  std::optional<Evidence> best;
+  for (const FittedModel& model : models) {
+    auto other = FitToCompare(data, model, initial, share);
+    if (!other) continue;
+    Evidence evidence = set.evidence.Changed(std::move(*other));
+    if (!best || evidence.Criterion() < best->Criterion()) best = std::move(evidence);
+  }
+  if (!best) return false;
+  set.evidence = std::move(*best);
+  set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(i));
+  if (set.fit().causes.size() > set.rivals.size()) {
+    set.rivals.push_back({{set.fit().causes.back(), set.evidence.Criterion(), 1.0}});
+  }
+  return true;
+}
+
 }  // namespace
 
 void ChangePeriods(const SearchData& data, HypothesisSet& set) {
@@ -301,6 +359,14 @@ bool Drop(const SearchData& data, HypothesisSet& set) {
   set.evidence = std::move(*proposals[*dropped]);
   set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(*dropped));
   return true;
+}
+
+bool GiveUpIncredible(const SearchData& data, HypothesisSet& set) {
+  for (std::size_t i = 0; i < set.fit().causes.size(); ++i) {
+    if (IsCredible(data.candidates, set.fit(), set.fit().causes[i])) continue;
+    if (data.work().MayBegin(kAtItsEnd) && GiveUp(data, set, i)) return true;
+  }
+  return false;
 }
 
 bool Exchange(const SearchData& data, HypothesisSet& set) {

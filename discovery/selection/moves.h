@@ -32,6 +32,11 @@ bool Drop(const SearchData& data, HypothesisSet& set);
 /// of the rest.
 bool Simplify(const SearchData& data, HypothesisSet& set);
 
+/// Takes out a hypothesis that is not credible beside the others (model_choice.h), or puts
+/// the law that it is at its end in its place, whatever it explains; true if there was one.
+/// Beside what came after it a law may be at its end that was not when it was added.
+bool GiveUpIncredible(const SearchData& data, HypothesisSet& set);
+
 /// Puts another hypothesis in the place of one; true if that was accepted. How probable
 /// the rivals for a place are is judged anew in any case.
 bool Exchange(const SearchData& data, HypothesisSet& set);

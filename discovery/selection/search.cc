@@ -251,6 +251,8 @@ void Search::Settle() {
   while (Simplify(data_, result_)) {
   }
   Report(kNeeded, 0.8);
+  while (GiveUpIncredible(data_, result_)) {
+  }
   DropSuperfluous();
   Report(kRepeatable, 0.9);
   if (work().MayBegin(kRepeatable)) MeetUnsteadiness();

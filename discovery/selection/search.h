@@ -8,8 +8,8 @@
 //   hypothesis in the place of one does (moves.h), or else the best of them are fitted
 //   beside what has been found (addition.h); in the order of their criteria they are
 //   judged, and the first that is accepted is added;
-//   tries other periods for waves and simpler laws, and drops what has become superfluous
-//   (moves.h);
+//   tries other periods for waves and simpler laws, gives up what is no longer credible, and
+//   drops what has become superfluous (moves.h);
 //   where the course of the machine depends on the last digit, looks for a better fit
 //   around the one that derivatives led to (unsteady_fit.h).
 //

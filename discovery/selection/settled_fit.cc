@@ -10,7 +10,7 @@ namespace mjdiag {
 CauseFit Settled(const DiscoveryProblem& problem,
                  const std::vector<Candidate>& candidates, CauseFit fit, double share) {
   constexpr int kMost = 5;
-  constexpr int kSteps = 3;  // by secants, which tell apart what acts alike
+  constexpr int kSteps = 6;  // by secants, which tell apart what acts alike
   constexpr double kUnit = 1.0;
   const double values = FittedValues(problem);
   double left = share - fit.spent;

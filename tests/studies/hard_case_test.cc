@@ -178,5 +178,19 @@ TEST(VisibleSize, OfALawWithASimplerOneInItIsWhatTellsThemApart) {
   EXPECT_GT(told("stribeck_friction@load:coulomb=1,breakaway=9,velocity=0.05"), 200.0);
 }
 
+TEST(VisibleSize, BesideOtherLawsIsWhatTellsACauseFromThemWithTheOthersThere) {
+  const Machine model = Emps();
+  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
+                            1);
+  const Cause ripple = ParseEffect("force_ripple@load:amplitude=10,period=0.01");
+  const auto told = [&](const char* law) {
+    return visible.ShownBesideOtherLaws({ripple, ParseEffect(law)}, 1);
+  };
+  EXPECT_LT(told("stribeck_friction@load:coulomb=2,breakaway=0.02,velocity=0.05"),
+            kLeastTold);
+  EXPECT_GT(told("stribeck_friction@load:coulomb=1,breakaway=9,velocity=0.05"),
+            kLeastTold);
+}
+
 }  // namespace
 }  // namespace mjdiag

@@ -108,6 +108,20 @@ TEST(Moves, LeaveWhatIsRight) {
   EXPECT_EQ(found.set.fit().causes.size(), 2u);
 }
 
+// No mode of a machine is damped like that: friction is.
+TEST(GiveUpIncredible, TakesOutALawAtItsEndWhateverItExplains) {
+  Found found({"quadratic_drag@load:coefficient=20",
+               "flexible_mode@load:mass=0.1,frequency=20,damping_ratio=0.8"},
+              {{"flexible_mode@load", Eigen::Vector3d(0.1, 20.0, 0.3)},
+               {"quadratic_drag@load", VectorXd::Constant(1, 20.0)}});
+  const double before = found.set.evidence.Criterion();
+  ASSERT_TRUE(GiveUpIncredible(found.data, found.set));
+  EXPECT_EQ(found.Name(0), "quadratic_drag@load");
+  EXPECT_EQ(found.set.rivals.size(), found.set.fit().causes.size());
+  EXPECT_GT(found.set.evidence.Criterion(), before);
+  EXPECT_FALSE(GiveUpIncredible(found.data, found.set));
+}
+
 TEST(Drop, TakesOutWhatIsSuperfluous) {
   Found found({"quadratic_drag@load:coefficient=20"},
               {{"quadratic_drag@load", VectorXd::Constant(1, 20.0)},
