@@ -281,6 +281,8 @@ Explanation SignatureSearch::Sine(const Variable& variable) const {
   });
   double unused = 0.0;
   const Explanation curve = BinnedInto(kMostBins, folded, nullptr, unused);
+  // Where a few samples to a bin explain nothing of the others there is no curve to show.
+  found.significant = found.significant && curve.share > 0.0;
   found.x = curve.x;
   found.y = curve.y;
   found.y_sd = curve.y_sd;

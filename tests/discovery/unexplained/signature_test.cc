@@ -149,6 +149,22 @@ TEST(Signature, RarelyNamesAnythingForNoise) {
   }
 }
 
+// A sine takes three numbers, a curve over its period forty.
+TEST(Signature, OfAWeakWaveInAFewSamplesHasACurveOrNone) {
+  constexpr Index kFew = 400;
+  const ArrayXd x = ArrayXd::LinSpaced(kFew, 0.0, 1.0);
+  const ArrayXd wave = 0.45 * (2.0 * std::numbers::pi * 7.3 * x).sin();
+  int waves = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const VectorXd noise = GaussianNoise(kFew, 1.0, seed);
+    const Signature found =
+        FindSignature("X", wave.matrix() + noise, "N", 1.0, {{"X position", "m", x}});
+    EXPECT_EQ(found.x.size(), found.y_sd.size());
+    waves += found.period > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(waves, 0);
+}
+
 TEST(Signature, RefusesSeriesThatDoNotFit) {
   const VectorXd signal = GaussianNoise(kSamples, 1.0, 1);
   const Variable brief{"x", "m", VectorXd::Zero(10)};
