@@ -1,10 +1,12 @@
 #pragma once
 // The parts of a discovery (discovery.h) while it is under way: the search in
-// discovery.cc, what has no name in discovery_curves.cc, the answer in
-// discovery_answer.cc, notes in discovery_notes.cc, figures in discovery_figures.cc.
+// discovery.cc, the last fits in discovery_last_fit.cc, what has no name in
+// discovery_curves.cc, the answer in discovery_answer.cc, notes in discovery_notes.cc,
+// figures in discovery_figures.cc.
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +61,9 @@ class Discoverer {
   void MeasureNominal();
   void CompleteJacobian();
   void FitFree();
+  void TakeFree(const DiscoveryProblem& free, CauseFit fit);
+  std::optional<std::size_t> EmptyCause() const;
+  void DropEmptyCauses();
   void NoteBudget();
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,

@@ -177,46 +177,8 @@ void Discoverer::SearchAll() {
   LearnCurves(options);
   FitFree();
   work_->EndSearch();
+  DropEmptyCauses();
   if (!free_fit_) CompleteJacobian();
-}
-
-/// Beside a rest far above noise every value of a fit takes over some of what the model
-/// lacks, and what it takes over depends on what is fitted. People use a model to simulate:
-/// the last fit is one of free simulation, if that is better on records that no fit saw.
-void Discoverer::FitFree() {
-  const CauseFit& found = search_.fit();
-  if (measurements_.unseen.empty() || found.train <= kFarAboveNoise) return;
-  if (found.causes.empty() || !work_->MayBegin("fit of free simulation")) return;
-  Report("fit of free simulation", 0.9, found);
-  const DiscoveryProblem free = problem_.Simulating([this](const Changes& changes) {
-    return FreeErrors(measurements_.fit, changes);
-  });
-  const auto unseen = [&](const FittedModel& model) {
-    return UnseenFree(ChangesOf(problem_, candidates_, model));
-  };
-  auto start = TryFit(free, candidates_, found, {.iterations = 0, .jacobian = false});
-  if (!start) return;
-  start->prior_weight =
-      Inflation(start->train, IndependentShare(free, start->residual));
-  auto fit = TryFit(
-      free, candidates_, *start,
-      {.iterations = 12, .tolerance = 1e-4, .secant = true, .share = work_->Share(1)});
-  if (!fit || unseen(*fit) >= unseen(found)) return;
-  search_.evidence = search_.evidence.Changed(
-      FitCauses(problem_, candidates_, *fit,
-                {.iterations = 0, .jacobian = false, .closing = true}));
-  free_fit_.emplace(free, std::move(*fit));
-}
-
-/// The derivatives that intervals are made of, where the search ended without them.
-void Discoverer::CompleteJacobian() {
-  const CauseFit& fit = search_.fit();
-  if (fit.exact || fit.numbers.size() + Flatten(fit.causes).size() == 0) return;
-  // Without any there are no intervals; those of secants are near enough where there is
-  // no time for others.
-  if (fit.jacobian.cols() > 0 && !work_->MayBegin("exact intervals")) return;
-  search_.evidence = search_.evidence.Changed(
-      FitCauses(problem_, candidates_, fit, {.iterations = 0, .closing = true}));
 }
 
 double Discoverer::Completeness() const {
@@ -224,6 +186,8 @@ double Discoverer::Completeness() const {
     return curves_.contains(cause.candidate) || IsAtItsEnd(candidates_, cause);
   };
   if (std::ranges::any_of(search_.fit().causes, is_stopgap)) return 0.0;
+  // Of whatever colour: noise that has been raised leaves nothing for a screening.
+  if (search_.significant_rest && search_.fit().train > kFarAboveNoise) return 0.0;
   return ProbabilityOfNoise(
       NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
 }

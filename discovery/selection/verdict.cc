@@ -12,7 +12,7 @@ bool IsMoreLeft(const SearchResult& search) {
 
 DiscoveryVerdict VerdictOf(const SearchResult& search, bool named, double nominal,
                            bool noise) {
-  constexpr double kNamedShare = 0.9;
+  constexpr double kNamedShare = 0.5;
   const double left = search.fit().train;
   if (!named) {
     // Numbers may hide that something is there, but not from the noise; causes that were

@@ -7,9 +7,11 @@
 //                     the plant, where they are in doubt, leave m <= 4
 //   explained         causes are named, nothing significant is left, m <= 4, and the rest
 //                     is like noise (completeness.h)
-//   partly explained  else, if they take away 1 - (m - 1) / (m_0 - 1) >= 0.9
-//   unexplained       else: below that share of the excess over noise causes are not an
+//   partly explained  else, if they take away 1 - (m - 1) / (m_0 - 1) >= 0.5
+//   unexplained       else: what leaves the greater part of the excess over noise is not an
 //                     explanation but the best of the wrong ones
+//
+// How certain names are beside what is left their probabilities say (completeness.h).
 
 #include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/selection/search.h"

@@ -63,8 +63,10 @@ TEST(Verdict, IsPartlyExplainedWhereCausesTakeMostOfIt) {
             DiscoveryVerdict::kPartlyExplained);
 }
 
-TEST(Verdict, IsUnexplainedWhereCausesLeaveMoreThanATenth) {
-  EXPECT_EQ(VerdictOf(Left(6.0, true), true, 50.0, true),
+TEST(Verdict, IsUnexplainedWhereCausesLeaveTheGreaterPart) {
+  EXPECT_EQ(VerdictOf(Left(25.0, true), true, 50.0, true),
+            DiscoveryVerdict::kPartlyExplained);
+  EXPECT_EQ(VerdictOf(Left(26.0, true), true, 50.0, true),
             DiscoveryVerdict::kUnexplained);
 }
 

@@ -1,0 +1,108 @@
+// The last fits of a discovery: of free simulation, without causes that turn out to be
+// nothing, and with the derivatives that intervals are made of.
+
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/fitting/parameter_covariance.h"
+#include "mjdiag/discovery/record_replay.h"
+#include "mjdiag/discovery/selection/model_choice.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+
+/// Beside a rest far above noise every value of a fit takes over some of what the model
+/// lacks, and what it takes over depends on what is fitted. People use a model to simulate:
+/// the last fit is one of free simulation, if that is better on records that no fit saw.
+void Discoverer::FitFree() {
+  const CauseFit& found = search_.fit();
+  if (measurements_.unseen.empty() || found.train <= kFarAboveNoise) return;
+  if (found.causes.empty() || !work_->MayBegin("fit of free simulation")) return;
+  Report("fit of free simulation", 0.9, found);
+  const DiscoveryProblem free = problem_.Simulating([this](const Changes& changes) {
+    return FreeErrors(measurements_.fit, changes);
+  });
+  const auto unseen = [&](const FittedModel& model) {
+    return UnseenFree(ChangesOf(problem_, candidates_, model));
+  };
+  auto start = TryFit(free, candidates_, found, {.iterations = 0, .jacobian = false});
+  if (!start) return;
+  start->prior_weight =
+      Inflation(start->train, IndependentShare(free, start->residual));
+  auto fit = TryFit(
+      free, candidates_, *start,
+      {.iterations = 12, .tolerance = 1e-4, .secant = true, .share = work_->Share(1)});
+  if (!fit || unseen(*fit) >= unseen(found)) return;
+  TakeFree(free, std::move(*fit));
+}
+
+void Discoverer::TakeFree(const DiscoveryProblem& free, CauseFit fit) {
+  search_.evidence = search_.evidence.Changed(
+      FitCauses(problem_, candidates_, fit,
+                {.iterations = 0, .jacobian = false, .closing = true}));
+  free_fit_.emplace(free, std::move(fit));
+}
+
+/// A cause that the last fit leaves with sizes that may all be nothing; none if there is
+/// no such cause, or nothing is known of how sure its sizes are.
+std::optional<std::size_t> Discoverer::EmptyCause() const {
+  const CauseFit& fit = free_fit_ ? free_fit_->second : search_.fit();
+  const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
+  if (fit.jacobian.cols() == 0) return std::nullopt;
+  const Eigen::MatrixXd covariance = ParameterCovariance(problem, candidates_, fit);
+  const double normal = TwoSidedNormalQuantile(0.05);
+  Index place = fit.numbers.size();
+  for (std::size_t i = 0; i < fit.causes.size(); ++i) {
+    int sizes = 0;
+    int empty = 0;
+    Index k = 0;
+    for (const FitParameter& parameter :
+         candidates_[fit.causes[i].candidate].parameters) {
+      const double size = fit.causes[i].value[k++] - parameter.nothing;
+      const double sd = std::sqrt(covariance(place, place));
+      ++place;
+      if (IsShape(parameter.role)) continue;
+      ++sizes;
+      empty += std::isfinite(sd) && std::abs(size) < normal * sd ? 1 : 0;
+    }
+    const bool is_curve = curves_.contains(fit.causes[i].candidate);
+    if (sizes > 0 && empty == sizes && !is_curve) return i;
+  }
+  return std::nullopt;
+}
+
+/// What comes later may take over what a cause was found by. A name whose sizes may all be
+/// nothing says nothing: the others are fitted without it.
+void Discoverer::DropEmptyCauses() {
+  constexpr int kSteps = 6;
+  while (const auto empty = EmptyCause()) {
+    if (!work_->MayBegin("a fit without causes that are nothing")) return;
+    const FitOptions options = CompareFrom(nullptr, kSteps, 1e-5, work_->Share(1));
+    const CauseFit& last = free_fit_ ? free_fit_->second : search_.fit();
+    const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
+    auto fit = TryFit(problem, candidates_, ModelWithout(last, {*empty}), options);
+    if (!fit) return;
+    search_.rivals.erase(search_.rivals.begin() + static_cast<std::ptrdiff_t>(*empty));
+    if (free_fit_) {
+      TakeFree(DiscoveryProblem(problem), std::move(*fit));
+    } else {
+      search_.evidence = search_.evidence.Changed(std::move(*fit));
+    }
+  }
+}
+
+/// The derivatives that intervals are made of, where the search ended without them.
+void Discoverer::CompleteJacobian() {
+  const CauseFit& fit = search_.fit();
+  if (fit.exact || fit.numbers.size() + Flatten(fit.causes).size() == 0) return;
+  // Without any there are no intervals; those of secants are near enough where there is
+  // no time for others.
+  if (fit.jacobian.cols() > 0 && !work_->MayBegin("exact intervals")) return;
+  search_.evidence = search_.evidence.Changed(
+      FitCauses(problem_, candidates_, fit, {.iterations = 0, .closing = true}));
+}
+
+}  // namespace mjdiag
