@@ -186,8 +186,11 @@ double Discoverer::Completeness() const {
     return curves_.contains(cause.candidate) || IsAtItsEnd(candidates_, cause);
   };
   if (std::ranges::any_of(search_.fit().causes, is_stopgap)) return 0.0;
-  // Of whatever colour: noise that has been raised leaves nothing for a screening.
-  if (search_.significant_rest && search_.fit().train > kFarAboveNoise) return 0.0;
+  // Of whatever colour: noise that has been raised leaves nothing for a screening. What a
+  // search that was cut short has not come to may be the other part of what it named.
+  const bool is_known =
+      search_.fit().train <= kFarAboveNoise && work_->left_out().empty();
+  if (search_.significant_rest && !is_known) return 0.0;
   return ProbabilityOfNoise(
       NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
 }

@@ -27,15 +27,18 @@ double RestOf(const Evidence& present, const Start& start) {
 
 /// The most that a start may leave to first order to be worth a fit. The first order is
 /// rough for large effects and for shapes that the grid of trials misses; what it is
-/// off by grows with what there is to explain and with what the best leaves of it.
+/// off by grows with what there is to explain and with what the best leaves of it. What
+/// promises to take away noise as well does not keep it.
 double MostRest(const Evidence& present, const Screening& screening) {
   constexpr double kOfExcess = 0.1;
   constexpr double kOfRest = 1.0;
   constexpr double kChance = 200.0;
+  constexpr double kDeviations = 3.0;
   const double noise = present.Noise();
   const double excess = noise * std::max(present.fit().train - 1.0, 0.0);
   double least = noise + excess;
   for (const Start& start : screening.starts) {
+    if (start.gain > excess + kDeviations * std::sqrt(2.0 * noise)) continue;
     least = std::min(least, RestOf(present, start));
   }
   return least + kOfRest * (least - noise) + kOfExcess * excess + kChance;
@@ -221,9 +224,9 @@ std::string NamesOf(const std::vector<Candidate>& candidates,
 
 }  // namespace
 
-std::vector<Start> Shortlist(const Evidence& present, const Screening& screening,
-                             const Chance& chance, int most,
-                             const std::vector<std::size_t>& forbidden) {
+std::vector<Start> Shortlist(const SearchData& data, const Evidence& present,
+                             const Screening& screening, const Chance& chance,
+                             int most) {
   const double most_rest = MostRest(present, screening);
   std::vector<Start> list;
   std::vector<Start> more;
@@ -232,8 +235,7 @@ std::vector<Start> Shortlist(const Evidence& present, const Screening& screening
       return other.candidate == start.cause.candidate;
     };
     if (std::ranges::any_of(present.fit().causes, same)) continue;
-    if (std::ranges::find(forbidden, start.cause.candidate) != forbidden.end())
-      continue;
+    if (data.IsForbidden(start.cause.candidate)) continue;
     if (!present
              .SignificanceOf(start.gain, start.freedom, chance, present.independent())
              .IsMoreThanChance()) {

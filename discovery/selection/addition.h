@@ -17,11 +17,10 @@ namespace mjdiag {
 /// Starts that are worth a fit beside the present set: more than chance, and near
 /// enough to the best of them. The best start of every candidate first, then second
 /// ones, so that a flexible law with many starts does not crowd out a simple one.
-/// @param most       of the first, and twice as many as of the second
-/// @param forbidden  candidates that are not on it
-std::vector<Start> Shortlist(const Evidence& present, const Screening& screening,
-                             const Chance& chance, int most,
-                             const std::vector<std::size_t>& forbidden = {});
+/// @param most  of the first, and twice as many as of the second
+std::vector<Start> Shortlist(const SearchData& data, const Evidence& present,
+                             const Screening& screening, const Chance& chance,
+                             int most);
 
 /// Sets with one more hypothesis each.
 struct Additions {

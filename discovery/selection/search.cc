@@ -74,6 +74,7 @@ class Search {
     result_.exchanged = false;
     result_.searched_without = false;
   }
+  std::vector<Start> ScreenWhatIsLeft(Chance& chance);
   bool AddCause();
   void AddCauses();
   void DropSuperfluous() {
@@ -206,17 +207,25 @@ void Search::MeetUnsteadiness() {
   }
 }
 
-/// One round; false if it found no further cause.
-bool Search::AddCause() {
+/// What could be added.
+std::vector<Start> Search::ScreenWhatIsLeft(Chance& chance) {
   Report("screening", 0.0);
   constexpr int kStarts = 6;
   const Evidence& present = result_.evidence;
   const Screening screening = ScreenBeside(
       data_.problem, data_.candidates, present.fit(), present.fit().jacobian, kStarts);
-  const Chance chance = ChanceOf(screening.trials);
-  const std::vector<Start> shortlist =
-      Shortlist(present, screening, chance, options_.shortlist, data_.forbidden);
+  chance = ChanceOf(screening.trials);
+  std::vector<Start> shortlist =
+      Shortlist(data_, present, screening, chance, options_.shortlist);
   result_.significant_rest = !shortlist.empty();
+  return shortlist;
+}
+
+/// One round; false if it found no further cause.
+bool Search::AddCause() {
+  Chance chance;
+  const std::vector<Start> shortlist = ScreenWhatIsLeft(chance);
+  const Evidence& present = result_.evidence;
   if (shortlist.empty()) return false;
   Report(kBetter, 0.2);
   if (Better(data_, result_, chance)) {
@@ -362,6 +371,11 @@ SearchResult Search::Run() {
   if (options_.last_fit && result_.fit().jacobian.cols() > 0 &&
       work().MayBegin(kLastFit)) {
     FitClosely();
+  }
+  // Where the work was used up, what was screened last may not be what has been found.
+  if (!work().left_out().empty() && !result_.fit().causes.empty()) {
+    Chance chance;
+    ScreenWhatIsLeft(chance);
   }
   std::erase_if(result_.refuted, [&](const FittedCause& cause) {
     return Has(result_.fit().causes, cause.candidate);
