@@ -288,22 +288,20 @@ bool ExchangeAt(const SearchData& data, HypothesisSet& set, std::size_t i,
   return TakeInPlace(set, i, std::move(proposals));
 }
 
-/// Puts one hypothesis in these places, in rising order, of some that act at one joint.
-bool MergeAt(const SearchData& data, HypothesisSet& set,
-             const std::vector<std::size_t>& places) {
+/// Puts one hypothesis in the place of two that act at one joint.
+bool MergeAt(const SearchData& data, HypothesisSet& set, std::size_t i, std::size_t j) {
   constexpr std::size_t kMost = 2;
   const CauseFit& fit = set.fit();
-  const Substitutes found = SubstitutesFor(data, fit, places);
+  const Substitutes found = SubstitutesFor(data, fit, {i, j});
   std::vector<FittedCause> others = Explaining(found, found.explained);
   if (others.size() > kMost) others.resize(kMost);
   if (others.empty()) return false;
-  Proposals proposals = ProposeInPlace(data, set.evidence, places, others);
+  Proposals proposals = ProposeInPlace(data, set.evidence, {i, j}, others);
   const auto best = BestOf(set.evidence, proposals);
   if (!best) return false;
   set.evidence = std::move(*proposals[*best]);
-  for (auto place = places.rbegin(); place != places.rend(); ++place) {
-    set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(*place));
-  }
+  set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(j));
+  set.rivals.erase(set.rivals.begin() + static_cast<std::ptrdiff_t>(i));
   set.rivals.push_back({{set.fit().causes.back(), set.evidence.Criterion(), 1.0}});
   return true;
 }
@@ -391,33 +389,16 @@ bool Better(const SearchData& data, HypothesisSet& set, const Chance& chance) {
 
 bool Merge(const SearchData& data, HypothesisSet& set) {
   const std::vector<FittedCause>& causes = set.fit().causes;
-  const auto candidate = [&](std::size_t i) -> const Candidate& {
-    return data.candidates[causes[i].candidate];
-  };
   const auto joint = [&](std::size_t i) {
-    return candidate(i).effect->element() == mjOBJ_JOINT ? candidate(i).joint : -1;
+    const Candidate& candidate = data.candidates[causes[i].candidate];
+    return candidate.effect->element() == mjOBJ_JOINT ? candidate.joint : -1;
   };
-  const auto family = [&](std::size_t i) { return candidate(i).effect->family(); };
-  std::vector<std::vector<std::size_t>> all;
-  const std::size_t count = causes.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = i + 1; j < count; ++j) {
-      if (joint(i) >= 0 && joint(i) == joint(j)) all.push_back({i, j});
+  for (std::size_t i = 0; i + 1 < causes.size(); ++i) {
+    for (std::size_t j = i + 1; j < causes.size(); ++j) {
+      if (joint(i) < 0 || joint(i) != joint(j)) continue;
+      if (!data.work().MayBegin(kOthers)) return false;
+      if (MergeAt(data, set, i, j)) return true;
     }
-  }
-  // Two parts of a law of three are no better for being it: the third is there still.
-  const std::size_t pairs = all.size();
-  for (std::size_t p = 0; p < pairs; ++p) {
-    for (std::size_t k = all[p][1] + 1; k < count; ++k) {
-      const std::size_t i = all[p][0];
-      if (joint(k) != joint(i)) continue;
-      if (family(k) != family(i) || family(all[p][1]) != family(i)) continue;
-      all.push_back({i, all[p][1], k});
-    }
-  }
-  for (const std::vector<std::size_t>& places : all) {
-    if (!data.work().MayBegin(kOthers)) return false;
-    if (MergeAt(data, set, places)) return true;
   }
   return false;
 }

@@ -7,7 +7,7 @@
 // - another hypothesis may be the better one in its place: the first cause of a search
 //   is what explains the most on its own, and a flexible mode that made up for two
 //   effects at once is a mere mass once the other one is known;
-// - two or three may be what one does: a law and what its square takes are a larger law.
+// - two may be what one does: a law and what its square takes are a larger law.
 //
 // Each move proposes fits, has them judged (comparator.h) and takes the best that is
 // accepted into the set.
@@ -45,8 +45,8 @@ bool Exchange(const SearchData& data, HypothesisSet& set);
 /// What is left beside a law may be what a larger one, or the right one, does.
 bool Better(const SearchData& data, HypothesisSet& set, const Chance& chance);
 
-/// Puts one hypothesis in the place of two at one joint, or three of one family, that are
-/// its parts, or make up for it together; true if that was accepted.
+/// Puts one hypothesis in the place of two at one joint that are its parts, or make up for
+/// it together; true if that was accepted.
 bool Merge(const SearchData& data, HypothesisSet& set);
 
 }  // namespace mjdiag

@@ -17,7 +17,7 @@
 // up to two such hypotheses are added ahead, and taken back if what comes with them does
 // not make unseen data agree with all of them.
 //
-// When a round adds nothing each hypothesis is exchanged on trial, and two or three for one
+// When a round adds nothing each hypothesis is exchanged on trial, and two for one
 // (moves.h); if one is, rounds go on, four times at most. What came first was chosen while
 // everything else was missing: for each hypothesis a search of its own, which may not take
 // it, starts from the others, and its set is judged as any other. In the end all values
