@@ -24,7 +24,7 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.95;
 constexpr int kMostCauses = 20;
-constexpr double kUsualBudget = 120.0;  // [s]
+constexpr double kUsualBudget = 300.0;  // [s]
 constexpr double kLeastBudget = 1e-3;
 constexpr double kMostBudget = 1e9;
 
@@ -124,10 +124,13 @@ void AddDiscover(CLI::App& app) {
   command
       ->add_option("--causes", options->search.most_causes, "Most causes to look for")
       ->check(CLI::Range(1, kMostCauses));
-  command->add_flag("--doubt,!--no-doubt", options->doubt,
-                    "Fit the numbers of the plant with every cause, as far as they are "
-                    "not known beforehand, or take them as true; without either they "
-                    "are fitted where the plant does not say that it is exact");
+  // Bound to the variable itself, a flag that is not given would count as 0: no doubt.
+  command->add_flag_function(
+      "--doubt,!--no-doubt",
+      [options](std::int64_t count) { options->doubt = count > 0; },
+      "Fit the numbers of the plant with every cause, as far as they are not known "
+      "beforehand, or take them as true; without either they are fitted where the "
+      "plant does not say that it is exact");
   command->add_option("--known", options->search.known,
                       "What is as the plant says, a kind of numbers such as mass, or "
                       "one such as mass@stage; may be repeated");
@@ -145,8 +148,9 @@ void AddDiscover(CLI::App& app) {
   command
       ->add_option(
           "--budget", options->search.budget,
-          "Seconds of work of two ordinary cores, 120 if not given, after which "
-          "the best answer so far is given: the same on every machine")
+          "Seconds of work of two ordinary cores, 300 if not given, after which "
+          "the best answer so far is given, if it has not settled before: the same on "
+          "every machine")
       ->check(Within(kLeastBudget, kMostBudget));
   command->add_option("--seed", options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);

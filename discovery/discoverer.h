@@ -46,6 +46,8 @@ class Discoverer {
     Report(what, fraction, search_.fit());
   }
   bool IsColoured(const CauseFit& fit) const;
+  /// Whether what the present set leaves is the noise of the sensors, and how probably.
+  double ProbabilityThatNoiseIsLeft() const;
   void Search(const DiscoveryProblem& problem, SearchOptions options,
               bool down_to_noise);
   void SearchBeginning(SearchOptions options);
@@ -62,8 +64,10 @@ class Discoverer {
   void CompleteJacobian();
   void FitFree();
   void TakeFree(const DiscoveryProblem& free, CauseFit fit);
-  std::optional<std::size_t> EmptyCause() const;
+  std::optional<std::size_t> EmptyCause(const std::vector<Interval>& intervals) const;
+  void LeaveOut(std::size_t cause);
   void DropEmptyCauses();
+  std::vector<Interval> QuadraticIntervals() const;
   void NoteBudget();
   void NameCauses();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
@@ -75,9 +79,12 @@ class Discoverer {
   void NameNumbers(const Eigen::MatrixXd& covariance);
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
+  /// Whether a cause is no more than what the physics steps of the simulation are off by.
+  bool IsOfSteps(const FittedCause& fitted) const;
   void NoteLateness(double delay);
+  void NoteFarNumbers();
   void NoteQuietAxes(const ObservedMotion& motion);
-  void NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals);
+  void NoteTwins(std::size_t cause);
   std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
   void FindWhere(const Track& nominal, const Track& final);
   /// What the largest of the forces that nothing explains depends on; asked of all that
@@ -112,6 +119,14 @@ class Discoverer {
   SearchResult search_;
   /// The last fit, where it is one of free simulation, with its problem.
   std::optional<std::pair<DiscoveryProblem, CauseFit>> free_fit_;
+  /// Of every cause that is named, its place in the last fit.
+  std::vector<std::size_t> named_;
+  const CauseFit& LastFit() const {
+    return free_fit_ ? free_fit_->second : search_.fit();
+  }
+  const DiscoveryProblem& LastProblem() const {
+    return free_fit_ ? free_fit_->first : problem_;
+  }
   /// Of what was learned, by candidate.
   struct CurveText {
     std::string words;

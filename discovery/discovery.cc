@@ -12,6 +12,7 @@
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
 #include "mjdiag/discovery/selection/completeness.h"
+#include "mjdiag/discovery/selection/learned_numbers.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -171,14 +172,27 @@ void Discoverer::SearchAll() {
   if (options_.doubt && work_->MayBegin("numbers of the plant")) {
     Report("numbers of the plant", 0.0);
     problem_ = WithDoubts(problem_, KnownNumbers());
+    if (auto learned = LearnedNumbersOf(problem_, candidates_)) {
+      search_.numbers_alone = learned->numbers;
+      search_.evidence = search_.evidence.Changed(std::move(*learned));
+    }
   }
   SearchBehindObservers(options);
+  // Where the search ended before it has screened what is left, the noise tells.
+  if (!search_.screened && IsComplete(ProbabilityThatNoiseIsLeft())) {
+    search_.significant_rest = false;
+  }
   work_->EndLaws();
   LearnCurves(options);
   FitFree();
   work_->EndSearch();
   DropEmptyCauses();
   if (!free_fit_) CompleteJacobian();
+}
+
+double Discoverer::ProbabilityThatNoiseIsLeft() const {
+  return ProbabilityOfNoise(
+      NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
 }
 
 double Discoverer::Completeness() const {
@@ -191,8 +205,7 @@ double Discoverer::Completeness() const {
   const bool is_known =
       search_.fit().train <= kFarAboveNoise && work_->left_out().empty();
   if (search_.significant_rest && !is_known) return 0.0;
-  return ProbabilityOfNoise(
-      NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
+  return ProbabilityThatNoiseIsLeft();
 }
 
 Discovery Discoverer::Run() {
@@ -212,7 +225,7 @@ Discovery Discoverer::Run() {
     tracks[i] = problem_.Follow(plants[i]);
   });
   const auto& [nominal, found] = tracks;
-  if (!search_.significant_rest && IsComplete(discovery_.complete)) {
+  if (!search_.significant_rest) {
     AddNoiseCauses(found.innovations);
   }
   Judge();
@@ -222,10 +235,8 @@ Discovery Discoverer::Run() {
                                                 : problem_.Follow(changes_);
   const ObservedMotion motion = problem_.MotionOf(final);
   NoteQuietAxes(motion);
-  for (std::size_t i = 0; i < search_.rivals.size() && i < discovery_.causes.size();
-       ++i) {
-    NoteTwins(i, search_.rivals[i]);
-  }
+  for (std::size_t i = 0; i < named_.size(); ++i) NoteTwins(i);
+  NoteFarNumbers();
   if (options_.figures || discovery_.verdict == DiscoveryVerdict::kUnexplained) {
     Report("unexplained forces", 0.8);
     FindWhere(nominal, final);

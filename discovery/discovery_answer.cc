@@ -58,24 +58,36 @@ std::vector<Alternative> Discoverer::AlternativesOf(
 }
 
 void Discoverer::NameCauses() {
-  const CauseFit& fit = free_fit_ ? free_fit_->second : search_.fit();
-  const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
+  if (LastFit().jacobian.cols() == 0) return;
+  MatrixXd covariance;
+  std::vector<Interval> intervals;
+  while (!LastFit().causes.empty()) {
+    const Index parameters = Flatten(LastFit().causes).size();
+    covariance = ParameterCovariance(LastProblem(), candidates_, LastFit())
+                     .bottomRightCorner(parameters, parameters);
+    Report("intervals", 0.7);
+    intervals = ParameterIntervals(LastProblem(), candidates_, LastFit(), covariance);
+    // Followed along its profile a law may turn out to be nothing, too.
+    const auto empty = EmptyCause(intervals);
+    if (!empty) break;
+    LeaveOut(*empty);
+  }
+  const CauseFit& fit = LastFit();
   if (fit.jacobian.cols() == 0) return;
-  const MatrixXd of_all = ParameterCovariance(problem, candidates_, fit);
   const Index numbers = fit.numbers.size();
-  NameNumbers(of_all.topLeftCorner(numbers, numbers));
-  if (fit.causes.empty()) return;
-  const Index parameters = of_all.rows() - numbers;
-  const MatrixXd covariance = of_all.bottomRightCorner(parameters, parameters);
-  Report("intervals", 0.7);
-  const std::vector<Interval> intervals =
-      ParameterIntervals(problem, candidates_, fit, covariance);
-  Index first = 0;
+  NameNumbers(ParameterCovariance(LastProblem(), candidates_, fit)
+                  .topLeftCorner(numbers, numbers));
+  Index next = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
+    const Index first = next;
+    next += fit.causes[i].value.size();
+    if (IsOfSteps(fit.causes[i])) {
+      NoteLateness(fit.causes[i].value[0]);
+      continue;
+    }
     FoundCause found;
     found.cause = CauseOf(candidates_, fit.causes[i]);
     found.parameters = DescribeParameters(fit.causes[i], covariance, intervals, first);
-    first += fit.causes[i].value.size();
     found.probability = 1.0;
     if (const auto words = curves_.find(fit.causes[i].candidate);
         words != curves_.end()) {
@@ -98,7 +110,15 @@ void Discoverer::NameCauses() {
       }
     }
     discovery_.causes.push_back(std::move(found));
+    named_.push_back(i);
   }
+}
+
+bool Discoverer::IsOfSteps(const FittedCause& fitted) const {
+  constexpr double kHalf = 0.5 * (1.0 + 1e-3);  // of a step, and of rounding
+  const Candidate& candidate = candidates_[fitted.candidate];
+  return candidate.effect->name() == InputDelay().name() &&
+         fitted.value[0] <= kHalf * problem_.step();
 }
 
 void Discoverer::NameNumbers(const MatrixXd& covariance) {
@@ -136,7 +156,7 @@ void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
     const double half = TwoSidedNormalQuantile(0.05) * raised.sd_error;
     found.parameters = {{noise.parameters().front().name, raised.unit, raised.sd,
                          raised.sd_error, raised.sd - half, raised.sd + half}};
-    found.probability = 1.0;
+    found.probability = AmongAllLaws(1.0, discovery_.complete);
     discovery_.causes.push_back(std::move(found));
   }
 }
@@ -147,8 +167,15 @@ void Discoverer::Judge() {
                                Describe(CauseOf(candidates_, refuted)));
   }
   const bool named = !discovery_.causes.empty();
+  const auto& causes = LastFit().causes;
+  const bool only_steps =
+      !causes.empty() && std::ranges::all_of(causes, [this](const FittedCause& cause) {
+        return IsOfSteps(cause);
+      });
   discovery_.verdict =
-      VerdictOf(search_, named, nominal_, IsComplete(discovery_.complete));
+      only_steps && !IsMoreLeft(search_)
+          ? DiscoveryVerdict::kNoDiscrepancy
+          : VerdictOf(search_, named, nominal_, IsComplete(discovery_.complete));
   const bool all_named = std::ranges::all_of(discovery_.causes, &FoundCause::HasName);
   if (!all_named && discovery_.verdict == DiscoveryVerdict::kExplained) {
     discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
@@ -162,8 +189,16 @@ void Discoverer::Judge() {
                                tried);
     discovery_.causes.clear();
     discovery_.calibration.clear();
+    named_.clear();
   }
   changes_ = ChangesOf(discovery_);
+  // What the steps are off by is no cause, but the figures are those of the causes.
+  for (const FittedCause& cause : causes) {
+    if (!IsOfSteps(cause)) continue;
+    const Changes late = mjdiag::ChangesOf({CauseOf(candidates_, cause)});
+    changes_.effects.insert(changes_.effects.end(), late.effects.begin(),
+                            late.effects.end());
+  }
 }
 
 }  // namespace mjdiag

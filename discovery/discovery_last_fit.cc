@@ -46,27 +46,24 @@ void Discoverer::TakeFree(const DiscoveryProblem& free, CauseFit fit) {
   free_fit_.emplace(free, std::move(fit));
 }
 
-/// A cause that the last fit leaves with sizes that may all be nothing; none if there is
-/// no such cause, or nothing is known of how sure its sizes are.
-std::optional<std::size_t> Discoverer::EmptyCause() const {
-  const CauseFit& fit = free_fit_ ? free_fit_->second : search_.fit();
-  const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
-  if (fit.jacobian.cols() == 0) return std::nullopt;
-  const Eigen::MatrixXd covariance = ParameterCovariance(problem, candidates_, fit);
-  const double normal = TwoSidedNormalQuantile(0.05);
-  Index place = fit.numbers.size();
+/// A cause of which every size may be nothing, with those intervals of all parameters;
+/// none if there is no such cause. What was learned has knots, no sizes.
+std::optional<std::size_t> Discoverer::EmptyCause(
+    const std::vector<Interval>& intervals) const {
+  const CauseFit& fit = LastFit();
+  std::size_t place = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
     int sizes = 0;
     int empty = 0;
-    Index k = 0;
     for (const FitParameter& parameter :
          candidates_[fit.causes[i].candidate].parameters) {
-      const double size = fit.causes[i].value[k++] - parameter.nothing;
-      const double sd = std::sqrt(covariance(place, place));
-      ++place;
+      const Interval& interval = intervals[place++];
       if (IsShape(parameter.role)) continue;
       ++sizes;
-      empty += std::isfinite(sd) && std::abs(size) < normal * sd ? 1 : 0;
+      const bool told = std::isfinite(interval.min) && std::isfinite(interval.max);
+      const bool holds_nothing =
+          interval.min <= parameter.nothing && interval.max >= parameter.nothing;
+      empty += told && holds_nothing ? 1 : 0;
     }
     const bool is_curve = curves_.contains(fit.causes[i].candidate);
     if (sizes > 0 && empty == sizes && !is_curve) return i;
@@ -74,24 +71,52 @@ std::optional<std::size_t> Discoverer::EmptyCause() const {
   return std::nullopt;
 }
 
-/// What comes later may take over what a cause was found by. A name whose sizes may all be
-/// nothing says nothing: the others are fitted without it.
-void Discoverer::DropEmptyCauses() {
+/// The others are fitted without it, or, where there is no work left, stay as they are.
+void Discoverer::LeaveOut(std::size_t cause) {
   constexpr int kSteps = 6;
-  while (const auto empty = EmptyCause()) {
-    if (!work_->MayBegin("a fit without causes that are nothing")) return;
-    const FitOptions options = CompareFrom(nullptr, kSteps, 1e-5, work_->Share(1));
-    const CauseFit& last = free_fit_ ? free_fit_->second : search_.fit();
-    const DiscoveryProblem& problem = free_fit_ ? free_fit_->first : problem_;
-    auto fit = TryFit(problem, candidates_, ModelWithout(last, {*empty}), options);
-    if (!fit) return;
-    search_.rivals.erase(search_.rivals.begin() + static_cast<std::ptrdiff_t>(*empty));
-    if (free_fit_) {
-      TakeFree(DiscoveryProblem(problem), std::move(*fit));
-    } else {
-      search_.evidence = search_.evidence.Changed(std::move(*fit));
-    }
+  const FittedModel rest = ModelWithout(LastFit(), {cause});
+  std::optional<CauseFit> fit;
+  if (work_->MayBegin("a fit without causes that are nothing")) {
+    FitOptions options = CompareFrom(nullptr, kSteps, 1e-5, work_->Share(1));
+    options.jacobian = true;
+    fit = TryFit(LastProblem(), candidates_, rest, options);
   }
+  if (!fit) {
+    fit =
+        FitCauses(LastProblem(), candidates_, rest, {.iterations = 0, .closing = true});
+  }
+  search_.rivals.erase(search_.rivals.begin() + static_cast<std::ptrdiff_t>(cause));
+  if (free_fit_) {
+    TakeFree(DiscoveryProblem(LastProblem()), std::move(*fit));
+  } else {
+    search_.evidence = search_.evidence.Changed(std::move(*fit));
+  }
+}
+
+/// What comes later may take over what a cause was found by. A name whose sizes may all be
+/// nothing says nothing.
+void Discoverer::DropEmptyCauses() {
+  while (LastFit().jacobian.cols() > 0 && !LastFit().causes.empty()) {
+    const auto empty = EmptyCause(QuadraticIntervals());
+    if (!empty) return;
+    LeaveOut(*empty);
+  }
+}
+
+/// 95 % intervals of the parameters of all causes, as far as the likelihood is quadratic.
+std::vector<Interval> Discoverer::QuadraticIntervals() const {
+  const CauseFit& fit = LastFit();
+  const Eigen::MatrixXd covariance =
+      ParameterCovariance(LastProblem(), candidates_, fit);
+  const double normal = TwoSidedNormalQuantile(0.05);
+  const Eigen::VectorXd values = Flatten(fit.causes);
+  std::vector<Interval> intervals;
+  for (Index i = 0; i < values.size(); ++i) {
+    const Index place = fit.numbers.size() + i;
+    const double half = normal * std::sqrt(covariance(place, place));
+    intervals.push_back({values[i] - half, values[i] + half});
+  }
+  return intervals;
 }
 
 /// The derivatives that intervals are made of, where the search ended without them.

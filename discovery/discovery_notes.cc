@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/signals/quantity.h"
@@ -55,7 +56,49 @@ void Discoverer::NoteLateness(double delay) {
                              ", which are off by up to half of that");
 }
 
-void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& rivals) {
+/// Numbers that are further from what the plant says than anyone expects, with what could
+/// stand in the place of each: to first order, the innovations without what it does,
+/// regressed on all candidates while it is as the plant says.
+void Discoverer::NoteFarNumbers() {
+  constexpr double kFar = 3.0;       // standard deviations of what is known beforehand
+  constexpr double kExplains = 0.5;  // of what the number does
+  const CauseFit& fit = search_.fit();
+  if (discovery_.calibration.empty() || fit.jacobian.cols() == 0) return;
+  for (Index i = 0; i < fit.numbers.size(); ++i) {
+    const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
+    if (doubted.is_lateness || std::abs(fit.numbers[i]) < kFar) continue;
+    std::string note = PlantNumberName(machine_.plant(), doubted.number) + " is " +
+                       FormatNumber(std::exp(doubted.spread * fit.numbers[i]), 3) +
+                       " times what the plant says, " +
+                       FormatNumber(std::abs(fit.numbers[i]), 2) +
+                       " standard deviations of what was known of it";
+    CauseFit without = fit;
+    without.numbers[i] = 0.0;
+    without.jacobian.col(i).setZero();
+    const DiscoveryProblem seen = problem_.TrainPart();
+    const Index rows = seen.run().outputs.size();
+    const VectorXd done = fit.jacobian.col(i).head(rows) * fit.numbers[i];
+    if (work_->MayBegin("what may stand in the place of numbers")) {
+      const auto run = seen.Linearised(ChangesOf(seen, candidates_, fit));
+      const Screening screening =
+          Screen(seen, candidates_, seen.MotionOf(run->track), run->dynamics,
+                 fit.residual.head(rows) - done, without.jacobian, without, 1);
+      const bool explains = !screening.starts.empty() &&
+                            screening.starts.front().gain >
+                                kExplains * (screening.rest - FittedValues(problem_));
+      if (explains) {
+        note += "; " + Describe(CauseOf(candidates_, screening.starts.front().cause)) +
+                " would explain most of that as well";
+      }
+    }
+    discovery_.notes.push_back(note +
+                               "; measure it, or say how well it is known (known." +
+                               PlantNumberName(machine_.plant(), doubted.number) + ")");
+  }
+}
+
+void Discoverer::NoteTwins(std::size_t cause) {
+  const std::vector<Hypothesis>& rivals = search_.rivals[named_[cause]];
   const FoundCause& found = discovery_.causes[cause];
   for (const Alternative& other : found.alternatives) {
     if (other.indistinguishable) {
@@ -66,7 +109,7 @@ void Discoverer::NoteTwins(std::size_t cause, const std::vector<Hypothesis>& riv
     }
   }
   constexpr double kCompetes = 0.05;
-  const FittedCause& fitted = search_.fit().causes[cause];
+  const FittedCause& fitted = search_.fit().causes[named_[cause]];
   for (const Hypothesis& other : rivals) {
     if (other.cause.candidate == fitted.candidate || other.probability < kCompetes) {
       continue;

@@ -56,7 +56,10 @@ Explained Explain(const DiscoveryProblem& problem, const MatrixXd& J,
   double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kSteps; ++i) {
     z -= step.head(J.cols());
-    z = z.cwiseMax(-kFarthestNumber).cwiseMin(kFarthestNumber);
+    for (Index k = 0; k < z.size(); ++k) {
+      const DoubtedNumber& number = problem.numbers()[static_cast<std::size_t>(k)];
+      z[k] = std::clamp(z[k], number.Least(), number.Most());
+    }
     try {
       r = problem.Residual(problem.WithNumbers({}, z));
     } catch (const NumericalError&) {

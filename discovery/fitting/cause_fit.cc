@@ -34,9 +34,8 @@ class Simulator {
         share_(options.share),
         closing_(options.closing) {
     for (const DoubtedNumber& number : problem.numbers()) {
-      const double least = number.is_lateness ? 0.0 : -kFarthestNumber;
       parameters_.push_back(
-          {"number", Role::kAmplitude, least, kFarthestNumber, 0.0, 1.0});
+          {"number", Role::kAmplitude, number.Least(), number.Most(), 0.0, 1.0});
     }
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
       parameters_.push_back(parameter);
@@ -80,7 +79,7 @@ class Simulator {
   /// J at theta by differences, all samples; that of the last step if the share does
   /// not allow for it.
   const MatrixXd& Jacobian(const VectorXd& theta) {
-    if (jacobian_.size() > 0 && !Allows(theta.size())) return jacobian_;
+    if (jacobian_.size() > 0 && !Allows(theta.size() + numbers_)) return jacobian_;
     if (!exact_ || theta != jacobian_theta_) {
       jacobian_ = Differences(theta, nullptr, false);
       NoteJacobian(theta, true);
@@ -118,8 +117,9 @@ class Simulator {
       const Changes causes = CausesAt(theta);
       const VectorXd z = theta.head(numbers_);
       constexpr int kOnePass = 4;  // as many runs
-      rough = rough && numbers_ + 1 > kOnePass;
-      runs_ += rough ? kOnePass : static_cast<int>(numbers_) + 1;
+      const int differences = 2 * static_cast<int>(numbers_);
+      rough = rough && differences > kOnePass;
+      runs_ += rough ? kOnePass : differences;
       J.leftCols(numbers_) = rough ? problem_.RoughNumberJacobian(causes, z)
                                    : problem_.NumberJacobian(causes, z);
     }

@@ -83,8 +83,8 @@ class Trials {
     const VectorXd d = LeastSquares(A, b);
     for (Index i = 0; i < numbers; ++i) {
       const DoubtedNumber& number = problem_.numbers()[static_cast<std::size_t>(i)];
-      const double least = number.is_lateness ? 0.0 : -kFarthestNumber;
-      model.numbers[i] = std::clamp(model.numbers[i] + d[i], least, kFarthestNumber);
+      model.numbers[i] =
+          std::clamp(model.numbers[i] + d[i], number.Least(), number.Most());
     }
     VectorXd all = Flatten(model.causes);
     all.head(d.size() - numbers) += d.tail(d.size() - numbers);

@@ -32,8 +32,14 @@ struct LinearisedRun {
 struct DoubtedNumber {
   PlantNumber number;
   double spread = 0.0;
-  /// None of the plant, but how late all its inputs act: spread z [s], z >= 0.
+  /// None of the plant, but how late all its inputs act: spread z [s], z from 0 to 1.
   bool is_lateness = false;
+  /// How far it may be.
+  double Least() const { return is_lateness ? 0.0 : -kFarthest; }
+  double Most() const { return is_lateness ? 1.0 : kFarthest; }
+
+  /// Standard deviations from where it is expected: further away it is another machine.
+  static constexpr double kFarthest = 10.0;
 };
 
 class DiscoveryProblem {
@@ -129,10 +135,6 @@ class DiscoveryProblem {
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
   std::shared_ptr<Derived> derived_;
 };
-
-/// Standard deviations that a number may be from where it is expected: further away it is
-/// another machine.
-inline constexpr double kFarthestNumber = 10.0;
 
 /// Doubts about all numbers of a plant but the known ones, and about how late inputs act;
 /// none if all are known.

@@ -5,7 +5,8 @@
 //
 //   work = sum over runs of samples substeps (a + b nv + c nv^2) / 2,
 //
-// nv degrees of freedom, and what screenings filter.
+// nv degrees of freedom, and what screenings filter. A search whose answer has not changed
+// for twice the work that it took to come to it is taken for settled, and ends before.
 //
 // Work may be added from any thread. What is left is asked for only between moves and
 // stages, where no other thread adds any: there the sum is the same every time.
@@ -50,6 +51,11 @@ class Work {
   /// What each of `count` parts of a move may use, so that together they do not use
   /// more than is left.
   double Share(int count) const;
+  /// The search among laws has another answer than before.
+  void NoteChange() { changed_ = used(); }
+  /// Whether that search has gone on for much longer than it took to come to its answer:
+  /// nothing of it is begun any more.
+  bool IsSettled() const;
   /// The search among laws is over, or all of it: from now on what was kept for forces
   /// without a name, or for the answer, may be used as well.
   void EndLaws();
@@ -66,6 +72,8 @@ class Work {
   std::atomic<std::int64_t> nanoseconds_ = 0;
   std::atomic<bool> cut_ = false;
   double part_ = 0.7;  // of the limit, that may be used by now
+  double changed_ = 0.0;
+  bool among_laws_ = true;
   std::vector<std::string> left_out_;
 };
 

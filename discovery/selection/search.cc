@@ -73,6 +73,8 @@ class Search {
   void NoteChange() {
     result_.exchanged = false;
     result_.searched_without = false;
+    // A search without one of the causes is none of the answer yet.
+    if (options_.forbidden.empty()) work().NoteChange();
   }
   std::vector<Start> ScreenWhatIsLeft(Chance& chance);
   bool AddCause();
@@ -121,8 +123,8 @@ CauseFit Search::FitFoundBefore() const {
 void Search::FitCausesFoundBefore() {
   Report("fit of the causes found before", 0.0);
   CauseFit fit = FitFoundBefore();
-  // Until a screening says otherwise.
   result_.significant_rest = true;
+  result_.screened = false;
   if (fit.causes.empty()) result_.numbers_alone = fit.numbers;
   // Before anything is found all of the mismatch may be one cause, which has any
   // colour.
@@ -130,6 +132,7 @@ void Search::FitCausesFoundBefore() {
                              ? VectorXd::Ones(data_.problem.run().outputs.rows()).eval()
                              : IndependentShare(data_.problem, fit.residual);
   result_.evidence = {data_.evidence, std::move(fit), std::move(independent)};
+  if (options_.forbidden.empty()) work().NoteChange();
 }
 
 /// Adds the first of the hypotheses that is accepted; else, ahead of what confirms it,
@@ -218,6 +221,7 @@ std::vector<Start> Search::ScreenWhatIsLeft(Chance& chance) {
   std::vector<Start> shortlist =
       Shortlist(data_, present, screening, chance, options_.shortlist);
   result_.significant_rest = !shortlist.empty();
+  result_.screened = true;
   return shortlist;
 }
 
@@ -291,6 +295,7 @@ void Search::ExchangeCauses() {
   for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
     if (!result_.fit().causes.empty() && !work().MayBegin(kOthers)) break;
     if (TryExchange()) {
+      work().NoteChange();
       Settle();
       AddCauses();
     } else {
@@ -331,6 +336,7 @@ bool Search::SearchWithout() {
     SearchResult other = SearchCauses(data_.problem, data_.candidates, options, &start);
     if (Judge(result_.evidence, other.evidence) != Judgement::kAccepted) continue;
     result_ = std::move(other);
+    work().NoteChange();
     result_.served = true;
     result_.exchanged = false;
     found = true;

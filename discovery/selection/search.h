@@ -80,8 +80,10 @@ struct SearchResult : HypothesisSet {
   /// Whether other causes have been tried in the place of each, and other sets without it.
   bool exchanged = false;
   bool searched_without = false;
-  /// Whether a screening of what is left shows any candidate to be significant.
+  /// Whether a screening of what is left shows any candidate to be significant; true
+  /// until one has taken place.
   bool significant_rest = false;
+  bool screened = false;
 };
 
 /// @param before  a search of the same record, with another observer or other physics

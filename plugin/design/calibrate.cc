@@ -2,15 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 
-#include "mjdiag/diagnosis/statistics/distributions.h"
-#include "mjdiag/diagnosis/twin/information.h"
-#include "mjdiag/diagnosis/twin/run_pass.h"
 #include "mjdiag/plugin/design/machine_twin.h"
-#include "mjdiag/plugin/runtime/parallel.h"
-#include "mjdiag/signals/decompositions.h"
+#include "mjdiag/plugin/design/number_learner.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
@@ -21,21 +15,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of the largest information of a direction, what rounding leaves of another.
-constexpr double kRounding = 1e-15;
-/// A step of logarithms that is large compared with rounding.
-constexpr double kLeastStep = 1e-4;
 /// Of a noise that is given: less is none.
 constexpr double kLeastNoise = 1e-3;
 /// A number is not that far from where it was known to be, in standard deviations.
 constexpr double kDoubtful = 4.0;
 
-struct Samples {
-  MatrixXd outputs;
-  MatrixXd inputs;
-};
-
-Samples SamplesOf(const Machine& machine, const Record& record) {
+RunSamples SamplesOf(const Machine& machine, const Record& record) {
   if (std::abs(record.sample_time() / machine.rates().tick() - 1.0) > 1e-6) {
     throw InputError(
         "record", "sampled every " + std::to_string(record.sample_time()) + " s",
@@ -47,14 +32,14 @@ Samples SamplesOf(const Machine& machine, const Record& record) {
 
 /// Of sensors that the setup gives none: from readings alone, which move little from
 /// one to the next.
-VectorXd FirstNoise(const Machine& machine, const std::vector<Samples>& runs) {
+VectorXd FirstNoise(const Machine& machine, const std::vector<RunSamples>& runs) {
   const auto& sensors = machine.channels().sensors;
   VectorXd noise(static_cast<Index>(sensors.size()));
   for (Index i = 0; i < noise.size(); ++i) {
     const SensorSetup& sensor = sensors[static_cast<std::size_t>(i)];
     noise[i] = sensor.noise_sd;
     if (noise[i] > 0.0) continue;
-    for (const Samples& run : runs) {
+    for (const RunSamples& run : runs) {
       noise[i] = std::max(noise[i], NoiseLevel(run.outputs.row(i), 3));
     }
     // A coarse reading does not show noise below its step.
@@ -70,167 +55,11 @@ VectorXd FirstNoise(const Machine& machine, const std::vector<Samples>& runs) {
   return noise;
 }
 
-/// The plant with these logarithms of factors in it.
-Machine WithNumbers(const Machine& machine, UncertaintyOptions options, bool linear,
-                    const VectorXd& theta) {
-  options.friction = !linear;
-  const UncertainMachine uncertain = MakeUncertainMachine(machine, options);
-  NumberFactors factors;
-  for (Index i = 0; i < theta.size(); ++i) {
-    factors.emplace_back(
-        FindPlantNumber(machine.plant(),
-                        uncertain.unknowns[static_cast<std::size_t>(i)].name),
-        std::exp(theta[i]));
-  }
-  return machine.WithNumbers(factors);
-}
-
-/// One calibration in the making: all runs about one and the same theta. One after the
-/// other, each about a point of its own, they would contradict each other along
-/// directions that are hardly known.
-class Learner {
- public:
-  /// @param before  theta that the machine gets to begin with
-  Learner(const Machine& machine, const VectorXd& noise,
-          const std::vector<Samples>& runs, bool linear, const VectorXd& before)
-      : before_(before), own_(VectorXd::Zero(before.size())) {
-    const UncertaintyOptions options{.faults = false, .doubt = true};
-    const Machine with =
-        WithNumbers(machine, options, linear, before).WithSensorNoise(noise);
-    for (const Samples& run : runs) {
-      MachineTwin twin = MakeTwin(with, linear, options);
-      const Index n = before.size();
-      unknowns_.assign(twin.unknowns.begin(), twin.unknowns.begin() + n);
-      known_ = CovarianceOf(PriorOf(unknowns_));
-      gains_ = twin.twin->gains();
-      passes_.push_back(std::make_shared<RunPass>(std::move(twin.twin), run.outputs,
-                                                  run.inputs, PriorOf(twin.unknowns)));
-    }
-    H_ = known_;
-  }
-
-  VectorXd theta() const { return before_ + own_; }
-  /// A root of their covariance.
-  MatrixXd Root() const {
-    // By its modes in units of its diagonal: those that hardly anything is known of are
-    // as well found as the others.
-    const ScaledEigenPairs modes = ScaledEigenDecomposition(H_);
-    const VectorXd information =
-        modes.values.cwiseMax(kRounding * modes.values.maxCoeff());
-    return modes.scale.cwiseInverse().asDiagonal() * modes.vectors *
-           information.cwiseSqrt().cwiseInverse().asDiagonal();
-  }
-  const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  const std::vector<RunInformation>& said() const { return said_; }
-  std::size_t stiffest() const { return gains_.size() - 1; }
-
-  /// The method of Gauss and Newton with that gain, from where it is.
-  /// @param rough  it is followed by another one
-  void Learn(std::size_t gain, bool rough) {
-    constexpr int kMostPasses = 12;
-    // Squared, in standard deviations of the estimate.
-    const double near = rough ? 100.0 : 0.1;
-    double before = std::numeric_limits<double>::infinity();
-    // A logarithm moves no farther at once.
-    constexpr double kLongest = 0.5;
-    for (int pass = 0; pass < kMostPasses; ++pass) {
-      said_.resize(passes_.size());
-      ParallelFor(static_cast<int>(passes_.size()), [&](int i) {
-        const auto at = static_cast<std::size_t>(i);
-        said_[at] = passes_[at]->About(own_, gain);
-      });
-      MatrixXd H = known_;
-      VectorXd g = -known_ * theta();
-      // Errors that are left count as noise: far from the solution, what is hardly known
-      // must not be bent to explain them.
-      for (const RunInformation& said : said_) {
-        H += said.H / std::max(1.0, said.misfit);
-        g += said.g / std::max(1.0, said.misfit);
-      }
-      H_ = H;
-      VectorXd change = CovarianceOf(H) * g;
-      diverged_ = !change.allFinite();
-      if (diverged_) return;
-      last_ = change;
-      const double squared = change.dot(g);
-      const double farthest = change.cwiseAbs().maxCoeff();
-      if (farthest > kLongest) change *= kLongest / farthest;
-      // Nor does it help to go on where only rounding is left.
-      if (squared < near || (farthest < kLeastStep && squared > 0.5 * before)) break;
-      before = squared;
-      own_ += change;
-    }
-  }
-
-  /// Whether no block of any run is more of a surprise than chance lets expect.
-  bool Explains() const { return Excess() <= 1.0; }
-  /// How many times more.
-  double Excess() const {
-    if (diverged_) return std::numeric_limits<double>::infinity();
-    const Surprise limits(gains_.front().covariance.rows());
-    double excess = 0.0;
-    for (const RunInformation& said : said_) {
-      excess = std::max({excess, said.worst_block / limits.BlockLimit(),
-                         said.worst_stretch / limits.RecentLimit()});
-    }
-    return excess;
-  }
-
-  /// How far parts of the runs contradict all of them together: the mean square of what
-  /// each would move, over what noise lets expect. Errors of a model are alike from one
-  /// tick to the next, and the parts see what no single innovation shows. 1 where chance
-  /// explains it.
-  double Contradiction() const {
-    constexpr double kTold = 1e-6;    // of what a part tells best
-    constexpr double kChance = 1e-3;  // probability
-    double squares = 0.0;
-    double freedom = -static_cast<double>(own_.size());
-    for (const RunInformation& said : said_) {
-      for (const PartInformation& part : said.parts) {
-        const ScaledEigenPairs modes = ScaledEigenDecomposition(part.H);
-        const VectorXd pull = modes.vectors.transpose() *
-                              (part.g - part.H * last_).cwiseQuotient(modes.scale);
-        const VectorXd& told = modes.values;
-        for (Index i = 0; i < told.size(); ++i) {
-          if (!(told[i] > kTold * told.maxCoeff())) continue;
-          squares += pull[i] * pull[i] / told[i] / std::max(1.0, said.misfit);
-          freedom += 1.0;
-        }
-      }
-    }
-    if (!(freedom >= 1.0)) return 1.0;
-    return squares > ChiSquaredQuantile(kChance, freedom) ? squares / freedom : 1.0;
-  }
-
-  /// Of the readings, by what changes from one innovation to the next.
-  VectorXd Noise() const {
-    VectorXd noise = VectorXd::Zero(gains_.front().covariance.rows());
-    for (const RunInformation& said : said_) {
-      for (Index i = 0; i < noise.size(); ++i) {
-        noise[i] +=
-            NoiseLevel(said.innovations.row(i), 1) / static_cast<double>(said_.size());
-      }
-    }
-    return noise;
-  }
-
- private:
-  std::vector<std::shared_ptr<RunPass>> passes_;  // their starts go with them
-  std::vector<Unknown> unknowns_;
-  std::vector<TwinGain> gains_;
-  MatrixXd known_;
-  VectorXd before_, own_;
-  MatrixXd H_;
-  VectorXd last_;  // change that the last passes asked for
-  std::vector<RunInformation> said_;
-  bool diverged_ = false;
-};
-
 }  // namespace
 
 CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& records,
                             const CalibrateOptions& options) {
-  std::vector<Samples> runs;
+  std::vector<RunSamples> runs;
   for (const Record& record : records) runs.push_back(SamplesOf(machine, record));
   if (runs.empty()) throw InputError("calibration", "no record", "one or more");
   const UncertaintyOptions doubted{
@@ -247,11 +76,11 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   VectorXd noise = FirstNoise(machine, runs);
   // The machine is linearised anew about where it rests with what is learned.
   const auto about = [&](const VectorXd& theta) {
-    return Learner(machine, noise, runs, options.linear, theta);
+    return NumberLearner(machine, noise, runs, options.linear, doubted, theta);
   };
   // Noise first, with the stiffest gain, which explains nearly anything: slow errors of
   // the model leave changes from tick to tick as they are.
-  Learner learner = about(VectorXd::Zero(uncertain.known));
+  NumberLearner learner = about(VectorXd::Zero(uncertain.known));
   learner.Learn(learner.stiffest(), true);
   noise = learner.Noise().cwiseMax(kLeastNoise * noise);
   progress(0.2);
@@ -268,20 +97,15 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
     learner.Learn(learner.stiffest(), true);
   }
   progress(0.4);
-  // The softest with which nothing is a surprise: at once, or step by step.
-  std::size_t gain = learner.stiffest();
-  for (std::size_t next = 0; gain > 0; next = gain - 1) {
-    Learner softer = about(learner.theta());
-    softer.Learn(next, true);
-    if (softer.Explains()) {
-      learner = std::move(softer);
-      gain = next;
-    } else if (next + 1 == gain) {
-      break;
-    }
-    progress(0.9 -
-             0.5 * static_cast<double>(gain) / static_cast<double>(learner.stiffest()));
-  }
+  const auto stiffest = static_cast<double>(learner.stiffest());
+  SoftestLearner softest =
+      LearnSoftest(std::move(learner), about, [&](std::size_t gain, int) {
+        constexpr double kLeft = 0.5;  // of the work, when it begins
+        progress(0.9 - kLeft * static_cast<double>(gain) / stiffest);
+        return true;
+      });
+  learner = std::move(softest.learner);
+  const std::size_t gain = softest.gain;
   if (!inflated) noise = noise.cwiseMin(learner.Noise());
   learner = about(learner.theta());
   learner.Learn(gain, false);

@@ -25,7 +25,10 @@ Index InCalibration(const Machine& machine, const std::string& number) {
   return found == names.end() ? -1 : found - names.begin();
 }
 
-double Spread(const Machine& machine, const PlantNumber& number, bool doubt) {
+double Spread(const Machine& machine, const PlantNumber& number,
+              const UncertaintyOptions& options) {
+  if (options.unmeasured) return DoubtOf(machine.plant(), number);
+  const bool doubt = options.doubt;
   const Index at = InCalibration(machine, PlantNumberName(machine.plant(), number));
   const bool friction = number.kind == PlantNumberKind::kFriction;
   // Dry friction is another one today than it was in the runs that were calibrated on.
@@ -72,7 +75,7 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
     if (friction && !options.friction) continue;
     // Its force is no function of the input alone, as a twin has motors.
     if (number.kind == PlantNumberKind::kGain) continue;
-    const double spread = Spread(machine, number, options.doubt);
+    const double spread = Spread(machine, number, options);
     if (!(spread > 0.0)) continue;
     UncertainNumber& uncertain_number = NumberOf(machine, number, uncertain);
     if (!friction && !Acts(uncertain_number.part)) {

@@ -35,6 +35,8 @@ struct UncertaintyOptions {
   bool faults = true;  ///< the machine may be faulty: else it is healthy
   /// Numbers that the plant says are exact are taken as known as their kind usually is.
   bool doubt = false;
+  /// Numbers are known as DoubtOf says: nobody has measured them on the machine itself.
+  bool unmeasured = false;
   bool friction = true;  ///< dry friction is among what acts
   /// [J], see StartDirections; 0: where a run starts is not among the unknowns.
   double start_energy = 1.0;
