@@ -1,12 +1,14 @@
 // mjdiag discover: the cause of what the simulation gets wrong, the extended plant and
 // what it gains.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
 #include "app/command.h"
 #include "app/discovery_output.h"
 #include "app/exit_status.h"
+#include "app/format.h"
 #include "app/interrupt.h"
 #include "app/measured_records.h"
 #include "app/output.h"
@@ -44,6 +46,12 @@ void RequirePlantOfItsFile(const MachineOptions& options) {
                    "what is known beforehand in the MJCF file itself");
 }
 
+/// " (at most 190 s in all)".
+std::string AtMost(double seconds) {
+  if (!(seconds > 0.0) || !std::isfinite(seconds)) return "";
+  return " (at most " + Short(std::ceil(seconds)) + " s in all)";
+}
+
 Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
                        const Measurements& measurements) {
   ProgressBar bar("discovering");
@@ -55,7 +63,7 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
     if (bar.is_on_terminal()) {
       bar.Show(progress.what, progress.fraction);
     } else {
-      log.Show(progress.what, progress.best);
+      log.Show(progress.what + AtMost(progress.most_seconds), progress.best);
     }
   };
   return Discover(machine, measurements, options);

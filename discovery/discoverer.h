@@ -42,6 +42,7 @@ class Discoverer {
  private:
   DiscoveryProblem Pose(double bandwidth) const;
   void Report(const std::string& what, double fraction, const CauseFit& best) const;
+  void MeasureSpeed();
   void Report(const std::string& what, double fraction) const {
     Report(what, fraction, search_.fit());
   }
@@ -115,6 +116,7 @@ class Discoverer {
   std::shared_ptr<Work> work_;
   std::vector<Candidate> candidates_;
   DiscoveryProblem problem_;
+  double most_seconds_ = 0.0;  // of this machine, that the budget takes; for people
   double nominal_ = 0.0;  // mean square of the plant as given, behind this observer
   SearchResult search_;
   /// The last fit, where it is one of free simulation, with its problem.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <thread>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/checks/data_check.h"
@@ -47,10 +49,23 @@ void Discoverer::MeasureNominal() {
                         problem_.skip(), problem_.train());
 }
 
+/// The work that is counted knows nothing of it.
+void Discoverer::MeasureSpeed() {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const DiscoveryProblem own = problem_.Charging(std::make_shared<Work>());
+  own.Residual({});
+  const std::chrono::duration<double> taken = Clock::now() - begin;
+  // A run has one core; work is that of two.
+  constexpr unsigned kCores = 2;
+  const unsigned cores = std::clamp(std::thread::hardware_concurrency(), 1U, kCores);
+  most_seconds_ = work_->limit() * taken.count() / (cores * own.RunWork());
+}
+
 void Discoverer::Report(const std::string& what, double fraction,
                         const CauseFit& best) const {
   if (!options_.progress) return;
-  DiscoveryProgress progress{what, fraction, ""};
+  DiscoveryProgress progress{what, fraction, "", most_seconds_};
   for (const FittedCause& cause : best.causes) {
     progress.best +=
         (progress.best.empty() ? "" : ", ") + Describe(candidates_[cause.candidate]);
@@ -215,6 +230,7 @@ Discovery Discoverer::Run() {
   discovery_.sample_time = machine_.rates().tick();
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();
+  if (options_.progress) MeasureSpeed();
   SearchAll();
   discovery_.complete = Completeness();
   NameCauses();

@@ -106,6 +106,9 @@ struct DiscoveryProgress {
   std::string what;       ///< is being tried
   double fraction = 0.0;  ///< of a round that is done
   std::string best;       ///< "coulomb_friction@load (mismatch 100 % to 7 %)"
+  /// Seconds that the whole budget takes on this machine, by the time of a run of the plant
+  /// as it is given; infinite without a budget.
+  double most_seconds = 0.0;
 };
 
 struct Discovery {
