@@ -2,6 +2,12 @@
 //   dz/dt = stiffness v - loss |v| |z|^(n - 1) z - hardening v |z|^n,  n = exponent
 // With exponent 1 and hardening 0 it is Dahl friction (presliding_hysteresis) that slides at
 // stiffness / loss. A negative hardening beyond loss lets it grow stiffer with the travel.
+//
+// Passive for any loss >= 0: with the storage
+//   integral of z / (stiffness + (loss - hardening) |z|^n) dz
+// it gives back all where it unloads, and where it loads takes more than it stores, since
+// dz/dq = stiffness - (loss + hardening) |z|^n is less then. Where hardening exceeds loss,
+// |z|^n stays below stiffness / (loss + hardening) and the denominator above 0.
 
 #include <algorithm>
 #include <cmath>
