@@ -75,6 +75,8 @@ class Discoverer {
                                                  const Eigen::MatrixXd& covariance,
                                                  const std::vector<Interval>& intervals,
                                                  Eigen::Index first) const;
+  /// Of a learned curve.
+  bool IsActive(const FittedCause& curve, const FoundCause& found) const;
   std::vector<Alternative> AlternativesOf(const FittedCause& fitted,
                                           const std::vector<Hypothesis>& rivals) const;
   void NameNumbers(const Eigen::MatrixXd& covariance);

@@ -10,6 +10,7 @@
 #include "mjdiag/discovery/fitting/profile_interval.h"
 #include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/verdict.h"
+#include "mjdiag/discovery/unexplained/active_curve.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
 
@@ -57,6 +58,19 @@ std::vector<Alternative> Discoverer::AlternativesOf(
   return alternatives;
 }
 
+bool Discoverer::IsActive(const FittedCause& curve, const FoundCause& found) const {
+  const auto knots = static_cast<Index>(found.parameters.size());
+  VectorXd low(knots);
+  VectorXd high(knots);
+  Index i = 0;
+  for (const CauseParameter& knot : found.parameters) {
+    low[i] = knot.low;
+    high[i++] = knot.high;
+  }
+  return DrivesItsJoint(machine_.plant(), candidates_[curve.candidate].joint,
+                        found.cause.values, low, high);
+}
+
 void Discoverer::NameCauses() {
   if (LastFit().jacobian.cols() == 0) return;
   MatrixXd covariance;
@@ -92,6 +106,7 @@ void Discoverer::NameCauses() {
     if (const auto words = curves_.find(fit.causes[i].candidate);
         words != curves_.end()) {
       found.unnamed = words->second.words;
+      if (IsActive(fit.causes[i], found)) found.unnamed += ", an active force";
     }
     for (const Hypothesis& rival : search_.rivals[i]) {
       if (rival.cause.candidate == fit.causes[i].candidate) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <memory>
 
-#include "mjdiag/plugin/effects/friction/stribeck_curve.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/wave.h"
 #include "mjdiag/studies/outside_law.h"
@@ -11,58 +10,68 @@
 namespace mjdiag {
 namespace {
 
-class Bristles final : public ActiveEffect {
+class Contact final : public ActiveEffect {
  public:
-  Bristles(int dof, const EffectValues& values) : values_(values), dof_(dof) {}
+  Contact(int dof, const EffectValues& values)
+      : force_(values[0]),
+        rate_(values[1]),
+        state_(values[2]),
+        velocity_(values[3]),
+        length_(values[4]),
+        age_(length_ / velocity_),
+        dof_(dof) {}
 
-  // Over a step v is constant and z goes to its end on an exponential.
+  // Over a step v is constant and the age goes to L / |v| on an exponential.
   void Push(const mjModel& model, mjData& data) noexcept override {
-    const double h = model.opt.timestep;
     const double v = data.qvel[dof_];
-    const double slides = values_[0] + values_[1] * StribeckShare(v, values_[2]);
-    if (slides <= 0.0) return;
-    const double stiffness = values_[3];
-    const double end = std::copysign(slides / stiffness, v);
-    const double before = z_;
-    z_ = end + (z_ - end) * std::exp(-stiffness * std::abs(v) * h / slides);
-    data.qfrc_applied[dof_] -= stiffness * z_ + values_[4] * (z_ - before) / h;
+    const double turns = std::abs(v) * model.opt.timestep / length_;
+    // (1 - exp(-turns)) / turns h, also where it rests.
+    const double healed =
+        turns > 0.0 ? -std::expm1(-turns) * length_ / std::abs(v) : model.opt.timestep;
+    age_ = age_ * std::exp(-turns) + healed;
+    const double holds = 1.0 + state_ * std::log(velocity_ * age_ / length_);
+    const double ratio = 0.5 * std::abs(v) / velocity_;
+    const double slides = std::asinh(ratio * std::exp(holds / rate_));
+    data.qfrc_applied[dof_] -= std::copysign(force_ * rate_ * slides, v);
   }
 
  private:
-  EffectValues values_;
-  double z_ = 0.0;  // [m]
+  double force_;
+  double rate_;
+  double state_;
+  double velocity_;
+  double length_;
+  double age_;  // [s]
   int dof_;
 };
 
-class LugreFrictionLaw final : public Effect {
+class RateAndStateFrictionLaw final : public Effect {
  public:
-  LugreFrictionLaw()
-      : Effect({.name = "lugre_friction",
+  RateAndStateFrictionLaw()
+      : Effect({.name = "rate_and_state_friction",
                 .family = Family::kFriction,
                 .variable = LawVariable::kVelocity,
-                .parameters = {NotNegative("coulomb", Role::kAmplitude, "N"),
-                               NotNegative("breakaway", Role::kAmplitude, "N"),
+                .parameters = {NotNegative("force", Role::kAmplitude, "N"),
+                               Positive("rate", Role::kRatio, "1"),
+                               NotNegative("state", Role::kRatio, "1"),
                                Positive("velocity", Role::kVelocity, "m/s"),
-                               Positive("stiffness", Role::kSteepness, "N/m"),
-                               NotNegative("damping", Role::kSteepness, "N s/m")},
-                .meaning = "bristles that slide"}) {}
+                               Positive("length", Role::kLength, "m")},
+                .meaning = "friction of a contact that heals while it rests"}) {}
 
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
                                          const EffectValues& values) const override {
-    return std::make_unique<Bristles>(model.jnt_dofadr[joint], values);
+    return std::make_unique<Contact>(model.jnt_dofadr[joint], values);
   }
-  // The bristles are as long as presliding of guides, and damped to a tenth of what they
-  // are critically with the mass.
+  // It weakens with speed where state is larger than rate. Contacts of rock have a tenth
+  // of both, and change their force with a velocity that no time step resolves.
   Sized Draw(const Scales& k, Random& r) const override {
-    const double force = k.SmallForce();
-    const double length = k.stroke * r.Log(3e-3, 0.05);
+    const double rate = r.Uniform(0.1, 0.2);
+    const double state = rate * r.Uniform(1.2, 2.0);
     const double velocity = k.speed * r.Log(0.05, 0.3);
-    const double mass = k.mass;
-    return [=](double s) {
-      const double stiffness = s * force / length;
-      const double damping = 0.1 * 2.0 * std::sqrt(stiffness * mass);
-      return ValuesOf({0.5 * s * force, 0.5 * s * force, velocity, stiffness, damping});
+    const double length = k.stroke * r.Log(3e-3, 0.05);
+    return [=, force = k.SmallForce()](double s) {
+      return ValuesOf({s * force, rate, state, velocity, length});
     };
   }
 };
@@ -176,8 +185,8 @@ class PeriodicDampingLaw final : public JointForceEffect {
 
 }  // namespace
 
-const Effect& LugreFriction() {
-  static const LugreFrictionLaw law;
+const Effect& RateAndStateFriction() {
+  static const RateAndStateFrictionLaw law;
   return law;
 }
 

@@ -132,8 +132,9 @@ const Effect& GyroscopicCoupling() {
 
 const std::vector<const Effect*>& OutsideLaws() {
   static const std::vector<const Effect*> laws{
-      &LugreFriction(), &RootFriction(),   &ReversalFriction(),  &PeriodicDamping(),
-      &DeadZone(),      &SpeedSoftening(), &GyroscopicCoupling()};
+      &RateAndStateFriction(), &RootFriction(), &ReversalFriction(),
+      &PeriodicDamping(),      &DeadZone(),     &SpeedSoftening(),
+      &GyroscopicCoupling()};
   return laws;
 }
 

@@ -3,10 +3,10 @@
 // whose cause is in no list: they are effects like those of plugin/effects, but of the
 // studies alone, so that nothing that looks for causes knows them.
 //
-//   lugre_friction       bristles that slide: dz/dt = v - stiffness |v| z / g(v), force
-//                        stiffness z + damping dz/dt, g(v) = coulomb + breakaway
-//                        exp(-(v / velocity)^2) (C. Canudas de Wit, H. Olsson, K. J.
-//                        Astrom, P. Lischinsky, IEEE Trans. Automatic Control 40, 1995)
+//   rate_and_state_friction  -force a asinh(v / (2 V) exp((1 + b ln(V theta / L)) / a)),
+//                        with a contact of age theta that heals at rest,
+//                        dtheta/dt = 1 - |v| theta / L (J. H. Dieterich, J. Geophysical
+//                        Research 84, 1979; A. Ruina, 88, 1983)
 //   root_friction        -force sign(v) sqrt(|v| / velocity): a film that builds up
 //   reversal_friction    -force (1 + fresh exp(-s / length)) tanh(v / velocity), s the
 //                        travel since the direction last changed
@@ -22,7 +22,7 @@
 
 namespace mjdiag {
 
-const Effect& LugreFriction();
+const Effect& RateAndStateFriction();
 const Effect& RootFriction();
 const Effect& ReversalFriction();
 const Effect& PeriodicDamping();

@@ -1,5 +1,7 @@
 #include "mjdiag/plugin/effects/active_effect.h"
 
+#include <algorithm>
+
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/motor_force.h"
@@ -7,15 +9,16 @@
 namespace mjdiag {
 
 ActiveEffects::ActiveEffects(const Channels& channels, const mjModel& model,
-                             const std::vector<PlacedEffect>& effects) {
+                             const std::vector<PlacedEffect>& effects)
+    : damping_(static_cast<std::size_t>(model.nv)) {
   for (const PlacedEffect& placed : effects) {
     const int element = CheckEffect(model, placed);
     auto active = placed.effect->Activate(model, channels, element, placed.values);
     if (!active) continue;
     effects_.push_back(std::move(active));
-    if (placed.effect->element() == mjOBJ_JOINT) {
-      dofs_.push_back(model.jnt_dofadr[element]);
-    }
+    const bool at_joint = placed.effect->element() == mjOBJ_JOINT;
+    dof_of_.push_back(at_joint ? model.jnt_dofadr[element] : -1);
+    if (at_joint) dofs_.push_back(dof_of_.back());
   }
 }
 
@@ -28,8 +31,24 @@ void ActiveEffects::Act(const mjModel& model, mjData& data,
   Release(data);
   for (const auto& effect : effects_) effect->Drive(model, data);
   for (const int motor : off) data.ctrl[motor] = OpenCircuitCommand(model, data, motor);
+  Damp(model, data);
   for (const auto& effect : effects_) effect->Push(model, data);
   for (const auto& effect : effects_) effect->Bind(model, data);
+}
+
+void ActiveEffects::Damp(const mjModel& model, mjData& data) noexcept {
+  for (const int dof : dofs_) damping_[static_cast<std::size_t>(dof)] = 0.0;
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    if (dof_of_[i] < 0) continue;
+    damping_[static_cast<std::size_t>(dof_of_[i])] += effects_[i]->Damping(model, data);
+  }
+  for (const int dof : dofs_) {
+    // Set to nothing once it is done: a joint may be there several times.
+    double& added = damping_[static_cast<std::size_t>(dof)];
+    const double has = std::max(0.0, model.dof_damping[dof]);
+    data.qfrc_applied[dof] -= std::max(added, -has) * data.qvel[dof];
+    added = 0.0;
+  }
 }
 
 void ActiveEffects::Release(mjData& data) noexcept {

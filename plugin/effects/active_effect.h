@@ -25,6 +25,9 @@ class ActiveEffect {
   virtual void Distort(std::span<double> /*readings*/, double /*time*/) noexcept {}
   /// Changes the command in data.ctrl, of this physics step.
   virtual void Drive(const mjModel&, mjData&) noexcept {}
+  /// What it adds to the damping of its joint in this step [N s/m]. Less than nothing
+  /// takes off what the joint has: all effects together take no more than that.
+  virtual double Damping(const mjModel&, const mjData&) const noexcept { return 0.0; }
   /// Adds its force to data.qfrc_applied, from positions and velocities of this step.
   virtual void Push(const mjModel&, mjData&) noexcept {}
   /// Changes the bounds of dry friction, when all commands and forces of this step
@@ -52,8 +55,13 @@ class ActiveEffects {
   void Release(mjData& data) noexcept;
 
  private:
+  /// The force of all that damps the joints.
+  void Damp(const mjModel& model, mjData& data) noexcept;
+
   std::vector<std::unique_ptr<ActiveEffect>> effects_;
-  std::vector<int> dofs_;
+  std::vector<int> dofs_;        // of those that act at joints, in their order
+  std::vector<int> dof_of_;      // of every effect; -1: not at a joint
+  std::vector<double> damping_;  // nv, of a step
 };
 
 /// The channels with what effects add to the noise of their sensors.

@@ -1,5 +1,6 @@
 // The motor constant over the travel s of the motor since qpos0:
-//   u <- u (1 + slope s + curvature s^2)
+//   u <- u max(0, 1 + slope s + curvature s^2)
+// A motor gives less force at the end of its magnets, but never turns round.
 
 #include <algorithm>
 
@@ -23,7 +24,7 @@ class VaryingMotor final : public ActiveEffect {
   }
   void Drive(const mjModel&, mjData& data) noexcept override {
     const double s = (data.actuator_length[actuator_] - rest_) / gear_;
-    data.ctrl[actuator_] *= 1.0 + slope_ * s + curvature_ * s * s;
+    data.ctrl[actuator_] *= std::max(0.0, 1.0 + slope_ * s + curvature_ * s * s);
   }
 
  private:

@@ -1,14 +1,25 @@
 // R. Bouc and Y.-K. Wen's hysteresis: a force -z with a memory,
 //   dz/dt = stiffness v - loss |v| |z|^(n - 1) z - hardening v |z|^n,  n = exponent
 // With exponent 1 and hardening 0 it is Dahl friction (presliding_hysteresis) that slides at
-// stiffness / loss. A negative hardening beyond loss lets it grow stiffer with the travel.
+// stiffness / loss. A negative hardening beyond loss lets it grow stiffer with the travel,
+// with an exponent of at most 1: with a larger one it would be infinite within a finite way.
+//
+// Passive for any loss >= 0: with the storage
+//   integral of z / (stiffness + (loss - hardening) |z|^n) dz
+// it gives back all where it unloads, and where it loads takes more than it stores, since
+// dz/dq = stiffness - (loss + hardening) |z|^n is less then. Where hardening exceeds loss,
+// |z|^n stays below stiffness / (loss + hardening) and the denominator above 0.
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -20,15 +31,20 @@ class BoucWenForce final : public ActiveEffect {
         loss_(values[1]),
         hardening_(values[2]),
         exponent_(values[3]),
-        dof_(dof) {}
+        dof_(dof) {
+    const double slides = loss_ + hardening_;
+    if (slides > 0.0) most_ = std::pow(stiffness_ / slides, 1.0 / exponent_);
+  }
 
   // Over a step v is constant and z a function of the travel v h alone; classical Runge-
-  // Kutta in parts short enough for its memory.
+  // Kutta in parts short enough for its memory. A stiffer one stays below where it slides.
   void Push(const mjModel& model, mjData& data) noexcept override {
     constexpr double kMostParts = 64.0;
     const double travel = data.qvel[dof_] * model.opt.timestep;
+    const double reached =
+        std::min(std::abs(z_) + stiffness_ * std::abs(travel), most_);
     const double steep =
-        exponent_ > 1.0 ? std::pow(std::abs(z_), exponent_ - 1.0) : 1.0;
+        exponent_ > 1.0 ? exponent_ * std::pow(reached, exponent_ - 1.0) : 1.0;
     const double turns =
         std::abs(travel) * (loss_ + std::abs(hardening_)) * std::max(steep, 1.0);
     const double parts = std::clamp(std::ceil(4.0 * turns), 1.0, kMostParts);
@@ -38,7 +54,7 @@ class BoucWenForce final : public ActiveEffect {
       const double b = Slope(z_ + 0.5 * part * a, part);
       const double c = Slope(z_ + 0.5 * part * b, part);
       const double d = Slope(z_ + part * c, part);
-      z_ += part / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+      z_ = std::clamp(z_ + part / 6.0 * (a + 2.0 * b + 2.0 * c + d), -most_, most_);
     }
     data.qfrc_applied[dof_] -= z_;
   }
@@ -46,7 +62,7 @@ class BoucWenForce final : public ActiveEffect {
  private:
   /// dz/dq where the joint moves in the direction of `travel`.
   double Slope(double z, double travel) const noexcept {
-    const double size = std::pow(std::abs(z), exponent_);
+    const double size = std::pow(std::min(std::abs(z), most_), exponent_);
     const double against = std::copysign(size, z) * std::copysign(1.0, travel);
     return stiffness_ - loss_ * against - hardening_ * size;
   }
@@ -55,6 +71,7 @@ class BoucWenForce final : public ActiveEffect {
   double loss_;
   double hardening_;
   double exponent_;
+  double most_ = std::numeric_limits<double>::infinity();  // at which it slides
   double z_ = 0.0;
   int dof_;
 };
@@ -82,6 +99,12 @@ class BoucWenEffect final : public Effect {
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
                                          const EffectValues& values) const override {
+    if (values[3] > 1.0 && values[2] < -values[1]) {
+      throw InputError(Where(*this, ElementName(model, mjOBJ_JOINT, joint)),
+                       "hardening = " + std::to_string(values[2]) +
+                           " makes it infinite within a finite way",
+                       "at least -loss with an exponent > 1");
+    }
     return std::make_unique<BoucWenForce>(model.jnt_dofadr[joint], values);
   }
   // As Dahl friction, with a little that hardens, by which the fit sees what more does.

@@ -4,14 +4,19 @@
 
 namespace mjdiag {
 
-DriveLoad DriveLoadOf(const mjModel& model, const mjData& data, int dof) noexcept {
-  DriveLoad load;
-  load.rest = data.qfrc_passive[dof] + data.qfrc_applied[dof] - data.qfrc_bias[dof];
+double MotorForceOn(const mjModel& model, const mjData& data, int dof) noexcept {
+  double force = 0.0;
   for (int motor = 0; motor < model.nu; ++motor) {
     const double arm = data.actuator_moment[motor * model.nv + dof];
-    if (arm != 0.0) load.motor += arm * MotorForce(model, data, motor);
+    if (arm != 0.0) force += arm * MotorForce(model, data, motor);
   }
-  return load;
+  return force;
+}
+
+DriveLoad DriveLoadOf(const mjModel& model, const mjData& data, int dof) noexcept {
+  const double rest =
+      data.qfrc_passive[dof] + data.qfrc_applied[dof] - data.qfrc_bias[dof];
+  return {.motor = MotorForceOn(model, data, dof), .rest = rest};
 }
 
 ObservedLoad::ObservedLoad(const SiteMotion& at)

@@ -16,6 +16,9 @@ struct DriveLoad {
   double rest = 0.0;
 };
 
+/// Of all motors on the joint, in a step when its commands are known [N, N m].
+double MotorForceOn(const mjModel& model, const mjData& data, int dof) noexcept;
+
 /// In a step, when all its commands and forces are known.
 DriveLoad DriveLoadOf(const mjModel& model, const mjData& data, int dof) noexcept;
 

@@ -1,5 +1,7 @@
 #pragma once
 // Dry friction by MuJoCo's own constraint: what sticks, sticks exactly, up to a bound.
+// It takes bound |v| of power, and the bound is never negative: passive, whatever it
+// follows.
 
 #include <mujoco/mujoco.h>
 

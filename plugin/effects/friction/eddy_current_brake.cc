@@ -1,5 +1,6 @@
 // -coefficient v / (1 + (v / velocity)^2): the drag of a conductor in a magnetic field, which
 // is viscous while it is slow and falls above the velocity at which it is largest.
+// Never against its sign: passive.
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"

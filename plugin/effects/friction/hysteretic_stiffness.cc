@@ -1,4 +1,6 @@
 // -stiffness (q + loss z), z follows q over `length`: a cable, a hose.
+// Passive: it stores stiffness (q^2 + loss z^2) / 2, and takes stiffness loss |v| z^2 /
+// length of power beside.
 
 #include "mjdiag/plugin/effects/follower.h"
 #include "mjdiag/plugin/effects/joint_force.h"

@@ -1,5 +1,6 @@
-// -(slope q + curvature q^2) v, beside a damper that is there. With a negative damper and a
-// positive curvature it is van der Pol's.
+// -(slope q + curvature q^2) v, beside a damper D that is there, which takes power of
+//   max(0, D + slope q + curvature q^2) v^2:
+// where the polynomial would drive the joint, it is not damped at all.
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
@@ -7,25 +8,20 @@
 namespace mjdiag {
 namespace {
 
-class PositionDependentDampingEffect final : public JointForceEffect {
+class PositionDependentDampingEffect final : public JointDampingEffect {
  public:
   PositionDependentDampingEffect()
-      : JointForceEffect(
+      : JointDampingEffect(
             {.name = "position_dependent_damping",
              .family = Family::kFriction,
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N s/m^2"),
                             Free("curvature", Role::kAmplitude, "N s/m^3")},
-             .meaning = "-(slope q + curvature q^2) v",
+             .meaning = "-(slope q + curvature q^2) v, beside the joint's damper",
              .odds = kRare}) {}
 
-  double Force(double q, double v, double,
-               const EffectValues& values) const noexcept override {
-    return -(values[0] + values[1] * q) * q * v;
-  }
-  // Of two variables.
-  std::optional<double> Law(double, const EffectValues&) const override {
-    return std::nullopt;
+  double Damping(double q, double, const EffectValues& values) const noexcept override {
+    return (values[0] + values[1] * q) * q;
   }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();

@@ -1,5 +1,6 @@
 // P. R. Dahl, "A solid friction model", 1968: -stiffness z, z follows q over the length
-// force / stiffness.
+// force / stiffness. Passive: it takes stiffness |v| z^2 / length of power more than
+// it stores, which is stiffness z^2 / 2.
 
 #include "mjdiag/plugin/effects/follower.h"
 #include "mjdiag/plugin/effects/joint_force.h"

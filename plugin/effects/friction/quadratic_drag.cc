@@ -1,4 +1,6 @@
-// -coefficient v |v|
+// -coefficient v |v|, which takes coefficient |v|^3 of power. Nothing that a plant has of
+// its own grows with the square of the velocity: what is taken off a damper D would drive
+// the joint beyond D / |coefficient|.
 
 #include <cmath>
 
@@ -15,7 +17,7 @@ class QuadraticDragEffect final : public JointForceEffect {
             {.name = "quadratic_drag",
              .family = Family::kFriction,
              .variable = LawVariable::kVelocity,
-             .parameters = {Free("coefficient", Role::kAmplitude, "N s^2/m^2")},
+             .parameters = {NotNegative("coefficient", Role::kAmplitude, "N s^2/m^2")},
              .meaning = "-coefficient v |v|",
              .odds = kSome}) {}
 
@@ -23,9 +25,6 @@ class QuadraticDragEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return -values[0] * v * std::abs(v);
   }
-  // Nothing that a plant has of its own grows with the square of the velocity: drag that
-  // falls below it would push.
-  double Least(const mjModel&, Eigen::Index, std::size_t) const override { return 0.0; }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
     return {LinearTrial(-at.v().cwiseProduct(at.v().cwiseAbs()), at.JointEntry(), 0.0,
                         true)};

@@ -1,5 +1,6 @@
 // The joint's spring does not act within gap / 2 of its rest: gives back what MuJoCo's
-// spring takes there.
+// spring takes there. A force of the position alone, which stores: with the spring the
+// energy of a strain beyond the gap.
 
 #include <algorithm>
 

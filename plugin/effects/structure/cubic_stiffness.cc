@@ -1,4 +1,4 @@
-// -coefficient q^3
+// -coefficient q^3, a force of the position alone: it stores, and takes nothing.
 
 #include <cmath>
 

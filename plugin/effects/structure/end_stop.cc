@@ -1,4 +1,4 @@
-// A spring beyond position, on the side of its sign.
+// A spring beyond position, on the side of its sign. It stores, and takes nothing.
 
 #include <cmath>
 

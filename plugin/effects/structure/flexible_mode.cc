@@ -1,11 +1,17 @@
 // A mass m on the joint by a spring and a damper, x its position:
 //   m x'' = -f,  f = m (omega^2 (x - q) + 2 zeta omega (x' - v)),  f on the joint
-// integrated as MuJoCo's Euler does (velocity first).
+// integrated as MuJoCo's Euler does (velocity first). Passive: a mass, a spring and a damper
+// of no negative size.
+
+#include <cmath>
+#include <string>
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/plugin/effects/wave.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -64,6 +70,16 @@ class FlexibleModeEffect final : public Effect {
   std::unique_ptr<ActiveEffect> Activate(const mjModel& model, const Channels&,
                                          int joint,
                                          const EffectValues& values) const override {
+    // Where v+ = (1 - 2 ratio w h) v - w^2 h x, x+ = x + h v+ grow, it would drive.
+    const double ratio = values[2];
+    const double most =
+        2.0 * (std::sqrt(ratio * ratio + 1.0) - ratio) / (kTurn * model.opt.timestep);
+    if (values[1] >= most) {
+      throw InputError(Where(*this, ElementName(model, mjOBJ_JOINT, joint)),
+                       "frequency = " + std::to_string(values[1]),
+                       "below " + std::to_string(most) +
+                           " Hz, which a step of the physics resolves");
+    }
     return std::make_unique<Appendage>(JointOf(model, joint), values);
   }
   std::vector<Trial> Trials(const SiteMotion& at) const override {

@@ -185,6 +185,14 @@ CurveAxis::Weights CurveAxis::At(double x) const noexcept {
   return weights;
 }
 
+double CurveAxis::KnotAt(int place) const noexcept {
+  if (shape == CurveShapes::kPeriodic) return low + (high - low) * place / knots;
+  if (shape == CurveShapes::kPlain) return low + (high - low) * place / (knots - 1);
+  const int half = knots / 2;
+  return place < half ? low - low * place / (half - 1)
+                      : high * (place - half) / (half - 1);
+}
+
 CurveAxis CurveAxisOf(const Eigen::VectorXd& values) {
   return {values[kLow], values[kLow] + values[kWidth],
           static_cast<CurveShapes>(std::lround(values[kShape])),

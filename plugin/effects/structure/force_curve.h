@@ -42,6 +42,8 @@ struct CurveAxis {
     std::array<double, 8> weight{};
   };
   Weights At(double x) const noexcept;
+  /// Of knot `place`, from 0. A split curve has two at 0.
+  double KnotAt(int place) const noexcept;
 };
 
 /// Places of the parameters of force_curve; its knots come behind them.

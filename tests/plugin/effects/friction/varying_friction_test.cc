@@ -40,9 +40,19 @@ TEST(PositionDependentFriction, TakesOffNoMoreThanOtherFrictionHas) {
 }
 
 TEST(PositionDependentDamping, IsItsPolynomialTimesTheVelocity) {
-  EffectBench bench({"position_dependent_damping@q:slope=3,curvature=20"});
-  EXPECT_NEAR(bench.ForceAt(0.1, 2.0), -(0.3 + 0.2) * 2.0, 1e-12);
-  EXPECT_NEAR(bench.ForceAt(-0.1, 2.0), -(-0.3 + 0.2) * 2.0, 1e-12);
+  EffectBench bench({"position_dependent_damping@q:slope=3,curvature=20"},
+                    R"(type="slide" damping="0.5")");
+  EXPECT_NEAR(bench.ForceAt(0.1, 2.0), -(0.5 + 0.3 + 0.2) * 2.0, 1e-12);
+  EXPECT_NEAR(bench.ForceAt(-0.1, 2.0), -(0.5 - 0.3 + 0.2) * 2.0, 1e-12);
+}
+
+// Each alone leaves some damping at -0.1 m, where the two take off more than there is.
+TEST(PositionDependentDamping, DrivesNothingTogetherWithWhatElseTakesOffTheDamper) {
+  EffectBench bench({"position_dependent_damping@q:slope=4,curvature=0",
+                     "asymmetric_viscous_friction@q:positive=-0.3,negative=2"},
+                    R"(type="slide" damping="0.5")");
+  EXPECT_NEAR(bench.ForceAt(-0.1, 2.0), 0.0, 1e-12);
+  EXPECT_NEAR(bench.ForceAt(-0.1, -2.0), (0.5 - 0.4 + 2.0) * 2.0, 1e-12);
 }
 
 TEST(WarmingFriction, GoesAwayWithItsTimeConstant) {
