@@ -1,3 +1,5 @@
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -52,6 +54,8 @@ int Fail(ExitStatus status, const std::string& message) {
 
 int Main(int argc, char** argv) {
   RememberCommandLine(argc, argv);
+  // What Ceres says of steps that it gives up is none of ours.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   CLI::App app{"Fault diagnosis and model discovery for machines that move"};
   app.set_version_flag("--version", "mjdiag " MJDIAG_VERSION);
   app.require_subcommand(1);

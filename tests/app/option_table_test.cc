@@ -163,7 +163,7 @@ class OptionTable : public ::testing::Test {
     setup.insert(setup.find(sensor) + sensor.size(), "noise_power = 1e-16\n");
     std::ofstream(folder_.path() / "stage/setup.toml") << setup;
     const CommandResult measured =
-        RunCommand("simulate --setup" + Quoted("stage") + " --duration 3 --out" +
+        RunCommand("simulate --setup" + Quoted("stage") + " --duration 4.5 --out" +
                    Quoted("measured"));
     ASSERT_EQ(measured.status, 0) << measured.err;
   }
