@@ -42,8 +42,8 @@ DiscoveryProblem Discoverer::Pose(double bandwidth) const {
 }
 
 void Discoverer::MeasureNominal() {
-  nominal_ = MeanSquare(problem_.Residual({}), problem_.run().outputs.rows(),
-                        problem_.skip(), problem_.train());
+  nominal_ =
+      MeanSquare(problem_, problem_.Residual({}), problem_.skip(), problem_.train());
 }
 
 void Discoverer::Report(const std::string& what, double fraction,
@@ -191,8 +191,10 @@ double Discoverer::Completeness() const {
   const bool is_known =
       search_.fit().train <= kFarAboveNoise && work_->left_out().empty();
   if (search_.significant_rest && !is_known) return 0.0;
-  return ProbabilityOfNoise(
-      NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
+  Eigen::ArrayXX<bool> measured;
+  if (!measurements_.unseen.empty()) measured = RunOf(measurements_.unseen).measured;
+  return ProbabilityOfNoise(NoiseValue(problem_, search_.fit().residual,
+                                       search_.evidence.Replayed(), measured));
 }
 
 Discovery Discoverer::Run() {

@@ -119,7 +119,14 @@ class TwinPass {
   Information information_;
   Surprise surprise_;
   Eigen::VectorXd theta0_, theta_, away_;
+  /// Of the readings of a block that were measured: those of the others are 0, and their
+  /// part of the block is missing in what it shows and in its noise.
+  const Eigen::MatrixXd& Seen(const Eigen::MatrixXd& psi) noexcept;
+
   Eigen::VectorXd reading_, innovation_, sum_;
+  Eigen::VectorXd share_;  // of the block in which a reading was measured
+  bool complete_ = true;
+  Eigen::MatrixXd psi_;
   Eigen::MatrixXd covariance_;  // of a block's innovation
 };
 

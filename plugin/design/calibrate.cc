@@ -31,7 +31,7 @@ constexpr double kLeastNoise = 1e-3;
 constexpr double kDoubtful = 4.0;
 
 struct Samples {
-  MatrixXd outputs;
+  MatrixXd outputs;  ///< NaN where they were not measured
   MatrixXd inputs;
 };
 
@@ -41,8 +41,22 @@ Samples SamplesOf(const Machine& machine, const Record& record) {
         "record", "sampled every " + std::to_string(record.sample_time()) + " s",
         "the control tick, " + std::to_string(machine.rates().tick()) + " s");
   }
-  return {mjdiag::SamplesOf(record, ChannelsOf(machine.channels().sensors)),
-          mjdiag::SamplesOf(record, ChannelsOf(machine.channels().actuators))};
+  const std::vector<std::string> sensors = ChannelsOf(machine.channels().sensors);
+  Samples samples{mjdiag::SamplesOf(record, sensors),
+                  mjdiag::SamplesOf(record, ChannelsOf(machine.channels().actuators))};
+  const Eigen::ArrayXX<bool> measured = MeasuredOf(record, sensors);
+  if (measured.size() > 0) {
+    samples.outputs = measured.select(samples.outputs.array(),
+                                      std::numeric_limits<double>::quiet_NaN());
+  }
+  return samples;
+}
+
+/// Of a row, those that were measured.
+VectorXd Readings(const MatrixXd& rows, Index row) {
+  const VectorXd all = rows.row(row);
+  const SampleMask measured = !all.array().isNaN();
+  return measured.all() ? all : Kept(all, measured);
 }
 
 /// Of sensors that the setup gives none: from readings alone, which move little from
@@ -55,15 +69,13 @@ VectorXd FirstNoise(const Machine& machine, const std::vector<Samples>& runs) {
     noise[i] = sensor.noise_sd;
     if (noise[i] > 0.0) continue;
     for (const Samples& run : runs) {
-      noise[i] = std::max(noise[i], NoiseLevel(run.outputs.row(i), 3));
+      noise[i] = std::max(noise[i], NoiseLevel(Readings(run.outputs, i), 3));
     }
     // A coarse reading does not show noise below its step.
     noise[i] = std::max(noise[i], sensor.resolution / std::sqrt(12.0));
     if (!(noise[i] > 0.0)) {
-      const double range =
-          (runs.front().outputs.row(i).array() - runs.front().outputs(i, 0))
-              .abs()
-              .maxCoeff();
+      const VectorXd readings = Readings(runs.front().outputs, i);
+      const double range = (readings.array() - readings[0]).abs().maxCoeff();
       noise[i] = std::max(1e-6 * range, 1e-12);
     }
   }
@@ -207,8 +219,8 @@ class Learner {
     VectorXd noise = VectorXd::Zero(gains_.front().covariance.rows());
     for (const RunInformation& said : said_) {
       for (Index i = 0; i < noise.size(); ++i) {
-        noise[i] +=
-            NoiseLevel(said.innovations.row(i), 1) / static_cast<double>(said_.size());
+        noise[i] += NoiseLevel(Readings(said.innovations, i), 1) /
+                    static_cast<double>(said_.size());
       }
     }
     return noise;

@@ -36,6 +36,9 @@ struct MeasuredRun {
   Eigen::MatrixXd inputs;    ///< actuators x samples
   /// Actuators x samples, 0: an open circuit; empty: all on.
   Eigen::MatrixXd on{};
+  /// Which outputs were measured, sensors x samples; empty: all. Where one was not, the
+  /// machine runs on without it: its innovation is 0 and counts for nothing.
+  Eigen::ArrayXX<bool> measured{};
   std::vector<RecordStart> records{{}};  ///< in order, the first at sample 0
 
   Eigen::Index samples() const { return outputs.cols(); }
@@ -43,6 +46,14 @@ struct MeasuredRun {
   Eigen::Index SamplesOf(std::size_t record) const;
   /// [s] since the start of the record of every sample.
   Eigen::VectorXd Time() const;
+  /// Samples first .. first + count - 1 of a sensor that were measured.
+  SampleMask MeasuredOf(Eigen::Index sensor, Eigen::Index first,
+                        Eigen::Index count) const;
+  /// Readings of a sensor that were measured, one after the other.
+  Eigen::VectorXd ReadingsOf(Eigen::Index sensor) const;
+  /// Ticks from one reading of a sensor to the next, usually: 1 but for sensors that are
+  /// slower than the control.
+  Eigen::Index PeriodOf(Eigen::Index sensor) const;
 };
 
 /// Some samples of a run, from the start of a record on.
