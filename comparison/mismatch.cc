@@ -181,6 +181,15 @@ ChannelMismatch MeasureMismatch(const Record& measured, const Record& simulated,
   result.worst = FindWorstWindow(
       in_time, step, measured.start_time() + static_cast<double>(skip) * step,
       WindowLength(options, step, count));
+  if (counted < count) {
+    const auto first =
+        skip + std::lround((result.worst.start - measured.start_time()) / step -
+                           static_cast<double>(skip));
+    const auto length = std::lround(result.worst.duration / step);
+    result.worst.rms *= std::sqrt(
+        static_cast<double>(length) /
+        std::max(1.0, static_cast<double>(y.measured.segment(first, length).count())));
+  }
   // Between samples that were measured, on the average.
   const double share = static_cast<double>(counted) / static_cast<double>(count);
   result.spectrum = PowerSpectrum(error, step / share);

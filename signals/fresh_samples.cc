@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -44,6 +45,11 @@ class Quanta {
       const int decade = DecadeOf(levels[i].value);
       const auto [at, is_new] = smallest_.try_emplace(decade, step);
       if (!is_new) at->second = std::min(at->second, step);
+    }
+    // Where larger values have small steps, smaller ones do, that only pass by.
+    double smallest = std::numeric_limits<double>::infinity();
+    for (auto at = smallest_.rbegin(); at != smallest_.rend(); ++at) {
+      at->second = smallest = std::min(smallest, at->second);
     }
   }
   double At(double value) const {

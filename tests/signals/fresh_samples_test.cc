@@ -22,7 +22,7 @@ VectorXd Motion() {
   return Times().unaryExpr([](double t) {
     const double since = std::max(0.0, t < 2.0 ? t - 0.3 : t - 0.7);
     const double until = t < 2.0 ? std::min(since, 1.3) : since;
-    return 1.0 - std::cos(6.0 * until);
+    return 1.0 - std::cos(20.0 * until);
   });
 }
 
@@ -76,9 +76,9 @@ TEST(FreshSamples, AreNotTheRepeatsOfAReadingInMotion) {
 }
 
 TEST(FreshSamples, AreTheFirstOnesOfASlowSensorAlsoAtRest) {
-  VectorXd slow = Coarse(Motion());
-  for (Index k = 0; k < kSamples; ++k)
-    slow[k] = slow[k - (k + 2) % 5 + (k < 3 ? k : 0)];
+  const VectorXd x = Coarse(Motion());
+  VectorXd slow = x;
+  for (Index k = 3; k < kSamples; ++k) slow[k] = x[k - (k - 3) % 5];
   const FreshSamples found = FindFreshSamples(Times(), slow, {kStep, 0.0});
   EXPECT_EQ(found.period, 5);
   ASSERT_EQ(found.fresh.size(), kSamples);
