@@ -192,7 +192,11 @@ double Discoverer::Completeness() const {
       search_.fit().train <= kFarAboveNoise && work_->left_out().empty();
   if (search_.significant_rest && !is_known) return 0.0;
   Eigen::ArrayXX<bool> measured;
-  if (!measurements_.unseen.empty()) measured = RunOf(measurements_.unseen).measured;
+  if (!measurements_.unseen.empty()) {
+    MeasuredRun unseen = RunOf(measurements_.unseen);
+    unseen.Discount(problem_.skip());
+    measured = unseen.Counted();
+  }
   return ProbabilityOfNoise(NoiseValue(problem_, search_.fit().residual,
                                        search_.evidence.Replayed(), measured));
 }

@@ -58,13 +58,12 @@ class Bridging {
   VectorXd BesideOwn(const VectorXd& times, const VectorXd& own,
                      const SampleMask& valid) const {
     VectorXd filled = Resample(times_, samples_, grid_, course_);
-    const bool holds = course_ == Course::kHeld || course_ == Course::kSwitched;
     Index next = 0;
     for (Index k = 0; k < own.size(); ++k) {
       if (valid[k]) {
         filled[k] = own[k];
         ++next;
-      } else if (holds || !IsBetween(next)) {
+      } else if (course_ != Course::kSmooth || !IsBetween(next)) {
         filled[k] = Across(next - 1, next, times[k]);
       }
     }
@@ -81,9 +80,7 @@ class Bridging {
   double Across(Index before, Index next, double time) const {
     if (before < 0) return samples_[0];
     if (next >= samples_.size()) return samples_[samples_.size() - 1];
-    if (course_ == Course::kHeld || course_ == Course::kSwitched) {
-      return samples_[before];
-    }
+    if (course_ == Course::kSwitched) return samples_[before];
     const double share = (time - times_[before]) / (times_[next] - times_[before]);
     return samples_[before] + share * (samples_[next] - samples_[before]);
   }

@@ -8,7 +8,8 @@
 //                               apart than 2.5 usual intervals (one is missing), or on one;
 //                               of a channel slower than the grid only the nearest one to
 //                               every sample of the file
-// The others go straight from the one before to the next one, or keep what is held.
+// The others go straight from the one before to the next one, but for switches: of a
+// command, too, that is the better guess than that it waited.
 
 #include <Eigen/Core>
 

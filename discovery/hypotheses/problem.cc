@@ -103,7 +103,12 @@ DiscoveryProblem::DiscoveryProblem(Machine machine, Observer observer, MeasuredR
       run_(std::make_shared<MeasuredRun>(std::move(run))),
       skip_(skip),
       train_(train),
-      derived_(std::make_shared<Derived>()) {}
+      derived_(std::make_shared<Derived>()) {
+  if (run_->driven.size() == 0) return;
+  MeasuredRun discounted = *run_;
+  discounted.Discount(skip_);
+  run_ = std::make_shared<MeasuredRun>(std::move(discounted));
+}
 
 const Track& DiscoveryProblem::Nominal() const& {
   std::call_once(derived_->nominal_once, [this] {
@@ -138,6 +143,9 @@ VectorXd DiscoveryProblem::Scaled(const Track& track) const {
     const Index first = run_->records[i].sample;
     scaled.middleCols(first, std::min(skip_, run_->SamplesOf(i))).setZero();
   }
+  if (run_->Counted().size() > 0) {
+    scaled = run_->Counted().select(scaled.array(), 0.0).matrix().eval();
+  }
   VectorXd stacked = Eigen::Map<const VectorXd>(scaled.data(), scaled.size());
   if (shift_ && !free_errors_) stacked += *shift_;
   return stacked;
@@ -161,8 +169,8 @@ std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
 }
 
 VectorXd DiscoveryProblem::Measured(Index first, Index last) const {
-  if (run_->measured.size() == 0) return {};
-  const auto counts = run_->measured.middleCols(first, last - first).rowwise().count();
+  if (run_->Counted().size() == 0) return {};
+  const auto counts = run_->Counted().middleCols(first, last - first).rowwise().count();
   return counts.cast<double>().matrix();
 }
 
@@ -178,8 +186,8 @@ VectorXd DiscoveryProblem::MeasuredOf(const VectorXd& residual, Index sensor,
   const Eigen::Map<const Eigen::MatrixXd> e(residual.data(), channels,
                                             residual.size() / channels);
   const VectorXd all = e.row(sensor).segment(first, last - first);
-  if (run_->measured.size() == 0) return all;
-  return Kept(all, run_->MeasuredOf(sensor, first, last - first));
+  if (run_->Counted().size() == 0) return all;
+  return Kept(all, run_->CountedOf(sensor, first, last - first));
 }
 
 double DiscoveryProblem::FittedDuration() const {
@@ -392,7 +400,7 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
     const double of_record = NoiseLevel(run.ReadingsOf(i));
     const double of_innovations =
         innovations.size() > 0
-            ? NoiseLevel(Kept(innovations.row(i), run.MeasuredOf(i, 0, run.samples())))
+            ? NoiseLevel(Kept(innovations.row(i), run.CountedOf(i, 0, run.samples())))
             : of_record;
     sd[i] =
         std::max(std::min(of_record, of_innovations),

@@ -49,7 +49,8 @@ class DiscoveryProblem {
   const MeasuredRun& run() const { return *run_; }
   Eigen::Index skip() const { return skip_; }
   Eigen::Index train() const { return train_; }
-  /// How many of samples first .. last - 1 of every sensor were measured, ny; empty: all.
+  /// How many of samples first .. last - 1 of every sensor were measured and count, ny;
+  /// empty: all.
   Eigen::VectorXd Measured(Eigen::Index first, Eigen::Index last) const;
   /// Of all sensors together.
   double MeasuredValues(Eigen::Index first, Eigen::Index last) const;

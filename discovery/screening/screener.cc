@@ -109,10 +109,10 @@ std::size_t Screener::Slow(const Sweep& sweep) const {
 MatrixXd Screener::Fast(const Trial& trial, const Candidate& candidate) const {
   MatrixXd seen = dynamics_.weight()[candidate.channel] *
                   trial.signals.middleRows(block_ * skip_, block_ * blocks_);
-  if (problem_.run().measured.size() > 0) {
-    const SampleMask measured =
-        problem_.run().MeasuredOf(candidate.channel, block_ * skip_, block_ * blocks_);
-    seen.array().colwise() *= measured.cast<double>();
+  if (problem_.run().Counted().size() > 0) {
+    const SampleMask counted =
+        problem_.run().CountedOf(candidate.channel, block_ * skip_, block_ * blocks_);
+    seen.array().colwise() *= counted.cast<double>();
   }
   return seen;
 }

@@ -24,15 +24,16 @@ void ErrorDynamics::Begin() {
   last.L.setZero();
 }
 
-void ErrorDynamics::Add(const TickTangent& tick, const SampleMask& measured) {
+void ErrorDynamics::Add(const TickTangent& tick, const SampleMask& measured,
+                        const SampleMask& counted) {
   if (measured.size() == 0 || measured.all()) {
     Add(tick.A - LC_, tick.B, L_);
   } else {
     const MatrixXd pull = L_ * measured.cast<double>().matrix().asDiagonal();
     const MatrixXd C = weight_.cwiseInverse().asDiagonal() * C_;
     Add(tick.A - pull * C, tick.B, pull);
-    Miss(measured);
   }
+  Miss(counted.size() > 0 ? counted : measured);
   if (++in_open_ < block_) return;
   blocks_.push_back(std::move(open_));
   in_open_ = 0;
@@ -48,9 +49,10 @@ void ErrorDynamics::Add(const MatrixXd& F, const MatrixXd& B, const MatrixXd& L)
   }
 }
 
-void ErrorDynamics::Miss(const SampleMask& measured) {
-  if (open_.seen.size() == 0) open_.seen = VectorXd::Ones(measured.size());
-  open_.seen -= (1.0 - measured.cast<double>()).matrix() / static_cast<double>(block_);
+void ErrorDynamics::Miss(const SampleMask& counted) {
+  if (counted.size() == 0 || counted.all()) return;
+  if (open_.seen.size() == 0) open_.seen = VectorXd::Ones(counted.size());
+  open_.seen -= (1.0 - counted.cast<double>()).matrix() / static_cast<double>(block_);
 }
 
 // The mean over a block is that of its ends, x and next, whose sum it is applied to.

@@ -99,10 +99,20 @@ class LackingRecord : public ::testing::Test {
     EXPECT_THAT(compared["notes"].dump(), HasSubstr(note));
     EXPECT_NEAR(compared["channels"]["x"]["rms"], whole["rms"],
                 0.02 * whole["rms"].get<double>());
-    for (const char* command : {"diagnose", "calibrate"}) {
-      EXPECT_THAT(Ask(command, name)["notes"].dump(), HasSubstr(note)) << command;
+    const json diagnosed = Ask("diagnose", name);
+    EXPECT_THAT(diagnosed["notes"].dump(), HasSubstr(note));
+    EXPECT_EQ(diagnosed["detected"], Ask("diagnose", "whole.csv")["detected"]);
+    const json calibrated = Ask("calibrate", name);
+    EXPECT_THAT(calibrated["notes"].dump(), HasSubstr(note));
+    const json numbers = Ask("calibrate", "whole.csv")["numbers"];
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const json& number = calibrated["numbers"][i];
+      EXPECT_EQ(number["name"], numbers[i]["name"]);
+      EXPECT_NEAR(number["factor"], numbers[i]["factor"],
+                  2.0 * numbers[i]["sd"].get<double>())
+          << number["name"];
     }
-    const json found = Ask("discover", name, " --only stiffness --budget 20");
+    const json found = Ask("discover", name);
     EXPECT_THAT(found["notes"].dump(), HasSubstr(note));
     ASSERT_FALSE(found["causes"].empty());
     EXPECT_EQ(found["causes"][0]["effect"], "cubic_stiffness");

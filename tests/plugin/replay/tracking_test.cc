@@ -80,6 +80,22 @@ TEST(FollowRun, IsBitwiseTheSameWhereAllOfItWasMeasured) {
   EXPECT_EQ(replay.Follow({}).innovations, innovations);
 }
 
+// Behind inputs that are a guess it is pulled back, and nothing counts before it is.
+TEST(FollowRun, CountsNothingBehindInputsThatAreAGuess) {
+  test::Replay replay = Measured({});
+  const Index n = replay.run.samples();
+  replay.run = Without(replay.run, 1000, 50);
+  replay.run.inputs.middleCols(1000, 50).array() += 5.0;
+  const double strayed = replay.Follow({}).innovations.cwiseAbs().maxCoeff();
+  replay.run.driven.setConstant(n, true);
+  replay.run.driven.segment(1000, 50) = false;
+  replay.run.Discount(700);
+  EXPECT_EQ(replay.run.counted.count(), n - 750);
+  const MatrixXd counted = replay.Follow({}).innovations;
+  EXPECT_LT(counted.cwiseAbs().maxCoeff(), 0.02 * strayed);
+  EXPECT_EQ(counted.middleCols(1000, 750).cwiseAbs().maxCoeff(), 0.0);
+}
+
 TEST(MeasuredRun, KnowsWhatOfSeveralRecordsWasMeasured) {
   const MeasuredRun whole = Measured({}).run;
   const Index n = whole.samples();
