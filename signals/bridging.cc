@@ -13,7 +13,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kSlow = 1.5;  // ticks, from which on a channel is slower than the grid
-constexpr double kSameTime = 0.01;  // tick
+constexpr double kOneMissing = 1.5;  // usual intervals, from which on a sample is
+constexpr double kSameTime = 0.01;   // tick
 
 VectorXd IntervalsOf(const VectorXd& times) {
   const Index last = times.size() - 1;
@@ -48,7 +49,9 @@ class Bridging {
       const bool nearest =
           usual_ <= kSlow * tick || std::min(to_before, to_next) <= 0.5 * tick;
       bridged.measured[k] = between && nearest;
-      if (!between) bridged.samples[k] = Across(before, next, time);
+      const bool held =
+          course_ == Course::kHeld && to_before + to_next > kOneMissing * usual_;
+      if (!between || held) bridged.samples[k] = Across(before, next, time);
     }
     if (bridged.measured.all()) bridged.measured.resize(0);
     return bridged;

@@ -80,6 +80,7 @@ TEST(MeasuredColumns, KeepTheGapsOfMissingRows) {
   EXPECT_FALSE(measured[300] || measured[307]);
   EXPECT_TRUE(measured[299] && measured[308] && measured[700]);
   ExpectTrue(file.record, 1e-6);
+  EXPECT_NEAR(file.record.At("u").samples[700], 700.0 / (kSamples - 1), 1e-9);
   EXPECT_THAT(file.notes, ElementsAre(HasSubstr("9 samples are missing"),
                                       HasSubstr("1 gap of 9.00 ms at 299 ms: the model "
                                                 "runs on there")));
