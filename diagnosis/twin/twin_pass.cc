@@ -27,7 +27,8 @@ TwinPass::TwinPass(std::unique_ptr<Twin> twin)
   theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
   reading_ = innovation_ = sum_ = VectorXd::Zero(twin_->outputs());
   covariance_ = twin_->gains().front().covariance;
-  share_ = VectorXd::Ones(twin_->outputs());
+  pull_by_ = since_ = VectorXd::Zero(twin_->outputs());
+  share_ = spacing_ = VectorXd::Ones(twin_->outputs());
   psi_ = MatrixXd::Zero(twin_->outputs(), twin_->unknowns());
 }
 
@@ -85,6 +86,8 @@ void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
   softer_at_ = start.origin;
   sum_.setZero();
   share_.setOnes();
+  since_.setZero();
+  spacing_.setOnes();
   complete_ = true;
   in_block_ = blocks_ = 0;
   squares_ = worst_block_ = worst_stretch_ = 0.0;
@@ -99,13 +102,7 @@ void TwinPass::StartInState() noexcept {
 bool TwinPass::Step(const KeptReadings& run) noexcept {
   twin_->Predict(reading_);
   innovation_ = run.outputs(seen_) - reading_;
-  for (Index i = 0; i < innovation_.size(); ++i) {
-    if (!std::isnan(run.outputs(seen_)[i])) continue;
-    innovation_[i] = 0.0;
-    share_[i] -= 1.0 / static_cast<double>(twin_->block());
-    complete_ = false;
-  }
-  twin_->Step(run.inputs(seen_), innovation_);
+  twin_->Step(run.inputs(seen_), Pull(run));
   ++seen_;
   sum_ += innovation_;
   if (++in_block_ < twin_->block()) return false;
@@ -129,6 +126,22 @@ bool TwinPass::Step(const KeptReadings& run) noexcept {
     softer_at_ = seen_ + twin_->gains()[pull_].settling;
   }
   return counts;
+}
+
+const VectorXd& TwinPass::Pull(const KeptReadings& run) noexcept {
+  for (Index i = 0; i < innovation_.size(); ++i) {
+    since_[i] += 1.0;
+    if (std::isnan(run.outputs(seen_)[i])) {
+      innovation_[i] = pull_by_[i] = 0.0;
+      share_[i] -= 1.0 / static_cast<double>(twin_->block());
+      complete_ = false;
+      continue;
+    }
+    pull_by_[i] = std::min(since_[i], spacing_[i]) * innovation_[i];
+    spacing_[i] = since_[i];
+    since_[i] = 0.0;
+  }
+  return pull_by_;
 }
 
 void TwinPass::Settle() noexcept {

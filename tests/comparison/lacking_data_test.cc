@@ -96,12 +96,16 @@ std::vector<Defect> Defects() {
        [](Columns& c, const std::string& q) {
          std::mt19937_64 random(4);
          std::uniform_real_distribution<double> share(0.0, 0.3);
-         const VectorXd x = c[q];
+         const Columns whole = c;
          const double tick = c.time[1] - c.time[0];
-         for (Index k = 1; k < x.size(); ++k) {
+         for (Index k = 1; k < c.time.size(); ++k) {
            const double early = share(random);
            c.time[k] -= early * tick;
-           c[q][k] -= early * (x[k] - x[k - 1]);
+           for (std::size_t i = 0; i < c.channels.size(); ++i) {
+             const auto& [name, unit, x, measured] = whole.channels[i];
+             if (name != q && name != q + "_ref") continue;  // inputs are held
+             c.channels[i].samples[k] -= early * (x[k] - x[k - 1]);
+           }
          }
        }},
   };
