@@ -413,10 +413,10 @@ DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
                              double train_share, double bandwidth) {
   const double longest = run.Time().maxCoeff();
   // A tenth of the rate of the slowest sensor at most.
-  const double fastest =
-      0.1 * machine.rates().control / static_cast<double>(LongestPeriod(run));
-  const double hertz = bandwidth > 0.0 ? std::min(bandwidth, fastest)
-                                       : std::min(kPeriods / longest, fastest);
+  const Index period = LongestPeriod(run);
+  const double fastest = 0.1 * machine.rates().control / static_cast<double>(period);
+  double hertz = bandwidth > 0.0 ? bandwidth : std::min(kPeriods / longest, fastest);
+  if (period > 1) hertz = std::min(hertz, fastest);
   const auto design = [&](const Eigen::MatrixXd& innovations) {
     return AtPeriods(
         DesignObserver(machine.linear(), machine.plant().opt.timestep,
