@@ -28,12 +28,15 @@ Record DeriveChannels(const Record& record, const std::vector<std::string>& posi
     const Eigen::VectorXd velocity =
         CentralDifference(LowPassed(position.samples, step, compare), step);
     const Eigen::VectorXd acceleration = CentralDifference(velocity, step);
-    derived.Add({name + "_velocity", position.unit + "/s", velocity});
-    derived.Add({name + "_acceleration", position.unit + "/s^2", acceleration});
+    derived.Add(
+        {name + "_velocity", position.unit + "/s", velocity, position.measured});
+    derived.Add({name + "_acceleration", position.unit + "/s^2", acceleration,
+                 position.measured});
   }
   for (const CompareSetup::Derived& force : compare.forces) {
     if (const Channel* actuator = record.Find(force.channel)) {
-      derived.Add({force.name, force.unit, force.factor * actuator->samples});
+      derived.Add({force.name, force.unit, force.factor * actuator->samples,
+                   actuator->measured});
     }
   }
   return derived;
@@ -44,10 +47,9 @@ std::vector<DerivedMismatch> MeasureDerived(const Record& measured,
                                             Eigen::Index skip) {
   std::vector<DerivedMismatch> result;
   for (const Channel& y : measured.channels()) {
-    const Eigen::VectorXd& yhat = simulated.At(y.name).samples;
-    const Eigen::VectorXd error = (y.samples - yhat).tail(y.samples.size() - skip);
-    result.push_back(
-        {y.name, y.unit, Rms(error), RelativeErrorPercent(y.samples, yhat, skip)});
+    const Channel& yhat = simulated.At(y.name);
+    result.push_back({y.name, y.unit, Rms(MismatchOf(y, yhat, skip)),
+                      RelativeErrorPercent(y, yhat, skip)});
   }
   return result;
 }

@@ -45,6 +45,13 @@ Eigen::Index WindowLength(const MismatchOptions& options, double sample_time,
   return std::clamp(length, std::min(kShortestWindow, samples), samples);
 }
 
+/// Empty: all after the first `skip`.
+SampleMask CountedAfter(const Channel& measured, Eigen::Index skip) {
+  SampleMask counts = measured.measured;
+  if (counts.size() > 0) counts.head(skip) = false;
+  return counts;
+}
+
 double AnotherDrawTail(double rms, const std::vector<double>& draws) {
   if (draws.size() < 3) return 0.0;
   const Eigen::ArrayXd logs =
@@ -89,6 +96,30 @@ double FitPercent(const Eigen::VectorXd& measured, const Eigen::VectorXd& simula
   return 100.0 * (1.0 - error / spread);
 }
 
+double RelativeErrorPercent(const Channel& measured, const Channel& simulated,
+                            Eigen::Index skip) {
+  const SampleMask counts = CountedAfter(measured, skip);
+  if (counts.size() == 0) {
+    return RelativeErrorPercent(measured.samples, simulated.samples, skip);
+  }
+  return RelativeErrorPercent(Kept(measured.samples, counts),
+                              Kept(simulated.samples, counts), 0);
+}
+
+double FitPercent(const Channel& measured, const Channel& simulated,
+                  Eigen::Index skip) {
+  const SampleMask counts = CountedAfter(measured, skip);
+  if (counts.size() == 0) return FitPercent(measured.samples, simulated.samples, skip);
+  return FitPercent(Kept(measured.samples, counts), Kept(simulated.samples, counts), 0);
+}
+
+Eigen::VectorXd MismatchOf(const Channel& measured, const Channel& simulated,
+                           Eigen::Index skip) {
+  const SampleMask counts = CountedAfter(measured, skip);
+  if (counts.size() > 0) return Kept(measured.samples - simulated.samples, counts);
+  return (measured.samples - simulated.samples).tail(measured.samples.size() - skip);
+}
+
 WorstWindow FindWorstWindow(const Eigen::VectorXd& mismatch, double sample_time,
                             double start_time, Eigen::Index length) {
   double energy = mismatch.head(length).squaredNorm();
@@ -127,22 +158,44 @@ ChannelMismatch MeasureMismatch(const Record& measured, const Record& simulated,
   const Channel& yhat = simulated.At(name);
   const double step = measured.sample_time();
   const Eigen::Index count = measured.samples() - skip;
-  const Eigen::VectorXd error = (y.samples - yhat.samples).tail(count);
+  const Eigen::VectorXd error = MismatchOf(y, yhat, skip);
+  const Eigen::Index counted = error.size();
+  if (counted < 2) {
+    throw InputError("comparison",
+                     "'" + name + "' was measured at " + std::to_string(counted) +
+                         " of the samples that count",
+                     "at least two to compare");
+  }
+  // Along time, nothing is wrong where nothing was measured.
+  Eigen::VectorXd in_time = (y.samples - yhat.samples).tail(count);
+  if (counted < count) in_time = y.measured.tail(count).select(in_time, 0.0);
 
   ChannelMismatch result;
   result.name = name;
   result.unit = y.unit;
   result.rms = Rms(error);
   result.mae = error.cwiseAbs().mean();
-  result.fit_percent = FitPercent(y.samples, yhat.samples, skip);
+  result.fit_percent = FitPercent(y, yhat, skip);
   result.peak = error.cwiseAbs().maxCoeff();
-  result.relative_error_percent = RelativeErrorPercent(y.samples, yhat.samples, skip);
+  result.relative_error_percent = RelativeErrorPercent(y, yhat, skip);
   result.worst = FindWorstWindow(
-      error, step, measured.start_time() + static_cast<double>(skip) * step,
+      in_time, step, measured.start_time() + static_cast<double>(skip) * step,
       WindowLength(options, step, count));
-  result.spectrum = PowerSpectrum(error, step);
+  if (counted < count) {
+    const auto first =
+        skip + std::lround((result.worst.start - measured.start_time()) / step -
+                           static_cast<double>(skip));
+    const auto length = std::lround(result.worst.duration / step);
+    result.worst.rms *= std::sqrt(
+        static_cast<double>(length) /
+        std::max(1.0, static_cast<double>(y.measured.segment(first, length).count())));
+  }
+  // Between samples that were measured, on the average.
+  const double share = static_cast<double>(counted) / static_cast<double>(count);
+  result.spectrum = PowerSpectrum(error, step / share);
   result.noise_floor = floor;
-  result.p_value = NoiseProbability(result.rms, floor);
+  result.noise_floor.mismatch_freedom *= share;
+  result.p_value = NoiseProbability(result.rms, result.noise_floor);
   result.exceeds_noise = result.p_value < options.level;
   return result;
 }

@@ -10,8 +10,8 @@
 //   relative error  100 ||y - yhat|| / ||y|| [%], as Janot, Gautier and Brunot compute
 //                   it for EMPS ("Data Set and Reference Models of EMPS", 2019)
 //
-// The first skip_samples, in which the unknown initial state still shows, are left out
-// of every figure.
+// The first skip_samples, in which the unknown initial state still shows, and samples at
+// which y was not measured are left out of every figure.
 //
 // Is there anything but noise? Under the null hypothesis e is the noise whose rms the
 // floor estimates, and F = mean(e^2) / floor^2 is F distributed with the floor's two
@@ -85,6 +85,14 @@ double RelativeErrorPercent(const Eigen::VectorXd& measured,
 /// `skip` samples [%]. 100 if both norms are zero, minus infinity if only the second is.
 double FitPercent(const Eigen::VectorXd& measured, const Eigen::VectorXd& simulated,
                   Eigen::Index skip);
+
+/// The same of the samples that count, and e there: after the first `skip`, where
+/// `measured` was measured.
+double RelativeErrorPercent(const Channel& measured, const Channel& simulated,
+                            Eigen::Index skip);
+double FitPercent(const Channel& measured, const Channel& simulated, Eigen::Index skip);
+Eigen::VectorXd MismatchOf(const Channel& measured, const Channel& simulated,
+                           Eigen::Index skip);
 
 /// The window of `length` samples with the largest rms of `mismatch`, which is sampled
 /// at start_time + k * sample_time.

@@ -81,7 +81,7 @@ Eigen::VectorXd MeasuredNoise(const Channels& channels, const Record& measured) 
     const SensorSetup& sensor = channels.sensors[static_cast<std::size_t>(i)];
     const Channel* channel = measured.Find(sensor.channel);
     sd[i] = channel == nullptr ? sensor.noise_sd
-                               : std::max(NoiseLevel(channel->samples),
+                               : std::max(NoiseLevel(channel->Measured()),
                                           sensor.resolution / std::sqrt(12.0));
   }
   return sd;

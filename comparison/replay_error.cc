@@ -39,9 +39,8 @@ std::map<std::string, double> ReplayErrors(const Machine& machine,
   const auto add = [&](const std::string& channel) {
     const Channel* before = measured.Find(channel);
     if (before == nullptr) return;
-    errors[channel] =
-        RelativeErrorPercent(before->samples, simulated.At(channel).samples,
-                             machine.setup().compare.skip_samples);
+    errors[channel] = RelativeErrorPercent(*before, simulated.At(channel),
+                                           machine.setup().compare.skip_samples);
   };
   for (const SensorSetup& sensor : machine.channels().sensors) add(sensor.channel);
   if (!machine.setup().control.axes.empty()) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "mjdiag/signals/bridging.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -27,7 +28,20 @@ void Feed(Watcher& watcher, const DiagnosisDesign& design, const Record& record)
   }
   const Eigen::MatrixXd y = SamplesOf(record, design.outputs);
   const Eigen::MatrixXd u = SamplesOf(record, design.inputs);
-  for (Index k = 0; k < record.samples(); ++k) watcher.Add(Tick(y, k), Tick(u, k));
+  const Eigen::ArrayXX<bool> measured = MeasuredOf(record, design.outputs);
+  if (measured.size() == 0) {
+    for (Index k = 0; k < record.samples(); ++k) watcher.Add(Tick(y, k), Tick(u, k));
+    return;
+  }
+  SampleMask gap = SampleMask::Constant(record.samples(), false);
+  for (Index i = 0; i < measured.rows(); ++i) {
+    gap = gap || InGaps(measured.row(i).transpose());
+  }
+  for (Index k = 0; k < record.samples(); ++k) {
+    watcher.Add(Tick(y, k), Tick(u, k),
+                {measured.col(k).data(), static_cast<std::size_t>(measured.rows())},
+                gap[k]);
+  }
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ struct DiagnosisRecording {
     monitor.Add(outputs, inputs);
     recorder.Add(monitor);
   }
+  void Add(std::span<const double> outputs, std::span<const double> inputs,
+           std::span<const bool> measured, bool gap) noexcept {
+    monitor.Add(outputs, inputs, measured, gap);
+    recorder.Add(monitor);
+  }
 
   /// At the end of a run (DiagnosisMonitor::Finish).
   void Finish() noexcept {
@@ -34,7 +39,8 @@ struct DiagnosisRecording {
   MonitorRecorder recorder;
 };
 
-/// Feeds the record of a run to a monitor, sample by sample, and finishes. InputError
+/// Feeds the record of a run to a monitor, sample by sample, and finishes. What was not
+/// measured is not judged. InputError
 /// if a channel is missing or the record is sampled at another rate than the filters.
 void Run(DiagnosisMonitor& monitor, const Record& record);
 void Run(DiagnosisRecording& recording, const Record& record);

@@ -73,6 +73,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, MatrixXd basel
                  ForgettingFactor(design), true),
       settling_away_(SettlingSamples(design.bank.filters, kSettled)),
       z_(VectorXd::Zero(design.bank.filters.inputs())),
+      readings_(design.outputs.size()),
       residuals_(VectorXd::Zero(design.bank.residuals)),
       regressors_(MatrixXd::Zero(design.faults(), design.bank.residuals)),
       waveforms_(MatrixXd::Zero(static_cast<Index>(design.inputs.size()),
@@ -117,13 +118,29 @@ void DiagnosisMonitor::Start() noexcept {
       // leaves a transient, which has to die before anything is judged.
       filters_.Settle(z_);
       disturbance_filter_.Settle(z_);
-      settling_ = settling_away_;
+      settling_ = std::max(settling_, settling_away_);
       return;
     }
   }
 }
 
 void DiagnosisMonitor::Add(std::span<const double> outputs,
+                           std::span<const double> inputs) noexcept {
+  Add(outputs, outputs, inputs);
+}
+
+void DiagnosisMonitor::Add(std::span<const double> outputs,
+                           std::span<const double> inputs,
+                           std::span<const bool> measured, bool gap) noexcept {
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    readings_[i] = measured[i] ? outputs[i] : std::numeric_limits<double>::quiet_NaN();
+  }
+  if (gap) settling_ = std::max(settling_, samples_ + 1 + settling_away_);
+  Add(outputs, readings_, inputs);
+}
+
+void DiagnosisMonitor::Add(std::span<const double> outputs,
+                           std::span<const double> readings,
                            std::span<const double> inputs) noexcept {
   const Index ny = design_.offset.size();
   for (Index i = 0; i < ny; ++i) {
@@ -144,7 +161,7 @@ void DiagnosisMonitor::Add(std::span<const double> outputs,
   Detect();
   regressed_ = samples_ >= std::max(settling_, first_regressed_) &&
                samples_ % design_.decimation == 0;
-  if (twin_ && samples_ >= first_regressed_) twin_->Add(outputs, inputs);
+  if (twin_ && samples_ >= first_regressed_) twin_->Add(readings, inputs);
   if (regressed_) Regress();
   ++samples_;
 }

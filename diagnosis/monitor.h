@@ -38,6 +38,13 @@ class DiagnosisMonitor {
   /// @param outputs  readings y, ny
   /// @param inputs   commands u, nu
   void Add(std::span<const double> outputs, std::span<const double> inputs) noexcept;
+  /// The same where not all readings were measured: the twin does without the others, the
+  /// filters get what bridges them.
+  /// @param measured  which were, ny
+  /// @param gap       whether what bridges them is too far from any that was: nothing is
+  ///                  judged then, nor before the filters have forgotten it
+  void Add(std::span<const double> outputs, std::span<const double> inputs,
+           std::span<const bool> measured, bool gap) noexcept;
 
   /// Samples before this one are filtered but not regressed: the horizon of Eq. 25.
   void RegressFrom(Eigen::Index sample) { first_regressed_ = sample; }
@@ -75,6 +82,9 @@ class DiagnosisMonitor {
 
  private:
   void Start() noexcept;
+  /// @param readings  NaN where they were not measured
+  void Add(std::span<const double> bridged, std::span<const double> readings,
+           std::span<const double> inputs) noexcept;
   /// What a unit of every fault would leave in the residuals.
   void MakeRegressors(const Eigen::VectorXd& filtered) noexcept;
   void Detect() noexcept;
@@ -95,6 +105,7 @@ class DiagnosisMonitor {
   Eigen::Index first_detection_ = -1;
   Eigen::Index first_lasting_ = -1;
   Eigen::VectorXd z_;
+  std::vector<double> readings_;
   Eigen::VectorXd residuals_;
   Eigen::MatrixXd regressors_;  // nf x n
   Eigen::MatrixXd waveforms_;   // nu x disturbances

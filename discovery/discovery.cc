@@ -45,8 +45,8 @@ DiscoveryProblem Discoverer::Pose(double bandwidth) const {
 }
 
 void Discoverer::MeasureNominal() {
-  nominal_ = MeanSquare(problem_.Residual({}), problem_.run().outputs.rows(),
-                        problem_.skip(), problem_.train());
+  nominal_ =
+      MeanSquare(problem_, problem_.Residual({}), problem_.skip(), problem_.train());
 }
 
 /// The work that is counted knows nothing of it.
@@ -206,8 +206,14 @@ void Discoverer::SearchAll() {
 }
 
 double Discoverer::ProbabilityThatNoiseIsLeft() const {
-  return ProbabilityOfNoise(
-      NoiseValue(problem_, search_.fit().residual, search_.evidence.Replayed()));
+  Eigen::ArrayXX<bool> measured;
+  if (!measurements_.unseen.empty()) {
+    MeasuredRun unseen = RunOf(measurements_.unseen);
+    unseen.Discount(problem_.skip());
+    measured = unseen.Counted();
+  }
+  return ProbabilityOfNoise(NoiseValue(problem_, search_.fit().residual,
+                                       search_.evidence.Replayed(), measured));
 }
 
 double Discoverer::Completeness() const {

@@ -161,7 +161,7 @@ void Discoverer::NameNumbers(const MatrixXd& covariance) {
 void Discoverer::AddNoiseCauses(const MatrixXd& innovations) {
   for (const RaisedNoise& raised :
        FindRaisedNoise(machine_.setup(), problem_.observer(), innovations,
-                       discovery_.train_share)) {
+                       discovery_.train_share, problem_.run().Counted())) {
     const Effect& noise = NoiseEffect();
     const Candidate candidate{
         .effect = Lasting(noise), .site = raised.element, .parameters = {}};

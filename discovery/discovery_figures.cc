@@ -37,11 +37,16 @@ std::map<std::string, double> MismatchRms(
   std::map<std::string, double> counts;
   for (const Comparison* comparison : comparisons) {
     for (const ChannelMismatch& channel : comparison->channels) {
-      const VectorXd difference = comparison->measured.At(channel.name).samples -
-                                  comparison->simulated.At(channel.name).samples;
+      const Channel& measured = comparison->measured.At(channel.name);
+      const VectorXd difference =
+          measured.samples - comparison->simulated.At(channel.name).samples;
       const Index n = samples > 0 ? samples : difference.size() - first;
-      squares[channel.name] += difference.segment(first, n).squaredNorm();
-      counts[channel.name] += static_cast<double>(n);
+      const VectorXd counted =
+          measured.measured.size() == 0
+              ? VectorXd(difference.segment(first, n))
+              : Kept(difference.segment(first, n), measured.measured.segment(first, n));
+      squares[channel.name] += counted.squaredNorm();
+      counts[channel.name] += static_cast<double>(counted.size());
     }
   }
   for (auto& [name, square] : squares) square = std::sqrt(square / counts[name]);
@@ -156,7 +161,6 @@ void Discoverer::AddLaws(const ObservedMotion& motion) {
 
 /// Every step behind the same observer, or they would not compare.
 void Discoverer::AddLadder() {
-  const Index channels = problem_.run().outputs.rows();
   std::vector<std::pair<std::string, Changes>> steps = {{"nothing", {}}};
   if (search_.numbers_alone.size() > 0) {
     steps.emplace_back("numbers of the plant",
@@ -187,11 +191,11 @@ void Discoverer::AddLadder() {
     if (number % replays == 0) {
       const VectorXd rest = problem_.Residual(changes);
       entry.train =
-          std::sqrt(MeanSquare(rest, channels, problem_.skip(), problem_.train()));
+          std::sqrt(MeanSquare(problem_, rest, problem_.skip(), problem_.train()));
       entry.held_out =
-          std::sqrt(unseen ? MeanSquare(unseen->Residual(changes), channels,
+          std::sqrt(unseen ? MeanSquare(*unseen, unseen->Residual(changes),
                                         unseen->skip(), unseen->run().samples())
-                           : MeanSquare(rest, channels, problem_.train(), samples));
+                           : MeanSquare(problem_, rest, problem_.train(), samples));
     } else if (number % replays == 1) {
       entry.error_percent = MeanReplayErrors(measurements_.fit, changes);
     } else {

@@ -29,9 +29,13 @@ Measurements ReadMeasurements(const Machine& nominal,
 
 Measurements MeasurementsOf(const Machine& machine, const Record& measured,
                             const Record* unseen) {
+  const auto made = [&](const Record& record) {
+    MeasuredFile file = WithoutRepeats(record, ReadingsOf(machine.setup()));
+    return MeasuredRecord{std::move(file.record), machine, "", std::move(file.notes)};
+  };
   Measurements measurements;
-  measurements.fit.push_back({measured, machine});
-  if (unseen != nullptr) measurements.unseen.push_back({*unseen, machine});
+  measurements.fit.push_back(made(measured));
+  if (unseen != nullptr) measurements.unseen.push_back(made(*unseen));
   return measurements;
 }
 

@@ -36,7 +36,8 @@ Measurements ReadMeasurements(const Machine& nominal,
                               const std::vector<std::string>& overrides,
                               const std::vector<ManifestRecord>& records);
 
-/// One record of a machine, and another that nothing is fitted to, or null.
+/// One record of a machine, and another that nothing is fitted to, or null. What of them
+/// was not measured is marked (measured_columns.h).
 Measurements MeasurementsOf(const Machine& machine, const Record& measured,
                             const Record* unseen);
 

@@ -1,5 +1,6 @@
 #include "mjdiag/discovery/record_replay.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -55,8 +56,10 @@ Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
         Simulate(machine.With(changes), Replay(machine.setup(), record), quiet);
     Eigen::Index row = 0;
     for (const SensorSetup& sensor : channels.sensors) {
-      errors.row(row++).segment(first[i], record.samples()) =
-          record.At(sensor.channel).samples - simulated.At(sensor.channel).samples;
+      const Channel& measured = record.At(sensor.channel);
+      Eigen::VectorXd error = measured.samples - simulated.At(sensor.channel).samples;
+      if (measured.measured.size() > 0) error = measured.measured.select(error, 0.0);
+      errors.row(row++).segment(first[i], record.samples()) = error;
     }
   });
   return errors;
@@ -72,8 +75,14 @@ double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& change
       const Eigen::Index skip = machine.setup().compare.skip_samples;
       const Eigen::Index n = record.samples() - skip;
       for (Eigen::Index i = 0; i < errors.rows(); ++i) {
+        const Channel& measured =
+            record.At(machine.channels().sensors[static_cast<std::size_t>(i)].channel);
+        const Eigen::Index count =
+            measured.measured.size() > 0
+                ? std::max<Eigen::Index>(1, measured.measured.tail(n).count())
+                : n;
         const double square = errors.row(i).segment(first + skip, n).squaredNorm() /
-                              static_cast<double>(n);
+                              static_cast<double>(count);
         sum += 0.5 * std::log1p(square / (noise_sd[i] * noise_sd[i]));
       }
       first += record.samples();

@@ -25,7 +25,7 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed);
 
 /// Measured less simulated of every sensor, one record after the other, sensors x
-/// samples. NumericalError where one diverges.
+/// samples; 0 where it was not measured. NumericalError where one diverges.
 Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
                            const Changes& changes);
 

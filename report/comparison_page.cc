@@ -126,6 +126,10 @@ void AddMismatchPlot(Page& page, const Comparison& comparison,
   // What the figures leave out must not set the scale of the axis either.
   mismatch.head(comparison.options.skip_samples)
       .setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (const SampleMask& counts = measured.At(channel.name).measured;
+      counts.size() > 0) {
+    mismatch = counts.select(mismatch, std::numeric_limits<double>::quiet_NaN());
+  }
   plot.curves = {{"measured - simulated", CurveRole::kMismatch, mismatch}};
   plot.bands = {WorstBand(channel)};
   const double floor = channel.noise_floor.rms;

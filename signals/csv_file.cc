@@ -1,6 +1,8 @@
 #include "mjdiag/signals/csv_file.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -121,6 +123,18 @@ std::optional<double> ParseCell(std::string_view cell) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
+/// Nothing, or what programs write for a number that there is not.
+bool IsMissing(std::string_view cell) {
+  constexpr std::array<std::string_view, 9> kNothing{
+      "", "nan", "na", "n/a", "null", "none", "-", "inf", "infinity"};
+  std::string text(TrimCell(Unquote(cell)));
+  std::ranges::transform(text, text.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  if (text.size() > 1 && (text.front() == '-' || text.front() == '+')) text.erase(0, 1);
+  return std::ranges::find(kNothing, text) != kNothing.end();
+}
+
 class CsvSource : public RecordSource {
  public:
   CsvSource(const std::filesystem::path& file, std::string text)
@@ -137,7 +151,8 @@ class CsvSource : public RecordSource {
 
   const std::vector<SourceColumn>& columns() const override { return columns_; }
 
-  std::vector<Eigen::VectorXd> Read(std::span<const std::size_t> chosen) override {
+  std::vector<Eigen::VectorXd> Read(std::span<const std::size_t> chosen,
+                                    MissingCells missing) override {
     const Index capacity = std::count(body_.begin(), body_.end(), '\n') + 1;
     std::vector<Eigen::VectorXd> values(chosen.size(), Eigen::VectorXd(capacity));
     std::vector<std::size_t> slots(columns_.size(), kNotChosen);
@@ -149,8 +164,12 @@ class CsvSource : public RecordSource {
     while (!rest.empty()) {
       const std::string_view line = TakeLine(rest, line_number);
       if (TrimCell(line).empty()) continue;
+      if (missing == MissingCells::kNan && IsBlank(rest) && !lines_.empty() &&
+          SplitCells(line, separator_).size() < columns_.size()) {
+        break;  // cut off while it was written
+      }
       lines_.push_back(line_number);
-      ReadRow(line, slots, values);
+      ReadRow(line, slots, missing, values);
     }
     for (Eigen::VectorXd& column : values) {
       column.conservativeResize(static_cast<Index>(lines_.size()));
@@ -187,14 +206,17 @@ class CsvSource : public RecordSource {
   }
 
   void ReadRow(std::string_view line, const std::vector<std::size_t>& slots,
-               std::vector<Eigen::VectorXd>& values) const {
+               MissingCells missing, std::vector<Eigen::VectorXd>& values) const {
     const auto row = static_cast<Index>(lines_.size()) - 1;
     std::string_view rest = line;
     std::size_t column = 0;
     for (; column < slots.size() && rest.data() != nullptr; ++column) {
       const std::string_view cell = TakeCell(rest, separator_);
       if (slots[column] == kNotChosen) continue;
-      const auto number = ParseCell(cell);
+      auto number = ParseCell(cell);
+      if (!number && missing == MissingCells::kNan && IsMissing(cell)) {
+        number = std::numeric_limits<double>::quiet_NaN();
+      }
       if (!number) {
         throw InputError(Place(column, row), "\"" + std::string(TrimCell(cell)) + "\"",
                          "a finite number");

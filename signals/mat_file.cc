@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -153,10 +154,11 @@ class MatSource : public RecordSource {
 
   const std::vector<SourceColumn>& columns() const override { return columns_; }
 
-  std::vector<Eigen::VectorXd> Read(std::span<const std::size_t> chosen) override {
+  std::vector<Eigen::VectorXd> Read(std::span<const std::size_t> chosen,
+                                    MissingCells missing) override {
     std::vector<Eigen::VectorXd> values;
     for (const std::size_t column : chosen) {
-      values.push_back(ReadVector(column));
+      values.push_back(ReadVector(column, missing));
       if (values.back().size() == values.front().size()) continue;
       throw InputError(Variable(column),
                        std::to_string(values.back().size()) + " samples",
@@ -210,7 +212,7 @@ class MatSource : public RecordSource {
     }
   }
 
-  Eigen::VectorXd ReadVector(std::size_t column) const {
+  Eigen::VectorXd ReadVector(std::size_t column, MissingCells missing) const {
     const VariablePtr variable(
         Mat_VarRead(file_.get(), columns_[column].header.c_str()));
     if (!variable) throw InputError(Variable(column), "cannot be read", "a vector");
@@ -220,10 +222,12 @@ class MatSource : public RecordSource {
     if (!variable->data) throw InputError(Variable(column), "has no data", "a vector");
     Eigen::VectorXd values = ToVector(*variable);
     for (Index k = 0; k < values.size(); ++k) {
-      if (!std::isfinite(values[k])) {
+      if (std::isfinite(values[k])) continue;
+      if (missing == MissingCells::kRefused) {
         throw InputError(Place(column, k), std::isnan(values[k]) ? "NaN" : "infinite",
                          "a finite number");
       }
+      values[k] = std::numeric_limits<double>::quiet_NaN();
     }
     return values;
   }

@@ -19,6 +19,8 @@ std::string ListNames(const std::vector<Channel>& channels) {
 
 }  // namespace
 
+Eigen::VectorXd Channel::Measured() const { return Kept(samples, measured); }
+
 Record::Record(double sample_time, double start_time)
     : sample_time_(sample_time), start_time_(start_time) {
   if (!(sample_time > 0.0) || !std::isfinite(sample_time)) {
@@ -59,6 +61,14 @@ void Record::Add(Channel channel) {
                          std::to_string(channel.samples.size()) + " samples",
                      std::to_string(samples()) + " as the other channels have");
   }
+  if (channel.measured.size() > 0 &&
+      channel.measured.size() != channel.samples.size()) {
+    throw InputError("record",
+                     "channel \"" + channel.name + "\" says of " +
+                         std::to_string(channel.measured.size()) +
+                         " samples whether they were measured",
+                     "of none or of all " + std::to_string(channel.samples.size()));
+  }
   channels_.push_back(std::move(channel));
 }
 
@@ -72,6 +82,9 @@ Record Record::Slice(Eigen::Index first, Eigen::Index count) const {
   Record slice(sample_time_, start_time_ + static_cast<double>(first) * sample_time_);
   for (const Channel& channel : channels_) {
     slice.Add({channel.name, channel.unit, channel.samples.segment(first, count)});
+    if (channel.measured.size() == 0) continue;
+    const SampleMask measured = channel.measured.segment(first, count);
+    if (!measured.all()) slice.channels_.back().measured = measured;
   }
   return slice;
 }
@@ -88,6 +101,31 @@ Eigen::MatrixXd SamplesOf(const Record& record, const std::vector<std::string>& 
     samples.row(i) = record.At(names[static_cast<std::size_t>(i)]).samples;
   }
   return samples;
+}
+
+Eigen::ArrayXX<bool> MeasuredOf(const Record& record,
+                                const std::vector<std::string>& names) {
+  Eigen::ArrayXX<bool> measured;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const SampleMask& of_channel = record.At(names[i]).measured;
+    if (of_channel.size() == 0) continue;
+    if (measured.size() == 0) {
+      measured.setConstant(static_cast<Eigen::Index>(names.size()), record.samples(),
+                           true);
+    }
+    measured.row(static_cast<Eigen::Index>(i)) = of_channel.transpose();
+  }
+  return measured;
+}
+
+Eigen::VectorXd Kept(const Eigen::VectorXd& values, const SampleMask& mask) {
+  if (mask.size() == 0) return values;
+  Eigen::VectorXd kept(mask.count());
+  Eigen::Index next = 0;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (mask[k]) kept[next++] = values[k];
+  }
+  return kept;
 }
 
 }  // namespace mjdiag

@@ -9,12 +9,22 @@
 
 namespace mjdiag {
 
+/// One of each sample; empty: true for all of them.
+using SampleMask = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
 /// One signal of a record. `unit` is the SI unit of `samples` ("m", "rad", "N", "N m",
 /// "A", "V", "m/s", ...; "1" for a pure number).
 struct Channel {
   std::string name;
   std::string unit;
   Eigen::VectorXd samples;
+  /// Which samples were measured. The others bridge those beside them, for what needs a
+  /// number at every tick, and say nothing: no figure and no estimate counts them.
+  SampleMask measured{};
+
+  bool IsMeasured(Eigen::Index k) const { return measured.size() == 0 || measured[k]; }
+  /// Those that were measured, without gaps between them.
+  Eigen::VectorXd Measured() const;
 };
 
 /// Channels sampled together at t_k = start_time + k * sample_time, k = 0 .. samples-1.
@@ -37,7 +47,8 @@ class Record {
   const Channel* Find(std::string_view name) const;
   /// The channel of that name; InputError that lists the existing ones without it.
   const Channel& At(std::string_view name) const;
-  /// Appends a channel. InputError on a repeated name or another length than the rest.
+  /// Appends a channel. InputError on a repeated name or another length than the rest, of
+  /// its mask, too.
   void Add(Channel channel);
   /// Samples first .. first+count-1 of every channel, with the matching start time.
   Record Slice(Eigen::Index first, Eigen::Index count) const;
@@ -52,5 +63,10 @@ class Record {
 
 /// Samples of the channels of these names, names x samples. InputError as Record::At.
 Eigen::MatrixXd SamplesOf(const Record& record, const std::vector<std::string>& names);
+/// Which of them were measured, names x samples; empty: all of them.
+Eigen::ArrayXX<bool> MeasuredOf(const Record& record,
+                                const std::vector<std::string>& names);
+/// The values where the mask is true, as many as there are.
+Eigen::VectorXd Kept(const Eigen::VectorXd& values, const SampleMask& mask);
 
 }  // namespace mjdiag

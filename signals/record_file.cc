@@ -123,9 +123,9 @@ class Selector {
 class SelectedColumns {
  public:
   SelectedColumns(const std::filesystem::path& file,
-                  const std::optional<ColumnMap>& map)
+                  const std::optional<ColumnMap>& map, MissingCells missing)
       : source_(Open(file)), selection_(Selector(file.string(), *source_).Select(map)) {
-    values_ = source_->Read(selection_.columns);
+    values_ = source_->Read(selection_.columns, missing);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       values_[i] *= selection_.units[i].factor;
     }
@@ -136,20 +136,12 @@ class SelectedColumns {
   std::function<std::string(Index)> Places() const {
     return [this](Index k) { return source_->Place(selection_.columns.front(), k); };
   }
-  Record OnGrid(const SampleGrid& grid,
-                const std::map<std::string, Course>& courses) const {
-    Record record(grid.time.sample_time, grid.time.start);
+  std::vector<Channel> Channels() const {
+    std::vector<Channel> channels;
     for (std::size_t i = 1; i < values_.size(); ++i) {
-      const std::string& channel = selection_.channels[i];
-      const auto course = courses.find(channel);
-      record.Add(
-          {channel, selection_.units[i].si,
-           grid.IsOfFile()
-               ? values_[i]
-               : Resample(times(), values_[i], grid,
-                          course == courses.end() ? Course::kSmooth : course->second)});
+      channels.push_back({selection_.channels[i], selection_.units[i].si, values_[i]});
     }
-    return record;
+    return channels;
   }
 
  private:
@@ -191,20 +183,19 @@ void RequireWritable(const std::filesystem::path& file, const Channel& channel) 
 
 Record ReadRecord(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map) {
-  const SelectedColumns columns(file, map);
+  const SelectedColumns columns(file, map, MissingCells::kRefused);
   const UniformTime time = FitUniformTime(columns.times(), columns.Places());
-  return columns.OnGrid({time, columns.times().size(), ""}, {});
+  Record record(time.sample_time, time.start);
+  for (Channel& channel : columns.Channels()) record.Add(std::move(channel));
+  return record;
 }
 
 MeasuredFile ReadMeasuredFile(const std::filesystem::path& file,
                               const std::optional<ColumnMap>& map,
                               const Resampling& resampling) {
-  const SelectedColumns columns(file, map);
-  const SampleGrid grid =
-      ChooseGrid(columns.times(), resampling.sample_time, columns.Places());
-  MeasuredFile measured{columns.OnGrid(grid, resampling.courses), {}};
-  if (!grid.IsOfFile()) measured.notes.push_back(grid.note);
-  return measured;
+  const SelectedColumns columns(file, map, MissingCells::kNan);
+  return RecordOfColumns({columns.times(), columns.Channels(), columns.Places()},
+                         resampling);
 }
 
 void WriteRecord(const std::filesystem::path& file, const Record& record,

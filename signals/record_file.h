@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/signals/measured_columns.h"
 #include "mjdiag/signals/record.h"
 #include "mjdiag/signals/resampling.h"
 
@@ -41,15 +42,9 @@ struct ColumnMap {
 Record ReadRecord(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map = std::nullopt);
 
-/// A record, and what one should know about how the file became one, sentences for
-/// people.
-struct MeasuredFile {
-  Record record;
-  std::vector<std::string> notes;
-};
-
-/// The same of a file whose times may be irregular, or at another rate than is wanted: it
-/// is then resampled, with a note. InputError as ReadRecord and ChooseGrid.
+/// The same of a file whose times may be irregular, or at another rate than is wanted, and
+/// in which values may be missing: see measured_columns.h. A last row of CSV that was not
+/// written to its end is left out.
 MeasuredFile ReadMeasuredFile(const std::filesystem::path& file,
                               const std::optional<ColumnMap>& map,
                               const Resampling& resampling);

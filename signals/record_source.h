@@ -19,13 +19,20 @@ struct SourceColumn {
   std::optional<std::string> unit;  ///< as it stands in the file, if it does
 };
 
+/// What becomes of cells that are empty or not finite.
+enum class MissingCells {
+  kRefused,
+  kNan,  ///< and of a last row that was not written to its end nothing at all
+};
+
 class RecordSource {
  public:
   virtual ~RecordSource() = default;
   virtual const std::vector<SourceColumn>& columns() const = 0;
   /// The numbers of the chosen columns, in that order, all of one length. InputError
-  /// with the place of a cell that is not a finite number, or of another length.
-  virtual std::vector<Eigen::VectorXd> Read(std::span<const std::size_t> chosen) = 0;
+  /// with the place of a cell that is no number, or of another length.
+  virtual std::vector<Eigen::VectorXd> Read(std::span<const std::size_t> chosen,
+                                            MissingCells missing) = 0;
   /// Where a sample of the last Read stands, for messages: file, line, column.
   virtual std::string Place(std::size_t column, Eigen::Index sample) const = 0;
 };

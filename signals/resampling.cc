@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/median.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -14,8 +15,10 @@ using Eigen::VectorXd;
 
 constexpr double kSameRate = 1e-4;
 constexpr double kNearRate = 0.2;
-constexpr double kLongestGap = 3.5;  // samples: two are missing
+// Between a record of another rate and one whose times are in another unit, 1000 times.
+constexpr double kOtherUnit = 30.0;
 constexpr double kMissing = 1.5;
+constexpr double kRounded = 0.01;  // of an interval: time stamps with few digits
 
 std::string Irregularity(const VectorXd& intervals, double usual) {
   VectorXd around(intervals.size());
@@ -30,10 +33,10 @@ std::string Irregularity(const VectorXd& intervals, double usual) {
   }
   const double sd = std::sqrt(around.head(count).squaredNorm() /
                               static_cast<double>(std::max<Index>(count, 1)));
+  const std::string fewer = std::to_string(missing) + " samples are missing";
+  if (sd < kRounded && missing > 0) return fewer;
   return "time stamps are irregular (their intervals vary by " +
-         FormatNumber(100.0 * sd, 2) + " %" +
-         (missing > 0 ? ", " + std::to_string(missing) + " samples are missing" : "") +
-         ")";
+         FormatNumber(100.0 * sd, 2) + " %" + (missing > 0 ? ", " + fewer : "") + ")";
 }
 
 /// The last sample that is not after the time; the first before all of them.
@@ -83,23 +86,29 @@ double MeanHeld(const VectorXd& times, const VectorXd& x, double begin, double e
 SampleGrid ChooseGrid(const VectorXd& times, double sample_time,
                       const std::function<std::string(Index)>& place) {
   const std::optional<UniformTime> uniform = FindUniformTime(times, place);
-  if (uniform) {
-    const double off = std::abs(uniform->sample_time / sample_time - 1.0);
-    if (off <= kSameRate || off > kNearRate) return {*uniform, times.size(), ""};
-  }
   const Index last = times.size() - 1;
   const VectorXd intervals = times.tail(last) - times.head(last);
-  const double usual = Median(intervals);
-  if (!uniform && (intervals.maxCoeff() > kLongestGap * usual ||
-                   std::abs(usual / sample_time - 1.0) > kNearRate)) {
-    FitUniformTime(times, place);  // says where
+  const double usual = uniform ? uniform->sample_time : Median(intervals);
+  const double ratio = usual / sample_time;
+  if (uniform && std::abs(ratio - 1.0) <= kSameRate) {
+    return {*uniform, times.size(), ""};
   }
-  const std::string why =
-      uniform ? "the sample time is " +
-                    FormatNumber(
-                        100.0 * std::abs(uniform->sample_time / sample_time - 1.0), 2) +
-                    " % off the control tick"
-              : Irregularity(intervals, usual);
+  if (ratio > kOtherUnit || ratio < 1.0 / kOtherUnit) {
+    throw InputError(place(0),
+                     "samples are " + FormatQuantity(usual, "s") +
+                         " apart, the control tick of the setup is " +
+                         FormatQuantity(sample_time, "s"),
+                     "the unit of its times under [record.time], or the rate of the "
+                     "record as rates.control");
+  }
+  std::string why = Irregularity(intervals, usual);
+  if (uniform) {
+    why =
+        std::abs(ratio - 1.0) > kNearRate
+            ? "samples are " + FormatQuantity(usual, "s") + " apart, not a control tick"
+            : "the sample time is " + FormatNumber(100.0 * std::abs(ratio - 1.0), 2) +
+                  " % off the control tick";
+  }
   const double ticks = (times[last] - times[0]) / sample_time;
   return {{times[0], sample_time},
           static_cast<Index>(std::floor(ticks + kSameRate)) + 1,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/signals/fresh_samples.h"
 #include "mjdiag/signals/uniform_time.h"
 
 namespace mjdiag {
@@ -23,6 +24,8 @@ enum class Course {
 struct Resampling {
   double sample_time = 0.0;               ///< wanted, the control tick [s]
   std::map<std::string, Course> courses;  ///< of channels; others are smooth
+  /// Channels that sensors read: their repeats may be of a sensor that is slower.
+  std::map<std::string, ReadingScale> readings{};
 };
 
 /// Where the samples of a record are to be.
@@ -35,13 +38,12 @@ struct SampleGrid {
   bool IsOfFile() const { return note.empty(); }
 };
 
-/// The times themselves where they are uniform (FitUniformTime) and at the wanted rate, or
-/// so far from it (20 %) that it must be a mistake; else a grid of the wanted sample time
-/// from the first to the last of them.
+/// The times themselves where they are uniform (FitUniformTime) and at the wanted rate;
+/// else a grid of the wanted sample time from the first to the last of them.
 /// @param times  [s], one a sample
 /// @param place  where sample k stands, for messages
-/// InputError as FitUniformTime, but irregular times are refused only where more than two
-/// samples are missing in a row or the usual interval is not the wanted one.
+/// InputError: fewer than two samples, a time that is not after the one before it, and a
+/// rate so far from the wanted one (30 times) that it must be in another unit.
 SampleGrid ChooseGrid(const Eigen::VectorXd& times, double sample_time,
                       const std::function<std::string(Eigen::Index)>& place);
 

@@ -1,5 +1,6 @@
 #pragma once
-// The last readings and commands of a run, to go back to; memory is constant.
+// The last readings and commands of a run, to go back to; memory is constant. A reading
+// that was not measured is NaN.
 
 #include <Eigen/Core>
 #include <algorithm>

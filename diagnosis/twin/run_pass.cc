@@ -62,7 +62,12 @@ RunInformation RunPass::About(const VectorXd& numbers, std::size_t gain) {
     const bool counts = pass_.seen() >= start.origin;
     pass_.Step(run_);
     if (!counts) continue;
-    said.innovations.col(counted++) = pass_.innovation();
+    said.innovations.col(counted) =
+        run_.outputs(pass_.seen() - 1)
+            .array()
+            .isNaN()
+            .select(run_.outputs(pass_.seen() - 1), pass_.innovation());
+    ++counted;
     if (part == 0 || counted % part != 0) continue;
     const Information& all = pass_.information();
     said.parts.push_back(

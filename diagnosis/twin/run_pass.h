@@ -27,14 +27,16 @@ struct RunInformation {
   double worst_stretch = 1.0;  ///< and of the mean over recent ones (Surprise)
   /// Of kRunParts stretches of about one length, its start as it is estimated.
   std::vector<PartInformation> parts;
-  Eigen::MatrixXd innovations;  ///< ny x ticks from the first that counts
+  /// ny x ticks from the first that counts; NaN where there is no reading.
+  Eigen::MatrixXd innovations;
 };
 
 inline constexpr Eigen::Index kRunParts = 8;
 
 class RunPass {
  public:
-  /// @param outputs, inputs  readings and commands, a column a tick
+  /// @param outputs, inputs  readings and commands, a column a tick; NaN where a reading
+  ///                         was not measured
   /// @param prior            covariance of all unknowns about 0, p x p
   RunPass(std::unique_ptr<Twin> twin, const Eigen::MatrixXd& outputs,
           const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& prior);

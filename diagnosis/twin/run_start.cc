@@ -53,6 +53,7 @@ bool RunStart::BeganAtRest(Twin& twin, const KeptReadings& kept, VectorXd& theta
     }
   }
   for (Index i = 0; i < reading_.size(); ++i) {
+    // One that was not measured says nothing against it.
     const double sd = std::sqrt(twin.gains().front().covariance(i, i));
     // Where it rests is where the first reading says.
     const double first = kept.outputs(0)[i] - predicted_(i, 0);

@@ -1,6 +1,7 @@
 #include "mjdiag/diagnosis/twin/twin_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace mjdiag {
@@ -26,6 +27,9 @@ TwinPass::TwinPass(std::unique_ptr<Twin> twin)
   theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
   reading_ = innovation_ = sum_ = VectorXd::Zero(twin_->outputs());
   covariance_ = twin_->gains().front().covariance;
+  pull_by_ = since_ = VectorXd::Zero(twin_->outputs());
+  share_ = spacing_ = VectorXd::Ones(twin_->outputs());
+  psi_ = MatrixXd::Zero(twin_->outputs(), twin_->unknowns());
 }
 
 void TwinPass::StartMeasured(const KeptReadings& run, Index tick,
@@ -33,6 +37,13 @@ void TwinPass::StartMeasured(const KeptReadings& run, Index tick,
   start.at_rest = false;
   start.origin = start.settles_from = tick;
   reading_ = run.outputs(tick);
+  for (Index i = 0; i < reading_.size(); ++i) {
+    // Not measured: the next one that was.
+    for (Index k = tick + 1; std::isnan(reading_[i]) && k < run.added(); ++k) {
+      reading_[i] = run.outputs(k)[i];
+    }
+    if (std::isnan(reading_[i])) reading_[i] = 0.0;
+  }
   twin_->StateAt(reading_, start.state);
   start.known = true;
 }
@@ -74,6 +85,10 @@ void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
   surprise_.Start();
   softer_at_ = start.origin;
   sum_.setZero();
+  share_.setOnes();
+  since_.setZero();
+  spacing_.setOnes();
+  complete_ = true;
   in_block_ = blocks_ = 0;
   squares_ = worst_block_ = worst_stretch_ = 0.0;
 }
@@ -87,16 +102,19 @@ void TwinPass::StartInState() noexcept {
 bool TwinPass::Step(const KeptReadings& run) noexcept {
   twin_->Predict(reading_);
   innovation_ = run.outputs(seen_) - reading_;
-  twin_->Step(run.inputs(seen_), innovation_);
+  twin_->Step(run.inputs(seen_), Pull(run));
   ++seen_;
   sum_ += innovation_;
   if (++in_block_ < twin_->block()) return false;
   in_block_ = 0;
   const MatrixXd& psi = twin_->EndBlock();
   sum_ /= static_cast<double>(twin_->block());
+  constexpr double kRounding = 1e-9;
   const bool counts = !settling_;
-  if (counts) Count(psi);
+  if (counts && share_.maxCoeff() > kRounding) Count(psi);
   sum_.setZero();
+  share_.setOnes();
+  complete_ = true;
   if (settling_ && seen_ == start_->origin - kResettle * twin_->block()) {
     // From here the next pass is there sooner.
     twin_->ReadState(start_->state);
@@ -110,6 +128,22 @@ bool TwinPass::Step(const KeptReadings& run) noexcept {
   return counts;
 }
 
+const VectorXd& TwinPass::Pull(const KeptReadings& run) noexcept {
+  for (Index i = 0; i < innovation_.size(); ++i) {
+    since_[i] += 1.0;
+    if (std::isnan(run.outputs(seen_)[i])) {
+      innovation_[i] = pull_by_[i] = 0.0;
+      share_[i] -= 1.0 / static_cast<double>(twin_->block());
+      complete_ = false;
+      continue;
+    }
+    pull_by_[i] = std::min(since_[i], spacing_[i]) * innovation_[i];
+    spacing_[i] = since_[i];
+    since_[i] = 0.0;
+  }
+  return pull_by_;
+}
+
 void TwinPass::Settle() noexcept {
   settling_ = false;
   twin_->ReadState(start_->state);
@@ -119,8 +153,21 @@ void TwinPass::Settle() noexcept {
   StartInState();
 }
 
-void TwinPass::Count(const MatrixXd& psi) noexcept {
+const MatrixXd& TwinPass::Seen(const MatrixXd& psi) noexcept {
+  constexpr double kRounding = 1e-9;
+  for (Index i = 0; i < share_.size(); ++i) {
+    const double share = share_[i] > kRounding ? share_[i] : 0.0;
+    psi_.row(i) = share * psi.row(i);
+    const double root = share > 0.0 ? std::sqrt(share) : 1.0;
+    covariance_.row(i) *= root;
+    covariance_.col(i) *= root;
+  }
+  return psi_;
+}
+
+void TwinPass::Count(const MatrixXd& whole) noexcept {
   covariance_ = twin_->gains()[pull_].covariance / static_cast<double>(twin_->block());
+  const MatrixXd& psi = complete_ ? whole : Seen(whole);
   const double squares = information_.Surprise(psi, sum_, covariance_);
   ++blocks_;
   squares_ += squares;

@@ -119,7 +119,21 @@ class TwinPass {
   Information information_;
   Surprise surprise_;
   Eigen::VectorXd theta0_, theta_, away_;
-  Eigen::VectorXd reading_, innovation_, sum_;
+  /// Of the readings of a block that were measured: those of the others are 0, and their
+  /// part of the block is missing in what it shows and in its noise.
+  const Eigen::MatrixXd& Seen(const Eigen::MatrixXd& psi) noexcept;
+
+  /// Innovation with which the twin is pulled: of a reading that comes at every n-th tick n
+  /// times what it is, as S takes it that there is one at every tick. One that comes late,
+  /// behind a gap, counts as those before it came.
+  const Eigen::VectorXd& Pull(const KeptReadings& run) noexcept;
+
+  Eigen::VectorXd reading_, innovation_, pull_by_, sum_;
+  Eigen::VectorXd since_,
+      spacing_;            // ticks since the last reading, and between the last
+  Eigen::VectorXd share_;  // of the block in which a reading was measured
+  bool complete_ = true;
+  Eigen::MatrixXd psi_;
   Eigen::MatrixXd covariance_;  // of a block's innovation
 };
 

@@ -4,9 +4,7 @@
 //
 // Refused with InputError, with n samples left after setup.compare.skip_samples:
 //   too short     n < 64
-//   missing       a sample that is NaN or infinite; a sensor held: 5 equal values or
-//                 more, then a step larger than 3 times every step around, 3 times the
-//                 smallest step of the sensor and 6 standard deviations of its noise
+//   missing       a sample that is NaN or infinite and not marked as not measured
 //   saturated     a sensor that stays at exactly its largest or smallest value, at
 //                 least 10 samples at a time, for more than 0.5 % of n, although it is
 //                 noisy elsewhere, or should move there (by its reference in closed

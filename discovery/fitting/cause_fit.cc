@@ -291,8 +291,7 @@ void SetBounds(ceres::Problem& problem, double* x,
 }  // namespace
 
 double FittedValues(const DiscoveryProblem& problem) {
-  return static_cast<double>(problem.run().outputs.rows() *
-                             (problem.train() - problem.skip()));
+  return problem.MeasuredValues(problem.skip(), problem.train());
 }
 
 CauseFit FitCauses(const DiscoveryProblem& problem,
@@ -389,8 +388,8 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
                      : problem.Residual(ChangesOf(problem, candidates, fit));
   fit.prior = PriorOf(candidates, fit);
   fit.spent = simulator.Used();
-  fit.train = MeanSquare(fit.residual, channels, problem.skip(), problem.train());
-  fit.held_out = MeanSquare(fit.residual, channels, problem.train(), samples);
+  fit.train = MeanSquare(problem, fit.residual, problem.skip(), problem.train());
+  fit.held_out = MeanSquare(problem, fit.residual, problem.train(), samples);
   return fit;
 }
 

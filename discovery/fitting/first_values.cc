@@ -59,8 +59,8 @@ class Trials {
   }
 
   void Keep(const FittedModel& model, const VectorXd& residual) {
-    const double left = MeanSquare(residual, problem_.run().outputs.rows(),
-                                   problem_.skip(), problem_.train());
+    const double left =
+        MeanSquare(problem_, residual, problem_.skip(), problem_.train());
     if (!(left < least_)) return;
     least_ = left;
     best_ = model;

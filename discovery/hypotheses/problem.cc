@@ -24,6 +24,28 @@ constexpr double kPeriods = 25.0;
 // Of a pass over a run for the force of a number, in physics steps.
 constexpr double kForces = 1.0;
 
+/// That of a slow sensor pulls less often: as much more at a time it holds the same.
+Observer AtPeriods(Observer observer, const MeasuredRun& run) {
+  for (Index i = 0; i < observer.L.cols(); ++i) {
+    const auto period = static_cast<double>(run.PeriodOf(i));
+    if (period == 1.0) continue;
+    observer.L.col(i) *= period;
+    const double r = observer.noise_sd[i];
+    const double fed_back =
+        observer.innovation_sd[i] * observer.innovation_sd[i] - r * r;
+    observer.innovation_sd[i] = std::sqrt(r * r + period * std::max(0.0, fed_back));
+  }
+  return observer;
+}
+
+Index LongestPeriod(const MeasuredRun& run) {
+  Index longest = 1;
+  for (Index i = 0; i < run.outputs.rows(); ++i) {
+    longest = std::max(longest, run.PeriodOf(i));
+  }
+  return longest;
+}
+
 double Floor(const SensorSetup& sensor, const Eigen::MatrixXd& outputs, Index row) {
   // A signal without any noise leaves rounding.
   const double rounding = 1e-12 * outputs.row(row).cwiseAbs().maxCoeff();
@@ -81,7 +103,12 @@ DiscoveryProblem::DiscoveryProblem(Machine machine, Observer observer, MeasuredR
       run_(std::make_shared<MeasuredRun>(std::move(run))),
       skip_(skip),
       train_(train),
-      derived_(std::make_shared<Derived>()) {}
+      derived_(std::make_shared<Derived>()) {
+  if (run_->driven.size() == 0) return;
+  MeasuredRun discounted = *run_;
+  discounted.Discount(skip_);
+  run_ = std::make_shared<MeasuredRun>(std::move(discounted));
+}
 
 const Track& DiscoveryProblem::Nominal() const& {
   std::call_once(derived_->nominal_once, [this] {
@@ -116,6 +143,9 @@ VectorXd DiscoveryProblem::Scaled(const Track& track) const {
     const Index first = run_->records[i].sample;
     scaled.middleCols(first, std::min(skip_, run_->SamplesOf(i))).setZero();
   }
+  if (run_->Counted().size() > 0) {
+    scaled = run_->Counted().select(scaled.array(), 0.0).matrix().eval();
+  }
   VectorXd stacked = Eigen::Map<const VectorXd>(scaled.data(), scaled.size());
   if (shift_ && !free_errors_) stacked += *shift_;
   return stacked;
@@ -136,6 +166,28 @@ std::shared_ptr<const LinearisedRun> DiscoveryProblem::Linearised(
   std::call_once(derived_->linearised_once,
                  [&] { derived_->linearised = linearise(); });
   return derived_->linearised;
+}
+
+VectorXd DiscoveryProblem::Measured(Index first, Index last) const {
+  if (run_->Counted().size() == 0) return {};
+  const auto counts = run_->Counted().middleCols(first, last - first).rowwise().count();
+  return counts.cast<double>().matrix();
+}
+
+double DiscoveryProblem::MeasuredValues(Index first, Index last) const {
+  const VectorXd counts = Measured(first, last);
+  if (counts.size() > 0) return counts.sum();
+  return static_cast<double>(run_->outputs.rows() * (last - first));
+}
+
+VectorXd DiscoveryProblem::MeasuredOf(const VectorXd& residual, Index sensor,
+                                      Index first, Index last) const {
+  const Index channels = run_->outputs.rows();
+  const Eigen::Map<const Eigen::MatrixXd> e(residual.data(), channels,
+                                            residual.size() / channels);
+  const VectorXd all = e.row(sensor).segment(first, last - first);
+  if (run_->Counted().size() == 0) return all;
+  return Kept(all, run_->CountedOf(sensor, first, last - first));
 }
 
 double DiscoveryProblem::FittedDuration() const {
@@ -353,9 +405,11 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
                      const Eigen::MatrixXd& innovations) {
   VectorXd sd(run.outputs.rows());
   for (Index i = 0; i < sd.size(); ++i) {
-    const double of_record = NoiseLevel(run.outputs.row(i));
+    const double of_record = NoiseLevel(run.ReadingsOf(i));
     const double of_innovations =
-        innovations.size() > 0 ? NoiseLevel(innovations.row(i)) : of_record;
+        innovations.size() > 0
+            ? NoiseLevel(Kept(innovations.row(i), run.CountedOf(i, 0, run.samples())))
+            : of_record;
     sd[i] =
         std::max(std::min(of_record, of_innovations),
                  Floor(channels.sensors[static_cast<std::size_t>(i)], run.outputs, i));
@@ -366,13 +420,17 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
 DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
                              double train_share, double bandwidth) {
   const double longest = run.Time().maxCoeff();
-  const double hertz =
-      bandwidth > 0.0 ? bandwidth
-                      : std::min(kPeriods / longest, 0.1 * machine.rates().control);
+  // A tenth of the rate of the slowest sensor at most.
+  const Index period = LongestPeriod(run);
+  const double fastest = 0.1 * machine.rates().control / static_cast<double>(period);
+  double hertz = bandwidth > 0.0 ? bandwidth : std::min(kPeriods / longest, fastest);
+  if (period > 1) hertz = std::min(hertz, fastest);
   const auto design = [&](const Eigen::MatrixXd& innovations) {
-    return DesignObserver(machine.linear(), machine.plant().opt.timestep,
-                          machine.rates().substeps,
-                          SensorNoise(machine.channels(), run, innovations), hertz);
+    return AtPeriods(
+        DesignObserver(machine.linear(), machine.plant().opt.timestep,
+                       machine.rates().substeps,
+                       SensorNoise(machine.channels(), run, innovations), hertz),
+        run);
   };
   // Twice: the noise is known better once the motion is taken out.
   const Observer first = design({});
@@ -409,10 +467,13 @@ DiscoveryProblem BeginningOf(const DiscoveryProblem& problem) {
                                 : std::min(problem.train(), quarter));
 }
 
-double MeanSquare(const VectorXd& residual, Index channels, Index first, Index last) {
+double MeanSquare(const DiscoveryProblem& problem, const VectorXd& residual,
+                  Index first, Index last) {
   if (last <= first) return 0.0;
+  const Index channels = problem.run().outputs.rows();
+  const double measured = problem.MeasuredValues(first, last);
   return residual.segment(channels * first, channels * (last - first)).squaredNorm() /
-         static_cast<double>(channels * (last - first));
+         std::max(1.0, measured);
 }
 
 }  // namespace mjdiag

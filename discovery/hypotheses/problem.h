@@ -55,6 +55,15 @@ class DiscoveryProblem {
   const MeasuredRun& run() const { return *run_; }
   Eigen::Index skip() const { return skip_; }
   Eigen::Index train() const { return train_; }
+  /// How many of samples first .. last - 1 of every sensor were measured and count, ny;
+  /// empty: all.
+  Eigen::VectorXd Measured(Eigen::Index first, Eigen::Index last) const;
+  /// Of all sensors together.
+  double MeasuredValues(Eigen::Index first, Eigen::Index last) const;
+  /// Residuals of a sensor at samples first .. last - 1 that were measured, one after the
+  /// other.
+  Eigen::VectorXd MeasuredOf(const Eigen::VectorXd& residual, Eigen::Index sensor,
+                             Eigen::Index first, Eigen::Index last) const;
   /// Of what fits see of the longest record [s].
   double FittedDuration() const;
   double step() const { return machine_.plant().opt.timestep; }  ///< of physics [s]
@@ -164,8 +173,8 @@ DiscoveryProblem Beginning(const DiscoveryProblem& problem, Eigen::Index samples
 /// long record; of several records all, for each shows something that the others do not.
 DiscoveryProblem BeginningOf(const DiscoveryProblem& problem);
 
-/// Mean square of the rows of samples first .. last - 1.
-double MeanSquare(const Eigen::VectorXd& residual, Eigen::Index channels,
+/// Mean square of the residuals of samples first .. last - 1 that were measured.
+double MeanSquare(const DiscoveryProblem& problem, const Eigen::VectorXd& residual,
                   Eigen::Index first, Eigen::Index last);
 
 }  // namespace mjdiag

@@ -107,8 +107,14 @@ std::size_t Screener::Slow(const Sweep& sweep) const {
 
 /// The part of a fast trial in its own sensor, every sample.
 MatrixXd Screener::Fast(const Trial& trial, const Candidate& candidate) const {
-  return dynamics_.weight()[candidate.channel] *
-         trial.signals.middleRows(block_ * skip_, block_ * blocks_);
+  MatrixXd seen = dynamics_.weight()[candidate.channel] *
+                  trial.signals.middleRows(block_ * skip_, block_ * blocks_);
+  if (problem_.run().Counted().size() > 0) {
+    const SampleMask counted =
+        problem_.run().CountedOf(candidate.channel, block_ * skip_, block_ * blocks_);
+    seen.array().colwise() *= counted.cast<double>();
+  }
+  return seen;
 }
 
 std::optional<Start> Screener::Regress(const Trial& trial, const MatrixXd& response,

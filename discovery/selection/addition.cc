@@ -139,9 +139,8 @@ std::vector<Entry> Contest::Preview(const std::vector<Start>& shortlist) const {
   std::ranges::stable_sort(entries, std::less<>(), &Entry::criterion);
   if (present_.fit().train < kSmall) return entries;
   const MatrixXd& jacobian = present_.fit().jacobian;
-  const double enough =
-      MeanSquare(present_.fit().residual, data_.problem.run().outputs.rows(),
-                 data_.problem.skip(), data_.beginning.train());
+  const double enough = MeanSquare(data_.problem, present_.fit().residual,
+                                   data_.problem.skip(), data_.beginning.train());
   ParallelFor(static_cast<int>(entries.size()), [&](int number) {
     Entry& entry = entries[static_cast<std::size_t>(number)];
     static_cast<FittedModel&>(entry) =

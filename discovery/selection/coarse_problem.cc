@@ -13,8 +13,7 @@ using Eigen::VectorXd;
 /// Squared innovations that chance may well explain beside what is left anyway.
 double Insignificant(const DiscoveryProblem& problem, const VectorXd& residual) {
   constexpr double kByChance = 20.0;  // of white noise
-  const double rest = MeanSquare(residual, problem.run().outputs.rows(), problem.skip(),
-                                 problem.train());
+  const double rest = MeanSquare(problem, residual, problem.skip(), problem.train());
   return kByChance * std::max(1.0, rest) /
          IndependentShare(problem, residual).minCoeff();
 }

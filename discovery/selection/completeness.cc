@@ -45,27 +45,36 @@ bool IsFine(const SensorSetup& sensor, double noise_sd) {
 }  // namespace
 
 double NoiseValue(const DiscoveryProblem& problem, const VectorXd& innovations,
-                  const VectorXd& unseen) {
+                  const VectorXd& unseen, const Eigen::ArrayXX<bool>& measured) {
   const Observer& observer = problem.observer();
   const Index channels = problem.run().outputs.rows();
-  const Index n = problem.train() - problem.skip();
-  const Index lags = std::min(kLags, n / 10);
-  const auto by_channel = [&](const VectorXd& all) {
-    return Eigen::Map<const MatrixXd>(all.data(), channels, all.size() / channels);
-  };
+  const Index samples = problem.run().samples();
   std::vector<double> values;
   for (Index c = 0; c < channels; ++c) {
     const auto& sensor =
         problem.machine().channels().sensors[static_cast<std::size_t>(c)];
+    const VectorXd fitted =
+        problem.MeasuredOf(innovations, c, problem.skip(), problem.train());
+    const Index lags = std::min(kLags, fitted.size() / 10);
     if (lags == 0 || !IsFine(sensor, observer.noise_sd[c])) continue;
-    const VectorXd all = by_channel(innovations).row(c);
-    const VectorXd fitted = all.segment(problem.skip(), n);
-    values.push_back(ColourValue(fitted, NoiseCorrelation(observer, c, lags)));
-    const Index held_out = all.size() - problem.train();
-    if (held_out > 0) values.push_back(SizeValue(all.tail(held_out), fitted));
+    // A slow sensor has only every so many of them.
+    const Index period = problem.run().PeriodOf(c);
+    const VectorXd noise = NoiseCorrelation(observer, c, period * lags);
+    values.push_back(ColourValue(fitted, VectorXd::NullaryExpr(lags, [&](Index l) {
+                                   return noise[period * (l + 1) - 1];
+                                 })));
+    const VectorXd held_out =
+        problem.MeasuredOf(innovations, c, problem.train(), samples);
+    if (held_out.size() > 0) values.push_back(SizeValue(held_out, fitted));
     const Index others = unseen.size() / channels - problem.skip();
     if (others <= 0) continue;
-    values.push_back(SizeValue(by_channel(unseen).row(c).tail(others), fitted));
+    const Eigen::Map<const MatrixXd> of_others(unseen.data(), channels,
+                                               unseen.size() / channels);
+    VectorXd other = of_others.row(c).tail(others);
+    if (measured.size() > 0) {
+      other = Kept(other, measured.row(c).tail(others).transpose());
+    }
+    values.push_back(SizeValue(other, fitted));
   }
   if (values.empty()) return 1.0;
   return std::min(1.0, std::ranges::min(values) * static_cast<double>(values.size()));

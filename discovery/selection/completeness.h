@@ -24,8 +24,10 @@ namespace mjdiag {
 /// may be all that is left.
 /// @param innovations  scaled, all samples
 /// @param unseen       of another record; may be empty
+/// @param measured     which of those were measured, ny x samples; empty: all
 double NoiseValue(const DiscoveryProblem& problem, const Eigen::VectorXd& innovations,
-                  const Eigen::VectorXd& unseen);
+                  const Eigen::VectorXd& unseen,
+                  const Eigen::ArrayXX<bool>& measured = {});
 
 /// P, of a p.
 double ProbabilityOfNoise(double p);

@@ -12,6 +12,14 @@ namespace mjdiag {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+namespace {
+
+VectorXd Count(const EvidenceData::Counts& counts, Index first, Index last) {
+  return counts ? counts(first, last) : VectorXd();
+}
+
+}  // namespace
+
 EvidenceData DataOf(const DiscoveryProblem& problem,
                     const std::vector<Candidate>& candidates, const MeasuredRun* unseen,
                     const std::function<double(const Changes&)>& free_run) {
@@ -19,6 +27,10 @@ EvidenceData DataOf(const DiscoveryProblem& problem,
   data.skip = problem.skip();
   data.train = problem.train();
   data.samples = problem.run().samples();
+  // The run outlives copies of the problem.
+  data.measured = [run = problem](Index first, Index last) {
+    return run.Measured(first, last);
+  };
   if (free_run) {
     data.free_run = [&problem, &candidates, free_run](const FittedModel& model) {
       return free_run(ChangesOf(problem, candidates, model));
@@ -33,11 +45,15 @@ EvidenceData DataOf(const DiscoveryProblem& problem,
       return VectorXd();
     }
   };
+  data.replay_measured = [other](Index first, Index last) {
+    return other->Measured(first, last);
+  };
   return data;
 }
 
 double Evidence::Criterion(const VectorXd& independent) const {
-  return mjdiag::Criterion(fit_, independent, data_.skip, data_.train);
+  return mjdiag::Criterion(fit_, independent, data_.skip, data_.train,
+                           Count(data_.measured, data_.skip, data_.train));
 }
 
 const VectorXd& Evidence::Replayed() const {
@@ -48,13 +64,15 @@ const VectorXd& Evidence::Replayed() const {
 double Evidence::Unseen(const VectorXd& independent) const {
   const double held_out =
       data_.train < data_.samples
-          ? Deviance(fit_.residual, independent, data_.train, data_.samples)
+          ? Deviance(fit_.residual, independent, data_.train, data_.samples,
+                     Count(data_.measured, data_.train, data_.samples))
           : 0.0;
   if (!data_.replay) return held_out;
   const VectorXd& replayed = Replayed();
   if (replayed.size() == 0) return std::numeric_limits<double>::infinity();
-  return held_out + Deviance(replayed, independent, data_.skip,
-                             replayed.size() / independent.size());
+  const Index samples = replayed.size() / independent.size();
+  return held_out + Deviance(replayed, independent, data_.skip, samples,
+                             Count(data_.replay_measured, data_.skip, samples));
 }
 
 double Evidence::FreeRun() const {
@@ -68,6 +86,8 @@ double Evidence::Inflation(const VectorXd& independent) const {
 }
 
 double Evidence::Noise() const {
+  const VectorXd measured = Count(data_.measured, data_.skip, data_.train);
+  if (measured.size() > 0) return measured.sum();
   return static_cast<double>(independent_.size() * (data_.train - data_.skip));
 }
 

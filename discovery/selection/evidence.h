@@ -38,6 +38,11 @@ struct EvidenceData {
   std::function<Eigen::VectorXd(const FittedModel& model)> replay;
   /// FreeRun of record_replay.h beside a model, on records that no fit sees. May be empty.
   std::function<double(const FittedModel& model)> free_run{};
+  /// How many of samples first .. last - 1 of every sensor were measured, of the record
+  /// and of the other one; empty: all.
+  using Counts = std::function<Eigen::VectorXd(Eigen::Index first, Eigen::Index last)>;
+  Counts measured{};
+  Counts replay_measured{};
 };
 
 /// @param unseen    another record of the machine, or null

@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/selection/learned_numbers.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "mjdiag/plugin/design/number_learner.h"
 
@@ -18,8 +19,14 @@ std::vector<RunSamples> RunsOf(const DiscoveryProblem& problem) {
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
     const Index count = run.SamplesOf(i);
-    runs.push_back(
-        {run.outputs.middleCols(first, count), run.inputs.middleCols(first, count)});
+    RunSamples& samples = runs.emplace_back();
+    samples = {run.outputs.middleCols(first, count),
+               run.inputs.middleCols(first, count)};
+    if (run.Counted().size() == 0) continue;
+    samples.outputs =
+        run.Counted()
+            .middleCols(first, count)
+            .select(samples.outputs.array(), std::numeric_limits<double>::quiet_NaN());
   }
   return runs;
 }

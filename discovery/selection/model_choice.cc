@@ -14,16 +14,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+VectorXd CountsOf(const VectorXd& measured, Index channels, Index samples) {
+  if (measured.size() > 0) return measured.cwiseMax(1.0);
+  return VectorXd::Constant(channels, static_cast<double>(samples));
+}
+
+}  // namespace
+
 double Deviance(const VectorXd& residual, const VectorXd& independent, Index first,
-                Index last) {
+                Index last, const VectorXd& measured) {
   const Index channels = independent.size();
   const Eigen::Map<const MatrixXd> e(residual.data(), channels,
                                      residual.size() / channels);
+  const VectorXd count = CountsOf(measured, channels, last - first);
   double deviance = 0.0;
   for (Index c = 0; c < channels; ++c) {
-    const double n = independent[c] * static_cast<double>(last - first);
-    const double square = e.row(c).segment(first, last - first).squaredNorm() /
-                          static_cast<double>(last - first);
+    const double n = independent[c] * count[c];
+    const double square =
+        e.row(c).segment(first, last - first).squaredNorm() / count[c];
     const double scale = std::max(1.0, square);
     deviance += n * (std::log(scale) + square / scale);
   }
@@ -32,12 +42,11 @@ double Deviance(const VectorXd& residual, const VectorXd& independent, Index fir
 
 VectorXd IndependentShare(const DiscoveryProblem& problem, const VectorXd& residual) {
   const Index channels = problem.run().outputs.rows();
-  const Index n = problem.train() - problem.skip();
-  const Eigen::Map<const MatrixXd> e(residual.data(), channels,
-                                     residual.size() / channels);
   VectorXd share(channels);
   for (Index c = 0; c < channels; ++c) {
-    const VectorXd signal = e.row(c).segment(problem.skip(), n);
+    const VectorXd signal =
+        problem.MeasuredOf(residual, c, problem.skip(), problem.train());
+    const Index n = signal.size();
     const Spectrum spectrum = PowerSpectrum(signal, problem.run().sample_time);
     share[c] = std::min(1.0, IndependentSamples(spectrum, n) / static_cast<double>(n));
   }
@@ -65,10 +74,11 @@ int ParameterCount(const std::vector<FittedCause>& causes) {
 }
 
 double Criterion(const CauseFit& fit, const VectorXd& independent, Index first,
-                 Index last) {
+                 Index last, const VectorXd& measured) {
   const auto samples = static_cast<double>(last - first);
-  const double n = std::max(2.0, samples * independent.sum());
-  return Deviance(fit.residual, independent, first, last) + fit.prior +
+  const double n = std::max(2.0, measured.size() > 0 ? measured.dot(independent)
+                                                     : samples * independent.sum());
+  return Deviance(fit.residual, independent, first, last, measured) + fit.prior +
          ParameterCount(fit.causes) * std::log(n);
 }
 
@@ -83,7 +93,8 @@ std::vector<double> Criteria(const DiscoveryProblem& problem,
   const VectorXd independent = IndependentShare(problem, best->residual);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     if (!fits[i]) continue;
-    criteria[i] = Criterion(*fits[i], independent, problem.skip(), problem.train());
+    criteria[i] = Criterion(*fits[i], independent, problem.skip(), problem.train(),
+                            problem.Measured(problem.skip(), problem.train()));
   }
   return criteria;
 }

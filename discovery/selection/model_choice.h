@@ -17,11 +17,14 @@
 namespace mjdiag {
 
 /// Deviance of samples first .. last - 1.
-/// @param independent  n_c over the number of samples, of every sensor
+/// @param independent  n_c over the number of samples measured, of every sensor
+/// @param measured     how many of them were, of every sensor; empty: all
 double Deviance(const Eigen::VectorXd& residual, const Eigen::VectorXd& independent,
-                Eigen::Index first, Eigen::Index last);
+                Eigen::Index first, Eigen::Index last,
+                const Eigen::VectorXd& measured = {});
 
-/// n_c over the number of samples of every sensor, from the spectra of the residual.
+/// n_c over the number of samples measured of every sensor, from the spectra of the
+/// residual.
 Eigen::VectorXd IndependentShare(const DiscoveryProblem& problem,
                                  const Eigen::VectorXd& residual);
 
@@ -49,8 +52,10 @@ int ParameterCount(const std::vector<FittedCause>& causes);
 /// Bayesian information criterion of samples first .. last - 1 with what is known
 /// beforehand, deviance + PriorOf + parameters log n. The numbers of the plant are the same
 /// in all sets that compare.
+/// @param independent, measured  as Deviance
 double Criterion(const CauseFit& fit, const Eigen::VectorXd& independent,
-                 Eigen::Index first, Eigen::Index last);
+                 Eigen::Index first, Eigen::Index last,
+                 const Eigen::VectorXd& measured = {});
 
 /// Criteria of competing fits on the train part. How many independent values they are
 /// judged by is what the best of them leaves: beside all models a real machine does what

@@ -64,11 +64,11 @@ std::optional<Evidence> ProposeUnlessFar(const SearchData& data,
   const MatrixXd* initial = jacobian.cols() > 0 ? &jacobian : nullptr;
   const auto early = [&](const CauseFit& fit) {
     return Deviance(fit.residual, present.independent(), data.problem.skip(),
-                    data.beginning.train());
+                    data.beginning.train(),
+                    data.problem.Measured(data.problem.skip(), data.beginning.train()));
   };
-  const double near =
-      kNear * MeanSquare(present.fit().residual, data.problem.run().outputs.rows(),
-                         data.problem.skip(), data.beginning.train());
+  const double near = kNear * MeanSquare(data.problem, present.fit().residual,
+                                         data.problem.skip(), data.beginning.train());
   const bool is_new = !model.causes.empty() &&
                       !Has(present.fit().causes, model.causes.back().candidate);
   const FittedModel start =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/signals/record.h"
 #include "mjdiag/signals/spectrum.h"
 
 namespace mjdiag {
@@ -46,15 +47,18 @@ bool IsUnsteady(const VectorXd& signal, double expected) {
 
 std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& observer,
                                          const Eigen::MatrixXd& innovations,
-                                         double share) {
+                                         double share,
+                                         const Eigen::ArrayXX<bool>& measured) {
   constexpr double kSigmas = 5.0;
   constexpr double kLeast = 0.02;
-  const auto n = static_cast<Index>(share * static_cast<double>(innovations.cols()));
+  const auto all = static_cast<Index>(share * static_cast<double>(innovations.cols()));
   std::vector<RaisedNoise> found;
   for (std::size_t i = 0; i < setup.channels.sensors.size(); ++i) {
     const SensorSetup& sensor = setup.channels.sensors[i];
     const auto row = static_cast<Index>(i);
-    const VectorXd seen = innovations.row(row).head(n);
+    VectorXd seen = innovations.row(row).head(all);
+    if (measured.size() > 0) seen = Kept(seen, measured.row(row).head(all).transpose());
+    const Index n = seen.size();
     const double expected =
         std::hypot(sensor.noise_sd, sensor.resolution / std::sqrt(12.0));
     if (sensor.noise_sd <= 0.0 || n < 2) continue;
@@ -66,7 +70,8 @@ std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& obs
     if (rms - expected < std::max(kSigmas * error, kLeast * expected)) continue;
     // The mean square of half of the band is less certain by sqrt(2), that of their
     // difference as that of the whole.
-    const double upper = UpperRms(seen, setup.rates.tick());
+    const double upper = UpperRms(
+        seen, setup.rates.tick() * static_cast<double>(all) / static_cast<double>(n));
     if (rms - upper > std::max(kSigmas * error, kLeast * rms)) continue;
     if (IsUnsteady(seen / colouring, expected)) continue;
     const double raised = std::sqrt(rms * rms - expected * expected);

@@ -25,8 +25,10 @@ struct RaisedNoise {
 /// the band than in all of it: what machines do beside their models is slow; and those in
 /// which what is more is not there all the time: a model lacks something now and then, as
 /// where a guide begins to slide.
+/// @param measured  which innovations were, ny x samples; empty: all
 std::vector<RaisedNoise> FindRaisedNoise(const Setup& setup, const Observer& observer,
                                          const Eigen::MatrixXd& innovations,
-                                         double share);
+                                         double share,
+                                         const Eigen::ArrayXX<bool>& measured = {});
 
 }  // namespace mjdiag

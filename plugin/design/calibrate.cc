@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/design/number_learner.h"
@@ -26,8 +27,16 @@ RunSamples SamplesOf(const Machine& machine, const Record& record) {
         "record", "sampled every " + std::to_string(record.sample_time()) + " s",
         "the control tick, " + std::to_string(machine.rates().tick()) + " s");
   }
-  return {mjdiag::SamplesOf(record, ChannelsOf(machine.channels().sensors)),
-          mjdiag::SamplesOf(record, ChannelsOf(machine.channels().actuators))};
+  const std::vector<std::string> sensors = ChannelsOf(machine.channels().sensors);
+  RunSamples samples{
+      mjdiag::SamplesOf(record, sensors),
+      mjdiag::SamplesOf(record, ChannelsOf(machine.channels().actuators))};
+  const Eigen::ArrayXX<bool> measured = MeasuredOf(record, sensors);
+  if (measured.size() > 0) {
+    samples.outputs = measured.select(samples.outputs.array(),
+                                      std::numeric_limits<double>::quiet_NaN());
+  }
+  return samples;
 }
 
 /// Of sensors that the setup gives none: from readings alone, which move little from
@@ -40,15 +49,13 @@ VectorXd FirstNoise(const Machine& machine, const std::vector<RunSamples>& runs)
     noise[i] = sensor.noise_sd;
     if (noise[i] > 0.0) continue;
     for (const RunSamples& run : runs) {
-      noise[i] = std::max(noise[i], NoiseLevel(run.outputs.row(i), 3));
+      noise[i] = std::max(noise[i], NoiseLevel(MeasuredReadings(run.outputs, i), 3));
     }
     // A coarse reading does not show noise below its step.
     noise[i] = std::max(noise[i], sensor.resolution / std::sqrt(12.0));
     if (!(noise[i] > 0.0)) {
-      const double range =
-          (runs.front().outputs.row(i).array() - runs.front().outputs(i, 0))
-              .abs()
-              .maxCoeff();
+      const VectorXd readings = MeasuredReadings(runs.front().outputs, i);
+      const double range = (readings.array() - readings[0]).abs().maxCoeff();
       noise[i] = std::max(1e-6 * range, 1e-12);
     }
   }

@@ -11,6 +11,7 @@
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/noise_level.h"
+#include "mjdiag/signals/record.h"
 
 namespace mjdiag {
 namespace {
@@ -39,6 +40,12 @@ Machine WithNumbers(const Machine& machine, const UncertaintyOptions& options,
 }
 
 }  // namespace
+
+VectorXd MeasuredReadings(const MatrixXd& outputs, Index sensor) {
+  const VectorXd all = outputs.row(sensor);
+  const SampleMask measured = !all.array().isNaN();
+  return measured.all() ? all : Kept(all, measured);
+}
 
 NumberLearner::NumberLearner(const Machine& machine, const VectorXd& noise,
                              const std::vector<RunSamples>& runs, bool linear,
@@ -143,8 +150,8 @@ VectorXd NumberLearner::Noise() const {
   VectorXd noise = VectorXd::Zero(gains_.front().covariance.rows());
   for (const RunInformation& said : said_) {
     for (Index i = 0; i < noise.size(); ++i) {
-      noise[i] +=
-          NoiseLevel(said.innovations.row(i), 1) / static_cast<double>(said_.size());
+      noise[i] += NoiseLevel(MeasuredReadings(said.innovations, i), 1) /
+                  static_cast<double>(said_.size());
     }
   }
   return noise;

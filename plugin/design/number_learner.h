@@ -23,9 +23,12 @@ namespace mjdiag {
 
 /// Readings and commands of a run, a column a tick.
 struct RunSamples {
-  Eigen::MatrixXd outputs;
+  Eigen::MatrixXd outputs;  ///< NaN where they were not measured
   Eigen::MatrixXd inputs;
 };
+
+/// Of a sensor, the readings that were measured.
+Eigen::VectorXd MeasuredReadings(const Eigen::MatrixXd& outputs, Eigen::Index sensor);
 
 class NumberLearner {
  public:

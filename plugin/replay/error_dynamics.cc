@@ -24,18 +24,35 @@ void ErrorDynamics::Begin() {
   last.L.setZero();
 }
 
-void ErrorDynamics::Add(const TickTangent& tick) {
-  const MatrixXd F = tick.A - LC_;
-  if (in_open_ == 0) {
-    open_ = {F, tick.B, L_};
+void ErrorDynamics::Add(const TickTangent& tick, const SampleMask& measured,
+                        const SampleMask& counted) {
+  if (measured.size() == 0 || measured.all()) {
+    Add(tick.A - LC_, tick.B, L_);
   } else {
-    open_.F = F * open_.F;
-    open_.B = F * open_.B + tick.B;
-    open_.L = F * open_.L + L_;
+    const MatrixXd pull = L_ * measured.cast<double>().matrix().asDiagonal();
+    const MatrixXd C = weight_.cwiseInverse().asDiagonal() * C_;
+    Add(tick.A - pull * C, tick.B, pull);
   }
+  Miss(counted.size() > 0 ? counted : measured);
   if (++in_open_ < block_) return;
   blocks_.push_back(std::move(open_));
   in_open_ = 0;
+}
+
+void ErrorDynamics::Add(const MatrixXd& F, const MatrixXd& B, const MatrixXd& L) {
+  if (in_open_ == 0) {
+    open_ = {F, B, L};
+  } else {
+    open_.F = F * open_.F;
+    open_.B = F * open_.B + B;
+    open_.L = F * open_.L + L;
+  }
+}
+
+void ErrorDynamics::Miss(const SampleMask& counted) {
+  if (counted.size() == 0 || counted.all()) return;
+  if (open_.seen.size() == 0) open_.seen = VectorXd::Ones(counted.size());
+  open_.seen -= (1.0 - counted.cast<double>()).matrix() / static_cast<double>(block_);
 }
 
 // The mean over a block is that of its ends, x and next, whose sum it is applied to.
@@ -58,6 +75,8 @@ MatrixXd ErrorDynamics::Respond(Index blocks, Index signals, const Drive& drive,
     auto now = response.middleRows(ny * k, ny);
     now.noalias() = mean * x;
     seen(now, k);
+    const VectorXd& share = blocks_[static_cast<std::size_t>(k)].seen;
+    if (share.size() > 0) now.array().colwise() *= share.array();
     x.swap(next);
   }
   return response;
@@ -105,7 +124,11 @@ MatrixXd ErrorDynamics::OfReadings(Index sensor, const MatrixXd& errors) const {
 ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) const {
   const Index ny = C_.rows();
   const Index blocks = innovations.size() / ny;
-  const Eigen::Map<const MatrixXd> e(innovations.data(), ny, blocks);
+  MatrixXd e = Eigen::Map<const MatrixXd>(innovations.data(), ny, blocks);
+  for (Index k = 0; k < blocks; ++k) {
+    const VectorXd& share = blocks_[static_cast<std::size_t>(k)].seen;
+    if (share.size() > 0) e.col(k) = share.cwiseProduct(e.col(k)).eval();
+  }
   const double root = std::sqrt(static_cast<double>(block_));
   const MatrixXd seen = SeenMean();
   Adjoint adjoint{MatrixXd(blocks, C_.cols() / 2), MatrixXd(blocks, ny)};

@@ -19,6 +19,7 @@
 
 #include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/plugin/replay/observer.h"
+#include "mjdiag/signals/record.h"
 
 namespace mjdiag {
 
@@ -30,7 +31,10 @@ class ErrorDynamics {
   /// Another record: what comes has nothing to do with what was.
   void Begin();
   /// The next tick of the run.
-  void Add(const TickTangent& tick);
+  /// @param measured  which sensors were, ny; empty: all. The others do not pull
+  /// @param counted   which of them show anything; empty: as `measured`
+  void Add(const TickTangent& tick, const SampleMask& measured = {},
+           const SampleMask& counted = {});
   /// Whole blocks so far.
   Eigen::Index blocks() const { return static_cast<Eigen::Index>(blocks_.size()); }
 
@@ -58,6 +62,8 @@ class ErrorDynamics {
     Eigen::MatrixXd F;  // product of A_k - L C
     Eigen::MatrixXd B;  // of unit forces on every joint
     Eigen::MatrixXd L;  // of unit errors of every sensor
+    /// Share of its ticks in which a sensor shows something, ny; empty: all of them.
+    Eigen::VectorXd seen{};
   };
   /// drive(x', k) adds what drives block k, seen(y, k) what the readings show of it
   /// beside the states.
@@ -65,6 +71,10 @@ class ErrorDynamics {
   Eigen::MatrixXd Respond(Eigen::Index blocks, Eigen::Index signals, const Drive& drive,
                           const Seen& seen) const;
   Eigen::MatrixXd SeenMean() const;
+  void Add(const Eigen::MatrixXd& F, const Eigen::MatrixXd& B,
+           const Eigen::MatrixXd& L);
+  /// Takes sensors that do not count at this tick out of the open block.
+  void Miss(const SampleMask& counted);
 
   std::vector<Block> blocks_;
   Block open_;  // not yet whole

@@ -12,6 +12,7 @@
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/plugin/setup/measured_channel.h"
+#include "mjdiag/signals/bridging.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -71,7 +72,8 @@ class RecordedInputs final : public TickControl {
 struct Watch {
   std::function<void()> record;
   std::function<void(const mjModel&, const mjData&, std::span<const int> off)> step;
-  std::function<void()> tick;
+  /// Which sensors were measured, and count; empty: all.
+  std::function<void(const SampleMask& measured, const SampleMask& counted)> tick;
 };
 
 /// One record of a run, beside the machine with all that is put into it.
@@ -107,6 +109,9 @@ void RecordFollower::Follow(const Watch& watch, Index first, Track& track) {
   Eigen::Map<VectorXd> q(data.qpos, nv);
   Eigen::Map<VectorXd> v(data.qvel, nv);
   VectorXd correction(2 * nv);
+  SampleMask measured;
+  SampleMask counted;
+  const Eigen::ArrayXX<bool>& counts = record_.Counted();
   for (Index k = 0; k < record_.samples(); ++k) {
     if (track.position.size() > 0) {
       track.position.col(first + k) = q;
@@ -115,15 +120,21 @@ void RecordFollower::Follow(const Watch& watch, Index first, Track& track) {
     stepper_.Advance(model, data, control_, after_step);
     auto innovation = track.innovations.col(first + k);
     innovation = record_.outputs.col(k) - control_.reading();
+    if (record_.measured.size() > 0) {
+      measured = record_.measured.col(k);
+      innovation = measured.select(innovation, 0.0);
+    }
     if (HasDiverged(data)) {
       throw NumericalError(
           "replay: diverged at " +
           std::to_string(static_cast<double>(k) * record_.sample_time) + " s");
     }
-    if (watch.tick) watch.tick();
+    if (counts.size() > 0) counted = counts.col(k);
+    if (watch.tick) watch.tick(measured, counted);
     correction.noalias() = observer_.L * innovation;
     q += correction.head(nv);
     v += correction.tail(nv);
+    if (counts.size() > 0) innovation = counted.select(innovation, 0.0);
   }
 }
 
@@ -187,6 +198,46 @@ Index MeasuredRun::SamplesOf(std::size_t record) const {
   return end - records[record].sample;
 }
 
+void MeasuredRun::Discount(Index samples) {
+  if (driven.size() == 0) return;
+  counted = measured;
+  if (counted.size() == 0) counted.setConstant(outputs.rows(), outputs.cols(), true);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Index end = records[i].sample + SamplesOf(i);
+    Index until = records[i].sample;  // where what counts begins again
+    for (Index k = records[i].sample; k < end; ++k) {
+      if (!driven[k]) until = std::min(end, k + 1 + samples);
+      if (k < until) counted.col(k) = false;
+    }
+  }
+}
+
+SampleMask MeasuredRun::CountedOf(Index sensor, Index first, Index count) const {
+  if (Counted().size() == 0) return SampleMask::Constant(count, true);
+  return Counted().row(sensor).segment(first, count).transpose();
+}
+
+VectorXd MeasuredRun::ReadingsOf(Index sensor) const {
+  const VectorXd all = outputs.row(sensor);
+  if (measured.size() == 0) return all;
+  return Kept(all, measured.row(sensor).transpose());
+}
+
+Index MeasuredRun::PeriodOf(Index sensor) const {
+  if (measured.size() == 0) return 1;
+  std::vector<Index> intervals;
+  Index last = -1;
+  for (Index k = 0; k < samples(); ++k) {
+    if (!measured(sensor, k)) continue;
+    if (last >= 0) intervals.push_back(k - last);
+    last = k;
+  }
+  if (intervals.empty()) return 1;
+  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
 VectorXd MeasuredRun::Time() const {
   VectorXd time(samples());
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -204,6 +255,9 @@ MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
   part.outputs = run.outputs.middleCols(first, samples);
   part.inputs = run.inputs.middleCols(first, samples);
   if (run.on.size() > 0) part.on = run.on.middleCols(first, samples);
+  if (run.measured.size() > 0) part.measured = run.measured.middleCols(first, samples);
+  if (run.counted.size() > 0) part.counted = run.counted.middleCols(first, samples);
+  if (run.driven.size() > 0) part.driven = run.driven.segment(first, samples);
   part.records.clear();
   for (const RecordStart& start : run.records) {
     if (start.sample < first || start.sample >= first + samples) continue;
@@ -224,11 +278,21 @@ MeasuredRun Joined(const std::vector<MeasuredRun>& runs) {
   all.outputs = size(runs.front().outputs);
   all.inputs = size(runs.front().inputs);
   all.on = size(runs.front().on);
+  const bool complete = std::ranges::all_of(
+      runs, [](const MeasuredRun& run) { return run.measured.size() == 0; });
+  if (!complete) all.measured.setConstant(all.outputs.rows(), samples, true);
+  const bool all_driven = std::ranges::all_of(
+      runs, [](const MeasuredRun& run) { return run.driven.size() == 0; });
+  if (!all_driven) all.driven.setConstant(samples, true);
   Index first = 0;
   for (const MeasuredRun& run : runs) {
     all.outputs.middleCols(first, run.samples()) = run.outputs;
     all.inputs.middleCols(first, run.samples()) = run.inputs;
     if (run.on.size() > 0) all.on.middleCols(first, run.samples()) = run.on;
+    if (run.measured.size() > 0) {
+      all.measured.middleCols(first, run.samples()) = run.measured;
+    }
+    if (run.driven.size() > 0) all.driven.segment(first, run.samples()) = run.driven;
     for (const RecordStart& start : run.records) {
       all.records.push_back({first + start.sample, start.readings});
     }
@@ -242,6 +306,15 @@ MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   run.sample_time = setup.rates.tick();
   run.records.front().readings = Replay(setup, measured).start;
   run.outputs = MeasuredBy(setup.channels.sensors, measured);
+  run.measured = MeasuredOf(measured, ChannelsOf(setup.channels.sensors));
+  for (const ActuatorSetup& actuator : setup.channels.actuators) {
+    const SampleMask& known = measured.At(actuator.channel).measured;
+    if (known.size() == 0) continue;
+    const SampleMask guessed = InGaps(known);
+    if (!guessed.any()) continue;
+    if (run.driven.size() == 0) run.driven.setConstant(run.samples(), true);
+    run.driven = run.driven && !guessed;
+  }
   run.inputs = MeasuredBy(setup.channels.actuators, measured);
   if (!setup.channels.Switches().empty()) {
     run.on = Eigen::MatrixXd::Ones(run.inputs.rows(), run.samples());
@@ -267,7 +340,9 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
       [&dynamics] { dynamics.Begin(); },
       [&recorder](const mjModel& changed, const mjData& data,
                   std::span<const int> off) { recorder.Substep(changed, data, off); },
-      [&] { dynamics.Add(recorder.EndTick()); }};
+      [&](const SampleMask& measured, const SampleMask& counted) {
+        dynamics.Add(recorder.EndTick(), measured, counted);
+      }};
   return Follow(machine, changes, run, observer, true, watch);
 }
 

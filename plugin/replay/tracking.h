@@ -36,6 +36,14 @@ struct MeasuredRun {
   Eigen::MatrixXd inputs;    ///< actuators x samples
   /// Actuators x samples, 0: an open circuit; empty: all on.
   Eigen::MatrixXd on{};
+  /// Which outputs were measured, sensors x samples; empty: all. Where one was not, the
+  /// machine runs on without it: its innovation is 0 and counts for nothing.
+  Eigen::ArrayXX<bool> measured{};
+  /// Ticks whose inputs were measured, or bridge one that was not; empty: all.
+  SampleMask driven{};
+  /// Which outputs count: as `measured`, but for those behind inputs that are a guess.
+  /// Empty: as `measured`. What does not count has innovation 0, too.
+  Eigen::ArrayXX<bool> counted{};
   std::vector<RecordStart> records{{}};  ///< in order, the first at sample 0
 
   Eigen::Index samples() const { return outputs.cols(); }
@@ -43,6 +51,21 @@ struct MeasuredRun {
   Eigen::Index SamplesOf(std::size_t record) const;
   /// [s] since the start of the record of every sample.
   Eigen::VectorXd Time() const;
+  /// Leaves what comes behind inputs that are a guess out of what counts, so many samples
+  /// of it.
+  void Discount(Eigen::Index samples);
+  /// `counted`, or `measured`.
+  const Eigen::ArrayXX<bool>& Counted() const {
+    return counted.size() > 0 ? counted : measured;
+  }
+  /// Which of samples first .. first + count - 1 of a sensor count.
+  SampleMask CountedOf(Eigen::Index sensor, Eigen::Index first,
+                       Eigen::Index count) const;
+  /// Readings of a sensor that were measured, one after the other.
+  Eigen::VectorXd ReadingsOf(Eigen::Index sensor) const;
+  /// Ticks from one reading of a sensor to the next, usually: 1 but for sensors that are
+  /// slower than the control.
+  Eigen::Index PeriodOf(Eigen::Index sensor) const;
 };
 
 /// Some samples of a run, from the start of a record on.

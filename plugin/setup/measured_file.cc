@@ -17,6 +17,14 @@ Course CourseOf(Hold hold) {
 
 }  // namespace
 
+std::map<std::string, ReadingScale> ReadingsOf(const Setup& setup) {
+  std::map<std::string, ReadingScale> readings;
+  for (const SensorSetup& sensor : setup.channels.sensors) {
+    readings[sensor.channel] = {sensor.resolution, sensor.noise_sd};
+  }
+  return readings;
+}
+
 MeasuredFile ReadMeasured(const Setup& setup, const std::filesystem::path& file) {
   Resampling resampling{setup.rates.tick(), {}};
   for (const ActuatorSetup& actuator : setup.channels.actuators) {
@@ -29,6 +37,7 @@ MeasuredFile ReadMeasured(const Setup& setup, const std::filesystem::path& file)
   for (const std::string& name : setup.channels.Switches()) {
     resampling.courses[name] = Course::kSwitched;
   }
+  resampling.readings = ReadingsOf(setup);
   return ReadMeasuredFile(file, setup.record, resampling);
 }
 

@@ -37,6 +37,35 @@ ChannelMismatch Measure(const Eigen::VectorXd& measured,
   return MeasureMismatch(RecordOf(measured), RecordOf(simulated), "x", floor, options);
 }
 
+// Whatever stands there: a figure has only what was measured.
+TEST(Mismatch, IsThatOfSamplesThatWereMeasured) {
+  const Eigen::VectorXd noise = GaussianNoise(kSamples, 1e-3, 7);
+  Record lacking(kStep, 2.0);
+  SampleMask measured = SampleMask::Constant(kSamples, true);
+  measured.segment(1000, 500) = false;
+  Eigen::VectorXd y = Motion() + noise;
+  y.segment(1000, 500).setConstant(9.0);
+  lacking.Add({"x", "m", y, measured});
+  MismatchOptions options;
+  options.skip_samples = 10;
+  const NoiseFloor floor = FloorOf(1e-3, kSamples);
+  const ChannelMismatch lacks =
+      MeasureMismatch(lacking, RecordOf(Motion()), "x", floor, options);
+  const Eigen::VectorXd counted =
+      Kept(noise, measured).tail(kSamples - 500 - options.skip_samples);
+  EXPECT_NEAR(lacks.rms, Rms(counted), 1e-12);
+  EXPECT_NEAR(lacks.mae, counted.cwiseAbs().mean(), 1e-12);
+  EXPECT_LT(lacks.peak, 1e-2);
+  EXPECT_GT(lacks.fit_percent, 98.0);
+  EXPECT_LT(lacks.relative_error_percent, 1.0);
+  EXPECT_LT(lacks.worst.rms, 2e-3);
+  EXPECT_NEAR(lacks.noise_floor.mismatch_freedom,
+              kSamples * (1.0 - 500.0 / (kSamples - 10)), 1e-6);
+  const ChannelMismatch derived =
+      MeasureMismatch(lacking, RecordOf(Motion() + 0.1 * noise), "x", floor, options);
+  EXPECT_NEAR(derived.rms, 0.9 * lacks.rms, 1e-12);
+}
+
 TEST(Mismatch, IsNothingBetweenEqualRecords) {
   for (const double floor : {0.0, 1e-8}) {
     const ChannelMismatch result =

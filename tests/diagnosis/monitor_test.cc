@@ -93,6 +93,28 @@ TEST(DiagnosisMonitor, GivesTheSameBitsTickByTickAndOverARecord) {
   EXPECT_EQ(offline.monitor.first_detection(), online.monitor.first_detection());
 }
 
+// What bridges a gap is no reading: nothing is judged before the filters forget it.
+TEST(DiagnosisMonitor, JudgesNothingInGaps) {
+  const MatrixXd signals =
+      test::Measured(test::Motion(test::Stage(), test::Drive(kSamples)), 1);
+  SampleMask measured = SampleMask::Constant(kSamples, true);
+  measured.segment(1500, 60) = false;
+  const auto first_detection = [&](const SampleMask& of_stage) {
+    const Record whole = RecordOf(signals);
+    Record held(whole.sample_time());
+    for (Channel channel : whole.channels()) {
+      if (channel.name == "stage") {
+        channel.samples.segment(1500, 60).setConstant(channel.samples[1499]);
+        channel.measured = of_stage;
+      }
+      held.Add(channel);
+    }
+    return RecordDiagnosis(Design(), held).monitor.first_detection();
+  };
+  EXPECT_TRUE(first_detection({}).has_value());
+  EXPECT_FALSE(first_detection(measured).has_value());
+}
+
 TEST(DiagnosisMonitor, GivesTheSameBitsWithoutARecorder) {
   const MatrixXd signals = test::Measured(
       test::Motion(test::Stage({.damping = 1.01}), test::Drive(kSamples)), 1);

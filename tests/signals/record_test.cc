@@ -33,6 +33,20 @@ TEST(Record, SliceKeepsTimeOfItsSamples) {
   EXPECT_EQ(slice.At("x").unit, "m");
 }
 
+TEST(Record, KnowsWhichSamplesWereMeasured) {
+  Record record = TwoChannels();
+  record.Add({"q", "m", Eigen::Vector4d(1.0, 1.5, 2.0, 3.0),
+              Eigen::Array4<bool>(true, false, true, true)});
+  EXPECT_EQ(record.At("q").Measured(), Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(record.At("x").Measured(), record.At("x").samples);
+  EXPECT_FALSE(record.Slice(1, 2).At("q").IsMeasured(0));
+  EXPECT_EQ(record.Slice(2, 2).At("q").measured.size(), 0);
+  EXPECT_EQ(MeasuredOf(record, {"x", "u"}).size(), 0);
+  EXPECT_EQ(MeasuredOf(record, {"x", "q"}).count(), 7);
+  EXPECT_THROW(record.Add({"v", "m", Eigen::Vector4d::Ones(), SampleMask(3)}),
+               InputError);
+}
+
 TEST(Record, SliceRefusesSamplesThatAreNotThere) {
   EXPECT_THROW(TwoChannels().Slice(2, 3), InputError);
   EXPECT_THROW(TwoChannels().Slice(-1, 2), InputError);

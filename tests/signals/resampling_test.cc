@@ -13,6 +13,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -71,11 +72,11 @@ TEST(ChosenGrid, BridgesTwoMissingSamplesAndSaysSo) {
   EXPECT_THAT(grid.note, HasSubstr("2 samples are missing"));
 }
 
-TEST(ChosenGrid, RefusesLongerGapsWithTheirPlace) {
-  EXPECT_THAT(
-      [] { Choose(Without(VectorXd::LinSpaced(101, 0.0, 0.1), 40, 3)); },
-      ThrowsMessage<InputError>(HasSubstr(
-          "row 40: time is not uniform (interval 0.004 s, elsewhere 0.001 s)")));
+TEST(ChosenGrid, GoesOnThroughLongerGaps) {
+  const SampleGrid grid = Choose(Without(VectorXd::LinSpaced(101, 0.0, 0.1), 40, 30));
+  EXPECT_EQ(grid.samples, 101);
+  EXPECT_EQ(grid.time.sample_time, kTick);
+  EXPECT_THAT(grid.note, HasSubstr("30 samples are missing: resampled"));
 }
 
 TEST(ChosenGrid, IsTheWantedOneAtNearlyItsRate) {
@@ -86,10 +87,18 @@ TEST(ChosenGrid, IsTheWantedOneAtNearlyItsRate) {
               HasSubstr("the sample time is 0.20 % off the control tick: resampled"));
 }
 
-TEST(ChosenGrid, LeavesAnotherRateToWhoWantsIt) {
-  EXPECT_TRUE(Choose(VectorXd::LinSpaced(101, 0.0, 0.2)).IsOfFile());
-  EXPECT_THAT([] { Choose(2.0 * Jittered(200, 0.2)); },
-              ThrowsMessage<InputError>(HasSubstr("time is not uniform")));
+TEST(ChosenGrid, IsTheWantedOneAtAnotherRate) {
+  const SampleGrid uniform = Choose(VectorXd::LinSpaced(101, 0.0, 0.2));
+  EXPECT_EQ(uniform.samples, 201);
+  EXPECT_THAT(uniform.note, HasSubstr("samples are 2.00 ms apart, not a control tick"));
+  EXPECT_EQ(Choose(2.0 * Jittered(200, 0.2)).time.sample_time, kTick);
+}
+
+TEST(ChosenGrid, RefusesTimesInAnotherUnit) {
+  EXPECT_THAT([] { Choose(1000.0 * Jittered(200, 0.2)); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("the control tick of the setup is 1.00 ms"),
+                        HasSubstr("the unit of its times under [record.time]"))));
 }
 
 TEST(Resampled, SmoothSignalIsWhatItWouldHaveBeen) {

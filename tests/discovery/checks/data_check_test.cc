@@ -12,6 +12,7 @@
 
 #include "discovery/checks/checked_machine.h"
 #include "mjdiag/discovery/checks/clock_drift.h"
+#include "mjdiag/discovery/measurements.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/gaussian_noise.h"
 
@@ -111,15 +112,33 @@ TEST_F(EmpsRecord, WithSamplesThatAreNoNumbersIsRefused) {
   }
 }
 
-TEST_F(EmpsRecord, ThatHoldsSamplesIsRefused) {
+TEST_F(EmpsRecord, ThatHoldsOrLacksSamplesPassesWithoutThem) {
   const Record record = WithChanged(*record_, "q", [](VectorXd& x) {
     x.segment(1000, 7).setConstant(x[1000]);
     x.segment(3500, 40).setConstant(x[3500]);
+    x[1234] = std::nan("");
   });
-  EXPECT_THAT(subject_->Refusal(record),
-              AllOf(HasSubstr("missing samples: 'q' repeats one value 7 times from "
-                              "sample 1000 (1 s)"),
-                    HasSubstr("2 such gaps")));
+  const Measurements measurements = MeasurementsOf(subject_->machine, record, nullptr);
+  const auto& [marked, machine, name, notes] = measurements.fit.front();
+  const SampleMask& measured = marked.At("q").measured;
+  ASSERT_EQ(measured.size(), record.samples());
+  EXPECT_EQ(record.samples() - measured.count(), 6 + 39 + 1);
+  EXPECT_TRUE(measured[1000] && !measured[1001] && !measured[1234] && measured[3540]);
+  EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("'q' has no value at 1 samples"),
+                                          HasSubstr("'q' repeats values")));
+  EXPECT_THAT(subject_->Check(marked), IsEmpty());
+}
+
+TEST_F(EmpsRecord, ThatLacksMostIsTooShort) {
+  const Record record = WithChanged(*record_, "q", [](VectorXd& x) {
+    for (Index k = 0; k < x.size(); ++k) {
+      if (k % 500 != 0) x[k] = std::nan("");
+    }
+  });
+  EXPECT_THAT(
+      subject_->Refusal(
+          MeasurementsOf(subject_->machine, record, nullptr).fit.front().record),
+      AllOf(HasSubstr("too short: "), HasSubstr("values of 'q'")));
 }
 
 // At rest and slowly moving, a quantised sensor repeats its values without a fault.

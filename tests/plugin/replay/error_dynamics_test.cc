@@ -54,6 +54,31 @@ TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
   EXPECT_LT((predicted - seen).norm(), 0.02 * seen.norm());
 }
 
+// The same of a sensor that is read now and then: the replay is not pulled elsewhere, and
+// nothing is seen of it there.
+TEST(ErrorDynamics, PredictsItWhereTheSensorIsReadNowAndThen) {
+  const test::Stage stage;
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  const Machine damped =
+      stage.machine.With(test::With({"viscous_friction@load:coefficient=0.5"}));
+  test::Replay replay(stage.machine, Simulate(damped, stage.Motion(), quiet));
+  replay.run.measured.setConstant(1, replay.run.samples(), true);
+  for (Index k = 0; k < replay.run.samples(); ++k) {
+    if (k % 3 != 0 || (k > 2000 && k < 2400)) replay.run.measured(0, k) = false;
+  }
+  for (const Index block : {1, 4}) {
+    ErrorDynamics dynamics(replay.observer, block);
+    const Track track =
+        FollowRun(replay.machine, {}, replay.run, replay.observer, dynamics);
+    const ObservedMotion observed = ObserveMotion(replay.machine, replay.run, track);
+    const MatrixXd force = -0.5 * observed.velocity.transpose();
+    const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
+    const VectorXd seen = Averaged(replay.Scaled(track), 1, block);
+    EXPECT_LT((predicted - seen).norm(), 0.02 * seen.norm()) << block;
+  }
+}
+
 TEST(ErrorDynamics, LosesLittleByBlocks) {
   const test::Stage stage;
   const test::Replay replay(stage.machine, stage.Measure({}));

@@ -57,6 +57,60 @@ TEST(FollowRun, IsPulledFromAWrongStartTowardsTheRecord) {
   EXPECT_GT(left.rightCols(100).cwiseAbs().minCoeff(), 0.9 * kWrong);
 }
 
+/// As if samples first .. first + count - 1 had not been measured, and read nonsense.
+MeasuredRun Without(MeasuredRun run, Index first, Index count) {
+  if (run.measured.size() == 0) run.measured.setConstant(1, run.samples(), true);
+  run.measured.middleCols(first, count).setConstant(false);
+  run.outputs.middleCols(first, count).setConstant(7.0);
+  return run;
+}
+
+TEST(FollowRun, RunsOnWhereNothingWasMeasured) {
+  test::Replay replay = Measured({});
+  replay.run = Without(replay.run, 1000, 300);
+  const MatrixXd innovations = replay.Follow({}).innovations;
+  EXPECT_LT(innovations.cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(innovations.middleCols(1000, 300).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(FollowRun, IsBitwiseTheSameWhereAllOfItWasMeasured) {
+  test::Replay replay = Measured(Worn());
+  const MatrixXd innovations = replay.Follow({}).innovations;
+  replay.run.measured.setConstant(1, replay.run.samples(), true);
+  EXPECT_EQ(replay.Follow({}).innovations, innovations);
+}
+
+// Behind inputs that are a guess it is pulled back, and nothing counts before it is.
+TEST(FollowRun, CountsNothingBehindInputsThatAreAGuess) {
+  test::Replay replay = Measured({});
+  const Index n = replay.run.samples();
+  replay.run = Without(replay.run, 1000, 50);
+  replay.run.inputs.middleCols(1000, 50).array() += 5.0;
+  const double strayed = replay.Follow({}).innovations.cwiseAbs().maxCoeff();
+  replay.run.driven.setConstant(n, true);
+  replay.run.driven.segment(1000, 50) = false;
+  replay.run.Discount(700);
+  EXPECT_EQ(replay.run.counted.count(), n - 750);
+  const MatrixXd counted = replay.Follow({}).innovations;
+  EXPECT_LT(counted.cwiseAbs().maxCoeff(), 0.02 * strayed);
+  EXPECT_EQ(counted.middleCols(1000, 750).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(MeasuredRun, KnowsWhatOfSeveralRecordsWasMeasured) {
+  const MeasuredRun whole = Measured({}).run;
+  const Index n = whole.samples();
+  const MeasuredRun both = Joined({whole, Without(whole, 10, 5)});
+  EXPECT_EQ(both.measured.count(), 2 * n - 5);
+  EXPECT_FALSE(both.measured(0, n + 12));
+  EXPECT_EQ(Part(both, 1, n).measured.count(), n - 5);
+  EXPECT_EQ(both.ReadingsOf(0).size(), 2 * n - 5);
+  EXPECT_EQ(both.PeriodOf(0), 1);
+  MeasuredRun slow = whole;
+  slow.measured.setConstant(1, n, false);
+  for (Index k = 0; k < n; k += 4) slow.measured(0, k) = true;
+  EXPECT_EQ(slow.PeriodOf(0), 4);
+}
+
 TEST(FollowRun, KeepsTheStatesWhereTheyAreAskedFor) {
   const test::Replay replay = Measured(Worn());
   const Track without = replay.Follow(Worn());
