@@ -21,7 +21,8 @@ MatrixXd CovarianceOf(const MatrixXd& H) {
          scale.asDiagonal();
 }
 
-Information::Information(Index p, Index ny) : small_(ny) {
+// Of something, so that it can be copied before it is used.
+Information::Information(Index p, Index ny) : small_(MatrixXd::Identity(ny, ny)) {
   H_ = factor_ = inverse_ = MatrixXd::Identity(p, p);
   g_ = change_ = scale_ = solution_ = VectorXd::Zero(p);
   variance_ = VectorXd::Ones(p);

@@ -54,7 +54,8 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
             model.start.cols(), block, kCurvature},
            std::move(gains), model.tones, model.timing.tick()),
       model_(model),
-      moved_rest_(model.nominal, model.parts, unknowns()) {
+      moved_rest_(model.nominal, model.parts, unknowns()),
+      factor_(model.nominal.M.rows()) {
   const MechanicalModel& nominal = model_.nominal;
   const Index nq = nominal.M.rows();
   const Index ny = nominal.b.cols();
@@ -68,7 +69,6 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   M_ = D_ = K_ = left_side_ = nominal.M;
   Gamma_ = nominal.Gamma;
   f_ = VectorXd::Zero(nq);
-  factor_ = Eigen::LLT<MatrixXd>(nq);
   A_step_ = F_ = power_ = base_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_step_ = MatrixXd::Zero(2 * nq, nu);
   pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);

@@ -100,9 +100,10 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
     }
   }
   // One amplitude, whatever the number of joints.
-  std::vector<Trial> trials = {LinearTrial(signals, entry, 1.0, true)};
-  trials.back().summed = true;
-  return trials;
+  Trial trial = LinearTrial(std::move(signals), std::move(entry), 1.0, true);
+  trial.summed = true;
+  trial.least.conservativeResize(1);
+  return {std::move(trial)};
 }
 
 const Effect* FaultParameterEffect::Twin() const {

@@ -36,7 +36,8 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
       machine_(machine),
       uncertain_(std::move(uncertain)),
       effects_(machine.channels(), machine.plant(), machine.effects()),
-      moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()) {
+      moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()),
+      factor_(machine.linear().M.rows()) {
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
   data_ = std::move(plant.data);
@@ -80,7 +81,6 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
   for (Map& map : maps_) map.Q = map.V = map.G = MatrixXd::Zero(nv, nv);
   inertia_ = identity_ = work_ = MatrixXd::Identity(nv, nv);
-  factor_ = Eigen::LLT<MatrixXd>(nv);
   stick_r_.assign(static_cast<std::size_t>(nv), 0.0);
   stick_rb_ = stick_r_;
   tone_ = VectorXd::Zero(nu);
