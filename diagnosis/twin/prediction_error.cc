@@ -33,7 +33,7 @@ constexpr Index kShiftEvery = 64;
 PredictionErrorEstimator::PredictionErrorEstimator(
     std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, double sample_time,
     const PredictionErrorOptions& options)
-    : pass_(std::move(twin)),
+    : pass_(std::move(twin), options.tolerated),
       unknowns_(std::move(unknowns)),
       options_(options),
       prior_covariance_(PriorOf(unknowns_)),
@@ -154,7 +154,7 @@ void PredictionErrorEstimator::Say() noexcept {
   said_.information.Know(pass_.information());
   said_.theta = pass_.theta();
   said_.prior = prior_;
-  said_.surprise = pass_.surprise().recent();
+  said_.surprise = pass_.surprise().recent() / options_.tolerated;
   said_.since = segment_.since;
   said_.until = pass_.seen();
   said_.gain = gain();

@@ -25,6 +25,7 @@
 // random, so that what was long ago is forgotten. Memory is constant, time unbounded.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -43,6 +44,9 @@ struct PredictionErrorOptions {
   /// Random walk of what wears while it follows [1/sqrt(s)]. A fault that grows by 1 %
   /// an hour stays within its interval.
   double wear = 3e-5;
+  /// How many times more surprising than by noise alone blocks of a healthy machine may
+  /// be, 1 or more: its model is not exact.
+  double tolerated = 1.0;
 };
 
 class PredictionErrorEstimator {
@@ -79,7 +83,8 @@ class PredictionErrorEstimator {
   /// Those that Variance has found last; before that, of the prior.
   const Eigen::VectorXd& LastVariance() const { return said_.variance; }
   /// Mean over recent blocks of the squared innovations over what noise and the
-  /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
+  /// uncertainty of the estimate let expect of them, over what is tolerated: 1 where the
+  /// twin explains them.
   double surprise() const { return said_.surprise; }
   /// Whether what it says is of the machine as it is now: it knows of no change since.
   bool current() const { return sure() && said_.since == segment_.since; }
@@ -88,6 +93,10 @@ class PredictionErrorEstimator {
   bool sure() const { return said_.sure; }
   /// Tick from which the machine has been as it is estimated.
   Eigen::Index since() const { return said_.since; }
+  /// Ticks that the estimate rests on.
+  Eigen::Index horizon() const {
+    return std::min(said_.until - said_.since, options_.kept);
+  }
   int returns() const { return returns_; }
   /// Whether it follows: the readings that it keeps do not reach back any more.
   bool following() const { return kept_.added() - now().first() > options_.kept; }

@@ -19,10 +19,10 @@ constexpr Index kResettle = 32;
 
 }  // namespace
 
-TwinPass::TwinPass(std::unique_ptr<Twin> twin)
+TwinPass::TwinPass(std::unique_ptr<Twin> twin, double tolerated)
     : twin_(std::move(twin)),
       information_(twin_->unknowns(), twin_->outputs()),
-      surprise_(twin_->outputs()) {
+      surprise_(twin_->outputs(), tolerated) {
   theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
   reading_ = innovation_ = sum_ = VectorXd::Zero(twin_->outputs());
   covariance_ = twin_->gains().front().covariance;

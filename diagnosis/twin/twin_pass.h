@@ -44,7 +44,8 @@ struct PassStart {
 
 class TwinPass {
  public:
-  explicit TwinPass(std::unique_ptr<Twin> twin);
+  /// @param tolerated  of its surprises
+  explicit TwinPass(std::unique_ptr<Twin> twin, double tolerated = 1.0);
 
   const Twin& twin() const { return *twin_; }
   Twin& twin() { return *twin_; }

@@ -7,6 +7,7 @@
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/diagnosis/twin/information.h"
+#include "mjdiag/diagnosis/twin/model_uncertainty.h"
 #include "mjdiag/diagnosis/twin/run_pass.h"
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -27,6 +28,8 @@ constexpr double kRounding = 1e-15;
 constexpr double kLeastStep = 1e-4;
 /// Of a noise that is given: less is none.
 constexpr double kLeastNoise = 1e-3;
+/// Of squares of innovations: twice what healthy runs have shown.
+constexpr double kMargin = 4.0;
 /// A number is not that far from where it was known to be, in standard deviations.
 constexpr double kDoubtful = 4.0;
 
@@ -151,7 +154,6 @@ class Learner {
       VectorXd change = CovarianceOf(H) * g;
       diverged_ = !change.allFinite();
       if (diverged_) return;
-      last_ = change;
       const double squared = change.dot(g);
       const double farthest = change.cwiseAbs().maxCoeff();
       if (farthest > kLongest) change *= kLongest / farthest;
@@ -164,7 +166,7 @@ class Learner {
 
   /// Whether no block of any run is more of a surprise than chance lets expect.
   bool Explains() const { return Excess() <= 1.0; }
-  /// How many times more.
+  /// How many times more, the worst.
   double Excess() const {
     if (diverged_) return std::numeric_limits<double>::infinity();
     const Surprise limits(gains_.front().covariance.rows());
@@ -176,30 +178,11 @@ class Learner {
     return excess;
   }
 
-  /// How far parts of the runs contradict all of them together: the mean square of what
-  /// each would move, over what noise lets expect. Errors of a model are alike from one
-  /// tick to the next, and the parts see what no single innovation shows. 1 where chance
-  /// explains it.
-  double Contradiction() const {
-    constexpr double kTold = 1e-6;    // of what a part tells best
-    constexpr double kChance = 1e-3;  // probability
-    double squares = 0.0;
-    double freedom = -static_cast<double>(own_.size());
-    for (const RunInformation& said : said_) {
-      for (const PartInformation& part : said.parts) {
-        const ScaledEigenPairs modes = ScaledEigenDecomposition(part.H);
-        const VectorXd pull = modes.vectors.transpose() *
-                              (part.g - part.H * last_).cwiseQuotient(modes.scale);
-        const VectorXd& told = modes.values;
-        for (Index i = 0; i < told.size(); ++i) {
-          if (!(told[i] > kTold * told.maxCoeff())) continue;
-          squares += pull[i] * pull[i] / told[i] / std::max(1.0, said.misfit);
-          freedom += 1.0;
-        }
-      }
-    }
-    if (!(freedom >= 1.0)) return 1.0;
-    return squares > ChiSquaredQuantile(kChance, freedom) ? squares / freedom : 1.0;
+  /// Mean square of what all runs leave, over what noise lets expect.
+  double Misfit() const {
+    double sum = 0.0;
+    for (const RunInformation& said : said_) sum += said.misfit;
+    return sum / static_cast<double>(said_.size());
   }
 
   /// Of the readings, by what changes from one innovation to the next.
@@ -221,10 +204,64 @@ class Learner {
   MatrixXd known_;
   VectorXd before_, own_;
   MatrixXd H_;
-  VectorXd last_;  // change that the last passes asked for
   std::vector<RunInformation> said_;
   bool diverged_ = false;
 };
+
+/// The machine as its calibration says.
+Machine Calibrated(const Machine& machine, const Calibration& calibration) {
+  NumberFactors factors;
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    factors.emplace_back(FindPlantNumber(machine.plant(), calibration.numbers[i]),
+                         calibration.factors[static_cast<Index>(i)]);
+  }
+  const Machine with =
+      machine.WithNumbers(factors).WithSensorNoise(calibration.sensor_noise);
+  Setup setup = with.setup();
+  setup.calibration = calibration;
+  return with.WithSetup(std::move(setup));
+}
+
+/// By what a diagnosis would say of parts of the runs.
+/// @param certain  whether the model is certainly not the machine
+ModelUncertainty ModelUncertaintyOf(const Machine& calibrated,
+                                    const std::vector<Samples>& runs, bool linear,
+                                    bool certain) {
+  std::vector<std::vector<PartInformation>> parts(runs.size());
+  const MachineTwin like = MakeTwin(calibrated, linear);
+  const Index n = like.twin->unknowns() - like.twin->start_unknowns();
+  std::vector<Unknown> unknowns(like.unknowns.begin(), like.unknowns.begin() + n);
+  std::vector<Index> faults;
+  ModelUncertainty uncertainty;
+  std::vector<std::string> names;
+  for (const TwinFault& fault : like.faults) {
+    for (Index i = 0; i < std::max<Index>(1, 2 * fault.tones()); ++i) {
+      faults.push_back(fault.first + i);
+      names.push_back(unknowns[static_cast<std::size_t>(fault.first + i)].name);
+    }
+  }
+  if (faults.empty()) return uncertainty;
+  double duration = 0.0;
+  for (const Samples& run : runs) {
+    duration += static_cast<double>(run.outputs.cols()) * like.sample_time;
+  }
+  ParallelFor(static_cast<int>(runs.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    MachineTwin twin = MakeTwin(calibrated, linear);
+    RunPass pass(std::move(twin.twin), runs[at].outputs, runs[at].inputs,
+                 PriorOf(twin.unknowns));
+    // The first says where the run began.
+    pass.About(VectorXd::Zero(n), 0);
+    parts[at] = pass.About(VectorXd::Zero(n), 0).parts;
+  });
+  std::vector<PartInformation> all;
+  for (const auto& of_run : parts) all.insert(all.end(), of_run.begin(), of_run.end());
+  uncertainty = ScatterOfParts(all, CovarianceOf(PriorOf(unknowns)), faults, certain);
+  uncertainty.unknowns = std::move(names);
+  uncertainty.duration = duration;
+  uncertainty.runs = static_cast<int>(runs.size());
+  return uncertainty;
+}
 
 }  // namespace
 
@@ -263,33 +300,36 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   const bool inflated = !learner.Explains();
   if (inflated) {
     // What not even that explains counts as noise.
-    noise *= std::sqrt(learner.Excess());
+    noise *= std::sqrt(learner.Misfit());
     learner = about(learner.theta());
     learner.Learn(learner.stiffest(), true);
   }
+  double excess = std::max(1.0, learner.Excess());
   progress(0.4);
-  // The softest with which nothing is a surprise: at once, or step by step.
+  // The softest with which nothing is more of a surprise: at once, or step by step.
   std::size_t gain = learner.stiffest();
   for (std::size_t next = 0; gain > 0; next = gain - 1) {
     Learner softer = about(learner.theta());
     softer.Learn(next, true);
-    if (softer.Explains()) {
+    if (softer.Excess() <= excess) {
       learner = std::move(softer);
       gain = next;
     } else if (next + 1 == gain) {
       break;
     }
-    progress(0.9 -
-             0.5 * static_cast<double>(gain) / static_cast<double>(learner.stiffest()));
+    progress(0.8 -
+             0.4 * static_cast<double>(gain) / static_cast<double>(learner.stiffest()));
   }
   if (!inflated) noise = noise.cwiseMin(learner.Noise());
   learner = about(learner.theta());
   learner.Learn(gain, false);
-  if (const double contradiction = learner.Contradiction(); contradiction > 1.0) {
-    noise *= std::sqrt(contradiction);
+  if (inflated) {
+    noise *= std::sqrt(learner.Misfit());
     learner = about(learner.theta());
     learner.Learn(gain, false);
   }
+  const bool exact = !inflated && gain == 0;
+  excess = learner.Excess();
 
   CalibrationReport report;
   Calibration& calibration = report.calibration;
@@ -299,6 +339,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   calibration.sensor_noise = noise;
   calibration.force_noise =
       gain == 0 ? 0.0 : kTwinBandwidths[gain - 1] * machine.rates().control;
+  calibration.tolerated = exact ? 1.0 : std::max(1.0, kMargin * excess);
   calibration.records = static_cast<int>(records.size());
   report.prior_sd.resize(theta.size());
   for (Index i = 0; i < theta.size(); ++i) {
@@ -312,6 +353,9 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   for (const RunInformation& said : learner.said()) {
     report.records.push_back({said.misfit});
   }
+  progress(0.9);
+  calibration.model = ModelUncertaintyOf(
+      Calibrated(machine, calibration), runs, options.linear, !exact);
   progress(1.0);
   return report;
 }
