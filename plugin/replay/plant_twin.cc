@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/tangent.h"
 
@@ -17,6 +19,13 @@ namespace {
 
 /// A joint that comes loose a tick too late is off by much more than its force was.
 constexpr double kCurvature = 12.0;
+
+std::vector<PlacedEffect> FrictionOf(std::vector<PlacedEffect> effects) {
+  std::erase_if(effects, [](const PlacedEffect& effect) {
+    return effect.effect->family() != Family::kFriction;
+  });
+  return effects;
+}
 
 std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
   std::vector<ModelPart> parts;
@@ -36,6 +45,7 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
       machine_(machine),
       uncertain_(std::move(uncertain)),
       effects_(machine.channels(), machine.plant(), machine.effects()),
+      friction_(machine.channels(), machine.plant(), FrictionOf(machine.effects())),
       moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()) {
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
@@ -75,6 +85,9 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
     }
     numbers_.push_back(std::move(number));
   }
+  for (const UncertainResistance& known : uncertain_.resistances) {
+    resistances_.push_back({model_->jnt_dofadr[known.joint], known.unknown});
+  }
   place_ = PlacementOf(linear);
   state_ = VectorXd::Zero(2 * nv);
   before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
@@ -97,6 +110,9 @@ void PlantTwin::SetParameters() noexcept {
     number.value = std::exp(sum);
     SetNumber(*model_, machine_.plant(), number.number, number.value);
     if (number.inertia.M.size() > 0) M_now_ += std::expm1(sum) * number.inertia.M;
+  }
+  for (Resistance& resistance : resistances_) {
+    resistance.times = std::exp(theta_[resistance.unknown]);
   }
   for (Map& map : maps_) map.known = false;
 }
@@ -145,6 +161,7 @@ void PlantTwin::Reset() noexcept {
   SetParameters();
   if (const std::vector<PlacedEffect> effects = machine_.effects(); !effects.empty()) {
     effects_ = ActiveEffects(machine_.channels(), *model_, effects);
+    friction_ = ActiveEffects(machine_.channels(), *model_, FrictionOf(effects));
   }
   // What MuJoCo derives from masses, in data that are reset anyway.
   if (heavy_) mj_setConst(model_.get(), data_.get());
@@ -236,8 +253,22 @@ void PlantTwin::AddTickForces() noexcept {
   }
 }
 
+void PlantTwin::Act() noexcept {
+  if (!resistances_.empty()) friction_.Act(*model_, *data_);
+  for (Resistance& resistance : resistances_) {
+    resistance.force = data_->qfrc_applied[resistance.dof];
+  }
+  effects_.Act(*model_, *data_);
+  for (const Resistance& resistance : resistances_) {
+    data_->qfrc_applied[resistance.dof] += (resistance.times - 1.0) * resistance.force;
+  }
+}
+
 void PlantTwin::AddStepForces() noexcept {
   force_ = drive_;
+  for (const Resistance& resistance : resistances_) {
+    force_(resistance.dof, resistance.unknown) += resistance.times * resistance.force;
+  }
   const Index nv = model_->nv;
   for (const Number& number : numbers_) {
     if (number.number.kind == PlantNumberKind::kStiffness) {
@@ -270,7 +301,7 @@ void PlantTwin::Step(std::span<const double> inputs,
     for (Index i = 0; i < u_.size(); ++i) {
       data_->ctrl[machine_.actuator_addresses()[static_cast<std::size_t>(i)]] = u_[i];
     }
-    effects_.Act(*model_, *data_);
+    Act();
     AddStepForces();
     before_ = VectorXd::Map(data_->qvel, nv);
     mj_step2(model_.get(), data_.get());

@@ -60,6 +60,13 @@ class PlantTwin final : public Twin {
     ModelPart inertia;  ///< of masses
     double value = 1.0;
   };
+  /// Friction that effects make, as it is in this step.
+  struct Resistance {
+    int dof = 0;
+    Eigen::Index unknown = 0;
+    double times = 1.0;
+    double force = 0.0;
+  };
   /// The map of a step with these joints sticking.
   struct Map {
     std::uint64_t sticking = 0;
@@ -70,6 +77,8 @@ class PlantTwin final : public Twin {
   void Reset() noexcept;
   void SetParameters() noexcept;
   const Map& MapOf(std::uint64_t sticking) noexcept;
+  /// What effects do in a step, their friction as it is known to be.
+  void Act() noexcept;
   void AddTickForces() noexcept;
   /// Of springs and masses at rest, before a step.
   void AddStepForces() noexcept;
@@ -86,6 +95,9 @@ class PlantTwin final : public Twin {
   ModelPtr model_;
   DataPtr data_;
   ActiveEffects effects_;
+  /// Those of friction once more, to know what is due to them.
+  ActiveEffects friction_;
+  std::vector<Resistance> resistances_;
   MovedRest moved_rest_;
   Eigen::VectorXd start_;  // qpos
   Eigen::VectorXd state_;  // work space
