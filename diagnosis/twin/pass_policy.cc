@@ -59,6 +59,7 @@ void PredictionErrorEstimator::StartInMotion() noexcept {
 void PredictionErrorEstimator::StartOver(std::size_t gain,
                                          const VectorXd& theta) noexcept {
   segment_.explained = segment_.surprised = 0;
+  segment_.grows = false;
   segment_.stuck = segment_.same = 0;
   pulled_passes_ = 0;
   look_ = segment_.windowed && segment_.window.at_rest ? kFirstGuess : kLook;
@@ -74,6 +75,10 @@ void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (Surprised()) return Unexplained();
   if (segment_.windowed) return Approach();
+  if (Grows()) {
+    segment_.grows = true;
+    return Follow();
+  }
   const Index horizon = pass_.seen() - now().origin;
   if (Bias() > kTooFar && 4 * horizon > 5 * segment_.explained) {
     segment_.explained = horizon;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/diagnosis/statistics/distributions.h"
+
 namespace mjdiag {
 namespace {
 
@@ -25,6 +27,10 @@ constexpr Index kBrief = 128;
 /// Blocks between two steps of the walk while it follows: in so many a fault that grows
 /// by a percent an hour moves by less than noise leaves of the best known ones.
 constexpr Index kWalkEvery = 16;
+/// That a machine which is constant is taken for one that wears, in one look at it, and
+/// blocks between them.
+constexpr double kNoGrowth = 1e-6;
+constexpr Index kGrowthEvery = 64;
 /// And between two shifts of theta0, which cost more.
 constexpr Index kShiftEvery = 64;
 
@@ -42,9 +48,12 @@ PredictionErrorEstimator::PredictionErrorEstimator(
       checkpoints_(pass_.twin()),
       next_look_(kFirstLook),
       said_{.information = pass_.information(),
+            .drift = pass_.drift(),
             .theta = {},
             .variance = {},
             .prior = {}} {
+  const auto drifting = static_cast<double>(pass_.twin().drifting().size());
+  constant_ = drifting > 0.0 ? ChiSquaredQuantile(kNoGrowth, drifting) : 0.0;
   const auto p = static_cast<Index>(unknowns_.size());
   const auto block = static_cast<double>(pass_.twin().block());
   nominal_ = walk_ = VectorXd::Zero(p);
@@ -152,6 +161,9 @@ void PredictionErrorEstimator::Say() noexcept {
   said_.began = true;
   said_.sure = sure;
   said_.information.Know(pass_.information());
+  said_.drifts = pass_.drifts();
+  said_.drift_time = pass_.drift_time();
+  if (said_.drifts) said_.drift.Know(pass_.drift());
   said_.theta = pass_.theta();
   said_.prior = prior_;
   said_.surprise = pass_.surprise().recent() / options_.tolerated;
@@ -172,12 +184,23 @@ void PredictionErrorEstimator::Follow() noexcept {
     exhausted_ = false;
     if (TryChange()) return;
   }
+  if (pass_.drifts()) {
+    // As a walk of that wear would have it, evenly.
+    pass_.TakeDrift(options_.wear / std::sqrt(pass_.drift_time()));
+    Say();
+  }
   if (pass_.blocks() % kWalkEvery != 0) return;
   pass_.information().Walk(walk_);
   if (pass_.blocks() % kShiftEvery != 0) return;
   const std::size_t soft = std::min<std::size_t>(1, pass_.stiffest());
   if (gain() < soft) pass_.Soften(soft);
   pass_.Shift();
+}
+
+bool PredictionErrorEstimator::Grows() noexcept {
+  if (!CaughtUp() || gain() > 0 || segment_.windowed) return false;
+  return pass_.blocks() % kGrowthEvery == 0 &&
+         pass_.DriftGain(kRateSpread) > constant_;
 }
 
 double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {

@@ -24,6 +24,8 @@ constexpr double kAlike = 1.0 - 1e-9;
 /// By chance the misfit is not above it: a mean of about a hundred squares.
 constexpr double kExplained = 2.0;
 constexpr double kDay = 86400.0;  // s
+/// That a machine which is constant is taken for one that is not.
+constexpr double kConstant = 1e-3;
 /// Outside an interval.
 constexpr double kOutside = 0.05;
 
@@ -142,8 +144,17 @@ TwinReading TwinEstimator::Read() const {
   reading.named.assign(faults_.size(), false);
   if (!estimator_.began()) return reading;
   const Index active = estimator_.active();
-  const VectorXd& theta = estimator_.theta();
-  const MatrixXd information = estimator_.H().topLeftCorner(active, active);
+  VectorXd theta = estimator_.theta();
+  MatrixXd information = estimator_.H().topLeftCorner(active, active);
+  if (estimator_.constant()) {
+    Drift drift = estimator_.drift();
+    drift.Solve(estimator_.information(), estimator_.drift_time(), kRateSpread);
+    const auto rates = static_cast<double>(drift.drifting().size());
+    if (drift.gain() > ChiSquaredQuantile(kConstant, rates)) {
+      theta += drift.change();
+      information = drift.information().topLeftCorner(active, active);
+    }
+  }
   reading.misfit = estimator_.surprise();
   // A twin that does not explain what it sees is less sure than it says.
   const double honest = reading.misfit > kExplained ? reading.misfit : 1.0;

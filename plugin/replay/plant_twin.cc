@@ -41,7 +41,8 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
           {machine.linear().b.cols(), machine.linear().Gamma.cols(),
            2 * machine.linear().M.rows(), static_cast<Index>(uncertain.unknowns.size()),
            uncertain.start.cols(), block, kCurvature, false},
-          std::move(gains), uncertain.tones, machine.rates().tick()),
+          std::move(gains), uncertain.tones, machine.rates().tick(),
+          DriftingOf(uncertain.unknowns)),
       machine_(machine),
       uncertain_(std::move(uncertain)),
       effects_(machine.channels(), machine.plant(), machine.effects()),
@@ -100,6 +101,8 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   outputs_.resize(static_cast<std::size_t>(ny));
   drive_ = drive_work_ = force_ = MatrixXd::Zero(nv, p);
   read_ = sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
+  drift_force_ = drift_work_ = MatrixXd::Zero(nv, S_rate_.cols());
+  drift_read_ = drift_sum_ = drift_;
   UseGain(0);
 }
 
@@ -169,6 +172,7 @@ void PlantTwin::Reset() noexcept {
   VectorXd::Map(data_->qpos, start_.size()) = start_;
   S_.setZero();
   sum_.setZero();
+  drift_sum_.setZero();
 }
 
 void PlantTwin::Start(const VectorXd& theta) noexcept {
@@ -294,6 +298,10 @@ void PlantTwin::Step(std::span<const double> inputs,
   const Index nv = model_->nv;
   read_.leftCols(acting()).noalias() = C_ * S_.topRows(nv).leftCols(acting());
   sum_.leftCols(acting()) += read_.leftCols(acting());
+  if (drifts_) {
+    drift_read_.noalias() = C_ * S_rate_.topRows(nv);
+    drift_sum_ += drift_read_;
+  }
   Command(inputs);
   AddTickForces();
   for (int substep = 0; substep < machine_.rates().substeps; ++substep) {
@@ -314,8 +322,10 @@ void PlantTwin::Step(std::span<const double> inputs,
     VectorXd::Map(data_->qpos, nv) += state_.head(nv);
     VectorXd::Map(data_->qvel, nv) += state_.tail(nv);
     S_.leftCols(acting()).noalias() -= L * read_.leftCols(acting());
+    if (drifts_) S_rate_.noalias() -= L * drift_read_;
   }
   time_ += machine_.rates().tick();
+  drift_time_ += machine_.rates().tick();
 }
 
 void PlantTwin::Substep() noexcept {
@@ -356,11 +366,22 @@ void PlantTwin::Substep() noexcept {
   next.leftCols(forced).noalias() += map.G * force_.leftCols(forced);
   S_.bottomRows(nv).leftCols(acting()) = next;
   S_.topRows(nv).leftCols(acting()) += model_->opt.timestep * next;
+  if (!drifts_) return;
+  for (Index i = 0; i < drift_force_.cols(); ++i) {
+    drift_force_.col(i) = drift_time_ * force_.col(drifting_[static_cast<std::size_t>(i)]);
+  }
+  drift_work_.noalias() = map.Q * S_rate_.topRows(nv);
+  drift_work_.noalias() += map.V * S_rate_.bottomRows(nv);
+  drift_work_.noalias() += map.G * drift_force_;
+  S_rate_.bottomRows(nv) = drift_work_;
+  S_rate_.topRows(nv) += model_->opt.timestep * drift_work_;
 }
 
 const MatrixXd& PlantTwin::EndBlock() noexcept {
   sensitivity_ = sum_ / static_cast<double>(block());
   sum_.setZero();
+  drift_ = drift_sum_ / static_cast<double>(block());
+  drift_sum_.setZero();
   return sensitivity_;
 }
 
@@ -369,6 +390,16 @@ void PlantTwin::Shift(const VectorXd& change) noexcept {
   theta_ += change;
   VectorXd::Map(data_->qpos, nv).noalias() += S_.topRows(nv) * change;
   VectorXd::Map(data_->qvel, nv).noalias() += S_.bottomRows(nv) * change;
+  SetParameters();
+}
+
+void PlantTwin::Drifted(const VectorXd& rates) noexcept {
+  const Index nv = model_->nv;
+  for (Index i = 0; i < rates.size(); ++i) {
+    theta_[drifting_[static_cast<std::size_t>(i)]] += drift_time_ * rates[i];
+  }
+  VectorXd::Map(data_->qpos, nv).noalias() += S_rate_.topRows(nv) * rates;
+  VectorXd::Map(data_->qvel, nv).noalias() += S_rate_.bottomRows(nv) * rates;
   SetParameters();
 }
 

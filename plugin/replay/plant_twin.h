@@ -50,6 +50,7 @@ class PlantTwin final : public Twin {
             const Eigen::VectorXd& innovation) noexcept override;
   const Eigen::MatrixXd& EndBlock() noexcept override;
   void Shift(const Eigen::VectorXd& change) noexcept override;
+  void Drifted(const Eigen::VectorXd& rates) noexcept override;
 
  private:
   /// A number of the plant with what a unit of it means where the machine is.
@@ -118,6 +119,7 @@ class PlantTwin final : public Twin {
   Eigen::VectorXd tone_, before_, acceleration_, inertial_;
   std::vector<double> outputs_;
   Eigen::MatrixXd drive_, drive_work_, force_, read_, sensitivity_, sum_;
+  Eigen::MatrixXd drift_force_, drift_work_, drift_read_, drift_sum_;
 };
 
 }  // namespace mjdiag
