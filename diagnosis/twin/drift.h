@@ -48,9 +48,9 @@ class Drift {
   // As solved last.
   /// phi less the estimate, p.
   const Eigen::VectorXd& change() const { return change_; }
-  const Eigen::VectorXd& rates() const { return rates_; }  ///< r [1/s]
+  const Eigen::VectorXd& rates() const { return rates_; }            ///< r [1/s]
   const Eigen::MatrixXd& information() const { return remaining_; }  ///< H*, p x p
-  double gain() const { return gain_; }  ///< b^T r
+  double gain() const { return gain_; }                              ///< b^T r
 
   const std::vector<Eigen::Index>& drifting() const { return drifting_; }
 

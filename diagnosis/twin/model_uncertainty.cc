@@ -42,8 +42,7 @@ Score ScoreOf(const PartInformation& part, const MatrixXd& prior,
 /// Sum of the squares of what it says in standard deviations, and in how many directions.
 std::pair<double, double> SquaresOf(const Score& score, const MatrixXd& prior) {
   const ScaledEigenPairs modes = ScaledEigenDecomposition(score.N + kTold * prior);
-  const VectorXd pull =
-      modes.vectors.transpose() * score.s.cwiseQuotient(modes.scale);
+  const VectorXd pull = modes.vectors.transpose() * score.s.cwiseQuotient(modes.scale);
   std::pair<double, double> squares{0.0, 0.0};
   for (Index i = 0; i < pull.size(); ++i) {
     if (!(modes.values[i] > kTold * modes.values.maxCoeff())) continue;
@@ -105,12 +104,12 @@ ModelUncertainty ScatterOfParts(const std::vector<PartInformation>& parts,
   const auto p = static_cast<double>(n);
   uncertainty.freedom = count - 1.0;
   const MatrixXd usual = scatter.trace() / p * MatrixXd::Identity(n, n);
-  const MatrixXd judged = (uncertainty.freedom * scatter + p * usual) /
-                          (uncertainty.freedom + p);
+  const MatrixXd judged =
+      (uncertainty.freedom * scatter + p * usual) / (uncertainty.freedom + p);
   const SymmetricEigenPairs sizes = SymmetricEigenDecomposition(judged);
-  const MatrixXd beyond = root * sizes.vectors *
-                          (sizes.values.array() - 1.0).cwiseMax(0.0).sqrt().matrix()
-                              .asDiagonal();
+  const MatrixXd beyond =
+      root * sizes.vectors *
+      (sizes.values.array() - 1.0).cwiseMax(0.0).sqrt().matrix().asDiagonal();
   uncertainty.covariance = beyond * beyond.transpose();
   return uncertainty;
 }

@@ -31,6 +31,11 @@ constexpr Index kWalkEvery = 16;
 /// blocks between them.
 constexpr double kNoGrowth = 1e-6;
 constexpr Index kGrowthEvery = 64;
+/// Moves of the state take for granted that theta has always been what it is now: what has
+/// grown leaves errors of the rate times the memory of the gain. Where growth is seen, that
+/// is three times shorter.
+constexpr std::size_t kFollowingGain = 1;
+constexpr std::size_t kGrowingGain = 2;
 /// And between two shifts of theta0, which cost more.
 constexpr Index kShiftEvery = 64;
 
@@ -185,6 +190,7 @@ void PredictionErrorEstimator::Follow() noexcept {
     if (TryChange()) return;
   }
   if (pass_.drifts()) {
+    segment_.grows = segment_.grows || pass_.DriftGain(kRateSpread) > constant_;
     // As a walk of that wear would have it, evenly.
     pass_.TakeDrift(options_.wear / std::sqrt(pass_.drift_time()));
     Say();
@@ -192,15 +198,15 @@ void PredictionErrorEstimator::Follow() noexcept {
   if (pass_.blocks() % kWalkEvery != 0) return;
   pass_.information().Walk(walk_);
   if (pass_.blocks() % kShiftEvery != 0) return;
-  const std::size_t soft = std::min<std::size_t>(1, pass_.stiffest());
+  const std::size_t soft =
+      std::min(segment_.grows ? kGrowingGain : kFollowingGain, pass_.stiffest());
   if (gain() < soft) pass_.Soften(soft);
   pass_.Shift();
 }
 
 bool PredictionErrorEstimator::Grows() noexcept {
-  if (!CaughtUp() || gain() > 0 || segment_.windowed) return false;
-  return pass_.blocks() % kGrowthEvery == 0 &&
-         pass_.DriftGain(kRateSpread) > constant_;
+  if (gain() > 0 || segment_.windowed) return false;
+  return pass_.blocks() % kGrowthEvery == 0 && pass_.DriftGain(kRateSpread) > constant_;
 }
 
 double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {

@@ -126,8 +126,8 @@ void TwinEstimator::FindAlarms(const MatrixXd& covariance, VectorXd& alarm) cons
     }
   }
   const MatrixXd told = CovarianceOf(covariance(places, places));
-  const double sigmas = TwoSidedNormalQuantile(FalseNaming() /
-                                               static_cast<double>(faults_.size()));
+  const double sigmas =
+      TwoSidedNormalQuantile(FalseNaming() / static_cast<double>(faults_.size()));
   alarm.setConstant(static_cast<Index>(faults_.size()),
                     std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -196,10 +196,10 @@ TwinReading TwinEstimator::Read() const {
   }
   const auto each = static_cast<double>(faults_.size());
   const double look = FalseNaming() / each;
-  const MatrixXd judged =
-      WithModel(noise, times * stretched(kFalseFault / each, look));
+  const MatrixXd judged = WithModel(noise, times * stretched(kFalseFault / each, look));
   FindAlarms(judged, reading.alarm);
-  const double normal = TwoSidedNormalQuantile(kFalseFault / each) / TwoSidedNormalQuantile(look);
+  const double normal =
+      TwoSidedNormalQuantile(kFalseFault / each) / TwoSidedNormalQuantile(look);
   FindAlarms(WithModel(noise, (times - 1.0) * normal * normal), reading.best_alarm);
   reading.model_runs = model_.any() ? model_.runs : 0;
   if (!groups.empty() && estimator_.sure() && reading.misfit < kLargestMisfit) {

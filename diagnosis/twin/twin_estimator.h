@@ -60,7 +60,8 @@ struct TwinReading {
   /// where the healthy machine is as well known as more records could make it, nf; NaN
   /// of disturbances. The same where the model is the machine.
   Eigen::VectorXd alarm, best_alarm;
-  int model_runs = 0;  ///< healthy ones that tell how uncertain the model is; 0: it is not
+  int model_runs =
+      0;  ///< healthy ones that tell how uncertain the model is; 0: it is not
 };
 
 class TwinEstimator {
@@ -100,8 +101,8 @@ class TwinEstimator {
   std::vector<TwinFault> faults_;
   ModelUncertainty model_;
   std::vector<Eigen::Index> uncertain_;
-  double sample_time_;  // [s]
-  double block_time_;   // [s]
+  double sample_time_;                       // [s]
+  double block_time_;                        // [s]
   Eigen::VectorXd spread_, model_variance_;  // p
   PredictionErrorEstimator estimator_;
 };

@@ -354,8 +354,8 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
     report.records.push_back({said.misfit});
   }
   progress(0.9);
-  calibration.model = ModelUncertaintyOf(
-      Calibrated(machine, calibration), runs, options.linear, !exact);
+  calibration.model = ModelUncertaintyOf(Calibrated(machine, calibration), runs,
+                                         options.linear, !exact);
   progress(1.0);
   return report;
 }

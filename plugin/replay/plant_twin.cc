@@ -368,7 +368,8 @@ void PlantTwin::Substep() noexcept {
   S_.topRows(nv).leftCols(acting()) += model_->opt.timestep * next;
   if (!drifts_) return;
   for (Index i = 0; i < drift_force_.cols(); ++i) {
-    drift_force_.col(i) = drift_time_ * force_.col(drifting_[static_cast<std::size_t>(i)]);
+    drift_force_.col(i) =
+        drift_time_ * force_.col(drifting_[static_cast<std::size_t>(i)]);
   }
   drift_work_.noalias() = map.Q * S_rate_.topRows(nv);
   drift_work_.noalias() += map.V * S_rate_.bottomRows(nv);

@@ -45,7 +45,8 @@ void RequireModelUncertainty(const ModelUncertainty& model,
   Require(model.covariance.rows() == n && model.covariance.cols() == n, file,
           "its model uncertainty is of another size",
           "a row and a column for each of its unknowns");
-  Require(model.covariance.allFinite() && (model.covariance.diagonal().array() >= 0.0).all(),
+  Require(model.covariance.allFinite() &&
+              (model.covariance.diagonal().array() >= 0.0).all(),
           file, "its model uncertainty is none", "finite numbers, variances >= 0");
   Require(model.freedom > 0.0 && model.duration > 0.0 && model.runs > 0, file,
           "its model uncertainty comes from nothing",

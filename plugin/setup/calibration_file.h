@@ -25,7 +25,7 @@ struct Calibration {
   /// (Surprise), 1 or more.
   double tolerated = 1.0;
   ModelUncertainty model;  ///< of faults
-  int records = 0;  ///< that it was learned from
+  int records = 0;         ///< that it was learned from
 
   /// Standard deviations of the logarithms.
   Eigen::VectorXd Sd() const { return root.rowwise().norm(); }
