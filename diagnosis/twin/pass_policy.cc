@@ -24,6 +24,8 @@ constexpr int kConfirmed = 1;
 constexpr Index kUnnoticed = 256;
 /// Blocks before the surprise in which the change was there already.
 constexpr Index kNoticed = 2;
+/// Blocks between two looks for growth.
+constexpr Index kGrowthEvery = 64;
 /// What is not explained for that long from the first tick on was not at rest there.
 constexpr Index kAtOnce = 64;
 
@@ -75,7 +77,7 @@ void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (Surprised()) return Unexplained();
   if (segment_.windowed) return Approach();
-  if (Grows()) {
+  if (gain() == 0 && pass_.blocks() % kGrowthEvery == 0 && SeesGrowth()) {
     segment_.grows = true;
     return Follow();
   }

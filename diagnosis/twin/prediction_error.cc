@@ -27,10 +27,10 @@ constexpr Index kBrief = 128;
 /// Blocks between two steps of the walk while it follows: in so many a fault that grows
 /// by a percent an hour moves by less than noise leaves of the best known ones.
 constexpr Index kWalkEvery = 16;
-/// That a machine which is constant is taken for one that wears, in one look at it, and
-/// blocks between them.
+/// That a machine which is constant is taken for one that wears, in one look at it.
 constexpr double kNoGrowth = 1e-6;
-constexpr Index kGrowthEvery = 64;
+/// By chance the misfit is not above it.
+constexpr double kLooksExplained = 2.0;
 /// Moves of the state take for granted that theta has always been what it is now: what has
 /// grown leaves errors of the rate times the memory of the gain. Where growth is seen, that
 /// is three times shorter.
@@ -190,7 +190,7 @@ void PredictionErrorEstimator::Follow() noexcept {
     if (TryChange()) return;
   }
   if (pass_.drifts()) {
-    segment_.grows = segment_.grows || pass_.DriftGain(kRateSpread) > constant_;
+    segment_.grows = segment_.grows || SeesGrowth();
     // As a walk of that wear would have it, evenly.
     pass_.TakeDrift(options_.wear / std::sqrt(pass_.drift_time()));
     Say();
@@ -204,9 +204,10 @@ void PredictionErrorEstimator::Follow() noexcept {
   pass_.Shift();
 }
 
-bool PredictionErrorEstimator::Grows() noexcept {
-  if (gain() > 0 || segment_.windowed) return false;
-  return pass_.blocks() % kGrowthEvery == 0 && pass_.DriftGain(kRateSpread) > constant_;
+bool PredictionErrorEstimator::SeesGrowth() noexcept {
+  // What the pass does not explain is no growth, either.
+  return options_.exact && pass_.misfit() < kLooksExplained &&
+         pass_.DriftGain(kRateSpread) > constant_;
 }
 
 double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {

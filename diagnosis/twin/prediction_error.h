@@ -48,6 +48,9 @@ struct PredictionErrorOptions {
   /// How many times more surprising than by noise alone blocks of a healthy machine may
   /// be, 1 or more: its model is not exact.
   double tolerated = 1.0;
+  /// Whether its model is the machine: else what is left is not noise, and tells of no
+  /// growth.
+  bool exact = true;
 };
 
 class PredictionErrorEstimator {
@@ -94,7 +97,7 @@ class PredictionErrorEstimator {
   bool sure() const { return said_.sure; }
   /// Whether it takes the machine as constant since then, and how that would change if it
   /// were not (drift.h), after DriftTime.
-  bool constant() const { return said_.drifts; }
+  bool constant() const { return said_.drifts && options_.exact; }
   const Drift& drift() const { return said_.drift; }
   double drift_time() const { return said_.drift_time; }
   const Information& information() const { return said_.information; }
@@ -175,7 +178,7 @@ class PredictionErrorEstimator {
   void PullAlong() noexcept;
   bool TryChange() noexcept;
   /// Whether what this pass has seen is no chance on a machine that is constant.
-  bool Grows() noexcept;
+  bool SeesGrowth() noexcept;
   /// The window becomes the last readings.
   void MoveWindow() noexcept;
   const Checkpoint* LastCheckpoint(Eigen::Index until) const noexcept;

@@ -131,6 +131,7 @@ std::unique_ptr<TwinEstimator> MakeTwinEstimator(const Machine& machine, bool li
   MachineTwin twin = MakeTwin(machine, linear);
   PredictionErrorOptions options;
   options.tolerated = twin.tolerated;
+  options.exact = !twin.model.any() && twin.tolerated == 1.0;
   return std::make_unique<TwinEstimator>(std::move(twin), options);
 }
 
