@@ -52,6 +52,13 @@ std::pair<double, double> SquaresOf(const Score& score, const MatrixXd& prior) {
   return squares;
 }
 
+/// What of a symmetric matrix is a covariance.
+MatrixXd BeyondNothing(const MatrixXd& A) {
+  const SymmetricEigenPairs modes = SymmetricEigenDecomposition(A);
+  return modes.vectors * modes.values.cwiseMax(0.0).asDiagonal() *
+         modes.vectors.transpose();
+}
+
 }  // namespace
 
 double ModelUncertainty::Times(double of_run) const noexcept {
@@ -62,7 +69,7 @@ double ModelUncertainty::Stretch(double probability, double normal) const {
   return StudentQuantile(0.5 * probability, freedom) / TwoSidedNormalQuantile(normal);
 }
 
-ModelUncertainty ScatterOfParts(const std::vector<PartInformation>& parts,
+ModelUncertainty ScatterOfParts(const std::vector<std::vector<PartInformation>>& runs,
                                 const MatrixXd& prior, const std::vector<Index>& faults,
                                 bool certain) {
   std::vector<Index> others;
@@ -71,10 +78,13 @@ ModelUncertainty ScatterOfParts(const std::vector<PartInformation>& parts,
   }
   const auto n = static_cast<Index>(faults.size());
   MatrixXd N = prior(faults, faults);
-  std::vector<Score> scores;
-  for (const PartInformation& part : parts) {
-    scores.push_back(ScoreOf(part, prior, faults, others));
-    N += scores.back().N;
+  std::vector<std::vector<Score>> scores;
+  for (const std::vector<PartInformation>& parts : runs) {
+    scores.emplace_back();
+    for (const PartInformation& part : parts) {
+      scores.back().push_back(ScoreOf(part, prior, faults, others));
+      N += scores.back().back().N;
+    }
   }
   const ScaledEigenPairs modes = ScaledEigenDecomposition(N);
   const VectorXd told = modes.values.cwiseMax(kTold * modes.values.maxCoeff());
@@ -83,15 +93,21 @@ ModelUncertainty ScatterOfParts(const std::vector<PartInformation>& parts,
                         told.cwiseSqrt().cwiseInverse().asDiagonal();
   double shares = 0.0, squared_shares = 0.0, squares = 0.0, directions = 0.0;
   MatrixXd scatter = MatrixXd::Zero(n, n);  // in units of N^-1
-  for (const Score& score : scores) {
-    const double share = (root.transpose() * score.N * root).trace();
-    shares += share;
-    squared_shares += share * share;
-    const VectorXd said = root.transpose() * score.s;
-    scatter += said * said.transpose();
-    const auto [sum, count] = SquaresOf(score, prior(faults, faults));
-    squares += sum;
-    directions += count;
+  MatrixXd of_runs = scatter;
+  for (const std::vector<Score>& run : scores) {
+    VectorXd together = VectorXd::Zero(n);
+    for (const Score& score : run) {
+      const double share = (root.transpose() * score.N * root).trace();
+      shares += share;
+      squared_shares += share * share;
+      const VectorXd said = root.transpose() * score.s;
+      scatter += said * said.transpose();
+      together += said;
+      const auto [sum, count] = SquaresOf(score, prior(faults, faults));
+      squares += sum;
+      directions += count;
+    }
+    of_runs += together * together.transpose();
   }
   ModelUncertainty uncertainty;
   const double count = squared_shares > 0.0 ? shares * shares / squared_shares : 0.0;
@@ -101,16 +117,17 @@ ModelUncertainty ScatterOfParts(const std::vector<PartInformation>& parts,
     return uncertainty;
   }
   scatter *= small;
+  if (const auto m = static_cast<double>(runs.size()); m > 1.0) {
+    scatter += BeyondNothing((m + 1.0) / (m - 1.0) * of_runs - scatter);
+  }
   const auto p = static_cast<double>(n);
   uncertainty.freedom = count - 1.0;
   const MatrixXd usual = scatter.trace() / p * MatrixXd::Identity(n, n);
   const MatrixXd judged =
       (uncertainty.freedom * scatter + p * usual) / (uncertainty.freedom + p);
-  const SymmetricEigenPairs sizes = SymmetricEigenDecomposition(judged);
-  const MatrixXd beyond =
-      root * sizes.vectors *
-      (sizes.values.array() - 1.0).cwiseMax(0.0).sqrt().matrix().asDiagonal();
-  uncertainty.covariance = beyond * beyond.transpose();
+  // In units of N^-1, noise is 1 in every direction.
+  const MatrixXd excess = BeyondNothing(judged - MatrixXd::Identity(n, n));
+  uncertainty.covariance = root * excess * root.transpose();
   return uncertainty;
 }
 

@@ -15,6 +15,9 @@
 // times. K is the effective number of parts, (sum_k w_k)^2 / sum_k w_k^2 with w_k their
 // shares of the information.
 //
+// Runs that differ from each other by more than their parts do, each a motion of its own,
+// add what the same sum over runs, K of them, has beyond that over parts.
+//
 // Of a run of another motion the model may be off by as much again as of one of these
 // runs, and by more if it is shorter (Times). How motions differ that are not among these
 // runs, nobody knows.
@@ -52,13 +55,13 @@ struct ModelUncertainty {
   bool operator==(const ModelUncertainty&) const = default;
 };
 
-/// @param parts    of all runs, about what they say together, n x n
+/// @param runs     parts of each, about what all of them say together, n x n
 /// @param prior    P0^-1 of all n unknowns, those of the calibration told by these runs
 /// @param faults   places of those that are 0 in these runs
 /// @param certain  whether it is certain that the model is not the machine: else it is
 ///                 taken for it where chance explains what the parts say
 /// @return covariance and freedom
-ModelUncertainty ScatterOfParts(const std::vector<PartInformation>& parts,
+ModelUncertainty ScatterOfParts(const std::vector<std::vector<PartInformation>>& runs,
                                 const Eigen::MatrixXd& prior,
                                 const std::vector<Eigen::Index>& faults, bool certain);
 

@@ -208,20 +208,6 @@ class Learner {
   bool diverged_ = false;
 };
 
-/// The machine as its calibration says.
-Machine Calibrated(const Machine& machine, const Calibration& calibration) {
-  NumberFactors factors;
-  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
-    factors.emplace_back(FindPlantNumber(machine.plant(), calibration.numbers[i]),
-                         calibration.factors[static_cast<Index>(i)]);
-  }
-  const Machine with =
-      machine.WithNumbers(factors).WithSensorNoise(calibration.sensor_noise);
-  Setup setup = with.setup();
-  setup.calibration = calibration;
-  return with.WithSetup(std::move(setup));
-}
-
 /// By what a diagnosis would say of parts of the runs.
 /// @param certain  whether the model is certainly not the machine
 ModelUncertainty ModelUncertaintyOf(const Machine& calibrated,
@@ -254,9 +240,7 @@ ModelUncertainty ModelUncertaintyOf(const Machine& calibrated,
     pass.About(VectorXd::Zero(n), 0);
     parts[at] = pass.About(VectorXd::Zero(n), 0).parts;
   });
-  std::vector<PartInformation> all;
-  for (const auto& of_run : parts) all.insert(all.end(), of_run.begin(), of_run.end());
-  uncertainty = ScatterOfParts(all, CovarianceOf(PriorOf(unknowns)), faults, certain);
+  uncertainty = ScatterOfParts(parts, CovarianceOf(PriorOf(unknowns)), faults, certain);
   uncertainty.unknowns = std::move(names);
   uncertainty.duration = duration;
   uncertainty.runs = static_cast<int>(runs.size());
@@ -354,10 +338,23 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
     report.records.push_back({said.misfit});
   }
   progress(0.9);
-  calibration.model = ModelUncertaintyOf(Calibrated(machine, calibration), runs,
+  calibration.model = ModelUncertaintyOf(CalibratedMachine(machine, calibration), runs,
                                          options.linear, !exact);
   progress(1.0);
   return report;
+}
+
+Machine CalibratedMachine(const Machine& machine, const Calibration& calibration) {
+  NumberFactors factors;
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    factors.emplace_back(FindPlantNumber(machine.plant(), calibration.numbers[i]),
+                         calibration.factors[static_cast<Index>(i)]);
+  }
+  const Machine with =
+      machine.WithNumbers(factors).WithSensorNoise(calibration.sensor_noise);
+  Setup setup = with.setup();
+  setup.calibration = calibration;
+  return with.WithSetup(std::move(setup));
 }
 
 DiagnosisDesign CalibratedFilters(const Machine& calibrated,

@@ -55,6 +55,10 @@ struct CalibrateOptions {
 CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& records,
                             const CalibrateOptions& options);
 
+/// The machine with what was learned of it, for a diagnosis: as Machine(setup) makes it of a
+/// setup with that calibration, changes and all.
+Machine CalibratedMachine(const Machine& machine, const Calibration& calibration);
+
 /// Filters of a calibrated machine with limits that hold for those healthy records.
 DiagnosisDesign CalibratedFilters(const Machine& calibrated,
                                   const std::vector<Record>& records,
