@@ -113,7 +113,7 @@ ModelUncertainty ScatterOfParts(const std::vector<std::vector<PartInformation>>&
   const double count = squared_shares > 0.0 ? shares * shares / squared_shares : 0.0;
   if (!(count > 1.5)) return uncertainty;
   const double small = (count + 1.0) / (count - 1.0);
-  if (!certain && small * squares < ChiSquaredQuantile(kChance, directions)) {
+  if (!certain && squares < ChiSquaredQuantile(kChance, directions)) {
     return uncertainty;
   }
   scatter *= small;
