@@ -71,6 +71,17 @@ std::string CalibrationText(const CalibrateCommand& command,
     text += command.records[i] + ": misfit " + Short(record.misfit) +
             (record.misfit > 2.0 ? ", which this plant does not explain" : "") + "\n";
   }
+  if (calibration.model.any()) {
+    text +=
+        "What this plant lacks makes faults uncertain, in standard deviations of what "
+        "all records say together:";
+    const Eigen::VectorXd sd = calibration.model.covariance.diagonal().cwiseSqrt();
+    for (std::size_t i = 0; i < calibration.model.unknowns.size(); ++i) {
+      text += (i == 0 ? " " : ", ") + calibration.model.unknowns[i] + " " +
+              Short(100.0 * sd[static_cast<Eigen::Index>(i)]) + " %";
+    }
+    text += "\n";
+  }
   if (!report.doubts.empty()) {
     text += "Far from what was known, as on a machine that was not healthy:";
     for (const std::string& name : report.doubts) text += " " + name;
@@ -83,10 +94,23 @@ nlohmann::json CalibrationDocument(const CalibrateCommand& command,
                                    const CalibrationReport& report) {
   const Calibration& calibration = report.calibration;
   nlohmann::json document = {
-      {"schema", "mjdiag.calibration_report/1"}, {"command", CommandLine()},
-      {"force_noise", calibration.force_noise},  {"numbers", nlohmann::json::array()},
-      {"records", nlohmann::json::array()},      {"doubts", report.doubts},
+      {"schema", "mjdiag.calibration_report/1"},
+      {"command", CommandLine()},
+      {"force_noise", calibration.force_noise},
+      {"numbers", nlohmann::json::array()},
+      {"records", nlohmann::json::array()},
+      {"doubts", report.doubts},
+      {"tolerated", calibration.tolerated},
+      {"model_uncertainty", nlohmann::json::array()},
   };
+  if (calibration.model.any()) {
+    const Eigen::VectorXd sd = calibration.model.covariance.diagonal().cwiseSqrt();
+    for (std::size_t i = 0; i < calibration.model.unknowns.size(); ++i) {
+      document["model_uncertainty"].push_back(
+          {{"name", calibration.model.unknowns[i]},
+           {"sd", sd[static_cast<Eigen::Index>(i)]}});
+    }
+  }
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     document["numbers"].push_back({{"name", calibration.numbers[i]},

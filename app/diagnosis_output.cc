@@ -72,7 +72,9 @@ std::string Describe(const DiagnosisResult& result) {
     table.Add({fault.name, Short(fault.value), Short(fault.deviation), Short(fault.sd),
                DetectionText(fault)});
   }
-  return text + table.ToString();
+  text += table.ToString();
+  const std::string model = ModelText(result);
+  return model.empty() ? text : text + "\n" + model + "\n";
 }
 
 }  // namespace mjdiag::app

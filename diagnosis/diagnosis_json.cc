@@ -1,5 +1,6 @@
 #include "mjdiag/diagnosis/diagnosis_json.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace mjdiag {
@@ -7,6 +8,10 @@ namespace {
 
 nlohmann::json OrNull(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+nlohmann::json OrNull(double value) {
+  return std::isnan(value) ? nlohmann::json() : nlohmann::json(value);
 }
 
 nlohmann::json Faults(const std::vector<FaultVerdict>& verdicts) {
@@ -19,6 +24,8 @@ nlohmann::json Faults(const std::vector<FaultVerdict>& verdicts) {
         {"sd", fault.sd},
         {"ci95", {fault.ci95.min, fault.ci95.max}},
         {"detected", fault.detected},
+        {"alarm", OrNull(fault.alarm)},
+        {"alarm_with_more_records", OrNull(fault.best_alarm)},
     });
   }
   return faults;
@@ -59,6 +66,7 @@ std::string DiagnosisJson(const DiagnosisResult& result) {
         {"threshold_max", result.limits.max}}},
       {"faults", Faults(result.faults)},
       {"misfit", result.by_twin ? nlohmann::json(result.misfit) : nlohmann::json()},
+      {"model_records", result.model_records},
       {"disturbance", Disturbance(result.disturbance)}};
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }

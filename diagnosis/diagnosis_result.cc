@@ -66,6 +66,9 @@ std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
                         sd,
                         {value - half * sd, value + half * sd},
                         reading.named[i]});
+    if (reading.alarm.size() == 0) continue;
+    verdicts.back().alarm = reading.alarm[at];
+    verdicts.back().best_alarm = reading.best_alarm[at];
   }
   return verdicts;
 }
@@ -143,6 +146,7 @@ DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log)
   result.faults = Judge(design, reading);
   result.by_twin = monitor.twin() != nullptr;
   result.misfit = reading.misfit;
+  result.model_records = reading.model_runs;
   if (AnyDetected(result.faults)) {
     result.disturbance = analyse(WithoutFaults(design, log, result.faults));
   }

@@ -1,6 +1,7 @@
 #pragma once
 // The answer of a diagnosis: is something wrong, since when, which fault and how large.
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@ struct FaultVerdict {
   double sd = 0.0;
   Interval ci95;
   bool detected = false;
+  /// Deviation from which on it would be named, alone, and from which on with ever more
+  /// healthy records of ever other motions; NaN of a disturbance, and without a twin.
+  double alarm = std::numeric_limits<double>::quiet_NaN();
+  double best_alarm = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct DiagnosisResult {
@@ -35,6 +40,9 @@ struct DiagnosisResult {
   /// Of the twin: squared innovations over what is expected of them, 1 where it explains
   /// all that it sees.
   double misfit = 1.0;
+  /// Healthy records that tell how uncertain its model is (model_uncertainty.h); 0: it is
+  /// not.
+  int model_records = 0;
   DisturbanceReport disturbance;
 };
 

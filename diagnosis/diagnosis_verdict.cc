@@ -22,6 +22,13 @@ std::string ParameterText(double value) {
   return digits.data();
 }
 
+/// Of a deviation: "2.1 %".
+std::string Percent(double deviation) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.2g %%", 100.0 * deviation);
+  return digits.data();
+}
+
 std::string HealthyText(const FaultVerdict& fault) {
   return ParameterText(fault.value - fault.deviation);
 }
@@ -67,6 +74,24 @@ std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result) {
 
 std::string DetectionText(const FaultVerdict& fault) {
   return fault.detected ? "yes" : "no";
+}
+
+std::string ModelText(const DiagnosisResult& result) {
+  if (result.model_records == 0) return "";
+  std::string now;
+  std::string best;
+  for (const FaultVerdict& fault : result.faults) {
+    if (std::isnan(fault.alarm)) continue;
+    const std::string comma = now.empty() ? "" : ", ";
+    now += comma + fault.name + " " + Percent(fault.alarm);
+    best += comma + fault.name + " " + Percent(fault.best_alarm);
+  }
+  const bool one = result.model_records == 1;
+  return "The model is not quite the machine: parts of the healthy record" +
+         std::string(one ? "" : "s") +
+         " contradict each other. A fault is named from " + now +
+         " on; with more healthy records, of other motions, from " + best +
+         " on. How motions differ that no healthy record has shown is not known.";
 }
 
 std::string DiagnosisVerdict(const DiagnosisResult& result) {

@@ -24,6 +24,10 @@ std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result);
 /// "yes" or "no".
 std::string DetectionText(const FaultVerdict& fault);
 
+/// Where the uncertainty of the model bounds what is seen: from which size on faults are
+/// named, and from which on with more healthy records. Empty where it does not.
+std::string ModelText(const DiagnosisResult& result);
+
 /// The answer in one sentence. Detected faults whose value reads as healthy in five
 /// digits are left out of it as well, unless none is left: then the strongest is named
 /// by its deviation, "eta_z = 1 - 4.00e-07".

@@ -128,6 +128,12 @@ void Information::Recentre() noexcept {
   change_.setZero();
 }
 
+void Information::Assume(const MatrixXd& H) noexcept {
+  H_.topLeftCorner(active_, active_) = H.topLeftCorner(active_, active_);
+  Recentre();
+  Factorise();
+}
+
 void Information::Walk(const VectorXd& variance) noexcept {
   // (H^-1 + Q)^-1, by H^-1 = S L^-T L^-1 S.
   auto inverse = inverse_.topLeftCorner(active_, active_);

@@ -55,6 +55,8 @@ class Information {
                 double times) noexcept;
   /// theta0 becomes theta.
   void Recentre() noexcept;
+  /// Of theta that is theta0, it knows that much.
+  void Assume(const Eigen::MatrixXd& H) noexcept;
   /// The unknowns have walked: their covariance grows by that, p.
   void Walk(const Eigen::VectorXd& variance) noexcept;
 

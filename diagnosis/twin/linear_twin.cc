@@ -52,7 +52,8 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
     : Twin({model.nominal.b.cols(), model.nominal.Gamma.cols(),
             2 * model.nominal.M.rows(), static_cast<Index>(model.unknowns.size()),
             model.start.cols(), block, kCurvature},
-           std::move(gains), model.tones, model.timing.tick()),
+           std::move(gains), model.tones, model.timing.tick(),
+           DriftingOf(model.unknowns)),
       model_(model),
       moved_rest_(model.nominal, model.parts, unknowns()),
       factor_(model.nominal.M.rows()) {
@@ -79,6 +80,7 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   AddSources();
   S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
   sensitivity_ = MatrixXd::Zero(ny, p);
+  S_rate_next_ = S_rate_;
   MakeMaps();
 }
 
@@ -360,12 +362,36 @@ const MatrixXd& LinearTwin::EndBlock() noexcept {
   const Index of_tones = 2 * tones_.count();
   S_next_.middleCols(first_tone(), of_tones) = carried.rightCols(of_tones);
   sensitivity_.middleCols(first_tone(), of_tones) = seen.rightCols(of_tones);
+  // S_next_ and sensitivity_ hold what the forces of the block have left, so far.
+  if (drifts_) LiftDrift();
   sensitivity_.leftCols(acting()).noalias() += seen_ * S_.leftCols(acting());
   S_next_.leftCols(acting()).noalias() += power_ * S_.leftCols(acting());
   S_.swap(S_next_);
   block_.setZero();
   in_block_ = 0;
   return sensitivity_;
+}
+
+void LinearTwin::LiftDrift() noexcept {
+  const double length = static_cast<double>(block()) * sample_time_;
+  const double grown = drift_time_ + 0.5 * length;
+  drift_time_ += length;
+  drift_.noalias() = seen_ * S_rate_;
+  S_rate_next_.noalias() = power_ * S_rate_;
+  for (Index i = 0; i < S_rate_.cols(); ++i) {
+    const Index of = drifting_[static_cast<std::size_t>(i)];
+    drift_.col(i) += grown * sensitivity_.col(of);
+    S_rate_next_.col(i) += grown * S_next_.col(of);
+  }
+  S_rate_.swap(S_rate_next_);
+}
+
+void LinearTwin::Drifted(const VectorXd& rates) noexcept {
+  for (Index i = 0; i < rates.size(); ++i) {
+    theta_[drifting_[static_cast<std::size_t>(i)]] += drift_time_ * rates[i];
+  }
+  x_.noalias() += S_rate_ * rates;
+  MakeMaps();
 }
 
 void LinearTwin::Shift(const VectorXd& change) noexcept {

@@ -70,6 +70,7 @@ class LinearTwin final : public Twin {
             const Eigen::VectorXd& innovation) noexcept override;
   const Eigen::MatrixXd& EndBlock() noexcept override;
   void Shift(const Eigen::VectorXd& change) noexcept override;
+  void Drifted(const Eigen::VectorXd& rates) noexcept override;
 
  private:
   /// One entry of M, D or K of a number: a force on a coordinate, proportional to what
@@ -105,6 +106,7 @@ class LinearTwin final : public Twin {
   void MakeMoving(Eigen::Index row, const Eigen::MatrixXd& before,
                   const Eigen::MatrixXd& after) noexcept;
   void LiftSensitivities() noexcept;
+  void LiftDrift() noexcept;
   /// What the forces of this tick leave in the block.
   void Push() noexcept;
 
@@ -147,6 +149,7 @@ class LinearTwin final : public Twin {
   /// that in its mean.
   Eigen::MatrixXd block_;
   Eigen::MatrixXd S_next_, sensitivity_;
+  Eigen::MatrixXd S_rate_next_;
 };
 
 }  // namespace mjdiag

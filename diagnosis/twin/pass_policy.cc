@@ -24,6 +24,8 @@ constexpr int kConfirmed = 1;
 constexpr Index kUnnoticed = 256;
 /// Blocks before the surprise in which the change was there already.
 constexpr Index kNoticed = 2;
+/// Blocks between two looks for growth.
+constexpr Index kGrowthEvery = 64;
 /// What is not explained for that long from the first tick on was not at rest there.
 constexpr Index kAtOnce = 64;
 
@@ -59,6 +61,7 @@ void PredictionErrorEstimator::StartInMotion() noexcept {
 void PredictionErrorEstimator::StartOver(std::size_t gain,
                                          const VectorXd& theta) noexcept {
   segment_.explained = segment_.surprised = 0;
+  segment_.grows = false;
   segment_.stuck = segment_.same = 0;
   pulled_passes_ = 0;
   look_ = segment_.windowed && segment_.window.at_rest ? kFirstGuess : kLook;
@@ -74,6 +77,10 @@ void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (Surprised()) return Unexplained();
   if (segment_.windowed) return Approach();
+  if (gain() == 0 && pass_.blocks() % kGrowthEvery == 0 && SeesGrowth()) {
+    segment_.grows = true;
+    return Follow();
+  }
   const Index horizon = pass_.seen() - now().origin;
   if (Bias() > kTooFar && 4 * horizon > 5 * segment_.explained) {
     segment_.explained = horizon;

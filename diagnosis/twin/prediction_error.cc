@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/diagnosis/statistics/distributions.h"
+
 namespace mjdiag {
 namespace {
 
@@ -25,6 +27,15 @@ constexpr Index kBrief = 128;
 /// Blocks between two steps of the walk while it follows: in so many a fault that grows
 /// by a percent an hour moves by less than noise leaves of the best known ones.
 constexpr Index kWalkEvery = 16;
+/// That a machine which is constant is taken for one that wears, in one look at it.
+constexpr double kNoGrowth = 1e-6;
+/// By chance the misfit is not above it.
+constexpr double kLooksExplained = 2.0;
+/// Moves of the state take for granted that theta has always been what it is now: what has
+/// grown leaves errors of the rate times the memory of the gain. Where growth is seen, that
+/// is three times shorter.
+constexpr std::size_t kFollowingGain = 1;
+constexpr std::size_t kGrowingGain = 2;
 /// And between two shifts of theta0, which cost more.
 constexpr Index kShiftEvery = 64;
 
@@ -33,7 +44,7 @@ constexpr Index kShiftEvery = 64;
 PredictionErrorEstimator::PredictionErrorEstimator(
     std::unique_ptr<Twin> twin, std::vector<Unknown> unknowns, double sample_time,
     const PredictionErrorOptions& options)
-    : pass_(std::move(twin)),
+    : pass_(std::move(twin), options.tolerated),
       unknowns_(std::move(unknowns)),
       options_(options),
       prior_covariance_(PriorOf(unknowns_)),
@@ -42,9 +53,12 @@ PredictionErrorEstimator::PredictionErrorEstimator(
       checkpoints_(pass_.twin()),
       next_look_(kFirstLook),
       said_{.information = pass_.information(),
+            .drift = pass_.drift(),
             .theta = {},
             .variance = {},
             .prior = {}} {
+  const auto drifting = static_cast<double>(pass_.twin().drifting().size());
+  constant_ = drifting > 0.0 ? ChiSquaredQuantile(kNoGrowth, drifting) : 0.0;
   const auto p = static_cast<Index>(unknowns_.size());
   const auto block = static_cast<double>(pass_.twin().block());
   nominal_ = walk_ = VectorXd::Zero(p);
@@ -152,9 +166,12 @@ void PredictionErrorEstimator::Say() noexcept {
   said_.began = true;
   said_.sure = sure;
   said_.information.Know(pass_.information());
+  said_.drifts = pass_.drifts();
+  said_.drift_time = pass_.drift_time();
+  if (said_.drifts) said_.drift.Know(pass_.drift());
   said_.theta = pass_.theta();
   said_.prior = prior_;
-  said_.surprise = pass_.surprise().recent();
+  said_.surprise = pass_.surprise().recent() / options_.tolerated;
   said_.since = segment_.since;
   said_.until = pass_.seen();
   said_.gain = gain();
@@ -172,12 +189,25 @@ void PredictionErrorEstimator::Follow() noexcept {
     exhausted_ = false;
     if (TryChange()) return;
   }
+  if (pass_.drifts()) {
+    segment_.grows = segment_.grows || SeesGrowth();
+    // As a walk of that wear would have it, evenly.
+    pass_.TakeDrift(options_.wear / std::sqrt(pass_.drift_time()));
+    Say();
+  }
   if (pass_.blocks() % kWalkEvery != 0) return;
   pass_.information().Walk(walk_);
   if (pass_.blocks() % kShiftEvery != 0) return;
-  const std::size_t soft = std::min<std::size_t>(1, pass_.stiffest());
+  const std::size_t soft =
+      std::min(segment_.grows ? kGrowingGain : kFollowingGain, pass_.stiffest());
   if (gain() < soft) pass_.Soften(soft);
   pass_.Shift();
+}
+
+bool PredictionErrorEstimator::SeesGrowth() noexcept {
+  // What the pass does not explain is no growth, either.
+  return options_.exact && pass_.misfit() < kLooksExplained &&
+         pass_.DriftGain(kRateSpread) > constant_;
 }
 
 double PredictionErrorEstimator::Farthest(const VectorXd& change) const noexcept {

@@ -20,11 +20,13 @@
 //
 // At the end of a run there is time to do the same over the whole of it.
 //
-// When the readings that it keeps do not reach back to the start, it follows: theta0
+// When the readings that it keeps do not reach back to the start, or say that what wears
+// has grown since (drift.h), it follows: theta0
 // moves with the estimate, the state with it to first order, and what wears walks at
 // random, so that what was long ago is forgotten. Memory is constant, time unbounded.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -43,6 +45,12 @@ struct PredictionErrorOptions {
   /// Random walk of what wears while it follows [1/sqrt(s)]. A fault that grows by 1 %
   /// an hour stays within its interval.
   double wear = 3e-5;
+  /// How many times more surprising than by noise alone blocks of a healthy machine may
+  /// be, 1 or more: its model is not exact.
+  double tolerated = 1.0;
+  /// Whether its model is the machine: else what is left is not noise, and tells of no
+  /// growth.
+  bool exact = true;
 };
 
 class PredictionErrorEstimator {
@@ -79,18 +87,32 @@ class PredictionErrorEstimator {
   /// Those that Variance has found last; before that, of the prior.
   const Eigen::VectorXd& LastVariance() const { return said_.variance; }
   /// Mean over recent blocks of the squared innovations over what noise and the
-  /// uncertainty of the estimate let expect of them: 1 where the twin explains them.
+  /// uncertainty of the estimate let expect of them, over what is tolerated: 1 where the
+  /// twin explains them.
   double surprise() const { return said_.surprise; }
   /// Whether what it says is of the machine as it is now: it knows of no change since.
   bool current() const { return sure() && said_.since == segment_.since; }
   /// Whether the twin ran so near to it that the first order tells it, as its standard
   /// deviation takes for granted.
   bool sure() const { return said_.sure; }
+  /// Whether it takes the machine as constant since then, and how that would change if it
+  /// were not (drift.h), after DriftTime.
+  bool constant() const { return said_.drifts && options_.exact; }
+  const Drift& drift() const { return said_.drift; }
+  double drift_time() const { return said_.drift_time; }
+  const Information& information() const { return said_.information; }
   /// Tick from which the machine has been as it is estimated.
   Eigen::Index since() const { return said_.since; }
+  /// Ticks that the estimate rests on.
+  Eigen::Index horizon() const {
+    return std::min(said_.until - said_.since, options_.kept);
+  }
   int returns() const { return returns_; }
-  /// Whether it follows: the readings that it keeps do not reach back any more.
-  bool following() const { return kept_.added() - now().first() > options_.kept; }
+  /// Whether it follows: the readings that it keeps do not reach back any more, or the
+  /// machine is not as it was at the first of them.
+  bool following() const {
+    return segment_.grows || kept_.added() - now().first() > options_.kept;
+  }
 
  private:
   /// A stretch of the run in which the machine does not change.
@@ -100,6 +122,7 @@ class PredictionErrorEstimator {
     /// Of passes over the last readings, with a gain that pulls at first.
     PassStart window;
     bool windowed = false;       ///< passes begin there
+    bool grows = false;          ///< what wears has grown in it
     int attempts = 0;            ///< of passes that are pulled along
     Eigen::Index explained = 0;  ///< longest horizon so far
     Eigen::Index surprised = 0;  ///< horizon of the last pass
@@ -111,6 +134,9 @@ class PredictionErrorEstimator {
     bool began = false;
     bool sure = false;
     Information information;
+    Drift drift;
+    bool drifts = false;
+    double drift_time = 0.0;  // [s]
     Eigen::VectorXd theta, variance;
     Eigen::MatrixXd prior;
     double surprise = 1.0;
@@ -151,6 +177,8 @@ class PredictionErrorEstimator {
   void Unexplained() noexcept;
   void PullAlong() noexcept;
   bool TryChange() noexcept;
+  /// Whether what this pass has seen is no chance on a machine that is constant.
+  bool SeesGrowth() noexcept;
   /// The window becomes the last readings.
   void MoveWindow() noexcept;
   const Checkpoint* LastCheckpoint(Eigen::Index until) const noexcept;
@@ -179,6 +207,7 @@ class PredictionErrorEstimator {
   Eigen::VectorXd nominal_;
   Eigen::MatrixXd prior_covariance_;
   Eigen::VectorXd walk_;  // of kWalkEvery blocks
+  double constant_;       // gain of a drift that a machine without one may show
 
   KeptReadings kept_;
   RunStart run_start_;

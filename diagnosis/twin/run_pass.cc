@@ -28,7 +28,7 @@ RunPass::RunPass(std::unique_ptr<Twin> twin, const MatrixXd& outputs,
   VectorXd theta = VectorXd::Zero(of_run.unknowns());
   RunStart start(of_run.outputs(), of_run.block(), of_run.unknowns());
   if (run_.added() <= of_run.block() ||
-      !start.BeganAtRest(of_run, run_, theta, n, prior)) {
+      !start.BeganAtRest(of_run, run_, theta, of_run.first_tone(), prior)) {
     pass_.StartSettling(run_, 0, start_);
     pass_.StartMeasured(run_, 0, measured_);
   }

@@ -25,13 +25,15 @@ struct RunInformation {
   double misfit = 1.0;         ///< mean square of the innovations over what is expected
   double worst_block = 1.0;    ///< the largest of a block,
   double worst_stretch = 1.0;  ///< and of the mean over recent ones (Surprise)
-  /// Of kRunParts stretches of about one length, its start as it is estimated.
+  /// Of kRunParts stretches of about one length, its start as it is estimated, or known.
   std::vector<PartInformation> parts;
   /// ny x ticks from the first that counts; NaN where there is no reading.
   Eigen::MatrixXd innovations;
 };
 
-inline constexpr Eigen::Index kRunParts = 8;
+/// So many tell their scatter with 15 degrees of freedom: with 8 parts, what is exceeded
+/// with a probability of 1e-4 would be half as much again.
+inline constexpr Eigen::Index kRunParts = 16;
 
 class RunPass {
  public:

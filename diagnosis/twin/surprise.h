@@ -9,7 +9,10 @@ namespace mjdiag {
 
 class Surprise {
  public:
-  explicit Surprise(Eigen::Index readings) : readings_(readings) {}
+  /// @param tolerated  how many times larger than noise alone would have them the limits
+  ///                   are, 1 or more
+  explicit Surprise(Eigen::Index readings, double tolerated = 1.0)
+      : readings_(readings), tolerated_(tolerated) {}
 
   void Start() noexcept { block_ = recent_ = 1.0; }
   void Add(double block) noexcept {
@@ -27,11 +30,12 @@ class Surprise {
     return !(block_ < BlockLimit()) || !(recent_ < RecentLimit());
   }
   double BlockLimit() const noexcept {
-    return 1.0 + kHeavyTail * kNoChance * Deviation();
+    return tolerated_ * (1.0 + kHeavyTail * kNoChance * Deviation());
   }
   double RecentLimit() const noexcept {
-    return 1.0 + kNoChance * Deviation() / std::sqrt(kRecent / 2.0);
+    return tolerated_ * (1.0 + kNoChance * Deviation() / std::sqrt(kRecent / 2.0));
   }
+  double tolerated() const noexcept { return tolerated_; }
 
  private:
   /// Blocks over which it is averaged.
@@ -44,6 +48,7 @@ class Surprise {
   }
 
   Eigen::Index readings_;
+  double tolerated_;
   double block_ = 1.0;
   double recent_ = 1.0;
 };

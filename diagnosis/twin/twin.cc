@@ -7,13 +7,28 @@ namespace mjdiag {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+std::vector<Index> DriftingOf(const std::vector<Unknown>& unknowns) {
+  std::vector<Index> drifting;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    if (!unknowns[i].wears || !(unknowns[i].reach > 0.0)) continue;
+    drifting.push_back(static_cast<Index>(i));
+  }
+  return drifting;
+}
+
 Twin::Twin(const TwinShape& shape, std::vector<TwinGain> gains,
-           std::vector<UnknownTone> tones, double sample_time)
+           std::vector<UnknownTone> tones, double sample_time,
+           std::vector<Index> drifting)
     : theta_(VectorXd::Zero(shape.unknowns)),
       tones_(std::move(tones), sample_time),
       u_(VectorXd::Zero(shape.inputs)),
       x_(VectorXd::Zero(shape.states)),
       S_(Eigen::MatrixXd::Zero(shape.states, shape.unknowns)),
+      drifting_(std::move(drifting)),
+      S_rate_(
+          Eigen::MatrixXd::Zero(shape.states, static_cast<Index>(drifting_.size()))),
+      drift_(Eigen::MatrixXd::Zero(shape.outputs, S_rate_.cols())),
+      sample_time_(sample_time),
       shape_(shape),
       gains_(std::move(gains)) {}
 
@@ -27,6 +42,9 @@ void Twin::Begin(const VectorXd& theta, bool at_rest, Index tick) noexcept {
   theta_ = theta;
   acting_ = unknowns() - (at_rest ? start_unknowns() : 0);
   tones_.Start(tick);
+  S_rate_.setZero();
+  drift_.setZero();
+  drift_time_ = 0.0;
 }
 
 void Twin::Place(const TwinState& state, const Eigen::MatrixXd& directions) noexcept {

@@ -59,6 +59,9 @@ struct TwinState {
   Eigen::MatrixXd S;      ///< d x / d theta, nx x p; 0 if it was measured
 };
 
+/// Those that wear, as logarithms of numbers.
+std::vector<Eigen::Index> DriftingOf(const std::vector<Unknown>& unknowns);
+
 class Twin {
  public:
   virtual ~Twin() = default;
@@ -116,10 +119,26 @@ class Twin {
   /// theta + change, and the state that goes with it to first order. Between blocks.
   virtual void Shift(const Eigen::VectorXd& change) noexcept = 0;
 
+  // Unknowns that wear may have grown evenly since it was started, from theta then on;
+  // theta is not changed by that, but what it would do to the readings is known.
+
+  /// Their places.
+  const std::vector<Eigen::Index>& drifting() const { return drifting_; }
+  /// After EndBlock: d mean(yp) / d rate over the block, ny x drifting.
+  const Eigen::MatrixXd& drift() const { return drift_; }
+  /// Since it was started [s].
+  virtual double drift_time() const noexcept { return drift_time_; }
+  /// Whether that is followed, from the next start on.
+  virtual void UseDrift(bool use) noexcept { drifts_ = use; }
+  /// They have grown at these rates [1/s], and the state with them to first order.
+  virtual void Drifted(const Eigen::VectorXd& rates) noexcept = 0;
+
  protected:
-  /// @param tones  of which theta holds the parts, behind the factors
+  /// @param tones     of which theta holds the parts, behind the factors
+  /// @param drifting  places of unknowns that may grow
   Twin(const TwinShape& shape, std::vector<TwinGain> gains,
-       std::vector<UnknownTone> tones, double sample_time);
+       std::vector<UnknownTone> tones, double sample_time,
+       std::vector<Eigen::Index> drifting);
 
   const TwinGain& gain() const { return gains_[gain_]; }
   /// Unknowns of theta that act: all, or all but those of the start.
@@ -140,6 +159,12 @@ class Twin {
   Eigen::VectorXd u_;
   Eigen::VectorXd x_;  // nx
   Eigen::MatrixXd S_;  // nx x p
+  bool drifts_ = true;
+  std::vector<Eigen::Index> drifting_;
+  Eigen::MatrixXd S_rate_;  // d x / d rate, nx x drifting
+  Eigen::MatrixXd drift_;   // ny x drifting
+  double sample_time_;
+  double drift_time_ = 0.0;
 
  private:
   TwinShape shape_;

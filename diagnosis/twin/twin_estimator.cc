@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
+#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/diagnosis/twin/naming.h"
 #include "mjdiag/signals/decompositions.h"
 
@@ -22,6 +24,10 @@ constexpr double kAlike = 1.0 - 1e-9;
 /// By chance the misfit is not above it: a mean of about a hundred squares.
 constexpr double kExplained = 2.0;
 constexpr double kDay = 86400.0;  // s
+/// That a machine which is constant is taken for one that is not.
+constexpr double kConstant = 1e-3;
+/// Outside an interval.
+constexpr double kOutside = 0.05;
 
 /// Deviation of a fault from healthy, and its standard deviation.
 std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& theta,
@@ -42,13 +48,38 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
   return {std::sqrt(std::max(0.0, squares / weights)), 1.0 / std::sqrt(weights)};
 }
 
+/// Of the unknowns of those names, one for each. An unknown that is not there has none.
+std::vector<Index> PlacesOf(const std::vector<std::string>& names,
+                            const std::vector<Unknown>& unknowns) {
+  std::vector<Index> places;
+  for (const std::string& name : names) {
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      if (unknowns[i].name != name || std::ranges::find(places, at) != places.end())
+        continue;
+      places.push_back(at);
+      break;
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 TwinEstimator::TwinEstimator(MachineTwin machine, const PredictionErrorOptions& options)
     : faults_(std::move(machine.faults)),
+      model_(std::move(machine.model)),
+      uncertain_(PlacesOf(model_.unknowns, machine.unknowns)),
+      sample_time_(machine.sample_time),
       block_time_(machine.sample_time * static_cast<double>(machine.twin->block())),
+      spread_(VectorXd::Zero(machine.twin->unknowns())),
+      model_variance_(spread_),
       estimator_(std::move(machine.twin), std::move(machine.unknowns),
-                 machine.sample_time, options) {}
+                 machine.sample_time, options) {
+  if (!model_.any()) return;
+  model_variance_(uncertain_) =
+      std::pow(model_.Stretch(kOutside, kOutside), 2) * model_.covariance.diagonal();
+}
 
 void TwinEstimator::Read(Eigen::Ref<VectorXd> deviation) noexcept {
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -58,10 +89,11 @@ void TwinEstimator::Read(Eigen::Ref<VectorXd> deviation) noexcept {
 }
 
 void TwinEstimator::ReadSpread(Eigen::Ref<VectorXd> sd) noexcept {
-  const VectorXd& variance = estimator_.Variance();
+  spread_ = estimator_.Variance();
+  if (model_.any()) spread_ += model_.Times(Duration()) * model_variance_;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     sd[static_cast<Index>(i)] =
-        DeviationOf(faults_[i], estimator_.theta(), variance).second;
+        DeviationOf(faults_[i], estimator_.theta(), spread_).second;
   }
 }
 
@@ -74,6 +106,37 @@ double TwinEstimator::FalseNaming() const {
   return estimator_.following() ? kFalseFault * block_time_ / kDay : kFalseFault;
 }
 
+double TwinEstimator::Duration() const {
+  return std::max(block_time_,
+                  sample_time_ * static_cast<double>(estimator_.horizon()));
+}
+
+MatrixXd TwinEstimator::WithModel(const MatrixXd& noise, double times) const {
+  MatrixXd covariance = noise;
+  if (model_.any()) covariance(uncertain_, uncertain_) += times * model_.covariance;
+  return covariance;
+}
+
+void TwinEstimator::FindAlarms(const MatrixXd& covariance, VectorXd& alarm) const {
+  // Of one alone: beside others that are healthy.
+  std::vector<Index> places;
+  for (const TwinFault& fault : faults_) {
+    for (Index i = 0; i < std::max<Index>(1, 2 * fault.tones()); ++i) {
+      places.push_back(fault.first + i);
+    }
+  }
+  const MatrixXd told = CovarianceOf(covariance(places, places));
+  const double sigmas =
+      TwoSidedNormalQuantile(FalseNaming() / static_cast<double>(faults_.size()));
+  alarm.setConstant(static_cast<Index>(faults_.size()),
+                    std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    if (!faults_[i].frequencies.empty()) continue;
+    const auto place = std::ranges::find(places, faults_[i].first) - places.begin();
+    alarm[static_cast<Index>(i)] = std::expm1(sigmas / std::sqrt(told(place, place)));
+  }
+}
+
 TwinReading TwinEstimator::Read() const {
   const auto nf = static_cast<Index>(faults_.size());
   TwinReading reading;
@@ -81,13 +144,29 @@ TwinReading TwinEstimator::Read() const {
   reading.named.assign(faults_.size(), false);
   if (!estimator_.began()) return reading;
   const Index active = estimator_.active();
-  const VectorXd& theta = estimator_.theta();
-  const MatrixXd information = estimator_.H().topLeftCorner(active, active);
+  VectorXd theta = estimator_.theta();
+  MatrixXd information = estimator_.H().topLeftCorner(active, active);
+  if (estimator_.constant()) {
+    Drift drift = estimator_.drift();
+    drift.Solve(estimator_.information(), estimator_.drift_time(), kRateSpread);
+    const auto rates = static_cast<double>(drift.drifting().size());
+    if (drift.gain() > ChiSquaredQuantile(kConstant, rates)) {
+      theta += drift.change();
+      information = drift.information().topLeftCorner(active, active);
+    }
+  }
   reading.misfit = estimator_.surprise();
   // A twin that does not explain what it sees is less sure than it says.
   const double honest = reading.misfit > kExplained ? reading.misfit : 1.0;
-  const MatrixXd covariance = honest * CovarianceOf(information);
-  const VectorXd variance = covariance.diagonal();
+  const MatrixXd noise = honest * CovarianceOf(information);
+  // Its model was off in a few healthy runs by so much, once: that is one draw, however
+  // often one looks, and has the tail of Student's t.
+  const double times = model_.any() ? model_.Times(Duration()) : 0.0;
+  const auto stretched = [&](double probability, double normal) {
+    return model_.any() ? std::pow(model_.Stretch(probability, normal), 2) : 0.0;
+  };
+  const VectorXd variance =
+      WithModel(noise, times * stretched(kOutside, kOutside)).diagonal();
   std::vector<std::vector<Index>> groups;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     const TwinFault& fault = faults_[i];
@@ -115,8 +194,16 @@ TwinReading TwinEstimator::Read() const {
       reading.inseparable.push_back(static_cast<Index>(i));
     }
   }
+  const auto each = static_cast<double>(faults_.size());
+  const double look = FalseNaming() / each;
+  const MatrixXd judged = WithModel(noise, times * stretched(kFalseFault / each, look));
+  FindAlarms(judged, reading.alarm);
+  const double normal =
+      TwoSidedNormalQuantile(kFalseFault / each) / TwoSidedNormalQuantile(look);
+  FindAlarms(WithModel(noise, (times - 1.0) * normal * normal), reading.best_alarm);
+  reading.model_runs = model_.any() ? model_.runs : 0;
   if (!groups.empty() && estimator_.sure() && reading.misfit < kLargestMisfit) {
-    reading.named = NameFaults(theta.head(active), covariance, groups, FalseNaming());
+    reading.named = NameFaults(theta.head(active), judged, groups, FalseNaming());
   }
   return reading;
 }

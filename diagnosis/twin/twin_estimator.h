@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/diagnosis/twin/model_uncertainty.h"
 #include "mjdiag/diagnosis/twin/prediction_error.h"
 
 namespace mjdiag {
@@ -35,6 +36,9 @@ struct MachineTwin {
   std::vector<Unknown> unknowns;
   std::vector<TwinFault> faults;
   double sample_time = 0.0;  ///< [s]
+  /// Of the same machine in healthy runs, and how surprising they may be.
+  ModelUncertainty model = {};
+  double tolerated = 1.0;
 };
 
 /// A misfit beyond this is no chance and no small error of the model: the run is not
@@ -52,6 +56,12 @@ struct TwinReading {
   /// Fault parameters, by place, that act as another one does, or not at all.
   std::vector<Eigen::Index> inseparable;
   double misfit = 1.0;  ///< squared innovations over what is expected of them
+  /// Deviation from which on a fault parameter is named where it is the only one, and
+  /// where the healthy machine is as well known as more records could make it, nf; NaN
+  /// of disturbances. The same where the model is the machine.
+  Eigen::VectorXd alarm, best_alarm;
+  int model_runs =
+      0;  ///< healthy ones that tell how uncertain the model is; 0: it is not
 };
 
 class TwinEstimator {
@@ -82,9 +92,18 @@ class TwinEstimator {
  private:
   /// That anything is named on a healthy machine in one look.
   double FalseNaming() const;
+  /// How long the estimate has seen the machine [s].
+  double Duration() const;
+  /// Covariance of the unknowns with so many times what the model adds to that of noise.
+  Eigen::MatrixXd WithModel(const Eigen::MatrixXd& noise, double times) const;
+  void FindAlarms(const Eigen::MatrixXd& covariance, Eigen::VectorXd& alarm) const;
 
   std::vector<TwinFault> faults_;
-  double block_time_;  // [s]
+  ModelUncertainty model_;
+  std::vector<Eigen::Index> uncertain_;
+  double sample_time_;                       // [s]
+  double block_time_;                        // [s]
+  Eigen::VectorXd spread_, model_variance_;  // p
   PredictionErrorEstimator estimator_;
 };
 

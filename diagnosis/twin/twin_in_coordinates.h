@@ -13,7 +13,7 @@ namespace mjdiag {
 
 class TwinInCoordinates final : public Twin {
  public:
-  /// @param T      p x q, the identity for tones and the start
+  /// @param T      p x q, the identity for what wears, for tones and the start
   /// @param tones  those of the twin
   TwinInCoordinates(std::unique_ptr<Twin> twin, Eigen::MatrixXd T,
                     const std::vector<UnknownTone>& tones);
@@ -34,6 +34,11 @@ class TwinInCoordinates final : public Twin {
   }
   const Eigen::MatrixXd& EndBlock() noexcept override;
   void Shift(const Eigen::VectorXd& change) noexcept override;
+  double drift_time() const noexcept override { return twin_->drift_time(); }
+  void UseDrift(bool use) noexcept override { twin_->UseDrift(use); }
+  void Drifted(const Eigen::VectorXd& rates) noexcept override {
+    twin_->Drifted(rates);
+  }
 
  private:
   std::unique_ptr<Twin> twin_;

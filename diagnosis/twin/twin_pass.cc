@@ -20,10 +20,11 @@ constexpr Index kResettle = 32;
 
 }  // namespace
 
-TwinPass::TwinPass(std::unique_ptr<Twin> twin)
+TwinPass::TwinPass(std::unique_ptr<Twin> twin, double tolerated)
     : twin_(std::move(twin)),
       information_(twin_->unknowns(), twin_->outputs()),
-      surprise_(twin_->outputs()) {
+      drift_(twin_->unknowns(), twin_->outputs(), twin_->drifting()),
+      surprise_(twin_->outputs(), tolerated) {
   theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
   reading_ = innovation_ = sum_ = VectorXd::Zero(twin_->outputs());
   covariance_ = twin_->gains().front().covariance;
@@ -60,6 +61,9 @@ void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
                      const MatrixXd& prior, const VectorXd& nominal) noexcept {
   start_ = &start;
   prior_ = &prior;
+  drifts_ = !drift_.drifting().empty();
+  twin_->UseDrift(drifts_);
+  drift_.Start();
   gain_ = pull_ = gain;
   theta0_ = theta0;
   settling_ = false;
@@ -176,6 +180,8 @@ void TwinPass::Count(const MatrixXd& whole) noexcept {
   worst_block_ = std::max(worst_block_, squares);
   worst_stretch_ = std::max(worst_stretch_, surprise_.recent());
   information_.Add(psi, sum_, covariance_);
+  if (drifts_)
+    drift_.Add(psi, twin_->drift(), sum_, covariance_, information_.active());
   theta_ = theta0_ + information_.change();
 }
 
@@ -184,6 +190,30 @@ void TwinPass::Shift() noexcept {
   theta_ = theta0_;
   twin_->Shift(information_.change());
   information_.Recentre();
+}
+
+double TwinPass::DriftGain(double rate_sd) noexcept {
+  if (!drifts_) return 0.0;
+  drift_.Solve(information_, twin_->drift_time(), rate_sd);
+  return drift_.gain();
+}
+
+void TwinPass::TakeDrift(double rate_sd) noexcept {
+  if (!drifts_) return;
+  drift_.Solve(information_, twin_->drift_time(), rate_sd);
+  // First to where the estimate was at the start, then on with what has grown.
+  away_ = information_.change() + drift_.change();
+  for (std::size_t i = 0; i < drift_.drifting().size(); ++i) {
+    away_[drift_.drifting()[i]] -=
+        twin_->drift_time() * drift_.rates()[static_cast<Index>(i)];
+  }
+  twin_->Shift(away_);
+  twin_->Drifted(drift_.rates());
+  theta0_ += information_.change() + drift_.change();
+  theta_ = theta0_;
+  information_.Assume(drift_.information());
+  drifts_ = false;
+  twin_->UseDrift(false);
 }
 
 void TwinPass::Soften(std::size_t gain) noexcept {

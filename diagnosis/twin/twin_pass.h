@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "mjdiag/diagnosis/twin/drift.h"
 #include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/kept_readings.h"
 #include "mjdiag/diagnosis/twin/surprise.h"
@@ -44,7 +45,8 @@ struct PassStart {
 
 class TwinPass {
  public:
-  explicit TwinPass(std::unique_ptr<Twin> twin);
+  /// @param tolerated  of its surprises
+  explicit TwinPass(std::unique_ptr<Twin> twin, double tolerated = 1.0);
 
   const Twin& twin() const { return *twin_; }
   Twin& twin() { return *twin_; }
@@ -73,6 +75,12 @@ class TwinPass {
   /// Where the estimate is too far from theta0: theta0 becomes theta, and the state goes
   /// with it to first order.
   void Shift() noexcept;
+  /// What wears may have grown so far, and does not from now on: theta0 becomes what it is
+  /// now.
+  /// @param rate_sd  at which it may have [1/s]
+  void TakeDrift(double rate_sd) noexcept;
+  /// How much better what it has seen is explained if what wears has grown (Drift).
+  double DriftGain(double rate_sd) noexcept;
   /// From now on with that gain.
   void Soften(std::size_t gain) noexcept;
   /// theta - theta0 if the errors that are left count as noise: far from the solution
@@ -88,6 +96,10 @@ class TwinPass {
   const Eigen::VectorXd& theta() const { return theta_; }
   const Information& information() const { return information_; }
   Information& information() { return information_; }
+  /// Whether what it says of growth is still to be taken, and that.
+  bool drifts() const { return drifts_; }
+  const Drift& drift() const { return drift_; }
+  double drift_time() const { return twin_->drift_time(); }
   const Surprise& surprise() const { return surprise_; }
   /// Of the tick before.
   const Eigen::VectorXd& innovation() const { return innovation_; }
@@ -117,6 +129,8 @@ class TwinPass {
   double squares_ = 0.0;
   double worst_block_ = 0.0, worst_stretch_ = 0.0;
   Information information_;
+  Drift drift_;
+  bool drifts_ = false;
   Surprise surprise_;
   Eigen::VectorXd theta0_, theta_, away_;
   /// Of the readings of a block that were measured: those of the others are 0, and their

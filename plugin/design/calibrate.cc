@@ -4,8 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "mjdiag/diagnosis/twin/information.h"
+#include "mjdiag/diagnosis/twin/model_uncertainty.h"
+#include "mjdiag/diagnosis/twin/run_pass.h"
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/design/number_learner.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
@@ -18,6 +22,8 @@ using Eigen::VectorXd;
 
 /// Of a noise that is given: less is none.
 constexpr double kLeastNoise = 1e-3;
+/// Of squares of innovations: twice what healthy runs have shown.
+constexpr double kMargin = 4.0;
 /// A number is not that far from where it was known to be, in standard deviations.
 constexpr double kDoubtful = 4.0;
 
@@ -62,6 +68,45 @@ VectorXd FirstNoise(const Machine& machine, const std::vector<RunSamples>& runs)
   return noise;
 }
 
+/// By what a diagnosis would say of parts of the runs.
+/// @param certain  whether the model is certainly not the machine
+ModelUncertainty ModelUncertaintyOf(const Machine& calibrated,
+                                    const std::vector<RunSamples>& runs, bool linear,
+                                    bool certain) {
+  std::vector<std::vector<PartInformation>> parts(runs.size());
+  const MachineTwin like = MakeTwin(calibrated, linear);
+  const Index n = like.twin->unknowns() - like.twin->start_unknowns();
+  std::vector<Unknown> unknowns(like.unknowns.begin(), like.unknowns.begin() + n);
+  std::vector<Index> faults;
+  ModelUncertainty uncertainty;
+  std::vector<std::string> names;
+  for (const TwinFault& fault : like.faults) {
+    for (Index i = 0; i < std::max<Index>(1, 2 * fault.tones()); ++i) {
+      faults.push_back(fault.first + i);
+      names.push_back(unknowns[static_cast<std::size_t>(fault.first + i)].name);
+    }
+  }
+  if (faults.empty()) return uncertainty;
+  double duration = 0.0;
+  for (const RunSamples& run : runs) {
+    duration += static_cast<double>(run.outputs.cols()) * like.sample_time;
+  }
+  ParallelFor(static_cast<int>(runs.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    MachineTwin twin = MakeTwin(calibrated, linear);
+    RunPass pass(std::move(twin.twin), runs[at].outputs, runs[at].inputs,
+                 PriorOf(twin.unknowns));
+    // The first says where the run began.
+    pass.About(VectorXd::Zero(n), 0);
+    parts[at] = pass.About(VectorXd::Zero(n), 0).parts;
+  });
+  uncertainty = ScatterOfParts(parts, CovarianceOf(PriorOf(unknowns)), faults, certain);
+  uncertainty.unknowns = std::move(names);
+  uncertainty.duration = duration;
+  uncertainty.runs = static_cast<int>(runs.size());
+  return uncertainty;
+}
+
 }  // namespace
 
 CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& records,
@@ -99,16 +144,17 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   const bool inflated = !learner.Explains();
   if (inflated) {
     // What not even that explains counts as noise.
-    noise *= std::sqrt(learner.Excess());
+    noise *= std::sqrt(learner.Misfit());
     learner = about(learner.theta());
     learner.Learn(learner.stiffest(), true);
   }
+  double excess = std::max(1.0, learner.Excess());
   progress(0.4);
   const auto stiffest = static_cast<double>(learner.stiffest());
   SoftestLearner softest =
-      LearnSoftest(std::move(learner), about, [&](std::size_t gain, int) {
-        constexpr double kLeft = 0.5;  // of the work, when it begins
-        progress(0.9 - kLeft * static_cast<double>(gain) / stiffest);
+      LearnSoftest(std::move(learner), about, excess, [&](std::size_t gain, int) {
+        constexpr double kLeft = 0.4;  // of the work, when it begins
+        progress(0.8 - kLeft * static_cast<double>(gain) / stiffest);
         return true;
       });
   learner = std::move(softest.learner);
@@ -116,11 +162,13 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   if (!inflated) noise = noise.cwiseMin(learner.Noise());
   learner = about(learner.theta());
   learner.Learn(gain, false);
-  if (const double contradiction = learner.Contradiction(); contradiction > 1.0) {
-    noise *= std::sqrt(contradiction);
+  if (inflated) {
+    noise *= std::sqrt(learner.Misfit());
     learner = about(learner.theta());
     learner.Learn(gain, false);
   }
+  const bool exact = !inflated && gain == 0;
+  excess = learner.Excess();
 
   CalibrationReport report;
   Calibration& calibration = report.calibration;
@@ -130,6 +178,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   calibration.sensor_noise = noise;
   calibration.force_noise =
       gain == 0 ? 0.0 : kTwinBandwidths[gain - 1] * machine.rates().control;
+  calibration.tolerated = exact ? 1.0 : std::max(1.0, kMargin * excess);
   calibration.records = static_cast<int>(records.size());
   report.prior_sd.resize(theta.size());
   for (Index i = 0; i < theta.size(); ++i) {
@@ -143,8 +192,24 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   for (const RunInformation& said : learner.said()) {
     report.records.push_back({said.misfit});
   }
+  progress(0.9);
+  calibration.model = ModelUncertaintyOf(CalibratedMachine(machine, calibration), runs,
+                                         options.linear, !exact);
   progress(1.0);
   return report;
+}
+
+Machine CalibratedMachine(const Machine& machine, const Calibration& calibration) {
+  NumberFactors factors;
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    factors.emplace_back(FindPlantNumber(machine.plant(), calibration.numbers[i]),
+                         calibration.factors[static_cast<Index>(i)]);
+  }
+  const Machine with =
+      machine.WithNumbers(factors).WithSensorNoise(calibration.sensor_noise);
+  Setup setup = with.setup();
+  setup.calibration = calibration;
+  return with.WithSetup(std::move(setup));
 }
 
 DiagnosisDesign CalibratedFilters(const Machine& calibrated,

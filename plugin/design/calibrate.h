@@ -10,10 +10,14 @@
 //   as it is.
 // - Force noise, that is what the model does not know, is the least of a ladder
 //   (kTwinBandwidths) with which no block of any run is more of a surprise than chance
-//   lets expect, for that is what the estimator goes by. Where there is none, the noise
-//   of the sensors is taken as so much larger.
-// - So it is where parts of the runs contradict all of them together by more than chance:
-//   errors of a model are alike from one tick to the next, which no innovation shows.
+//   lets expect, for that is what the estimator goes by. Where there is none, all that
+//   the stiffest leaves is noise of the sensors. From then on, blocks may be as
+//   surprising as twice the innovations of the worst one make them (as limits of
+//   residuals are twice what healthy runs show).
+// - Errors of a model are alike from one tick to the next, which no innovation shows.
+//   Every part of the runs is therefore diagnosed like a run of its own; what the parts
+//   say of faults that are not there, beyond noise, is uncertainty of the model
+//   (model_uncertainty.h).
 // - Limits of residuals are those of the measured runs, and of simulated ones of plants
 //   drawn from what is known.
 
@@ -50,6 +54,10 @@ struct CalibrateOptions {
 /// plant has no numbers.
 CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& records,
                             const CalibrateOptions& options);
+
+/// The machine with what was learned of it, for a diagnosis: as Machine(setup) makes it of a
+/// setup with that calibration, changes and all.
+Machine CalibratedMachine(const Machine& machine, const Calibration& calibration);
 
 /// Filters of a calibrated machine with limits that hold for those healthy records.
 DiagnosisDesign CalibratedFilters(const Machine& calibrated,

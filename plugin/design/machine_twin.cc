@@ -117,6 +117,10 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
     twin.unknowns = uncertain.unknowns;
   }
   twin.faults = FaultsOf(machine, uncertain, twin.twin->first_tone());
+  if (calibration) {
+    twin.tolerated = calibration->tolerated;
+    if (options.faults) twin.model = calibration->model;
+  }
   return twin;
 }
 
@@ -124,8 +128,11 @@ std::unique_ptr<TwinEstimator> MakeTwinEstimator(const Machine& machine, bool li
   const bool nothing =
       FaultParameters(machine.plant()).empty() && machine.setup().disturbances.empty();
   if (nothing || !(ReadingNoise(machine.channels()).minCoeff() > 0.0)) return nullptr;
-  return std::make_unique<TwinEstimator>(MakeTwin(machine, linear),
-                                         PredictionErrorOptions{});
+  MachineTwin twin = MakeTwin(machine, linear);
+  PredictionErrorOptions options;
+  options.tolerated = twin.tolerated;
+  options.exact = !twin.model.any() && twin.tolerated == 1.0;
+  return std::make_unique<TwinEstimator>(std::move(twin), options);
 }
 
 }  // namespace mjdiag

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -102,7 +101,6 @@ void NumberLearner::Learn(std::size_t gain, bool rough) {
     VectorXd change = CovarianceOf(H) * g;
     diverged_ = !change.allFinite();
     if (diverged_) return;
-    last_ = change;
     const double squared = change.dot(g);
     const double farthest = change.cwiseAbs().maxCoeff();
     if (farthest > kLongest) change *= kLongest / farthest;
@@ -124,26 +122,10 @@ double NumberLearner::Excess() const {
   return excess;
 }
 
-double NumberLearner::Contradiction() const {
-  constexpr double kTold = 1e-6;    // of what a part tells best
-  constexpr double kChance = 1e-3;  // probability
-  double squares = 0.0;
-  double freedom = -static_cast<double>(own_.size());
-  for (const RunInformation& said : said_) {
-    for (const PartInformation& part : said.parts) {
-      const ScaledEigenPairs modes = ScaledEigenDecomposition(part.H);
-      const VectorXd pull = modes.vectors.transpose() *
-                            (part.g - part.H * last_).cwiseQuotient(modes.scale);
-      const VectorXd& told = modes.values;
-      for (Index i = 0; i < told.size(); ++i) {
-        if (!(told[i] > kTold * told.maxCoeff())) continue;
-        squares += pull[i] * pull[i] / told[i] / std::max(1.0, said.misfit);
-        freedom += 1.0;
-      }
-    }
-  }
-  if (!(freedom >= 1.0)) return 1.0;
-  return squares > ChiSquaredQuantile(kChance, freedom) ? squares / freedom : 1.0;
+double NumberLearner::Misfit() const {
+  double sum = 0.0;
+  for (const RunInformation& said : said_) sum += said.misfit;
+  return sum / static_cast<double>(said_.size());
 }
 
 VectorXd NumberLearner::Noise() const {
@@ -159,7 +141,7 @@ VectorXd NumberLearner::Noise() const {
 
 SoftestLearner LearnSoftest(
     NumberLearner learner, const std::function<NumberLearner(const VectorXd&)>& about,
-    const std::function<bool(std::size_t gain, int passes)>& goes_on) {
+    double excess, const std::function<bool(std::size_t gain, int passes)>& goes_on) {
   const std::size_t stiffest = learner.stiffest();
   SoftestLearner found{std::move(learner), stiffest, 0};
   // At once, or step by step.
@@ -167,7 +149,7 @@ SoftestLearner LearnSoftest(
     NumberLearner softer = about(found.learner.theta());
     softer.Learn(next, true);
     found.passes += softer.passes();
-    if (softer.Explains()) {
+    if (softer.Excess() <= excess) {
       found.learner = std::move(softer);
       found.gain = next;
     } else if (next + 1 == found.gain) {
@@ -198,7 +180,7 @@ std::optional<LearnedNumbers> LearnNumbers(const Machine& machine,
     if (!std::isfinite(learner.Excess())) return std::nullopt;
   }
   const SoftestLearner softest = LearnSoftest(
-      std::move(learner), about,
+      std::move(learner), about, 1.0,
       [&](std::size_t, int passes) { return learned.passes + passes < most; });
   learned.passes += softest.passes;
   learned.theta = softest.learner.theta();

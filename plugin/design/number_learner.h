@@ -55,14 +55,11 @@ class NumberLearner {
 
   /// Whether no block of any run is more of a surprise than chance lets expect.
   bool Explains() const { return Excess() <= 1.0; }
-  /// How many times more; infinite if the twin diverges.
+  /// How many times more, the worst; infinite if the twin diverges.
   double Excess() const;
 
-  /// How far parts of the runs contradict all of them together: the mean square of what
-  /// each would move, over what noise lets expect. Errors of a model are alike from one
-  /// tick to the next, and the parts see what no single innovation shows. 1 where chance
-  /// explains it.
-  double Contradiction() const;
+  /// Mean square of what all runs leave, over what noise lets expect.
+  double Misfit() const;
 
   /// Of the readings, by what changes from one innovation to the next.
   Eigen::VectorXd Noise() const;
@@ -74,14 +71,14 @@ class NumberLearner {
   Eigen::MatrixXd known_;
   Eigen::VectorXd before_, own_;
   Eigen::MatrixXd H_;
-  Eigen::VectorXd last_;  // change that the last passes asked for
   std::vector<RunInformation> said_;
   bool diverged_ = false;
   int done_ = 0;
 };
 
-/// The softest gain with which nothing is a surprise, at once or step by step from that of
-/// `learner`, which has learned with its stiffest.
+/// The softest gain with which nothing is more of a surprise than `excess` times what
+/// chance lets expect, at once or step by step from the stiffest, with which `learner` has
+/// learned.
 struct SoftestLearner {
   NumberLearner learner;
   std::size_t gain = 0;
@@ -93,7 +90,7 @@ struct SoftestLearner {
 SoftestLearner LearnSoftest(
     NumberLearner learner,
     const std::function<NumberLearner(const Eigen::VectorXd& theta)>& about,
-    const std::function<bool(std::size_t gain, int passes)>& goes_on);
+    double excess, const std::function<bool(std::size_t gain, int passes)>& goes_on);
 
 /// theta of the numbers that MakeUncertainMachine names, from the plant as it is given to
 /// the softest gain that explains the runs, or the stiffest; and what it took.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/tangent.h"
 
@@ -17,6 +19,13 @@ namespace {
 
 /// A joint that comes loose a tick too late is off by much more than its force was.
 constexpr double kCurvature = 12.0;
+
+std::vector<PlacedEffect> FrictionOf(std::vector<PlacedEffect> effects) {
+  std::erase_if(effects, [](const PlacedEffect& effect) {
+    return effect.effect->family() != Family::kFriction;
+  });
+  return effects;
+}
 
 std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
   std::vector<ModelPart> parts;
@@ -32,10 +41,12 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
           {machine.linear().b.cols(), machine.linear().Gamma.cols(),
            2 * machine.linear().M.rows(), static_cast<Index>(uncertain.unknowns.size()),
            uncertain.start.cols(), block, kCurvature, false},
-          std::move(gains), uncertain.tones, machine.rates().tick()),
+          std::move(gains), uncertain.tones, machine.rates().tick(),
+          DriftingOf(uncertain.unknowns)),
       machine_(machine),
       uncertain_(std::move(uncertain)),
       effects_(machine.channels(), machine.plant(), machine.effects()),
+      friction_(machine.channels(), machine.plant(), FrictionOf(machine.effects())),
       moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()),
       factor_(machine.linear().M.rows()) {
   StartedPlant plant = StartPlant(machine, {});
@@ -76,6 +87,9 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
     }
     numbers_.push_back(std::move(number));
   }
+  for (const UncertainResistance& known : uncertain_.resistances) {
+    resistances_.push_back({model_->jnt_dofadr[known.joint], known.unknown});
+  }
   place_ = PlacementOf(linear);
   state_ = VectorXd::Zero(2 * nv);
   before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
@@ -87,6 +101,8 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   outputs_.resize(static_cast<std::size_t>(ny));
   drive_ = drive_work_ = force_ = MatrixXd::Zero(nv, p);
   read_ = sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
+  drift_force_ = drift_work_ = MatrixXd::Zero(nv, S_rate_.cols());
+  drift_read_ = drift_sum_ = drift_;
   UseGain(0);
 }
 
@@ -97,6 +113,9 @@ void PlantTwin::SetParameters() noexcept {
     number.value = std::exp(sum);
     SetNumber(*model_, machine_.plant(), number.number, number.value);
     if (number.inertia.M.size() > 0) M_now_ += std::expm1(sum) * number.inertia.M;
+  }
+  for (Resistance& resistance : resistances_) {
+    resistance.times = std::exp(theta_[resistance.unknown]);
   }
   for (Map& map : maps_) map.known = false;
 }
@@ -145,6 +164,7 @@ void PlantTwin::Reset() noexcept {
   SetParameters();
   if (const std::vector<PlacedEffect> effects = machine_.effects(); !effects.empty()) {
     effects_ = ActiveEffects(machine_.channels(), *model_, effects);
+    friction_ = ActiveEffects(machine_.channels(), *model_, FrictionOf(effects));
   }
   // What MuJoCo derives from masses, in data that are reset anyway.
   if (heavy_) mj_setConst(model_.get(), data_.get());
@@ -152,6 +172,7 @@ void PlantTwin::Reset() noexcept {
   VectorXd::Map(data_->qpos, start_.size()) = start_;
   S_.setZero();
   sum_.setZero();
+  drift_sum_.setZero();
 }
 
 void PlantTwin::Start(const VectorXd& theta) noexcept {
@@ -236,8 +257,22 @@ void PlantTwin::AddTickForces() noexcept {
   }
 }
 
+void PlantTwin::Act() noexcept {
+  if (!resistances_.empty()) friction_.Act(*model_, *data_);
+  for (Resistance& resistance : resistances_) {
+    resistance.force = data_->qfrc_applied[resistance.dof];
+  }
+  effects_.Act(*model_, *data_);
+  for (const Resistance& resistance : resistances_) {
+    data_->qfrc_applied[resistance.dof] += (resistance.times - 1.0) * resistance.force;
+  }
+}
+
 void PlantTwin::AddStepForces() noexcept {
   force_ = drive_;
+  for (const Resistance& resistance : resistances_) {
+    force_(resistance.dof, resistance.unknown) += resistance.times * resistance.force;
+  }
   const Index nv = model_->nv;
   for (const Number& number : numbers_) {
     if (number.number.kind == PlantNumberKind::kStiffness) {
@@ -263,6 +298,10 @@ void PlantTwin::Step(std::span<const double> inputs,
   const Index nv = model_->nv;
   read_.leftCols(acting()).noalias() = C_ * S_.topRows(nv).leftCols(acting());
   sum_.leftCols(acting()) += read_.leftCols(acting());
+  if (drifts_) {
+    drift_read_.noalias() = C_ * S_rate_.topRows(nv);
+    drift_sum_ += drift_read_;
+  }
   Command(inputs);
   AddTickForces();
   for (int substep = 0; substep < machine_.rates().substeps; ++substep) {
@@ -270,7 +309,7 @@ void PlantTwin::Step(std::span<const double> inputs,
     for (Index i = 0; i < u_.size(); ++i) {
       data_->ctrl[machine_.actuator_addresses()[static_cast<std::size_t>(i)]] = u_[i];
     }
-    effects_.Act(*model_, *data_);
+    Act();
     AddStepForces();
     before_ = VectorXd::Map(data_->qvel, nv);
     mj_step2(model_.get(), data_.get());
@@ -283,8 +322,10 @@ void PlantTwin::Step(std::span<const double> inputs,
     VectorXd::Map(data_->qpos, nv) += state_.head(nv);
     VectorXd::Map(data_->qvel, nv) += state_.tail(nv);
     S_.leftCols(acting()).noalias() -= L * read_.leftCols(acting());
+    if (drifts_) S_rate_.noalias() -= L * drift_read_;
   }
   time_ += machine_.rates().tick();
+  drift_time_ += machine_.rates().tick();
 }
 
 void PlantTwin::Substep() noexcept {
@@ -325,11 +366,23 @@ void PlantTwin::Substep() noexcept {
   next.leftCols(forced).noalias() += map.G * force_.leftCols(forced);
   S_.bottomRows(nv).leftCols(acting()) = next;
   S_.topRows(nv).leftCols(acting()) += model_->opt.timestep * next;
+  if (!drifts_) return;
+  for (Index i = 0; i < drift_force_.cols(); ++i) {
+    drift_force_.col(i) =
+        drift_time_ * force_.col(drifting_[static_cast<std::size_t>(i)]);
+  }
+  drift_work_.noalias() = map.Q * S_rate_.topRows(nv);
+  drift_work_.noalias() += map.V * S_rate_.bottomRows(nv);
+  drift_work_.noalias() += map.G * drift_force_;
+  S_rate_.bottomRows(nv) = drift_work_;
+  S_rate_.topRows(nv) += model_->opt.timestep * drift_work_;
 }
 
 const MatrixXd& PlantTwin::EndBlock() noexcept {
   sensitivity_ = sum_ / static_cast<double>(block());
   sum_.setZero();
+  drift_ = drift_sum_ / static_cast<double>(block());
+  drift_sum_.setZero();
   return sensitivity_;
 }
 
@@ -338,6 +391,16 @@ void PlantTwin::Shift(const VectorXd& change) noexcept {
   theta_ += change;
   VectorXd::Map(data_->qpos, nv).noalias() += S_.topRows(nv) * change;
   VectorXd::Map(data_->qvel, nv).noalias() += S_.bottomRows(nv) * change;
+  SetParameters();
+}
+
+void PlantTwin::Drifted(const VectorXd& rates) noexcept {
+  const Index nv = model_->nv;
+  for (Index i = 0; i < rates.size(); ++i) {
+    theta_[drifting_[static_cast<std::size_t>(i)]] += drift_time_ * rates[i];
+  }
+  VectorXd::Map(data_->qpos, nv).noalias() += S_rate_.topRows(nv) * rates;
+  VectorXd::Map(data_->qvel, nv).noalias() += S_rate_.bottomRows(nv) * rates;
   SetParameters();
 }
 

@@ -50,6 +50,7 @@ class PlantTwin final : public Twin {
             const Eigen::VectorXd& innovation) noexcept override;
   const Eigen::MatrixXd& EndBlock() noexcept override;
   void Shift(const Eigen::VectorXd& change) noexcept override;
+  void Drifted(const Eigen::VectorXd& rates) noexcept override;
 
  private:
   /// A number of the plant with what a unit of it means where the machine is.
@@ -59,6 +60,13 @@ class PlantTwin final : public Twin {
     int at = 0;         ///< degree of freedom, or place among the commands
     ModelPart inertia;  ///< of masses
     double value = 1.0;
+  };
+  /// Friction that effects make, as it is in this step.
+  struct Resistance {
+    int dof = 0;
+    Eigen::Index unknown = 0;
+    double times = 1.0;
+    double force = 0.0;
   };
   /// The map of a step with these joints sticking.
   struct Map {
@@ -70,6 +78,8 @@ class PlantTwin final : public Twin {
   void Reset() noexcept;
   void SetParameters() noexcept;
   const Map& MapOf(std::uint64_t sticking) noexcept;
+  /// What effects do in a step, their friction as it is known to be.
+  void Act() noexcept;
   void AddTickForces() noexcept;
   /// Of springs and masses at rest, before a step.
   void AddStepForces() noexcept;
@@ -86,6 +96,9 @@ class PlantTwin final : public Twin {
   ModelPtr model_;
   DataPtr data_;
   ActiveEffects effects_;
+  /// Those of friction once more, to know what is due to them.
+  ActiveEffects friction_;
+  std::vector<Resistance> resistances_;
   MovedRest moved_rest_;
   Eigen::VectorXd start_;  // qpos
   Eigen::VectorXd state_;  // work space
@@ -106,6 +119,7 @@ class PlantTwin final : public Twin {
   Eigen::VectorXd tone_, before_, acceleration_, inertial_;
   std::vector<double> outputs_;
   Eigen::MatrixXd drive_, drive_work_, force_, read_, sensitivity_, sum_;
+  Eigen::MatrixXd drift_force_, drift_work_, drift_read_, drift_sum_;
 };
 
 }  // namespace mjdiag

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/start_state.h"
 
 namespace mjdiag {
@@ -90,6 +92,31 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
   }
 }
 
+/// Of friction that effects of the plant make, with that of its joint.
+void AddResistances(const Machine& machine, UncertainMachine& uncertain) {
+  const mjModel& plant = machine.plant();
+  for (const PlacedEffect& effect : machine.effects()) {
+    if (effect.effect->family() != Family::kFriction) continue;
+    if (effect.effect->element() != mjOBJ_JOINT) continue;
+    const int joint = CheckEffect(plant, effect);
+    const auto known = [joint](const UncertainResistance& resistance) {
+      return resistance.joint == joint;
+    };
+    if (std::ranges::any_of(uncertain.resistances, known)) continue;
+    const PlantNumber number{PlantNumberKind::kFriction, joint};
+    const std::string name = PlantNumberName(plant, number);
+    auto found = std::ranges::find(uncertain.unknowns, name, &Unknown::name);
+    if (found == uncertain.unknowns.end()) {
+      const double spread = Spread(machine, number, {});
+      if (!(spread > 0.0)) continue;
+      uncertain.unknowns.push_back({name, 0.0, spread, 1.0, true});
+      ++uncertain.known;
+      found = uncertain.unknowns.end() - 1;
+    }
+    uncertain.resistances.push_back({joint, found - uncertain.unknowns.begin()});
+  }
+}
+
 void AddTones(const Machine& machine, UncertainMachine& uncertain) {
   for (const MultisineSetup& source : machine.setup().disturbances) {
     const VectorXd amplitude = machine.channels().AmplitudeOf(source);
@@ -122,6 +149,7 @@ UncertainMachine MakeUncertainMachine(const Machine& machine,
   UncertainMachine uncertain;
   if (options.faults) AddFaults(machine, uncertain);
   AddNumbers(machine, options, uncertain);
+  if (options.faults && options.friction) AddResistances(machine, uncertain);
   if (options.faults) AddTones(machine, uncertain);
   uncertain.start = MatrixXd::Zero(2 * machine.plant().nv, 0);
   if (options.start_energy > 0.0) {

@@ -18,11 +18,19 @@ struct UncertainNumber {
   ModelPart part;  ///< of its linear plant, its factors among it; of dry friction: none
 };
 
+/// Friction at a joint that effects of the plant make, beside that of its own, with the
+/// unknown whose exponential multiplies it.
+struct UncertainResistance {
+  int joint = 0;
+  Eigen::Index unknown = 0;
+};
+
 /// What theta of its twin is, in this order: fault parameters, numbers of the plant that
 /// are not known exactly, two of every tone, those of the start.
 struct UncertainMachine {
   std::vector<Unknown> unknowns;
   std::vector<UncertainNumber> numbers;
+  std::vector<UncertainResistance> resistances;
   std::vector<UnknownTone> tones;
   Eigen::MatrixXd start;  ///< see UncertainModel
   Eigen::Index faults = 0;
@@ -44,7 +52,8 @@ struct UncertaintyOptions {
 
 /// What a calibration says of the plant takes the place of what the plant says of itself.
 /// Dry friction is not known exactly on any plant that does not say so of its own
-/// joint: it changes with the hour.
+/// joint: it changes with the hour, whether MuJoCo or an effect of the plant makes it. That
+/// of effects is known as it was found where the machine is known to be healthy.
 UncertainMachine MakeUncertainMachine(const Machine& machine,
                                       const UncertaintyOptions& options);
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/diagnosis/twin/model_uncertainty.h"
+
 namespace mjdiag {
 
 struct Calibration {
@@ -19,7 +21,11 @@ struct Calibration {
   /// What the model does not know, as a force noise: the bandwidth with which the twin
   /// is pulled along [Hz] (observer.h); 0: nothing.
   double force_noise = 0.0;
-  int records = 0;  ///< that it was learned from
+  /// How many times more surprising than by noise blocks of a healthy run may be
+  /// (Surprise), 1 or more.
+  double tolerated = 1.0;
+  ModelUncertainty model;  ///< of faults
+  int records = 0;         ///< that it was learned from
 
   /// Standard deviations of the logarithms.
   Eigen::VectorXd Sd() const { return root.rowwise().norm(); }

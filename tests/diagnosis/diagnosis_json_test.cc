@@ -26,9 +26,11 @@ TEST(DiagnosisJson, HasTheFieldsThatOtherProgramsRead) {
   for (const char* key : {"min", "max", "threshold_min", "threshold_max"}) {
     EXPECT_TRUE(document["residual"].contains(key)) << key;
   }
-  const nlohmann::json expected = {{"name", "damping"},  {"value", 1.25},
-                                   {"deviation", 0.25},  {"sd", 0.125},
-                                   {"ci95", {1.0, 1.5}}, {"detected", true}};
+  const nlohmann::json expected = {
+      {"name", "damping"},  {"value", 1.25},
+      {"deviation", 0.25},  {"sd", 0.125},
+      {"ci95", {1.0, 1.5}}, {"detected", true},
+      {"alarm", nullptr},   {"alarm_with_more_records", nullptr}};
   EXPECT_EQ(document["faults"][0], expected);
   for (const char* key : {"peaks", "total", "total_threshold"}) {
     EXPECT_TRUE(document["disturbance"].contains(key)) << key;

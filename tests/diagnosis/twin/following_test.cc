@@ -89,6 +89,23 @@ TEST(Following, KeepsItsIntervalsOfAFaultThatGrowsByAPercentAnHour) {
   EXPECT_LT(std::sqrt(squares / looks), 1.5);
 }
 
+// A percent an hour is many standard deviations of a constant fault before the first
+// readings are forgotten; what is named beside it is not there.
+TEST(Following, NamesNothingBesideAFaultThatGrowsFromTheStart) {
+  const auto gain = [](Index k) {
+    return 0.01 / 3600.0 * static_cast<double>(k) * test::kTiming.tick();
+  };
+  const test::StageRun run = RunWithMotor(gain, 5, 24000);
+  TwinEstimator estimator = test::StageEstimator({});
+  for (Index k = 0; k < run.outputs.cols(); ++k) {
+    estimator.Add({run.outputs.col(k).data(), 2}, {run.inputs.col(k).data(), 2});
+    if (k % 400 != 399 || !estimator.estimator().began()) continue;
+    const std::vector<bool> named = estimator.Read().named;
+    EXPECT_FALSE(named[0] || named[1] || named[3]) << k;
+  }
+  EXPECT_EQ(estimator.estimator().since(), 0);
+}
+
 TEST(Following, NoticesAChange) {
   constexpr Index kChange = 16000;
   const test::StageRun run =
