@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/command_line.h"
@@ -81,6 +83,14 @@ TEST(Readme, CommandsDoWhatTheySay) {
        {"out/worn/diagnosis.json", "out/worn/report.html", "out/clip/clip.mp4",
         "out/calibrated/setup.toml", "out/filters/filters.json"}) {
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
+  }
+  // Nobody knows the numbers of a measured machine exactly.
+  for (const auto& [there, found] : {std::pair(emps.has_value(), "out/found"),
+                                     std::pair(servo.has_value(), "out/servo")}) {
+    if (!there) continue;
+    const auto document = nlohmann::json::parse(
+        ReadAll(folder.path() / found / "discovery.json"), nullptr, false);
+    EXPECT_FALSE(document["calibration"].empty()) << found;
   }
 }
 
