@@ -65,7 +65,7 @@ class Discoverer {
   void CompleteJacobian();
   void FitFree();
   void TakeFree(const DiscoveryProblem& free, CauseFit fit);
-  std::optional<std::size_t> EmptyCause(const std::vector<Interval>& intervals) const;
+  std::optional<std::size_t> EmptyCause(std::vector<Interval>& intervals) const;
   void LeaveOut(std::size_t cause);
   void DropEmptyCauses();
   std::vector<Interval> QuadraticIntervals() const;

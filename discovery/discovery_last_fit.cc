@@ -7,6 +7,7 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
+#include "mjdiag/discovery/fitting/screening_in_place.h"
 #include "mjdiag/discovery/record_replay.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 
@@ -46,27 +47,43 @@ void Discoverer::TakeFree(const DiscoveryProblem& free, CauseFit fit) {
   free_fit_.emplace(free, std::move(fit));
 }
 
-/// A cause of which every size may be nothing, with those intervals of all parameters;
-/// none if there is no such cause. What was learned has knots, no sizes.
+/// A cause of which every size may be nothing, with those intervals of all parameters, and
+/// which could be done without; none if there is no such cause. What was learned has knots,
+/// no sizes. Where a cause could not be done without its intervals, which are those of a
+/// first order that is no better than the derivatives of what sticks and slips, become those
+/// of the loss: as wide as would make it a chance.
 std::optional<std::size_t> Discoverer::EmptyCause(
-    const std::vector<Interval>& intervals) const {
+    std::vector<Interval>& intervals) const {
+  constexpr double kLevel = 0.05;
   const CauseFit& fit = LastFit();
-  std::size_t place = 0;
+  const double inflation =
+      Inflation(fit.train, IndependentShare(LastProblem(), fit.residual));
+  std::size_t next = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
-    int sizes = 0;
-    int empty = 0;
-    for (const FitParameter& parameter :
-         candidates_[fit.causes[i].candidate].parameters) {
-      const Interval& interval = intervals[place++];
-      if (IsShape(parameter.role)) continue;
-      ++sizes;
-      const bool told = std::isfinite(interval.min) && std::isfinite(interval.max);
-      const bool holds_nothing =
-          interval.min <= parameter.nothing && interval.max >= parameter.nothing;
-      empty += told && holds_nothing ? 1 : 0;
+    const std::size_t first = next;
+    const auto& parameters = candidates_[fit.causes[i].candidate].parameters;
+    next += parameters.size();
+    if (curves_.contains(fit.causes[i].candidate)) continue;
+    std::vector<std::size_t> sizes;
+    bool empty = true;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      if (IsShape(parameters[k].role)) continue;
+      const Interval& interval = intervals[first + k];
+      sizes.push_back(k);
+      empty = empty && std::isfinite(interval.min) && std::isfinite(interval.max) &&
+              interval.min <= parameters[k].nothing &&
+              interval.max >= parameters[k].nothing;
     }
-    const bool is_curve = curves_.contains(fit.causes[i].candidate);
-    if (sizes > 0 && empty == sizes && !is_curve) return i;
+    if (sizes.empty() || !empty) continue;
+    const double loss = LossWithout(LastProblem(), candidates_, fit, i) / inflation;
+    const double chance = GainByChance(kLevel, 1, static_cast<int>(sizes.size()));
+    if (loss < chance) return i;
+    for (const std::size_t k : sizes) {
+      const double value = fit.causes[i].value[static_cast<Index>(k)];
+      const double half =
+          std::abs(value - parameters[k].nothing) * std::sqrt(chance / loss);
+      intervals[first + k] = {value - half, value + half};
+    }
   }
   return std::nullopt;
 }
@@ -97,7 +114,8 @@ void Discoverer::LeaveOut(std::size_t cause) {
 /// nothing says nothing.
 void Discoverer::DropEmptyCauses() {
   while (LastFit().jacobian.cols() > 0 && !LastFit().causes.empty()) {
-    const auto empty = EmptyCause(QuadraticIntervals());
+    std::vector<Interval> intervals = QuadraticIntervals();
+    const auto empty = EmptyCause(intervals);
     if (!empty) return;
     LeaveOut(*empty);
   }

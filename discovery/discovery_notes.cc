@@ -63,7 +63,7 @@ void Discoverer::NoteFarNumbers() {
   constexpr double kFar = 3.0;       // standard deviations of what is known beforehand
   constexpr double kExplains = 0.5;  // of what the number does
   const CauseFit& fit = search_.fit();
-  if (discovery_.calibration.empty() || fit.jacobian.cols() == 0) return;
+  if (discovery_.calibration.empty()) return;
   for (Index i = 0; i < fit.numbers.size(); ++i) {
     const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
     if (doubted.is_lateness || std::abs(fit.numbers[i]) < kFar) continue;
@@ -72,13 +72,15 @@ void Discoverer::NoteFarNumbers() {
                        " times what the plant says, " +
                        FormatNumber(std::abs(fit.numbers[i]), 2) +
                        " standard deviations of what was known of it";
-    CauseFit without = fit;
-    without.numbers[i] = 0.0;
-    without.jacobian.col(i).setZero();
-    const DiscoveryProblem seen = problem_.TrainPart();
-    const Index rows = seen.run().outputs.size();
-    const VectorXd done = fit.jacobian.col(i).head(rows) * fit.numbers[i];
-    if (work_->MayBegin("what may stand in the place of numbers")) {
+    // A last fit of free simulation leaves no derivatives behind the observer.
+    if (fit.jacobian.cols() > 0 &&
+        work_->MayBegin("what may stand in the place of numbers")) {
+      const DiscoveryProblem seen = problem_.TrainPart();
+      const Index rows = seen.run().outputs.size();
+      const VectorXd done = fit.jacobian.col(i).head(rows) * fit.numbers[i];
+      CauseFit without = fit;
+      without.numbers[i] = 0.0;
+      without.jacobian.col(i).setZero();
       const auto run = seen.Linearised(ChangesOf(seen, candidates_, fit));
       const Screening screening =
           Screen(seen, candidates_, seen.MotionOf(run->track), run->dynamics,

@@ -34,6 +34,20 @@ TEST(Work, KeepsAPartForWhatComesAfterTheSearch) {
   EXPECT_NEAR(work.Share(2), 0.5, 1e-9);
 }
 
+TEST(Work, IsSettledWhenItsAnswerHasNotChangedForLong) {
+  Work work;
+  work.Add(20.0);
+  work.NoteChange();
+  work.Add(49.0);
+  EXPECT_TRUE(work.MayBegin("other causes"));
+  work.Add(2.0);
+  EXPECT_TRUE(work.IsSettled());
+  EXPECT_FALSE(work.MayBegin("other causes"));
+  EXPECT_TRUE(work.left_out().empty());  // by no budget
+  work.EndLaws();
+  EXPECT_TRUE(work.MayBegin("a curve"));
+}
+
 TEST(Work, EndsAfterAFitThatWasCutShort) {
   Work work;
   EXPECT_TRUE(work.MayBegin("a"));
