@@ -66,7 +66,8 @@ class Discoverer {
   void FitFree();
   void TakeFree(const DiscoveryProblem& free, CauseFit fit);
   std::optional<std::size_t> EmptyCause(std::vector<Interval>& intervals) const;
-  void LeaveOut(std::size_t cause);
+  double LossByChance(std::size_t cause) const;
+  void TryToLeaveOut(std::size_t cause);
   void DropEmptyCauses();
   std::vector<Interval> QuadraticIntervals() const;
   void NoteBudget();
@@ -123,6 +124,9 @@ class Discoverer {
   SearchResult search_;
   /// The last fit, where it is one of free simulation, with its problem.
   std::optional<std::pair<DiscoveryProblem, CauseFit>> free_fit_;
+  /// Of causes that are needed though they may be nothing to first order, by candidate:
+  /// squared innovations that there are more of without them.
+  std::map<std::size_t, double> losses_;
   /// Of every cause that is named, its place in the last fit.
   std::vector<std::size_t> named_;
   const CauseFit& LastFit() const {

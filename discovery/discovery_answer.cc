@@ -84,7 +84,7 @@ void Discoverer::NameCauses() {
     // Followed along its profile a law may turn out to be nothing, too.
     const auto empty = EmptyCause(intervals);
     if (!empty) break;
-    LeaveOut(*empty);
+    TryToLeaveOut(*empty);
   }
   const CauseFit& fit = LastFit();
   if (fit.jacobian.cols() == 0) return;

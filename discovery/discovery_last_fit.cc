@@ -1,13 +1,13 @@
 // The last fits of a discovery: of free simulation, without causes that turn out to be
 // nothing, and with the derivatives that intervals are made of.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
-#include "mjdiag/discovery/fitting/screening_in_place.h"
 #include "mjdiag/discovery/record_replay.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 
@@ -47,17 +47,25 @@ void Discoverer::TakeFree(const DiscoveryProblem& free, CauseFit fit) {
   free_fit_.emplace(free, std::move(fit));
 }
 
-/// A cause of which every size may be nothing, with those intervals of all parameters, and
-/// which could be done without; none if there is no such cause. What was learned has knots,
-/// no sizes. Where a cause could not be done without its intervals, which are those of a
-/// first order that is no better than the derivatives of what sticks and slips, become those
-/// of the loss: as wide as would make it a chance.
-std::optional<std::size_t> Discoverer::EmptyCause(
-    std::vector<Interval>& intervals) const {
+/// Squared innovations that there are more of by chance without a cause that is nothing.
+double Discoverer::LossByChance(std::size_t cause) const {
   constexpr double kLevel = 0.05;
   const CauseFit& fit = LastFit();
-  const double inflation =
-      Inflation(fit.train, IndependentShare(LastProblem(), fit.residual));
+  const auto sizes = std::ranges::count_if(
+      candidates_[fit.causes[cause].candidate].parameters,
+      [](const FitParameter& parameter) { return !IsShape(parameter.role); });
+  return GainByChance(kLevel, 1, static_cast<int>(sizes)) *
+         Inflation(fit.train, IndependentShare(LastProblem(), fit.residual));
+}
+
+/// A cause of which every size may be nothing, with those intervals of all parameters, and
+/// which is not known to be needed; none if there is no such cause. What was learned has
+/// knots, no sizes. Where a cause is needed its intervals, which are no better than the
+/// derivatives of what sticks and slips, become those of what is lost without it: as wide
+/// as would make that a chance.
+std::optional<std::size_t> Discoverer::EmptyCause(
+    std::vector<Interval>& intervals) const {
+  const CauseFit& fit = LastFit();
   std::size_t next = 0;
   for (std::size_t i = 0; i < fit.causes.size(); ++i) {
     const std::size_t first = next;
@@ -75,23 +83,24 @@ std::optional<std::size_t> Discoverer::EmptyCause(
               interval.max >= parameters[k].nothing;
     }
     if (sizes.empty() || !empty) continue;
-    const double loss = LossWithout(LastProblem(), candidates_, fit, i) / inflation;
-    const double chance = GainByChance(kLevel, 1, static_cast<int>(sizes.size()));
-    if (loss < chance) return i;
+    const auto lost = losses_.find(fit.causes[i].candidate);
+    if (lost == losses_.end()) return i;
+    const double wide = std::sqrt(LossByChance(i) / lost->second);
     for (const std::size_t k : sizes) {
       const double value = fit.causes[i].value[static_cast<Index>(k)];
-      const double half =
-          std::abs(value - parameters[k].nothing) * std::sqrt(chance / loss);
+      const double half = wide * std::abs(value - parameters[k].nothing);
       intervals[first + k] = {value - half, value + half};
     }
   }
   return std::nullopt;
 }
 
-/// The others are fitted without it, or, where there is no work left, stay as they are.
-void Discoverer::LeaveOut(std::size_t cause) {
+/// Leaves a cause out where the others, fitted without it or, if no work is left, as they
+/// are, do as well but for chance. Else what is lost is kept.
+void Discoverer::TryToLeaveOut(std::size_t cause) {
   constexpr int kSteps = 6;
-  const FittedModel rest = ModelWithout(LastFit(), {cause});
+  const CauseFit& last = LastFit();
+  const FittedModel rest = ModelWithout(last, {cause});
   std::optional<CauseFit> fit;
   if (work_->MayBegin("a fit without causes that are nothing")) {
     FitOptions options = CompareFrom(nullptr, kSteps, 1e-5, work_->Share(1));
@@ -101,6 +110,14 @@ void Discoverer::LeaveOut(std::size_t cause) {
   if (!fit) {
     fit =
         FitCauses(LastProblem(), candidates_, rest, {.iterations = 0, .closing = true});
+  }
+  const auto squares = [&](const CauseFit& one) {
+    return FittedValues(LastProblem()) * one.train + last.prior_weight * one.prior;
+  };
+  const double loss = squares(*fit) - squares(last);
+  if (loss > LossByChance(cause)) {
+    losses_[last.causes[cause].candidate] = loss;
+    return;
   }
   search_.rivals.erase(search_.rivals.begin() + static_cast<std::ptrdiff_t>(cause));
   if (free_fit_) {
@@ -117,7 +134,7 @@ void Discoverer::DropEmptyCauses() {
     std::vector<Interval> intervals = QuadraticIntervals();
     const auto empty = EmptyCause(intervals);
     if (!empty) return;
-    LeaveOut(*empty);
+    TryToLeaveOut(*empty);
   }
 }
 
