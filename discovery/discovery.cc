@@ -49,7 +49,8 @@ void Discoverer::MeasureNominal() {
       MeanSquare(problem_, problem_.Residual({}), problem_.skip(), problem_.train());
 }
 
-/// The work that is counted knows nothing of it.
+/// How long the budget is on this machine, for people: by the time of one run of the plant
+/// as it is given. The work that is counted knows nothing of it.
 void Discoverer::MeasureSpeed() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();

@@ -64,14 +64,15 @@ void Discoverer::NoteFarNumbers() {
   constexpr double kExplains = 0.5;  // of what the number does
   const CauseFit& fit = search_.fit();
   if (discovery_.calibration.empty()) return;
+  std::shared_ptr<const LinearisedRun> run;  // of all of them
   for (Index i = 0; i < fit.numbers.size(); ++i) {
     const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
     if (doubted.is_lateness || std::abs(fit.numbers[i]) < kFar) continue;
-    std::string note = PlantNumberName(machine_.plant(), doubted.number) + " is " +
-                       FormatNumber(std::exp(doubted.spread * fit.numbers[i]), 3) +
-                       " times what the plant says, " +
-                       FormatNumber(std::abs(fit.numbers[i]), 2) +
-                       " standard deviations of what was known of it";
+    const std::string name = PlantNumberName(machine_.plant(), doubted.number);
+    std::string note =
+        name + " is " + FormatNumber(std::exp(doubted.spread * fit.numbers[i]), 3) +
+        " times what the plant says, " + FormatNumber(std::abs(fit.numbers[i]), 2) +
+        " standard deviations of what was known of it";
     // A last fit of free simulation leaves no derivatives behind the observer.
     if (fit.jacobian.cols() > 0 &&
         work_->MayBegin("what may stand in the place of numbers")) {
@@ -81,7 +82,7 @@ void Discoverer::NoteFarNumbers() {
       CauseFit without = fit;
       without.numbers[i] = 0.0;
       without.jacobian.col(i).setZero();
-      const auto run = seen.Linearised(ChangesOf(seen, candidates_, fit));
+      if (!run) run = seen.Linearised(ChangesOf(seen, candidates_, fit));
       const Screening screening =
           Screen(seen, candidates_, seen.MotionOf(run->track), run->dynamics,
                  fit.residual.head(rows) - done, without.jacobian, without, 1);
@@ -93,9 +94,8 @@ void Discoverer::NoteFarNumbers() {
                 " would explain most of that as well";
       }
     }
-    discovery_.notes.push_back(note +
-                               "; measure it, or say how well it is known (known." +
-                               PlantNumberName(machine_.plant(), doubted.number) + ")");
+    discovery_.notes.push_back(
+        note + "; measure it, or say how well it is known (known." + name + ")");
   }
 }
 
