@@ -53,6 +53,10 @@ class Discoverer {
               bool down_to_noise);
   void SearchBeginning(SearchOptions options);
   void SearchBehindObservers(SearchOptions options);
+  /// True if sets of causes were found that nothing has to be added to; search_ goes on
+  /// from them.
+  bool TakeSets();
+  bool IsBetterUnseen(const FittedModel& model, const FittedModel& before) const;
   std::vector<PlantNumber> KnownNumbers() const;
   /// FreeRun of the records that no fit sees.
   double UnseenFree(const Changes& changes) const;

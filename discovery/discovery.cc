@@ -193,7 +193,12 @@ void Discoverer::SearchAll() {
       search_.evidence = search_.evidence.Changed(std::move(*learned));
     }
   }
-  SearchBehindObservers(options);
+  if (TakeSets()) {
+    options.most_causes = 0;
+    search_ = SearchCauses(problem_, candidates_, options, &search_);
+  } else {
+    SearchBehindObservers(options);
+  }
   // Where the search ended before it has screened what is left, the noise tells.
   if (!search_.screened && IsComplete(ProbabilityThatNoiseIsLeft())) {
     search_.significant_rest = false;

@@ -31,6 +31,7 @@ class Simulator {
         numbers_(static_cast<Index>(problem.numbers().size())),
         initial_jacobian_(options.initial_jacobian),
         secant_(options.secant),
+        first_order_(options.first_order),
         share_(options.share),
         closing_(options.closing) {
     for (const DoubtedNumber& number : problem.numbers()) {
@@ -63,7 +64,10 @@ class Simulator {
                       (initial_jacobian_ != nullptr ? initial_jacobian_->cols() : 0));
       jacobian_ = Differences(theta, initial_jacobian_, true);
       NoteJacobian(theta, initial_jacobian_ == nullptr && numbers_ == 0);
-    } else if (theta != jacobian_theta_ && secant_) {
+    } else if (theta != jacobian_theta_ && first_order_ && Allows(theta.size())) {
+      jacobian_ = Differences(theta, nullptr, true);
+      NoteJacobian(theta, numbers_ == 0);
+    } else if (theta != jacobian_theta_ && (secant_ || first_order_)) {
       Broyden(theta);
       NoteJacobian(theta, false);
     } else if (theta != jacobian_theta_) {
@@ -207,6 +211,7 @@ class Simulator {
   Index numbers_;
   const MatrixXd* initial_jacobian_;
   bool secant_;
+  bool first_order_;
   double share_;
   bool closing_;
   mutable std::atomic<int> runs_ = 0;

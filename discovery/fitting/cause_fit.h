@@ -44,6 +44,10 @@ struct FitOptions {
   /// J from differences at the start only, then by Broyden's updates: one run a step
   /// instead of one for every parameter. Near enough to compare causes.
   bool secant = false;
+  /// J of every step to first order along its run as far as numbers are concerned
+  /// (DiscoveryProblem::RoughNumberJacobian), and from differences of the causes: where a
+  /// fit begins far from where it ends.
+  bool first_order = false;
   /// Place of a parameter of the causes that keeps its value.
   std::optional<Eigen::Index> held = std::nullopt;
   /// Work that it may do [s]: then it ends with the values it has, and no further move

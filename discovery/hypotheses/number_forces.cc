@@ -49,7 +49,7 @@ class AlongMotion {
     VectorXd::Map(data_->qpos, nv) =
         VectorXd::Map(plant_->qpos0, nv) + motion_.position.col(k);
     VectorXd::Map(data_->qvel, nv) = motion_.velocity.col(k);
-    VectorXd::Map(data_->qacc, nv) = motion_.acceleration.col(k);
+    VectorXd::Map(data_->qacc, nv) = motion_.own_acceleration.col(k);
     mj_kinematics(plant_.get(), data_.get());
     mj_comPos(plant_.get(), data_.get());
   }
@@ -108,7 +108,7 @@ VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
         return std::abs(v) < still ? 0.0 : -plant.dof_frictionloss[dof] * Sign(v);
       });
     default:
-      return -plant.dof_armature[dof] * motion.acceleration.row(dof);
+      return -plant.dof_armature[dof] * motion.own_acceleration.row(dof);
   }
 }
 
@@ -133,13 +133,15 @@ MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
   }
 }
 
-MatrixXd LatenessForce(const MatrixXd& Gamma, const ObservedMotion& motion) {
+MatrixXd LatenessForce(const mjModel& plant, const MatrixXd& Gamma,
+                       const ObservedMotion& motion) {
   MatrixXd change = MatrixXd::Zero(motion.inputs.rows(), motion.samples());
   const Index n = motion.samples();
   change.rightCols(n - 1) =
       (motion.inputs.leftCols(n - 1) - motion.inputs.rightCols(n - 1)) /
       motion.sample_time;
-  return (Gamma * change).transpose();
+  const Eigen::Map<const VectorXd> D(plant.dof_damping, plant.nv);
+  return (Gamma * change + D.asDiagonal() * motion.own_acceleration).transpose();
 }
 
 }  // namespace mjdiag

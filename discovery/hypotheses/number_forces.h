@@ -26,9 +26,10 @@ Eigen::MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
                             const PlantNumber& number, const ObservedMotion& motion,
                             const Eigen::VectorXd& still);
 
-/// The same of all inputs a second later: - Gamma du/dt, of inputs that are held.
+/// The same of all inputs and dampers a second later: - Gamma du/dt, of inputs that are
+/// held, and D q''.
 /// @param Gamma  nv x inputs
-Eigen::MatrixXd LatenessForce(const Eigen::MatrixXd& Gamma,
+Eigen::MatrixXd LatenessForce(const mjModel& plant, const Eigen::MatrixXd& Gamma,
                               const ObservedMotion& motion);
 
 }  // namespace mjdiag

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "mjdiag/discovery/hypotheses/number_forces.h"
+#include "mjdiag/discovery/hypotheses/number_sensitivity.h"
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/structure/late_dampers.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
@@ -67,21 +69,15 @@ Index SettlingSamples(double hertz, const MeasuredRun& run) {
   return std::min(samples, shortest / kShare);
 }
 
-/// All inputs that much later [s].
+/// All inputs and all dampers that much later [s].
 void AddLateness(const Machine& machine, double delay, Changes& changes) {
+  const double late = std::max(delay, 0.0);
   for (const ActuatorSetup& actuator : machine.channels().actuators) {
     changes.effects.push_back(
-        {Lasting(InputDelay()), actuator.element, ValuesOf({std::max(delay, 0.0)})});
+        {Lasting(InputDelay()), actuator.element, ValuesOf({late})});
   }
-}
-
-/// What the physics steps of a simulation are off by. Positions go on with the velocity at
-/// the end of a step h, so that a force acts h / 2 before its time; a machine, which has no
-/// steps, is that late beside it. What is left is of second order in h. Known beforehand as
-/// h / 2.
-DoubtedNumber LatenessOf(const Machine& machine) {
-  return {
-      .number = {}, .spread = 0.5 * machine.plant().opt.timestep, .is_lateness = true};
+  PlacedEffect dampers = LateDampers(machine.plant(), late);
+  if (!dampers.site.empty()) changes.effects.push_back(std::move(dampers));
 }
 
 }  // namespace
@@ -129,7 +125,7 @@ Track DiscoveryProblem::Follow(const Changes& changes) const {
 VectorXd DiscoveryProblem::Residual(const Changes& changes) const {
   if (free_errors_) {
     work_->Add(RunWork());
-    return Scaled({free_errors_(changes), {}, {}});
+    return Scaled({free_errors_(changes), {}, {}, {}});
   }
   if (changes == Changes{}) return Scaled(Nominal());
   work_->Add(RunWork());
@@ -269,7 +265,21 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
   const auto run = Linearised(at);
   const ObservedMotion motion = MotionOf(run->track);
   const Machine machine = machine_.With(at);
-  const std::vector<bool> stood_for = StoodFor(changes);
+  std::vector<bool> stood_for = StoodFor(changes);
+  std::vector<PlantNumber> by_steps;
+  std::vector<Index> places;
+  if (run_->on.size() == 0 && StaysNearRest(machine, run->track)) {
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const DoubtedNumber& doubted = numbers_[i];
+      if (stood_for[i] || doubted.is_lateness ||
+          doubted.number.kind == PlantNumberKind::kGain) {
+        continue;
+      }
+      by_steps.push_back(doubted.number);
+      places.push_back(static_cast<Index>(i));
+      stood_for[i] = true;
+    }
+  }
   const VectorXd still = StillSpeed();
   const auto p = static_cast<Index>(numbers_.size());
   std::vector<Eigen::MatrixXd> forces(numbers_.size());
@@ -278,7 +288,7 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     if (stood_for[i]) return;
     const DoubtedNumber& doubted = numbers_[i];
     forces[i] = doubted.spread *
-                (doubted.is_lateness ? LatenessForce(machine_.linear().Gamma, motion)
+                (doubted.is_lateness ? LatenessForce(machine.plant(), machine_.linear().Gamma, motion)
                                      : NumberForce(machine.plant(), machine_.channels(),
                                                    doubted.number, motion, still));
   });
@@ -300,6 +310,19 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     averages -= run->dynamics.OfForces(entry, at_dof);
   }
   averages /= std::sqrt(static_cast<double>(block));
+  if (!by_steps.empty()) {
+    constexpr double kPass = 4.0;  // runs
+    work_->Add(kPass * RunWork());
+    const Eigen::MatrixXd J =
+        NumberSensitivity(machine, observer_, *run_, by_steps, block);
+    const VectorXd weight = observer_.innovation_sd.cwiseInverse().replicate(
+        averages.rows() / channels, 1);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      averages.col(places[i]) =
+          numbers_[static_cast<std::size_t>(places[i])].spread *
+          weight.cwiseProduct(J.col(static_cast<Index>(i)).head(averages.rows()));
+    }
+  }
   Eigen::MatrixXd J(channels * run_->samples(), p);
   for (Index k = 0; k < run_->samples(); ++k) {
     const Index of = std::min(k / block, run->dynamics.blocks() - 1);
@@ -376,6 +399,11 @@ DiscoveryProblem DiscoveryProblem::Simulating(
   return changed;
 }
 
+DoubtedNumber LatenessOf(const Machine& machine) {
+  return {
+      .number = {}, .spread = 0.5 * machine.plant().opt.timestep, .is_lateness = true};
+}
+
 std::vector<DoubtedNumber> DoubtsOf(const Machine& machine,
                                     const std::vector<PlantNumber>& known) {
   std::vector<DoubtedNumber> numbers;
@@ -417,13 +445,16 @@ VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
   return sd;
 }
 
+double SlowestBandwidth(const MeasuredRun& run) {
+  return kPeriods / run.Time().maxCoeff();
+}
+
 DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
                              double train_share, double bandwidth) {
-  const double longest = run.Time().maxCoeff();
   // A tenth of the rate of the slowest sensor at most.
   const Index period = LongestPeriod(run);
   const double fastest = 0.1 * machine.rates().control / static_cast<double>(period);
-  double hertz = bandwidth > 0.0 ? bandwidth : std::min(kPeriods / longest, fastest);
+  double hertz = bandwidth > 0.0 ? bandwidth : std::min(SlowestBandwidth(run), fastest);
   if (period > 1) hertz = std::min(hertz, fastest);
   const auto design = [&](const Eigen::MatrixXd& innovations) {
     return AtPeriods(

@@ -145,6 +145,12 @@ class DiscoveryProblem {
   std::shared_ptr<Derived> derived_;
 };
 
+/// What the physics steps of a simulation are off by. Positions go on with the velocity at
+/// the end of a step h, so that a force acts h / 2 before its time; a machine, which has no
+/// steps, is that late beside it. What is left is of second order in h. Known beforehand as
+/// h / 2.
+DoubtedNumber LatenessOf(const Machine& machine);
+
 /// Doubts about all numbers of a plant but the known ones, and about how late inputs act;
 /// none if all are known.
 std::vector<DoubtedNumber> DoubtsOf(const Machine& machine,
@@ -159,6 +165,10 @@ DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
 /// whichever is lower: what moves in a record is not noise. [unit of each sensor]
 Eigen::VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
                             const Eigen::MatrixXd& innovations);
+
+/// Below it errors of the model are slower than a record can tell: 25 over the duration of
+/// the longest [Hz].
+double SlowestBandwidth(const MeasuredRun& run);
 
 /// @param train_share  of one record that fits see, 0 to 1; of several all
 /// @param bandwidth    of the observer [Hz]; 0: 25 over the duration of the longest

@@ -355,6 +355,7 @@ void Search::FitClosely() {
                   {.iterations = 8,
                    .tolerance = 1e-8,
                    .initial_jacobian = fit.exact ? &fit.jacobian : nullptr,
+                   .first_order = fit.numbers.size() > 1,
                    .share = work().Share(1)}));
   } catch (const CutShort&) {
     work().CutShort();

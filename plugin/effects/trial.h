@@ -29,6 +29,9 @@ struct Trial {
   /// What each amplitude is at least, at most 0; of no size: anything.
   Amplitudes least = {};
   bool summed = false;  ///< all signals have one amplitude: one fault, several joints
+  /// A factor of a reading: an observer that knows it pulls the less by it, and what it
+  /// would see otherwise is the innovations themselves.
+  bool scales_reading = false;
 };
 
 /// Trials over one parameter that has to be met closely: a period or a frequency. Each
@@ -50,6 +53,7 @@ struct SiteMotion {
   Eigen::VectorXd q() const { return motion.position.row(site.joint); }
   Eigen::VectorXd v() const { return motion.velocity.row(site.joint); }
   Eigen::VectorXd a() const { return motion.acceleration.row(site.joint); }
+  Eigen::VectorXd own_a() const { return motion.own_acceleration.row(site.joint); }
   Eigen::VectorXd u() const { return motion.inputs.row(site.channel); }
   Eigen::VectorXd y() const { return motion.outputs.row(site.channel); }
   /// The force of all motors on the joint, to first order in what they are driven by.

@@ -4,6 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
@@ -76,13 +78,28 @@ struct Watch {
   std::function<void(const SampleMask& measured, const SampleMask& counted)> tick;
 };
 
+/// By how much less innovations pull than they read, of every sensor: one that reads
+/// everything twice as large shows twice of what the state is off by.
+VectorXd PullOf(const Machine& machine) {
+  const std::vector<SensorSetup>& sensors = machine.channels().sensors;
+  VectorXd pull = VectorXd::Ones(static_cast<Index>(sensors.size()));
+  for (const PlacedEffect& effect : machine.effects()) {
+    if (effect.effect.get() != &EncoderScale()) continue;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      if (sensors[i].element != effect.site) continue;
+      pull[static_cast<Index>(i)] /= std::max(effect.values[0], 0.1);
+    }
+  }
+  return pull;
+}
+
 /// One record of a run, beside the machine with all that is put into it.
 class RecordFollower {
  public:
   RecordFollower(const Machine& machine, const MeasuredRun& record,
                  const Observer& observer)
       : record_(record),
-        observer_(observer),
+        L_(observer.L * PullOf(machine).asDiagonal()),
         plant_(StartPlant(machine, record.records.front().readings)),
         stepper_(machine),
         control_(machine, record) {
@@ -94,7 +111,7 @@ class RecordFollower {
 
  private:
   const MeasuredRun& record_;
-  const Observer& observer_;
+  Eigen::MatrixXd L_;
   StartedPlant plant_;
   Stepper stepper_;
   RecordedInputs control_;
@@ -118,6 +135,10 @@ void RecordFollower::Follow(const Watch& watch, Index first, Track& track) {
       track.velocity.col(first + k) = v;
     }
     stepper_.Advance(model, data, control_, after_step);
+    if (track.position.size() > 0) {
+      track.acceleration.col(first + k) =
+          (v - track.velocity.col(first + k)) / record_.sample_time;
+    }
     auto innovation = track.innovations.col(first + k);
     innovation = record_.outputs.col(k) - control_.reading();
     if (record_.measured.size() > 0) {
@@ -131,7 +152,7 @@ void RecordFollower::Follow(const Watch& watch, Index first, Track& track) {
     }
     if (counts.size() > 0) counted = counts.col(k);
     if (watch.tick) watch.tick(measured, counted);
-    correction.noalias() = observer_.L * innovation;
+    correction.noalias() = L_ * innovation;
     q += correction.head(nv);
     v += correction.tail(nv);
     if (counts.size() > 0) innovation = counted.select(innovation, 0.0);
@@ -146,6 +167,7 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
   if (states) {
     track.position.resize(machine.plant().nv, run.samples());
     track.velocity.resize(machine.plant().nv, run.samples());
+    track.acceleration.resize(machine.plant().nv, run.samples());
   }
   const auto follow = [&](int number) {
     const auto i = static_cast<std::size_t>(number);
@@ -353,6 +375,7 @@ ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
   const Eigen::Map<const VectorXd> rest(machine.plant().qpos0, machine.plant().nv);
   motion.position = track.position.colwise() - rest;
   motion.velocity = track.velocity;
+  motion.own_acceleration = track.acceleration;
   motion.time = run.Time();
   motion.acceleration.resize(track.velocity.rows(), track.velocity.cols());
   for (std::size_t i = 0; i < run.records.size(); ++i) {

@@ -81,6 +81,9 @@ struct Track {
   Eigen::MatrixXd innovations;  ///< sensors x samples [unit of the sensor]
   Eigen::MatrixXd position;     ///< nv x samples, empty unless asked for
   Eigen::MatrixXd velocity;     ///< nv x samples, the same
+  /// Mean over the tick of what the machine itself does, without the observer's pull,
+  /// nv x samples, the same.
+  Eigen::MatrixXd acceleration;
 };
 
 /// The run beside the machine with those changes; its records side by side.

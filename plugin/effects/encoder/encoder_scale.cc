@@ -23,7 +23,9 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
   // One that reads backwards is wired wrongly, which the check of the data says.
   double Least(const mjModel&, Eigen::Index, std::size_t) const override { return 0.0; }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(at.y(), {}, 1.0)};
+    Trial trial = LinearTrial(at.y(), {}, 1.0);
+    trial.scales_reading = true;
+    return {std::move(trial)};
   }
   // Rulers and gratings are right to a few parts in a thousand.
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.01}); }

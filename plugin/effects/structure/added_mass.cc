@@ -41,7 +41,7 @@ class AddedMassEffect final : public Effect {
     return -0.9 * mass;
   }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.a(), at.JointEntry())};
+    return {LinearTrial(-at.own_a(), at.JointEntry())};
   }
   std::optional<double> Law(double a, const EffectValues& values) const override {
     return -values[0] * a;

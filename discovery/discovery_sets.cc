@@ -1,0 +1,109 @@
+// Sets of causes at first (sets/set_search.h): where they leave a model that deserves a
+// slower observer than the fastest, they are what the rest of a discovery goes on from.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/sets/set_search.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Of every cause of the best model, itself and what stands in its place in others that
+/// have all of the rest.
+std::vector<std::vector<Hypothesis>> RivalsIn(const SetSearchResult& found) {
+  const std::vector<FittedCause>& causes = found.best.fit.causes;
+  std::vector<std::vector<Hypothesis>> rivals;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    std::vector<Hypothesis>& own = rivals.emplace_back();
+    own.push_back({causes[i], found.best.score, 0.0});
+    const std::vector<FittedCause> rest = Without(causes, {i});
+    for (const WeighedModel& other : found.others) {
+      if (other.fit.causes.size() != causes.size()) continue;
+      const auto is_in_rest = [&](const FittedCause& cause) {
+        return Has(rest, cause.candidate);
+      };
+      if (std::ranges::count_if(other.fit.causes, is_in_rest) != std::ssize(rest)) {
+        continue;
+      }
+      const auto in_place = std::ranges::find_if_not(other.fit.causes, is_in_rest);
+      if (in_place->candidate == causes[i].candidate) continue;
+      own.push_back({*in_place, other.score, 0.0});
+    }
+    Rank(own);
+  }
+  return rivals;
+}
+
+}  // namespace
+
+/// Whether records that no fit saw are less of a surprise with a model than with another.
+bool Discoverer::IsBetterUnseen(const FittedModel& model,
+                                const FittedModel& before) const {
+  if (measurements_.unseen.empty()) return true;
+  const DiscoveryProblem unseen = problem_.WithRun(RunOf(measurements_.unseen));
+  const auto left = [&](const FittedModel& one) {
+    return unseen.Residual(ChangesOf(unseen, candidates_, one)).squaredNorm();
+  };
+  try {
+    return left(model) < left(before);
+  } catch (const NumericalError&) {
+    return false;
+  }
+}
+
+bool Discoverer::TakeSets() {
+  if (options_.bandwidth != 0.0 || !work_->MayBegin("sets of causes")) return false;
+  const bool exact = problem_.numbers().empty();
+  const DiscoveryProblem problem =
+      exact ? problem_.Doubting({LatenessOf(machine_)}) : problem_;
+  FittedModel start;
+  start.numbers = search_.fit().numbers;
+  if (start.numbers.size() == 0) {
+    start.numbers = VectorXd::Zero(static_cast<Eigen::Index>(problem.numbers().size()));
+  }
+  const ObserverLadder ladder(problem);
+  SetSearchOptions options;
+  options.most_causes = options_.most_causes;
+  options.progress = [this](const std::string& what, double fraction,
+                            const CauseFit& best) { Report(what, fraction, best); };
+  SetSearchResult found = SearchSets(ladder, candidates_, start, options);
+  const WeighedModel& best = found.best;
+  if (best.fit.causes.empty() || best.rung == 0) return false;
+  if (ladder.HeldOut(best.rung, best.fit.residual) >=
+      ladder.HeldOut(found.given.rung, found.given.fit.residual)) {
+    return false;
+  }
+  FittedModel model = best.fit;
+  FittedModel given = found.given.fit;
+  std::vector<DoubtedNumber> numbers = problem.numbers();
+  constexpr double kSteps = 0.1;  // of what physics steps may be off by
+  if (exact && std::abs(model.numbers[0]) < kSteps) {
+    numbers.clear();
+    model.numbers.resize(0);
+    given.numbers.resize(0);
+  }
+  if (best.rung + 1 < ladder.size()) problem_ = Pose(ladder.bandwidth(best.rung));
+  problem_ = problem_.Doubting(std::move(numbers));
+  if (!IsBetterUnseen(model, given)) return false;
+  MeasureNominal();
+  search_.numbers_alone = given.numbers;
+  search_.rivals = RivalsIn(found);
+  for (std::size_t count = 1; count <= model.causes.size(); ++count) {
+    search_.ladder.push_back({{model.causes.begin(),
+                               model.causes.begin() + static_cast<std::ptrdiff_t>(count)},
+                              model.numbers});
+  }
+  CauseFit fit;
+  static_cast<FittedModel&>(fit) = std::move(model);
+  search_.evidence = search_.evidence.Changed(std::move(fit));
+  search_.exchanged = search_.searched_without = found.ended;
+  return found.ended;
+}
+
+}  // namespace mjdiag
