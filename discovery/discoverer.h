@@ -56,6 +56,8 @@ class Discoverer {
   /// True if sets of causes were found that nothing has to be added to; search_ goes on
   /// from them.
   bool TakeSets();
+  /// As closely as possible, behind the observer that they deserve.
+  void FitSets(const SearchOptions& options);
   bool IsBetterUnseen(const FittedModel& model, const FittedModel& before) const;
   std::vector<PlantNumber> KnownNumbers() const;
   /// FreeRun of the records that no fit sees.

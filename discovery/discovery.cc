@@ -192,10 +192,10 @@ void Discoverer::SearchAll() {
       search_.numbers_alone = learned->numbers;
       search_.evidence = search_.evidence.Changed(std::move(*learned));
     }
+    work_->NoteChange();
   }
   if (TakeSets()) {
-    options.most_causes = 0;
-    search_ = SearchCauses(problem_, candidates_, options, &search_);
+    FitSets(options);
   } else {
     SearchBehindObservers(options);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mjdiag/discovery/discoverer.h"
+#include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/sets/set_search.h"
 #include "mjdiag/signals/error.h"
 
@@ -104,6 +105,28 @@ bool Discoverer::TakeSets() {
   search_.evidence = search_.evidence.Changed(std::move(fit));
   search_.exchanged = search_.searched_without = found.ended;
   return found.ended;
+}
+
+void Discoverer::FitSets(const SearchOptions& options) {
+  Report("last fit", 0.9);
+  const EvidenceData data =
+      DataOf(problem_, candidates_, options.unseen, options.free_run);
+  const auto fitted = [&](const FitOptions& how) {
+    return FitCauses(problem_, candidates_, search_.fit(), how);
+  };
+  CauseFit fit;
+  try {
+    fit = fitted({.iterations = 8,
+                  .tolerance = 1e-8,
+                  .first_order = search_.fit().numbers.size() > 1,
+                  .share = work_->Share(1)});
+  } catch (const CutShort&) {
+    work_->CutShort();
+    fit = fitted({.iterations = 0, .jacobian = false, .closing = true});
+  }
+  VectorXd independent = IndependentShare(problem_, fit.residual);
+  search_.evidence = {data, std::move(fit), std::move(independent)};
+  search_.significant_rest = true;
 }
 
 }  // namespace mjdiag
