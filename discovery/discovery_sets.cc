@@ -41,6 +41,29 @@ std::vector<std::vector<Hypothesis>> RivalsIn(const SetSearchResult& found) {
   return rivals;
 }
 
+/// Whether the causes are what the plant lacks, and not the nearest of the laws that are
+/// known: what is left of it beyond noise, on samples that the fit saw and on others, is
+/// little, and no law is one of which the fit makes another.
+bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candidates,
+              const SetSearchResult& found) {
+  constexpr double kLeft = 0.1;
+  const WeighedModel& best = found.best;
+  if (best.fit.causes.empty() || best.rung == 0) return false;
+  if (best.deviance - ladder.Noise() >
+      kLeft * (found.given.deviance - ladder.Noise())) {
+    return false;
+  }
+  if (ladder.HeldOut(best.rung, best.fit.residual) >=
+      ladder.HeldOut(found.given.rung, found.given.fit.residual)) {
+    return false;
+  }
+  return std::ranges::none_of(best.fit.causes, [&](const FittedCause& cause) {
+    const bool to_the_end = best.rung + 1 == ladder.size();
+    return IsAtItsEnd(candidates, cause) ||
+           (!to_the_end && !IsPlausible(candidates, cause));
+  });
+}
+
 }  // namespace
 
 /// Whether records that no fit saw are less of a surprise with a model than with another.
@@ -59,7 +82,11 @@ bool Discoverer::IsBetterUnseen(const FittedModel& model,
 }
 
 bool Discoverer::TakeSets() {
-  if (options_.bandwidth != 0.0 || !work_->MayBegin("sets of causes")) return false;
+  constexpr double kRuns = 60.0;  // that sets take at least
+  if (options_.bandwidth != 0.0 ||
+      !work_->MayBegin("sets of causes", kRuns * problem_.RunWork())) {
+    return false;
+  }
   const bool exact = problem_.numbers().empty();
   const DiscoveryProblem problem =
       exact ? problem_.Doubting({LatenessOf(machine_)}) : problem_;
@@ -71,15 +98,26 @@ bool Discoverer::TakeSets() {
   const ObserverLadder ladder(problem);
   SetSearchOptions options;
   options.most_causes = options_.most_causes;
-  options.progress = [this](const std::string& what, double fraction,
-                            const CauseFit& best) { Report(what, fraction, best); };
+  // The mismatch that people are told of is the one behind the observer of the problem.
+  const DiscoveryProblem to_tell = problem_.Charging(std::make_shared<Work>());
+  options.progress = [this, &to_tell](const std::string& what, double fraction,
+                                      const CauseFit& best) {
+    if (!options_.progress) return;
+    CauseFit told;
+    told.causes = best.causes;
+    const auto size = static_cast<Eigen::Index>(to_tell.numbers().size());
+    if (best.numbers.size() == size) told.numbers = best.numbers;
+    try {
+      told.train = MeanSquare(to_tell, to_tell.Residual(ChangesOf(to_tell, candidates_, told)),
+                              to_tell.skip(), to_tell.train());
+    } catch (const NumericalError&) {
+      told.train = nominal_;
+    }
+    Report(what, fraction, told);
+  };
   SetSearchResult found = SearchSets(ladder, candidates_, start, options);
   const WeighedModel& best = found.best;
-  if (best.fit.causes.empty() || best.rung == 0) return false;
-  if (ladder.HeldOut(best.rung, best.fit.residual) >=
-      ladder.HeldOut(found.given.rung, found.given.fit.residual)) {
-    return false;
-  }
+  if (!Explains(ladder, candidates_, found)) return false;
   FittedModel model = best.fit;
   FittedModel given = found.given.fit;
   std::vector<DoubtedNumber> numbers = problem.numbers();

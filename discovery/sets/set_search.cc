@@ -51,8 +51,9 @@ class Search {
   std::optional<double> DevianceOf(std::size_t rung, const FittedModel& model) const;
   WeighedModel Weighed(std::size_t rung, CauseFit fit) const;
   std::optional<WeighedModel> Fitted(std::size_t rung, const FittedModel& model,
-                                     int iterations) const;
-  std::optional<WeighedModel> Settled(FittedModel model, std::size_t rung) const;
+                                     int iterations, double share) const;
+  std::optional<WeighedModel> Settled(FittedModel model, std::size_t rung,
+                                      double share) const;
   std::vector<WeighedModel> BestSettled(const std::vector<FittedModel>& models,
                                         std::size_t rung) const;
   std::vector<WeighedModel> AllSettled(const std::vector<FittedModel>& models,
@@ -98,26 +99,33 @@ WeighedModel Search::Weighed(std::size_t rung, CauseFit fit) const {
 }
 
 std::optional<WeighedModel> Search::Fitted(std::size_t rung, const FittedModel& model,
-                                           int iterations) const {
+                                           int iterations, double share) const {
   auto fit = TryFit(ladder_[rung], candidates_, model,
                     {.iterations = iterations,
                      .tolerance = 1e-5,
                      .jacobian = false,
                      .secant = model.numbers.size() <= 1,
                      .first_order = model.numbers.size() > 1,
+                     .share = share,
                      .only_betters = true});
   if (!fit) return std::nullopt;
   return Weighed(rung, std::move(*fit));
 }
 
 /// Fitted behind that observer and then behind slower ones, as long as they make the record
-/// likelier.
-std::optional<WeighedModel> Search::Settled(FittedModel model, std::size_t rung) const {
+/// likelier, with so much work [s].
+std::optional<WeighedModel> Search::Settled(FittedModel model, std::size_t rung,
+                                            double share) const {
   constexpr int kFirst = 2;
   constexpr int kMore = 4;
   std::optional<WeighedModel> best;
+  const auto fit = [&](const FittedModel& start, int iterations) {
+    auto one = Fitted(rung, start, iterations, share);
+    if (one) share -= one->fit.spent;
+    return one;
+  };
   while (rung < ladder_.size()) {
-    auto fitted = Fitted(rung, model, kFirst);
+    auto fitted = fit(model, kFirst);
     if (!fitted || (best && fitted->score >= best->score)) break;
     const auto goes_on = [&](const WeighedModel& at) {
       if (rung + 1 == ladder_.size()) return false;
@@ -126,7 +134,7 @@ std::optional<WeighedModel> Search::Settled(FittedModel model, std::size_t rung)
     };
     bool slower = goes_on(*fitted);
     if (!slower) {
-      auto more = Fitted(rung, fitted->fit, kMore);
+      auto more = fit(fitted->fit, kMore);
       if (more && more->score < fitted->score) fitted = std::move(more);
       slower = goes_on(*fitted);
     }
@@ -144,9 +152,10 @@ std::vector<WeighedModel> Search::BestSettled(const std::vector<FittedModel>& mo
   constexpr int kFirst = 3;
   constexpr std::size_t kFinalists = 3;
   std::vector<std::optional<WeighedModel>> fitted(models.size());
+  const double share = work().Share(static_cast<int>(models.size()));
   ParallelFor(static_cast<int>(models.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    fitted[i] = Fitted(rung, models[i], kFirst);
+    fitted[i] = Fitted(rung, models[i], kFirst, share);
   });
   std::vector<FittedModel> finalists;
   for (const WeighedModel& one : InOrder(std::move(fitted))) {
@@ -158,9 +167,10 @@ std::vector<WeighedModel> Search::BestSettled(const std::vector<FittedModel>& mo
 std::vector<WeighedModel> Search::AllSettled(const std::vector<FittedModel>& models,
                                              std::size_t rung) const {
   std::vector<std::optional<WeighedModel>> settled(models.size());
+  const double share = work().Share(static_cast<int>(models.size()));
   ParallelFor(static_cast<int>(models.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    settled[i] = Settled(models[i], rung);
+    settled[i] = Settled(models[i], rung, share);
   });
   return InOrder(std::move(settled));
 }
@@ -178,7 +188,7 @@ WeighedModel Search::Begin(const FittedModel& start) const {
       best = rung;
     }
   }
-  if (auto settled = Settled(start, best)) return std::move(*settled);
+  if (auto settled = Settled(start, best, work().Share(1))) return std::move(*settled);
   return Weighed(best, FitCauses(ladder_[best], candidates_, start,
                                  {.iterations = 0, .jacobian = false, .closing = true}));
 }
@@ -229,7 +239,7 @@ WeighedModel Search::WithSimplerLaws(WeighedModel model) const {
     if (!simpler || Has(model.fit.causes, simpler->candidate)) continue;
     FittedModel other = model.fit;
     other.causes[i] = *simpler;
-    auto settled = Settled(std::move(other), model.rung);
+    auto settled = Settled(std::move(other), model.rung, work().Share(1));
     if (settled && settled->score < model.score + kBetter / 2) model = std::move(*settled);
   }
   return model;
@@ -246,13 +256,15 @@ SetSearchResult Search::Run(const FittedModel& start) {
   constexpr int kRounds = 10;
   constexpr int kSets = 2;
   constexpr int kAtFastest = 2;
+  constexpr double kRuns = 60.0;  // that a round takes at least
   int at_fastest = 0;
   Report("numbers of the plant", 0.0, {});
   SetSearchResult result;
   result.given = Begin(start);
   result.best = result.given;
   work().NoteChange();
-  for (int round = 0; round < kRounds && work().MayBegin("sets of causes"); ++round) {
+  const double round_work = kRuns * ladder_[0].RunWork();
+  for (int round = 0; round < kRounds && work().MayBegin("sets of causes", round_work); ++round) {
     Report("sets of causes", 0.0, result.best.fit);
     const WeighedModel& present = result.best;
     std::vector<FittedModel> models;
