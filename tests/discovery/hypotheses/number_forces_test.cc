@@ -54,5 +54,25 @@ TEST(NumberForces, AreWhatDifferencesOfRunsShowOnTheBonder) {
   ExpectAlike(problem, 0.1);
 }
 
+// Dampers of modes that swing faster than the control: a force held over a tick is not
+// theirs.
+TEST(NumberForces, OfModesThatSwingWithinATickAreThoseOfEveryStep) {
+  const Machine machine(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
+  const Excitation motion =
+      FollowTrajectory(machine.setup(), machine.setup().trajectories.Find("multi"));
+  const DiscoveryProblem problem =
+      Beginning(PoseProblem(machine, Simulate(machine, motion, {}), 1.0, 60.0), 4000)
+          .Doubting({{FindPlantNumber(machine.plant(), "damping@u3"), 1.0},
+                     {FindPlantNumber(machine.plant(), "damping@u4"), 1.0},
+                     {FindPlantNumber(machine.plant(), "stiffness@u3"), 1.0}});
+  const Eigen::Index block = problem.Linearised({})->dynamics.block();
+  const Eigen::MatrixXd rough =
+      Averaged(problem.RoughNumberJacobian({}, {}), 3, block);
+  const Eigen::MatrixXd exact = Averaged(problem.NumberJacobian({}, {}), 3, block);
+  for (Eigen::Index i = 0; i < exact.cols(); ++i) {
+    EXPECT_LT((rough.col(i) - exact.col(i)).norm(), 0.3 * exact.col(i).norm()) << i;
+  }
+}
+
 }  // namespace
 }  // namespace mjdiag

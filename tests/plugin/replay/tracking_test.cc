@@ -57,6 +57,19 @@ TEST(FollowRun, IsPulledFromAWrongStartTowardsTheRecord) {
   EXPECT_GT(left.rightCols(100).cwiseAbs().minCoeff(), 0.9 * kWrong);
 }
 
+// Else a wrong scale would seem to explain something by the stiffer observer it makes.
+TEST(FollowRun, IsPulledLessByASensorThatReadsMore) {
+  const test::Replay replay = Measured(Worn());
+  const MatrixXd plain = replay.Follow({}).innovations;
+  test::Replay scaled = replay;
+  scaled.run.outputs *= 2.0;
+  for (auto& [name, reading] : scaled.run.records.front().readings) reading *= 2.0;
+  const MatrixXd twice =
+      scaled.Follow(test::With({"encoder_scale@load_encoder:factor=2"})).innovations;
+  EXPECT_LT((twice - 2.0 * plain).cwiseAbs().maxCoeff(),
+            1e-6 * plain.cwiseAbs().maxCoeff());
+}
+
 /// As if samples first .. first + count - 1 had not been measured, and read nonsense.
 MeasuredRun Without(MeasuredRun run, Index first, Index count) {
   if (run.measured.size() == 0) run.measured.setConstant(1, run.samples(), true);
