@@ -58,7 +58,8 @@ class Discoverer {
   bool TakeSets();
   /// As closely as possible, behind the observer that they deserve.
   void FitSets(const SearchOptions& options);
-  bool IsBetterUnseen(const FittedModel& model, const FittedModel& before) const;
+  bool IsBetterUnseen(const DiscoveryProblem& problem, const FittedModel& model,
+                      const FittedModel& before) const;
   std::vector<PlantNumber> KnownNumbers() const;
   /// FreeRun of the records that no fit sees.
   double UnseenFree(const Changes& changes) const;

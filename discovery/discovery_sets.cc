@@ -67,10 +67,11 @@ bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candid
 }  // namespace
 
 /// Whether records that no fit saw are less of a surprise with a model than with another.
-bool Discoverer::IsBetterUnseen(const FittedModel& model,
+bool Discoverer::IsBetterUnseen(const DiscoveryProblem& problem,
+                                const FittedModel& model,
                                 const FittedModel& before) const {
   if (measurements_.unseen.empty()) return true;
-  const DiscoveryProblem unseen = problem_.WithRun(RunOf(measurements_.unseen));
+  const DiscoveryProblem unseen = problem.WithRun(RunOf(measurements_.unseen));
   const auto left = [&](const FittedModel& one) {
     return unseen.Residual(ChangesOf(unseen, candidates_, one)).squaredNorm();
   };
@@ -83,6 +84,10 @@ bool Discoverer::IsBetterUnseen(const FittedModel& model,
 
 bool Discoverer::TakeSets() {
   constexpr double kRuns = 60.0;  // that sets take at least
+  // An observer of a sensor that is read now and then has no ladder.
+  for (Eigen::Index i = 0; i < problem_.run().outputs.rows(); ++i) {
+    if (problem_.run().PeriodOf(i) > 1) return false;
+  }
   if (options_.bandwidth != 0.0 ||
       !work_->MayBegin("sets of causes", kRuns * problem_.RunWork())) {
     return false;
@@ -108,8 +113,9 @@ bool Discoverer::TakeSets() {
     const auto size = static_cast<Eigen::Index>(to_tell.numbers().size());
     if (best.numbers.size() == size) told.numbers = best.numbers;
     try {
-      told.train = MeanSquare(to_tell, to_tell.Residual(ChangesOf(to_tell, candidates_, told)),
-                              to_tell.skip(), to_tell.train());
+      told.train =
+          MeanSquare(to_tell, to_tell.Residual(ChangesOf(to_tell, candidates_, told)),
+                     to_tell.skip(), to_tell.train());
     } catch (const NumericalError&) {
       told.train = nominal_;
     }
@@ -127,16 +133,20 @@ bool Discoverer::TakeSets() {
     model.numbers.resize(0);
     given.numbers.resize(0);
   }
-  if (best.rung + 1 < ladder.size()) problem_ = Pose(ladder.bandwidth(best.rung));
-  problem_ = problem_.Doubting(std::move(numbers));
-  if (!IsBetterUnseen(model, given)) return false;
+  const bool to_the_end = best.rung + 1 == ladder.size();
+  DiscoveryProblem deserved =
+      (to_the_end ? problem_ : Pose(ladder.bandwidth(best.rung)))
+          .Doubting(std::move(numbers));
+  if (!IsBetterUnseen(deserved, model, given)) return false;
+  problem_ = std::move(deserved);
   MeasureNominal();
   search_.numbers_alone = given.numbers;
   search_.rivals = RivalsIn(found);
   for (std::size_t count = 1; count <= model.causes.size(); ++count) {
-    search_.ladder.push_back({{model.causes.begin(),
-                               model.causes.begin() + static_cast<std::ptrdiff_t>(count)},
-                              model.numbers});
+    search_.ladder.push_back(
+        {{model.causes.begin(),
+          model.causes.begin() + static_cast<std::ptrdiff_t>(count)},
+         model.numbers});
   }
   CauseFit fit;
   static_cast<FittedModel&>(fit) = std::move(model);

@@ -42,7 +42,8 @@ class RecordSensitivity {
  public:
   RecordSensitivity(const Machine& machine, const UncertainMachine& uncertain,
                     const Observer& observer, Index block)
-      : twin_(machine, uncertain, {{observer.L, observer.innovation_covariance}}, block),
+      : twin_(machine, uncertain, {{observer.L, observer.innovation_covariance}},
+              block),
         block_(block),
         known_(static_cast<Index>(uncertain.unknowns.size())) {}
 
@@ -84,7 +85,7 @@ bool StaysNearRest(const Machine& machine, const Track& track) {
   MatrixXd now(plant.nv, plant.nv);
   const Index samples = track.position.cols();
   for (Index look = 0; look < kLooks; ++look) {
-    VectorXd::Map(data->qpos, plant.nq) =
+    VectorXd::Map(data->qpos, plant.nv) =
         track.position.col(look * (samples - 1) / (kLooks - 1));
     mj_fwdPosition(&plant, data.get());
     mj_fullM(&plant, now.data(), data->qM);
@@ -109,7 +110,8 @@ MatrixXd NumberSensitivity(const Machine& machine, const Observer& observer,
     // A record begins with a block of its own but for one that began before.
     const Index first = (run.records[i].sample + block - 1) / block;
     const Index late = first * block - run.records[i].sample;
-    const Index blocks = std::min((record.samples() - late) / block, J.rows() / ny - first);
+    const Index blocks =
+        std::min((record.samples() - late) / block, J.rows() / ny - first);
     if (blocks <= 0) return;
     RecordSensitivity(machine, uncertain, observer, block)
         .Run(record, J.middleRows(ny * first, ny * blocks));

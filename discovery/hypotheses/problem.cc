@@ -288,9 +288,10 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     if (stood_for[i]) return;
     const DoubtedNumber& doubted = numbers_[i];
     forces[i] = doubted.spread *
-                (doubted.is_lateness ? LatenessForce(machine.plant(), machine_.linear().Gamma, motion)
-                                     : NumberForce(machine.plant(), machine_.channels(),
-                                                   doubted.number, motion, still));
+                (doubted.is_lateness
+                     ? LatenessForce(machine.plant(), machine_.linear().Gamma, motion)
+                     : NumberForce(machine.plant(), machine_.channels(), doubted.number,
+                                   motion, still));
   });
   work_->Add(kForces * RunWork() / machine_.rates().substeps * static_cast<double>(p));
   // A force that the model has more is one that it lacks less.
@@ -315,8 +316,8 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     work_->Add(kPass * RunWork());
     const Eigen::MatrixXd J =
         NumberSensitivity(machine, observer_, *run_, by_steps, block);
-    const VectorXd weight = observer_.innovation_sd.cwiseInverse().replicate(
-        averages.rows() / channels, 1);
+    const VectorXd weight =
+        observer_.innovation_sd.cwiseInverse().replicate(averages.rows() / channels, 1);
     for (std::size_t i = 0; i < places.size(); ++i) {
       averages.col(places[i]) =
           numbers_[static_cast<std::size_t>(places[i])].spread *

@@ -27,8 +27,8 @@ std::vector<double> BandwidthsDownTo(double slowest, double rate) {
 ObserverLadder::ObserverLadder(const DiscoveryProblem& problem) {
   const Machine& machine = problem.machine();
   const VectorXd& r = problem.observer().noise_sd;
-  bandwidths_ = BandwidthsDownTo(SlowestBandwidth(problem.run()),
-                                 machine.rates().control);
+  bandwidths_ =
+      BandwidthsDownTo(SlowestBandwidth(problem.run()), machine.rates().control);
   for (const double hertz : bandwidths_) {
     Observer observer = DesignObserver(machine.linear(), machine.plant().opt.timestep,
                                        machine.rates().substeps, r, hertz);

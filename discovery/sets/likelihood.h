@@ -42,8 +42,8 @@ class ObserverLadder {
   double Noise() const { return noise_; }
 
  private:
-  double Deviance(std::size_t rung, const Eigen::VectorXd& residual,
-                  Eigen::Index first, Eigen::Index last) const;
+  double Deviance(std::size_t rung, const Eigen::VectorXd& residual, Eigen::Index first,
+                  Eigen::Index last) const;
 
   std::vector<double> bandwidths_;
   std::vector<DiscoveryProblem> problems_;

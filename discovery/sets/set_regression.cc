@@ -84,10 +84,10 @@ class Regression {
   ObservedMotion motion_;
   Index channels_, block_, skip_, blocks_, rows_, numbers_;
   // Averages of blocks, then what is known of the numbers.
-  VectorXd full_, left_;   // residual, and what the model cannot take away of it
-  MatrixXd own_;           // what the model can do: its numbers and its causes,
-  VectorXd own_scale_;     // over that
-  MatrixXd basis_;         // an orthonormal one of it
+  VectorXd full_, left_;  // residual, and what the model cannot take away of it
+  MatrixXd own_;          // what the model can do: its numbers and its causes,
+  VectorXd own_scale_;    // over that
+  MatrixXd basis_;        // an orthonormal one of it
   std::vector<std::optional<Sweep>> sweeps_;
   std::vector<double> trials_;  // of every candidate
   std::vector<Group> groups_;
@@ -138,7 +138,8 @@ void Regression::MakeTrialsOfAll() {
   ParallelFor(static_cast<int>(count), [&](int number) {
     const auto c = static_cast<std::size_t>(number);
     if (Has(present_.causes, c)) return;
-    sweeps_[c] = MakeSweep(seen_.machine(), candidates_[c], motion_, seen_.FittedDuration());
+    sweeps_[c] =
+        MakeSweep(seen_.machine(), candidates_[c], motion_, seen_.FittedDuration());
     if (!sweeps_[c]) made[c] = MakeTrials(seen_.machine(), candidates_[c], motion_);
     const std::size_t tried = sweeps_[c] ? sweeps_[c]->values.size() : made[c].size();
     trials_[c] = std::max(1.0, static_cast<double>(tried));
@@ -152,9 +153,9 @@ void Regression::MakeTrialsOfAll() {
 
 /// New columns, and G and b with them. Those that the model does itself are none.
 void Regression::Add(std::vector<std::pair<std::size_t, Trial>> trials) {
-  constexpr double kOwn = 1e-7;      // of a column, squared
+  constexpr double kOwn = 1e-7;       // of a column, squared
   constexpr double kNothing = 1e-12;  // squared
-  constexpr double kFilter = 60.0;   // multiplications for every value of a response
+  constexpr double kFilter = 60.0;    // multiplications for every value of a response
   std::vector<MatrixXd> raw(trials.size());
   std::vector<MatrixXd> rest(trials.size());
   ParallelFor(static_cast<int>(trials.size()), [&](int number) {
@@ -170,11 +171,13 @@ void Regression::Add(std::vector<std::pair<std::size_t, Trial>> trials) {
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const VectorXd size = rest[i].colwise().squaredNorm();
     if (!size.allFinite() || size.minCoeff() < kNothing ||
-        (size.array() < kOwn * raw[i].colwise().squaredNorm().transpose().array()).any()) {
+        (size.array() < kOwn * raw[i].colwise().squaredNorm().transpose().array())
+            .any()) {
       continue;
     }
     kept.push_back(i);
-    groups_.push_back({trials[i].first, std::move(trials[i].second), count, size.size()});
+    groups_.push_back(
+        {trials[i].first, std::move(trials[i].second), count, size.size()});
     count += size.size();
   }
   const Index added = count - before;
@@ -390,7 +393,8 @@ std::vector<ProposedSet> Regression::Propose(int most) {
     beam = Grown(beam);
     if (beam.empty() || beam.front().deviance > best - kLeastGain) break;
     best = beam.front().deviance;
-    all.insert(all.end(), beam.begin(), beam.begin() + std::min<std::ptrdiff_t>(most, std::ssize(beam)));
+    all.insert(all.end(), beam.begin(),
+               beam.begin() + std::min<std::ptrdiff_t>(most, std::ssize(beam)));
   }
   for (const GroupSet& set : Smallest(all, best)) sets.push_back(Proposed(set));
   return sets;

@@ -69,7 +69,8 @@ class Search {
   const SetSearchOptions& options_;
 };
 
-double Search::Score(std::size_t rung, const FittedModel& model, double deviance) const {
+double Search::Score(std::size_t rung, const FittedModel& model,
+                     double deviance) const {
   const double ticks = FittedValues(ladder_[rung]) /
                        static_cast<double>(ladder_[rung].run().outputs.rows());
   double parameters = 0.0;
@@ -189,8 +190,9 @@ WeighedModel Search::Begin(const FittedModel& start) const {
     }
   }
   if (auto settled = Settled(start, best, work().Share(1))) return std::move(*settled);
-  return Weighed(best, FitCauses(ladder_[best], candidates_, start,
-                                 {.iterations = 0, .jacobian = false, .closing = true}));
+  return Weighed(best,
+                 FitCauses(ladder_[best], candidates_, start,
+                           {.iterations = 0, .jacobian = false, .closing = true}));
 }
 
 /// Whether the record is much less likely without it, by a run without it and what the
@@ -219,7 +221,8 @@ bool Search::IsNeeded(const WeighedModel& of, std::size_t cause) const {
 }
 
 WeighedModel Search::WithoutSuperfluous(WeighedModel model) const {
-  while (!model.fit.causes.empty() && work().MayBegin("whether every cause is needed")) {
+  while (!model.fit.causes.empty() &&
+         work().MayBegin("whether every cause is needed")) {
     std::vector<FittedModel> without;
     for (std::size_t i = 0; i < model.fit.causes.size(); ++i) {
       if (!IsNeeded(model, i)) without.push_back(ModelWithout(model.fit, {i}));
@@ -240,7 +243,8 @@ WeighedModel Search::WithSimplerLaws(WeighedModel model) const {
     FittedModel other = model.fit;
     other.causes[i] = *simpler;
     auto settled = Settled(std::move(other), model.rung, work().Share(1));
-    if (settled && settled->score < model.score + kBetter / 2) model = std::move(*settled);
+    if (settled && settled->score < model.score + kBetter / 2)
+      model = std::move(*settled);
   }
   return model;
 }
@@ -264,7 +268,8 @@ SetSearchResult Search::Run(const FittedModel& start) {
   result.best = result.given;
   work().NoteChange();
   const double round_work = kRuns * ladder_[0].RunWork();
-  for (int round = 0; round < kRounds && work().MayBegin("sets of causes", round_work); ++round) {
+  for (int round = 0; round < kRounds && work().MayBegin("sets of causes", round_work);
+       ++round) {
     Report("sets of causes", 0.0, result.best.fit);
     const WeighedModel& present = result.best;
     std::vector<FittedModel> models;

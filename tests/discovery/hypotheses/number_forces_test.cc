@@ -66,8 +66,7 @@ TEST(NumberForces, OfModesThatSwingWithinATickAreThoseOfEveryStep) {
                      {FindPlantNumber(machine.plant(), "damping@u4"), 1.0},
                      {FindPlantNumber(machine.plant(), "stiffness@u3"), 1.0}});
   const Eigen::Index block = problem.Linearised({})->dynamics.block();
-  const Eigen::MatrixXd rough =
-      Averaged(problem.RoughNumberJacobian({}, {}), 3, block);
+  const Eigen::MatrixXd rough = Averaged(problem.RoughNumberJacobian({}, {}), 3, block);
   const Eigen::MatrixXd exact = Averaged(problem.NumberJacobian({}, {}), 3, block);
   for (Eigen::Index i = 0; i < exact.cols(); ++i) {
     EXPECT_LT((rough.col(i) - exact.col(i)).norm(), 0.3 * exact.col(i).norm()) << i;

@@ -18,9 +18,8 @@ TEST(BonderSets, ASealAndARippleAreNamedTogetherAndNothingElse) {
   Trajectory motion = model.setup().trajectories.Find("multi");
   motion.duration = 1.0;
   Changes hidden;
-  hidden.effects = {
-      ParseEffect("coulomb_friction@Z:force=0.004"),
-      ParseEffect("force_ripple@X:amplitude=0.8,period=0.0024,phase=1")};
+  hidden.effects = {ParseEffect("coulomb_friction@Z:force=0.004"),
+                    ParseEffect("force_ripple@X:amplitude=0.8,period=0.0024,phase=1")};
   const Record record =
       Simulate(model.With(hidden), FollowTrajectory(model.setup(), motion), {});
   DiscoverOptions options;

@@ -27,9 +27,9 @@ class Likelihood : public ::testing::Test {
     return WeightOf(ladder_, test::With(effects));
   }
   const test::StageUnderTest stage_;
-  const ObserverLadder ladder_{stage_.Pose(stage_.Measure(
-      {"coulomb_friction@load:force=18",
-       "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}))};
+  const ObserverLadder ladder_{stage_.Pose(
+      stage_.Measure({"coulomb_friction@load:force=18",
+                      "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}))};
 };
 
 TEST_F(Likelihood, PutsNothingHalfTruthsAndTheTruthInThatOrder) {
@@ -58,7 +58,8 @@ TEST_F(Likelihood, OfTheTruthIsThatOfNoise) {
                            "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"});
   const DiscoveryProblem& slowest = ladder_[ladder_.size() - 1];
   const auto values = static_cast<double>(slowest.train() - slowest.skip());
-  EXPECT_NEAR(truth.deviance, ladder_.Noise(), 0.02 * values + 5.0 * std::sqrt(2.0 * values));
+  EXPECT_NEAR(truth.deviance, ladder_.Noise(),
+              0.02 * values + 5.0 * std::sqrt(2.0 * values));
 }
 
 TEST_F(Likelihood, TurnsDownAForceThatIsNotThere) {

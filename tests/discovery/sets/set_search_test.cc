@@ -15,11 +15,11 @@ using Eigen::VectorXd;
 
 class SetSearch : public ::testing::Test {
  protected:
-  explicit SetSearch(const std::vector<std::string>& hidden = {
-                         "coulomb_friction@load:force=18",
-                         "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"})
-      : problem_(stage_.Pose(stage_.Measure(hidden)).Doubting(
-            {LatenessOf(stage_.machine)})),
+  explicit SetSearch(const std::vector<std::string>& hidden =
+                         {"coulomb_friction@load:force=18",
+                          "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"})
+      : problem_(
+            stage_.Pose(stage_.Measure(hidden)).Doubting({LatenessOf(stage_.machine)})),
         ladder_(problem_),
         candidates_(ListCandidates(stage_.machine)) {
     BoundByRecord(candidates_, stage_.machine, problem_.MotionOf(problem_.Nominal()));

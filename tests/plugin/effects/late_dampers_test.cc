@@ -2,19 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "support/stage.h"
 
 namespace mjdiag {
 namespace {
 
 /// Position of the stage by a recorded force, with changes and that many steps a tick.
-Eigen::VectorXd Moves(const Machine& machine, const Record& driven, const Changes& changes) {
+Eigen::VectorXd Moves(const Machine& machine, const Record& driven,
+                      const Changes& changes) {
   RunOptions quiet;
   quiet.noise_scale = 0.0;
   const Machine open = machine.WithSetup(WithoutControllers(machine.setup()));
-  return Simulate(open.With(changes), Replay(open.setup(), driven), quiet).At("q").samples;
+  return Simulate(open.With(changes), Replay(open.setup(), driven), quiet)
+      .At("q")
+      .samples;
 }
 
 // Half of a step h is what Euler's method is off by to first order: between runs of h and
