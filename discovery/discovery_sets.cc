@@ -84,10 +84,6 @@ bool Discoverer::IsBetterUnseen(const DiscoveryProblem& problem,
 
 bool Discoverer::TakeSets() {
   constexpr double kRuns = 60.0;  // that sets take at least
-  // An observer of a sensor that is read now and then has no ladder.
-  for (Eigen::Index i = 0; i < problem_.run().outputs.rows(); ++i) {
-    if (problem_.run().PeriodOf(i) > 1) return false;
-  }
   if (options_.bandwidth != 0.0 ||
       !work_->MayBegin("sets of causes", kRuns * problem_.RunWork())) {
     return false;

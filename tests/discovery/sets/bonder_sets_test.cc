@@ -16,7 +16,7 @@ namespace {
 TEST(BonderSets, ASealAndARippleAreNamedTogetherAndNothingElse) {
   const Machine model{ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383", {})};
   Trajectory motion = model.setup().trajectories.Find("multi");
-  motion.duration = 1.0;
+  motion.duration = 0.7;
   Changes hidden;
   hidden.effects = {ParseEffect("coulomb_friction@Z:force=0.004"),
                     ParseEffect("force_ripple@X:amplitude=0.8,period=0.0024,phase=1")};
