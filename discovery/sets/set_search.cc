@@ -202,6 +202,11 @@ bool Search::IsNeeded(const WeighedModel& of, std::size_t cause) const {
   constexpr double kOff = 0.01;  // of what is made good, the first order may be off by
   const MatrixXd J = JacobianWithout(of.fit, {cause});
   const DiscoveryProblem seen = ladder_[of.rung].TrainPart();
+  // The number that it stands for has no derivative beside it.
+  if (seen.StoodFor(ChangesOf(candidates_, of.fit.causes)) !=
+      seen.StoodFor(ChangesOf(candidates_, ModelWithout(of.fit, {cause}).causes))) {
+    return false;
+  }
   VectorXd left;
   try {
     left = seen.Residual(ChangesOf(seen, candidates_, ModelWithout(of.fit, {cause})));

@@ -16,8 +16,8 @@ struct ObservedMotion {
   /// samples: M a is all of its forces. A machine with every mass and every force twice as
   /// large moves the same, which derivatives by those numbers show with this one only.
   Eigen::MatrixXd own_acceleration;
-  Eigen::MatrixXd inputs;        ///< actuators x samples
-  Eigen::MatrixXd outputs;       ///< sensors x samples
+  Eigen::MatrixXd inputs;   ///< actuators x samples
+  Eigen::MatrixXd outputs;  ///< sensors x samples
   Eigen::Index samples() const { return position.cols(); }
 };
 

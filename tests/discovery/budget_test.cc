@@ -128,7 +128,9 @@ TEST_F(Budget, ProgressTellsTheBestAnswerSoFar) {
   };
   Answer(options);
   EXPECT_EQ(best.front(), "");
-  EXPECT_THAT(best, Contains(HasSubstr("coulomb_friction@load, force_ripple@load (mismatch 100 % to ")));
+  EXPECT_THAT(best,
+              Contains(HasSubstr(
+                  "coulomb_friction@load, force_ripple@load (mismatch 100 % to ")));
 }
 
 }  // namespace
