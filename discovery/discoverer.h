@@ -55,11 +55,9 @@ class Discoverer {
   void SearchBehindObservers(SearchOptions options);
   /// True if sets of causes were found that nothing has to be added to; search_ goes on
   /// from them.
-  bool TakeSets();
+  bool TakeSets(const SearchOptions& search);
   /// As closely as possible, behind the observer that they deserve.
   void FitSets(const SearchOptions& options);
-  bool IsBetterUnseen(const DiscoveryProblem& problem, const FittedModel& model,
-                      const FittedModel& before) const;
   std::vector<PlantNumber> KnownNumbers() const;
   /// FreeRun of the records that no fit sees.
   double UnseenFree(const Changes& changes) const;

@@ -194,7 +194,7 @@ void Discoverer::SearchAll() {
     }
     work_->NoteChange();
   }
-  if (TakeSets()) {
+  if (TakeSets(options)) {
     FitSets(options);
   } else {
     SearchBehindObservers(options);

@@ -41,9 +41,7 @@ void Discoverer::FitFree() {
 }
 
 void Discoverer::TakeFree(const DiscoveryProblem& free, CauseFit fit) {
-  search_.evidence = search_.evidence.Changed(
-      FitCauses(problem_, candidates_, fit,
-                {.iterations = 0, .jacobian = false, .closing = true}));
+  search_.evidence = search_.evidence.Changed(AsItIs(problem_, candidates_, fit));
   free_fit_.emplace(free, std::move(fit));
 }
 

@@ -64,28 +64,23 @@ bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candid
   });
 }
 
-}  // namespace
-
-/// Whether records that no fit saw are less of a surprise with a model than with another.
-bool Discoverer::IsBetterUnseen(const DiscoveryProblem& problem,
-                                const FittedModel& model,
-                                const FittedModel& before) const {
-  if (measurements_.unseen.empty()) return true;
-  const DiscoveryProblem unseen = problem.WithRun(RunOf(measurements_.unseen));
-  const auto left = [&](const FittedModel& one) {
-    return unseen.Residual(ChangesOf(unseen, candidates_, one)).squaredNorm();
-  };
-  try {
-    return left(model) < left(before);
-  } catch (const NumericalError&) {
-    return false;
-  }
+/// Whether records that no fit saw, if there are any, are less of a surprise with a model
+/// than with another.
+bool IsBetterUnseen(const EvidenceData& data, const FittedModel& model,
+                    const FittedModel& before) {
+  if (!data.replay) return true;
+  const VectorXd after = data.replay(model);
+  const VectorXd without = data.replay(before);
+  return after.size() > 0 && without.size() > 0 &&
+         after.squaredNorm() < without.squaredNorm();
 }
 
-bool Discoverer::TakeSets() {
-  constexpr double kRuns = 60.0;  // that sets take at least
-  if (options_.bandwidth != 0.0 ||
-      !work_->MayBegin("sets of causes", kRuns * problem_.RunWork())) {
+}  // namespace
+
+bool Discoverer::TakeSets(const SearchOptions& search) {
+  // An observer of a sensor that is read now and then has no ladder.
+  if (options_.bandwidth != 0.0 || LongestPeriod(problem_.run()) > 1 ||
+      !work_->MayBegin("sets of causes", RoundWork(problem_))) {
     return false;
   }
   const bool exact = problem_.numbers().empty();
@@ -133,7 +128,9 @@ bool Discoverer::TakeSets() {
   DiscoveryProblem deserved =
       (to_the_end ? problem_ : Pose(ladder.bandwidth(best.rung)))
           .Doubting(std::move(numbers));
-  if (!IsBetterUnseen(deserved, model, given)) return false;
+  if (!IsBetterUnseen(DataOf(deserved, candidates_, search.unseen), model, given)) {
+    return false;
+  }
   problem_ = std::move(deserved);
   MeasureNominal();
   search_.numbers_alone = given.numbers;
@@ -147,7 +144,6 @@ bool Discoverer::TakeSets() {
   CauseFit fit;
   static_cast<FittedModel&>(fit) = std::move(model);
   search_.evidence = search_.evidence.Changed(std::move(fit));
-  search_.exchanged = search_.searched_without = found.ended;
   return found.ended;
 }
 
@@ -155,18 +151,16 @@ void Discoverer::FitSets(const SearchOptions& options) {
   Report("last fit", 0.9);
   const EvidenceData data =
       DataOf(problem_, candidates_, options.unseen, options.free_run);
-  const auto fitted = [&](const FitOptions& how) {
-    return FitCauses(problem_, candidates_, search_.fit(), how);
-  };
   CauseFit fit;
   try {
-    fit = fitted({.iterations = 8,
-                  .tolerance = 1e-8,
-                  .first_order = search_.fit().numbers.size() > 1,
-                  .share = work_->Share(1)});
+    fit = FitCauses(problem_, candidates_, search_.fit(),
+                    {.iterations = 8,
+                     .tolerance = 1e-8,
+                     .first_order = search_.fit().numbers.size() > 1,
+                     .share = work_->Share(1)});
   } catch (const CutShort&) {
     work_->CutShort();
-    fit = fitted({.iterations = 0, .jacobian = false, .closing = true});
+    fit = AsItIs(problem_, candidates_, search_.fit());
   }
   VectorXd independent = IndependentShare(problem_, fit.residual);
   search_.evidence = {data, std::move(fit), std::move(independent)};

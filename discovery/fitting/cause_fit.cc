@@ -398,6 +398,12 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
   return fit;
 }
 
+CauseFit AsItIs(const DiscoveryProblem& problem,
+                const std::vector<Candidate>& candidates, const FittedModel& model) {
+  return FitCauses(problem, candidates, model,
+                   {.iterations = 0, .jacobian = false, .closing = true});
+}
+
 FitOptions CompareFrom(const MatrixXd* initial_jacobian, int iterations,
                        double tolerance, double share) {
   return {.iterations = iterations,

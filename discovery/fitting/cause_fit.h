@@ -76,6 +76,11 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
                    const std::vector<Candidate>& candidates, const FittedModel& start,
                    const FitOptions& options);
 
+/// With its values as they are, and no J: where a fit came to nothing, and what is left of
+/// the work does not matter. NumericalError if the run diverges.
+CauseFit AsItIs(const DiscoveryProblem& problem,
+                const std::vector<Candidate>& candidates, const FittedModel& model);
+
 /// For fits that are compared: by secants, from a J of the first parameters (or null),
 /// none computed at the end.
 /// @param share  of the work that is left [s]

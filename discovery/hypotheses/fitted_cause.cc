@@ -46,6 +46,12 @@ bool Has(const std::vector<FittedCause>& causes, std::size_t candidate) {
   return std::ranges::find(causes, candidate, &FittedCause::candidate) != causes.end();
 }
 
+int ParameterCount(const std::vector<FittedCause>& causes) {
+  int count = 0;
+  for (const FittedCause& cause : causes) count += static_cast<int>(cause.value.size());
+  return count;
+}
+
 VectorXd Flatten(const std::vector<FittedCause>& causes) {
   Index size = 0;
   for (const FittedCause& cause : causes) size += cause.value.size();

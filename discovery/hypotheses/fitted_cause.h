@@ -25,6 +25,8 @@ bool IsAtItsEnd(const std::vector<Candidate>& candidates, const FittedCause& cau
 /// Whether one of the causes is that candidate.
 bool Has(const std::vector<FittedCause>& causes, std::size_t candidate);
 
+int ParameterCount(const std::vector<FittedCause>& causes);
+
 /// All parameters in one vector, in order of the causes, and back.
 Eigen::VectorXd Flatten(const std::vector<FittedCause>& causes);
 std::vector<FittedCause> WithValues(std::vector<FittedCause> causes,

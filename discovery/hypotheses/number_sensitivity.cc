@@ -83,14 +83,14 @@ bool StaysNearRest(const Machine& machine, const Track& track) {
   const DataPtr data = MakeData(plant);
   const MatrixXd& M = machine.linear().M;
   MatrixXd now(plant.nv, plant.nv);
+  // Of an energy: units of the joints cancel.
+  const VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
   const Index samples = track.position.cols();
   for (Index look = 0; look < kLooks; ++look) {
     VectorXd::Map(data->qpos, plant.nv) =
         track.position.col(look * (samples - 1) / (kLooks - 1));
     mj_fwdPosition(&plant, data.get());
     mj_fullM(&plant, now.data(), data->qM);
-    // Of an energy: units of the joints cancel.
-    const VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
     const MatrixXd change = scale.asDiagonal() * (now - M) * scale.asDiagonal();
     if (change.cwiseAbs().maxCoeff() > kNear) return false;
   }

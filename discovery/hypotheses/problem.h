@@ -166,6 +166,9 @@ DiscoveryProblem WithDoubts(const DiscoveryProblem& problem,
 Eigen::VectorXd SensorNoise(const Channels& channels, const MeasuredRun& run,
                             const Eigen::MatrixXd& innovations);
 
+/// Ticks from one reading of the slowest sensor to the next.
+Eigen::Index LongestPeriod(const MeasuredRun& run);
+
 /// Below it errors of the model are slower than a record can tell: 25 over the duration of
 /// the longest [Hz].
 double SlowestBandwidth(const MeasuredRun& run);

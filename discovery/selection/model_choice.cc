@@ -67,12 +67,6 @@ bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit,
          (fit.train <= kFarAboveNoise || IsPlausible(candidates, cause));
 }
 
-int ParameterCount(const std::vector<FittedCause>& causes) {
-  int count = 0;
-  for (const FittedCause& cause : causes) count += static_cast<int>(cause.value.size());
-  return count;
-}
-
 double Criterion(const CauseFit& fit, const VectorXd& independent, Index first,
                  Index last, const VectorXd& measured) {
   const auto samples = static_cast<double>(last - first);

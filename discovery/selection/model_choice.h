@@ -47,8 +47,6 @@ inline constexpr double kFarAboveNoise = 4.0;
 bool IsCredible(const std::vector<Candidate>& candidates, const CauseFit& fit,
                 const FittedCause& cause);
 
-int ParameterCount(const std::vector<FittedCause>& causes);
-
 /// Bayesian information criterion of samples first .. last - 1 with what is known
 /// beforehand, deviance + PriorOf + parameters log n. The numbers of the plant are the same
 /// in all sets that compare.

@@ -115,8 +115,7 @@ CauseFit Search::FitFoundBefore() const {
                       .share = work().Share(1)});
   } catch (const CutShort&) {
     work().CutShort();
-    return FitCauses(data_.problem, data_.candidates, found_before_,
-                     {.iterations = 0, .jacobian = false, .closing = true});
+    return AsItIs(data_.problem, data_.candidates, found_before_);
   }
 }
 

@@ -14,7 +14,6 @@
 // and truths without any constant [Kristensen 2004].
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/fitted_model.h"

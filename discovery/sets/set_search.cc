@@ -73,11 +73,8 @@ double Search::Score(std::size_t rung, const FittedModel& model,
                      double deviance) const {
   const double ticks = FittedValues(ladder_[rung]) /
                        static_cast<double>(ladder_[rung].run().outputs.rows());
-  double parameters = 0.0;
-  for (const FittedCause& cause : model.causes) {
-    parameters += static_cast<double>(cause.value.size());
-  }
-  return deviance + PriorOf(candidates_, model) + parameters * std::log(ticks);
+  return deviance + PriorOf(candidates_, model) +
+         ParameterCount(model.causes) * std::log(ticks);
 }
 
 /// None where it cannot be run.
@@ -190,9 +187,7 @@ WeighedModel Search::Begin(const FittedModel& start) const {
     }
   }
   if (auto settled = Settled(start, best, work().Share(1))) return std::move(*settled);
-  return Weighed(best,
-                 FitCauses(ladder_[best], candidates_, start,
-                           {.iterations = 0, .jacobian = false, .closing = true}));
+  return Weighed(best, AsItIs(ladder_[best], candidates_, start));
 }
 
 /// Whether the record is much less likely without it, by a run without it and what the
@@ -265,14 +260,13 @@ SetSearchResult Search::Run(const FittedModel& start) {
   constexpr int kRounds = 10;
   constexpr int kSets = 2;
   constexpr int kAtFastest = 2;
-  constexpr double kRuns = 60.0;  // that a round takes at least
   int at_fastest = 0;
   Report("numbers of the plant", 0.0, {});
   SetSearchResult result;
   result.given = Begin(start);
   result.best = result.given;
   work().NoteChange();
-  const double round_work = kRuns * ladder_[0].RunWork();
+  const double round_work = RoundWork(ladder_[0]);
   for (int round = 0; round < kRounds && work().MayBegin("sets of causes", round_work);
        ++round) {
     Report("sets of causes", 0.0, result.best.fit);
@@ -304,6 +298,11 @@ SetSearchResult Search::Run(const FittedModel& start) {
 }
 
 }  // namespace
+
+double RoundWork(const DiscoveryProblem& problem) {
+  constexpr double kRuns = 60.0;
+  return kRuns * problem.RunWork();
+}
 
 SetSearchResult SearchSets(const ObserverLadder& ladder,
                            const std::vector<Candidate>& candidates,

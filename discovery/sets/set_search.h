@@ -45,6 +45,9 @@ struct SetSearchResult {
   bool ended = false;  ///< no set was worth it; else there was no work left
 };
 
+/// What a round takes at least [s of work].
+double RoundWork(const DiscoveryProblem& problem);
+
 SetSearchResult SearchSets(const ObserverLadder& ladder,
                            const std::vector<Candidate>& candidates,
                            const FittedModel& start, const SetSearchOptions& options);

@@ -153,6 +153,9 @@ class Effect {
   /// the motor is rare, a multiple of it is no friction.
   virtual EffectValues Spread(const Scales& scales) const;
 
+  /// How many times what it would a sensor reads with it: by so much less an observer pulls.
+  virtual double ReadingScale(const EffectValues&) const { return 1.0; }
+
   // How it compares with others.
 
   /// The law that this one becomes at an end of its parameters, at the same site, with

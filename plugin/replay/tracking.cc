@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
@@ -82,12 +81,13 @@ struct Watch {
 /// everything twice as large shows twice of what the state is off by.
 VectorXd PullOf(const Machine& machine) {
   const std::vector<SensorSetup>& sensors = machine.channels().sensors;
+  constexpr double kLeast = 0.1;
   VectorXd pull = VectorXd::Ones(static_cast<Index>(sensors.size()));
   for (const PlacedEffect& effect : machine.effects()) {
-    if (effect.effect.get() != &EncoderScale()) continue;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
       if (sensors[i].element != effect.site) continue;
-      pull[static_cast<Index>(i)] /= std::max(effect.values[0], 0.1);
+      pull[static_cast<Index>(i)] /=
+          std::max(effect.effect->ReadingScale(effect.values), kLeast);
     }
   }
   return pull;

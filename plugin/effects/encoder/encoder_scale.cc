@@ -20,6 +20,7 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
   double Read(double y, double, const EffectValues& values) const noexcept override {
     return values[0] * y;
   }
+  double ReadingScale(const EffectValues& values) const override { return values[0]; }
   // One that reads backwards is wired wrongly, which the check of the data says.
   double Least(const mjModel&, Eigen::Index, std::size_t) const override { return 0.0; }
   std::vector<Trial> Trials(const SiteMotion& at) const override {

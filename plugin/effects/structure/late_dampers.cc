@@ -30,15 +30,15 @@ class LateDampersEffect final : public Effect {
 
 }  // namespace
 
-PlacedEffect LateDampers(const mjModel& plant, double delay) {
+std::optional<PlacedEffect> LateDampers(const mjModel& plant, double delay) {
   static const LateDampersEffect effect;
   for (int joint = 0; joint < plant.njnt; ++joint) {
     const char* name = mj_id2name(&plant, mjOBJ_JOINT, joint);
     if (name != nullptr && *name != '\0') {
-      return {Lasting(effect), name, EffectValues::Constant(1, delay)};
+      return PlacedEffect{Lasting(effect), name, ValuesOf({delay})};
     }
   }
-  return {Lasting(effect), "", EffectValues::Constant(1, 0.0)};
+  return std::nullopt;
 }
 
 }  // namespace mjdiag

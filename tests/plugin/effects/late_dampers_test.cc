@@ -35,7 +35,7 @@ TEST(LateDampers, AreWhatLongerStepsDoBesideTheDelayOfTheirInputs) {
       (Moves(stage.machine, driven, {{}, {delay}}) - truth).norm();
   const double all_late =
       (Moves(stage.machine, driven,
-             {{}, {delay, LateDampers(stage.machine.plant(), late)}}) -
+             {{}, {delay, *LateDampers(stage.machine.plant(), late)}}) -
        truth)
           .norm();
   EXPECT_LT(all_late, 0.1 * inputs_late);
