@@ -25,6 +25,7 @@ ObservedMotion AnyMotion(const Machine& machine) {
   motion.time = Eigen::VectorXd::LinSpaced(kSamples, 0.0,
                                            (kSamples - 1) * machine.rates().tick());
   motion.position = motion.velocity = motion.acceleration = joints;
+  motion.own_acceleration = joints;
   motion.inputs =
       MatrixXd::Random(static_cast<Index>(channels.actuators.size()), kSamples);
   motion.outputs =
