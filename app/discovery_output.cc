@@ -6,6 +6,7 @@
 #include "app/format.h"
 #include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/report/discovery_text.h"
+#include "mjdiag/report/kinds_text.h"
 #include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
@@ -33,7 +34,9 @@ std::string NotesText(const std::vector<std::string>& notes) {
 }  // namespace
 
 std::string Describe(const Discovery& discovery) {
-  return DiscoveryAnswer(discovery) + "\n" + Section("Causes", CauseTable(discovery)) +
+  return DiscoveryAnswer(discovery) + "\n" +
+         Section("Kinds of physics", KindTable(discovery)) +
+         Section("Causes", CauseTable(discovery)) +
          Section("Explanations", ExplanationTable(discovery)) +
          Section("Numbers of the plant", CalibrationTable(discovery)) +
          Section("After each cause", LadderTable(discovery)) +

@@ -77,6 +77,11 @@ class Discoverer {
   std::vector<Interval> QuadraticIntervals() const;
   void NoteBudget();
   void NameCauses();
+  Kind KindOfCause(const FittedCause& fitted) const;
+  std::vector<FoundKind> KindsAt(const std::vector<std::size_t>& places, double needed,
+                                 double share) const;
+  void FindKinds();
+  void AddKindsOfNumbers();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
                                                  const Eigen::MatrixXd& covariance,
                                                  const std::vector<Interval>& intervals,

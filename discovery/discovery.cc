@@ -246,6 +246,7 @@ Discovery Discoverer::Run() {
   SearchAll();
   discovery_.complete = Completeness();
   NameCauses();
+  FindKinds();
   const std::array plants{Changes{}, ChangesOf(problem_, candidates_, search_.fit())};
   std::array<Track, 2> tracks;
   ParallelFor(2, [&](int number) {

@@ -20,6 +20,7 @@
 #include "mjdiag/discovery/selection/discovery_verdict.h"
 #include "mjdiag/discovery/unexplained/signature.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
+#include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/record.h"
@@ -60,6 +61,17 @@ struct FoundCause {
   /// Of a force that was learned and has no name, what it is in words; else empty.
   std::string unnamed = {};
   bool HasName() const { return unnamed.empty(); }
+};
+
+/// A kind of physics at a place: what people can act on before a law has a name.
+struct FoundKind {
+  Kind kind = Kind::kUnknownForce;
+  std::string site;
+  /// That it is this kind there, whichever of its laws: from what the best model without it
+  /// loses on data that no fit saw (discovery_kinds.cc).
+  double probability = 0.0;
+  /// Of the unseen mismatch that the answer takes away, what is back without it.
+  double share = 0.0;
 };
 
 /// After each cause that was added; the first step is the plant as it was given.
@@ -115,6 +127,7 @@ struct Discovery {
   std::string setup;  ///< its name
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
+  std::vector<FoundKind> kinds;  ///< the most probable first
   /// How probable it is that noise is all that the causes leave, and no law that is in no
   /// list is among them (completeness.h); their probabilities count it.
   double complete = 1.0;

@@ -41,24 +41,18 @@ std::vector<std::vector<Hypothesis>> RivalsIn(const SetSearchResult& found) {
   return rivals;
 }
 
-/// Whether the causes are what the plant lacks, and not the nearest of the laws that are
-/// known: what is left of it beyond noise, on samples that the fit saw and on others, is
-/// little, and no law is one of which the fit makes another.
-bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candidates,
-              const SetSearchResult& found) {
-  constexpr double kLeft = 0.1;
+/// Whether the causes are worth going on from: the rest of the record is likelier with them,
+/// too, and no law is one of which the fit makes another.
+bool Holds(const ObserverLadder& ladder, const std::vector<Candidate>& candidates,
+           const SetSearchResult& found) {
   const WeighedModel& best = found.best;
-  if (best.fit.causes.empty() || best.rung == 0) return false;
-  if (best.deviance - ladder.Noise() >
-      kLeft * (found.given.deviance - ladder.Noise())) {
-    return false;
-  }
+  if (best.fit.causes.empty()) return false;
   if (ladder.HeldOut(best.rung, best.fit.residual) >=
       ladder.HeldOut(found.given.rung, found.given.fit.residual)) {
     return false;
   }
+  const bool to_the_end = best.rung + 1 == ladder.size();
   return std::ranges::none_of(best.fit.causes, [&](const FittedCause& cause) {
-    const bool to_the_end = best.rung + 1 == ladder.size();
     return IsAtItsEnd(candidates, cause) ||
            (!to_the_end && !IsPlausible(candidates, cause));
   });
@@ -114,7 +108,7 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   };
   SetSearchResult found = SearchSets(ladder, candidates_, start, options);
   const WeighedModel& best = found.best;
-  if (!Explains(ladder, candidates_, found)) return false;
+  if (!Holds(ladder, candidates_, found)) return false;
   FittedModel model = best.fit;
   FittedModel given = found.given.fit;
   std::vector<DoubtedNumber> numbers = problem.numbers();

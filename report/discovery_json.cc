@@ -5,6 +5,7 @@
 
 #include "mjdiag/discovery/explanations.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/report/kinds_text.h"
 
 namespace mjdiag {
 namespace {
@@ -99,6 +100,19 @@ json DerivedOf(const Comparison& comparison) {
   return derived;
 }
 
+json KindsOf(const Discovery& discovery) {
+  json kinds = json::array();
+  for (const FoundKind& found : discovery.kinds) {
+    kinds.push_back({{"kind", KindName(found.kind)},
+                     {"site", found.site},
+                     {"probability", Finite(found.probability)},
+                     {"share", Finite(found.share)},
+                     {"words", KindAt(found) + ", " + KindMeaning(found.kind) + ": " +
+                                   SureText(found.probability)}});
+  }
+  return kinds;
+}
+
 /// Of the first record that fits saw, and the first that they did not.
 json DerivedOf(const Discovery& discovery, const Comparison RecordReplay::*model) {
   const auto of = [&](const RecordReplay* replay) {
@@ -178,6 +192,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
           {"complete", Finite(discovery.complete)},
+          {"kinds", KindsOf(discovery)},
           {"causes", CausesOf(discovery)},
           {"explanations", ExplanationList(discovery)},
           {"calibration", CalibrationOf(discovery)},

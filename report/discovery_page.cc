@@ -4,6 +4,7 @@
 
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/discovery_text.h"
+#include "mjdiag/report/kinds_text.h"
 #include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -64,6 +65,19 @@ constexpr const char* kHowToReadExplanations =
     "What the record leaves possible: the causes that were found, and sets in which "
     "one of them is exchanged for a candidate of its place. Sets below 1 % are not "
     "listed.";
+
+constexpr const char* kHowToReadKinds =
+    "The kind of physics that the model lacks and where, whichever law it follows: the "
+    "probability is what data that no fit saw say against the best model without it. A law "
+    "that is in no list makes the names below less certain, and the kind not.";
+
+void AddKinds(Page& page, const Discovery& discovery) {
+  const Table table = KindTable(discovery);
+  if (table.rows.empty()) return;
+  page.AddHeading("Kinds of physics");
+  page.AddTable(table);
+  page.AddParagraph(kHowToReadKinds);
+}
 
 void AddCauses(Page& page, const Discovery& discovery) {
   if (discovery.causes.empty()) return;
@@ -225,6 +239,7 @@ Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   Page page("What the simulation gets wrong: " + discovery.setup);
   page.SetVerdict(ToneOf(discovery.verdict), DiscoveryAnswer(discovery));
   AddDiscoveryFacts(page, discovery, run);
+  AddKinds(page, discovery);
   AddCauses(page, discovery);
   AddCalibration(page, discovery);
   AddNotes(page, discovery);

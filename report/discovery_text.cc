@@ -9,6 +9,7 @@
 #include "mjdiag/discovery/explanations.h"
 #include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/report/kinds_text.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -226,9 +227,9 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
       }
       return "Nothing is wrong that this record shows: noise explains the mismatch.";
     case DiscoveryVerdict::kExplained:
-      return FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
+      return KindsSentence(discovery) + FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
-      return FoundText(discovery) + UnseenText(discovery) +
+      return KindsSentence(discovery) + FoundText(discovery) + UnseenText(discovery) +
              (discovery.unexplained || !IsComplete(discovery.complete)
                   ? " Something is left."
                   : " Noise is left.") +

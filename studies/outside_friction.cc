@@ -50,6 +50,7 @@ class RateAndStateFrictionLaw final : public Effect {
   RateAndStateFrictionLaw()
       : Effect({.name = "rate_and_state_friction",
                 .family = Family::kFriction,
+                .kind = Kind::kDryFriction,
                 .variable = LawVariable::kVelocity,
                 .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                                Positive("rate", Role::kRatio, "1"),
@@ -81,6 +82,7 @@ class RootFrictionLaw final : public JointForceEffect {
   RootFrictionLaw()
       : JointForceEffect({.name = "root_friction",
                           .family = Family::kFriction,
+                          .kind = Kind::kViscousFriction,
                           .variable = LawVariable::kVelocity,
                           .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                                          Positive("velocity", Role::kVelocity, "m/s")},
@@ -129,6 +131,7 @@ class ReversalFrictionLaw final : public Effect {
   ReversalFrictionLaw()
       : Effect({.name = "reversal_friction",
                 .family = Family::kFriction,
+                .kind = Kind::kDryFriction,
                 .variable = LawVariable::kVelocity,
                 .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                                NotNegative("fresh", Role::kRatio, "1"),
@@ -156,6 +159,7 @@ class PeriodicDampingLaw final : public JointForceEffect {
       : JointForceEffect(
             {.name = "periodic_damping",
              .family = Family::kFriction,
+             .kind = Kind::kViscousFriction,
              .variable = LawVariable::kPosition,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "N s/m"),
                             NotNegative("share", Role::kRatio, "1"),

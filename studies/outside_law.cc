@@ -26,6 +26,7 @@ class DeadZoneLaw final : public Effect {
   DeadZoneLaw()
       : Effect({.name = "dead_zone",
                 .family = Family::kDrive,
+                .kind = Kind::kDriveGain,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kInput,
                 .parameters = {NotNegative("width", Role::kGap, "N")},
@@ -46,6 +47,7 @@ class SpeedSofteningLaw final : public JointForceEffect {
       : JointForceEffect(
             {.name = "speed_softening",
              .family = Family::kStructure,
+             .kind = Kind::kCompliance,
              .variable = LawVariable::kPosition,
              .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
                             Positive("velocity", Role::kVelocity, "m/s")},
@@ -91,6 +93,7 @@ class GyroscopicCouplingLaw final : public Effect {
   GyroscopicCouplingLaw()
       : Effect({.name = "gyroscopic_coupling",
                 .family = Family::kStructure,
+                .kind = Kind::kCoupling,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("coefficient", Role::kAmplitude, "N s/m^2")},
                 .meaning = "coefficient q w, w the speed of another joint's motor"}) {}

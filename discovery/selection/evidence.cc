@@ -75,6 +75,18 @@ double Evidence::Unseen(const VectorXd& independent) const {
                              Count(data_.replay_measured, data_.skip, samples));
 }
 
+double Evidence::UnseenSquares() const {
+  const Eigen::Index channels = independent_.size();
+  const auto from = [&](const VectorXd& residual, Index first) {
+    return residual.tail(residual.size() - channels * first).squaredNorm();
+  };
+  const double held_out = from(fit_.residual, data_.train);
+  if (!data_.replay) return held_out;
+  const VectorXd& replayed = Replayed();
+  if (replayed.size() == 0) return std::numeric_limits<double>::infinity();
+  return held_out + from(replayed, data_.skip);
+}
+
 double Evidence::FreeRun() const {
   if (!data_.free_run) return 0.0;
   if (!free_run_) free_run_ = data_.free_run(fit_);

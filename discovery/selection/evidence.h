@@ -93,6 +93,9 @@ class Evidence {
   /// Of the part held out and of other records; infinite where those cannot be run.
   double Unseen(const Eigen::VectorXd& independent) const;
 
+  /// Sum of squared innovations of the same data; infinite as well.
+  double UnseenSquares() const;
+
   /// Scaled innovations of other records; of no size without any, or where they cannot be
   /// run.
   const Eigen::VectorXd& Replayed() const;

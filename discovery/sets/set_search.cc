@@ -20,9 +20,11 @@ using Eigen::VectorXd;
 
 // A better score than that is no chance: odds of 400.
 constexpr double kBetter = 12.0;
-// Of what a model lacks, in -2 ln L beyond that of noise, that is worth a name. White noise
-// is no true model of what lasts; what is small beside it may be its colour.
-constexpr double kWorth = 0.02;
+// Of what the plant as given lacks, in -2 ln L beyond that of noise, that is worth a name,
+// or of what is left to explain. White noise is no true model of what lasts, and beside a
+// machine that no list explains there are always laws that take a little more of it.
+constexpr double kOfAll = 0.02;
+constexpr double kOfRest = 0.5;
 
 /// Those that there are, the likeliest first.
 std::vector<WeighedModel> InOrder(std::vector<std::optional<WeighedModel>> models) {
@@ -62,7 +64,8 @@ class Search {
   bool IsNeeded(const WeighedModel& of, std::size_t cause) const;
   WeighedModel WithoutSuperfluous(WeighedModel model) const;
   WeighedModel WithSimplerLaws(WeighedModel model) const;
-  bool IsWorth(const WeighedModel& after, const WeighedModel& before) const;
+  bool IsWorth(const WeighedModel& after, const WeighedModel& before,
+               double given) const;
 
   const ObserverLadder& ladder_;
   const std::vector<Candidate>& candidates_;
@@ -249,18 +252,19 @@ WeighedModel Search::WithSimplerLaws(WeighedModel model) const {
   return model;
 }
 
-bool Search::IsWorth(const WeighedModel& after, const WeighedModel& before) const {
+bool Search::IsWorth(const WeighedModel& after, const WeighedModel& before,
+                     double given) const {
+  const double gain = before.score - after.score;
+  if (gain < kBetter) return false;
+  if (after.fit.causes.size() <= before.fit.causes.size()) return true;
+  const double lacked = std::max(0.0, given - ladder_.Noise());
   const double lacks = std::max(0.0, before.deviance - ladder_.Noise());
-  const bool is_added = after.fit.causes.size() > before.fit.causes.size();
-  const double least = is_added ? std::max(kBetter, kWorth * lacks) : kBetter;
-  return after.score < before.score - least;
+  return gain > kOfAll * lacked || gain > kOfRest * lacks;
 }
 
 SetSearchResult Search::Run(const FittedModel& start) {
   constexpr int kRounds = 10;
   constexpr int kSets = 2;
-  constexpr int kAtFastest = 2;
-  int at_fastest = 0;
   Report("numbers of the plant", 0.0, {});
   SetSearchResult result;
   result.given = Begin(start);
@@ -279,7 +283,7 @@ SetSearchResult Search::Run(const FittedModel& start) {
     }
     Report("fits of sets of causes", 0.4, present.fit);
     std::vector<WeighedModel> settled = BestSettled(models, present.rung);
-    if (settled.empty() || !IsWorth(settled.front(), present)) {
+    if (settled.empty() || !IsWorth(settled.front(), present, result.given.deviance)) {
       result.ended = true;
       break;
     }
@@ -290,9 +294,6 @@ SetSearchResult Search::Run(const FittedModel& start) {
         WithSimplerLaws(WithoutSuperfluous(std::move(settled.front()))));
     if (was_added) result.others.assign(settled.begin() + 1, settled.end());
     work().NoteChange();
-    // What two sets have not made right enough for a slower observer no list explains.
-    at_fastest = result.best.rung == 0 ? at_fastest + 1 : 0;
-    if (at_fastest == kAtFastest) break;
   }
   return result;
 }

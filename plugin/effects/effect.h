@@ -21,6 +21,7 @@
 
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/effects/draw.h"
+#include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/effects/role.h"
 #include "mjdiag/plugin/effects/site.h"
@@ -84,6 +85,7 @@ inline constexpr double kLearned = 0.03;
 struct EffectType {
   std::string name;
   Family family;
+  Kind kind;
   SiteKind site = SiteKind::kJoint;
   Form form = Form::kNumeric;
   LawVariable variable;
@@ -103,6 +105,7 @@ class Effect {
   const std::string& meaning() const { return type_.meaning; }
   const std::vector<EffectParameter>& parameters() const { return type_.parameters; }
   Family family() const { return type_.family; }
+  Kind kind() const { return type_.kind; }
   SiteKind site() const { return type_.site; }
   Form form() const { return type_.form; }
   LawVariable variable() const { return type_.variable; }

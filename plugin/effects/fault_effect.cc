@@ -31,6 +31,7 @@ class FaultParameterEffect final : public Effect {
   explicit FaultParameterEffect(FaultParameter declared)
       : Effect({.name = declared.name,
                 .family = FamilyOf(declared.kind),
+                .kind = KindOf(declared.kind),
                 .site = declared.kind == PlantNumberKind::kGear ? SiteKind::kActuator
                                                                 : SiteKind::kJoint,
                 .form = Form::kAttributes,

@@ -20,6 +20,7 @@ class OutsideLaw final : public JointForceEffect {
   explicit OutsideLaw(ForceOf force)
       : JointForceEffect({.name = "outside",
                           .family = Family::kStructure,
+                          .kind = Kind::kUnknownForce,
                           .variable = LawVariable::kPosition,
                           .parameters = {},
                           .meaning = "none"}),

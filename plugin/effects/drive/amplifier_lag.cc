@@ -39,6 +39,7 @@ class AmplifierLagEffect final : public Effect {
   AmplifierLagEffect()
       : Effect({.name = "amplifier_lag",
                 .family = Family::kDrive,
+                .kind = Kind::kDelay,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kInput,
                 .parameters = {Positive("time_constant", Role::kTime, "s")},

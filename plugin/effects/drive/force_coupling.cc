@@ -43,6 +43,7 @@ class ForceCouplingEffect final : public Effect {
   ForceCouplingEffect()
       : Effect({.name = "force_coupling",
                 .family = Family::kDrive,
+                .kind = Kind::kCoupling,
                 .variable = LawVariable::kInput,
                 .parameters = {Free("coefficient", Role::kAmplitude, "1")},
                 .meaning = "coefficient times the force of the motors of other joints",

@@ -11,6 +11,7 @@ class ForceOffsetEffect final : public JointForceEffect {
   ForceOffsetEffect()
       : JointForceEffect({.name = "force_offset",
                           .family = Family::kDrive,
+                          .kind = Kind::kConstantForce,
                           .variable = LawVariable::kTime,
                           .parameters = {Free("force", Role::kAmplitude, "N")},
                           .meaning = "a constant force"}) {}

@@ -17,6 +17,7 @@ class ForceRippleEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "force_ripple",
              .family = Family::kDrive,
+             .kind = Kind::kForceAlongStroke,
              .variable = LawVariable::kPosition,
              .parameters = {Free("amplitude", Role::kAmplitude, "N"),
                             Positive("period", Role::kPeriod, "m"), Phase()},

@@ -14,6 +14,7 @@ class ForceSaturationEffect final : public Effect {
   ForceSaturationEffect()
       : Effect({.name = "force_saturation",
                 .family = Family::kDrive,
+                .kind = Kind::kDriveLimit,
                 .site = SiteKind::kActuator,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kInput,

@@ -49,6 +49,7 @@ class InputDelayEffect final : public Effect {
   InputDelayEffect()
       : Effect({.name = "input_delay",
                 .family = Family::kDrive,
+                .kind = Kind::kDelay,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kInput,
                 .parameters = {{"delay", Role::kTime, "s", 0.0, kLongest}},

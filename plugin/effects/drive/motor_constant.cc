@@ -13,6 +13,7 @@ class MotorConstantEffect final : public Effect {
   MotorConstantEffect()
       : Effect({.name = "motor_constant",
                 .family = Family::kDrive,
+                .kind = Kind::kDriveGain,
                 .site = SiteKind::kActuator,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kInput,

@@ -40,6 +40,7 @@ class PositionDependentMotorConstantEffect final : public Effect {
   PositionDependentMotorConstantEffect()
       : Effect({.name = "position_dependent_motor_constant",
                 .family = Family::kDrive,
+                .kind = Kind::kDriveGain,
                 .site = SiteKind::kActuator,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("slope", Role::kAmplitude, "1/m"),

@@ -11,6 +11,7 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
   EncoderDriftEffect()
       : ReadingErrorEffect({.name = "encoder_drift",
                             .family = Family::kEncoder,
+                            .kind = Kind::kEncoder,
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kTime,
                             .parameters = {Free("rate", Role::kAmplitude, "m/s")},

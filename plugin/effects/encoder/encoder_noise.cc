@@ -14,6 +14,7 @@ class EncoderNoiseEffect final : public Effect {
   EncoderNoiseEffect()
       : Effect({.name = "encoder_noise",
                 .family = Family::kEncoder,
+                .kind = Kind::kEncoder,
                 .site = SiteKind::kSensor,
                 .form = Form::kNoise,
                 .variable = LawVariable::kTime,

@@ -28,6 +28,7 @@ class EncoderPeriodicErrorEffect final : public ReadingErrorEffect {
       : ReadingErrorEffect(
             {.name = "encoder_periodic_error",
              .family = Family::kEncoder,
+             .kind = Kind::kEncoder,
              .site = SiteKind::kSensor,
              .variable = LawVariable::kPosition,
              .parameters = {Free("amplitude", Role::kAmplitude, "m"),

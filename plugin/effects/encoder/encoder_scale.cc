@@ -11,6 +11,7 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
   EncoderScaleEffect()
       : ReadingErrorEffect({.name = "encoder_scale",
                             .family = Family::kEncoder,
+                            .kind = Kind::kEncoder,
                             .site = SiteKind::kSensor,
                             .variable = LawVariable::kPosition,
                             .parameters = {Free("factor", Role::kFactor, "1")},

@@ -48,6 +48,7 @@ class ZeroOffsetEffect final : public Effect {
   ZeroOffsetEffect()
       : Effect({.name = "zero_offset",
                 .family = Family::kEncoder,
+                .kind = Kind::kEncoder,
                 .site = SiteKind::kHinge,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("offset", Role::kAmplitude, "rad")},

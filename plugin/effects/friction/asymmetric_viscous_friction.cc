@@ -16,6 +16,7 @@ class AsymmetricViscousFrictionEffect final : public JointDampingEffect {
   AsymmetricViscousFrictionEffect()
       : JointDampingEffect({.name = "asymmetric_viscous_friction",
                             .family = Family::kFriction,
+                            .kind = Kind::kViscousFriction,
                             .variable = LawVariable::kVelocity,
                             .parameters = {Free("positive", Role::kAmplitude, "N s/m"),
                                            Free("negative", Role::kAmplitude, "N s/m")},

@@ -87,6 +87,7 @@ class BoucWenEffect final : public Effect {
       : Effect(
             {.name = "bouc_wen",
              .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
              .variable = LawVariable::kPosition,
              .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
                             NotNegative("loss", Role::kSteepness, "1/m"),

@@ -12,6 +12,7 @@ class CoulombFrictionEffect final : public Effect {
   CoulombFrictionEffect()
       : Effect({.name = "coulomb_friction",
                 .family = Family::kFriction,
+                .kind = Kind::kDryFriction,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {NotNegative("force", Role::kAmplitude, "N")},

@@ -35,6 +35,7 @@ class DirectionalLoadFrictionEffect final : public VaryingFrictionEffect<BoundBy
       : VaryingFrictionEffect(
             {.name = "directional_load_friction",
              .family = Family::kFriction,
+             .kind = Kind::kLoadFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("motor_share", Role::kAmplitude, "1"),
                             NotNegative("load_share", Role::kAmplitude, "1")},

@@ -15,6 +15,7 @@ class EddyCurrentBrakeEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "eddy_current_brake",
              .family = Family::kFriction,
+             .kind = Kind::kViscousFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "N s/m"),
                             Positive("velocity", Role::kVelocity, "m/s")},

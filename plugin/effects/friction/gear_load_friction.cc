@@ -41,6 +41,7 @@ class GearLoadFrictionEffect final : public VaryingFrictionEffect<GearBound> {
       : VaryingFrictionEffect(
             {.name = "gear_load_friction",
              .family = Family::kFriction,
+             .kind = Kind::kLoadFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("motor_share", Role::kAmplitude, "1"),
                             NotNegative("load_share", Role::kAmplitude, "1"),

@@ -36,6 +36,7 @@ class HystereticStiffnessEffect final : public Effect {
   HystereticStiffnessEffect()
       : Effect({.name = "hysteretic_stiffness",
                 .family = Family::kFriction,
+                .kind = Kind::kCompliance,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("stiffness", Role::kAmplitude, "N/m"),
                                {.name = "loss",

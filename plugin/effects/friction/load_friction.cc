@@ -35,6 +35,7 @@ class LoadFrictionEffect final : public VaryingFrictionEffect<BoundByLoad> {
       : VaryingFrictionEffect(
             {.name = "load_friction",
              .family = Family::kFriction,
+             .kind = Kind::kLoadFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1")},
              .meaning = "dry friction of coefficient |what the drive transmits|: "

@@ -84,6 +84,7 @@ class LugreFrictionEffect final : public Effect {
   LugreFrictionEffect()
       : Effect({.name = "lugre_friction",
                 .family = Family::kFriction,
+                .kind = Kind::kDryFriction,
                 .variable = LawVariable::kVelocity,
                 .parameters = {NotNegative("coulomb", Role::kAmplitude, "N"),
                                NotNegative("breakaway", Role::kAmplitude, "N"),

@@ -14,6 +14,7 @@ class PositionDependentDampingEffect final : public JointDampingEffect {
       : JointDampingEffect(
             {.name = "position_dependent_damping",
              .family = Family::kFriction,
+             .kind = Kind::kViscousFriction,
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N s/m^2"),
                             Free("curvature", Role::kAmplitude, "N s/m^3")},

@@ -38,6 +38,7 @@ class PositionDependentFrictionEffect final
       : VaryingFrictionEffect(
             {.name = "position_dependent_friction",
              .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
              .variable = LawVariable::kPosition,
              .parameters = {Free("slope", Role::kAmplitude, "N/m"),
                             Free("curvature", Role::kAmplitude, "N/m^2")},

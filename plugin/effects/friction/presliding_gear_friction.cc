@@ -64,6 +64,7 @@ class PreslidingGearFrictionEffect final : public Effect {
   PreslidingGearFrictionEffect()
       : Effect({.name = "presliding_gear_friction",
                 .family = Family::kFriction,
+                .kind = Kind::kLoadFriction,
                 .variable = LawVariable::kVelocity,
                 // What takes all of what drives it never moves.
                 .parameters = {{.name = "driving",

@@ -36,6 +36,7 @@ class PreslidingHysteresisEffect final : public Effect {
       : Effect(
             {.name = "presliding_hysteresis",
              .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
              .variable = LawVariable::kPosition,
              .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                             Positive("stiffness", Role::kSteepness, "N/m")},

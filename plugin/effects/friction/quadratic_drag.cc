@@ -16,6 +16,7 @@ class QuadraticDragEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "quadratic_drag",
              .family = Family::kFriction,
+             .kind = Kind::kViscousFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "N s^2/m^2")},
              .meaning = "-coefficient v |v|",

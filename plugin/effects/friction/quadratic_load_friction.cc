@@ -34,6 +34,7 @@ class QuadraticLoadFrictionEffect final
       : VaryingFrictionEffect(
             {.name = "quadratic_load_friction",
              .family = Family::kFriction,
+             .kind = Kind::kLoadFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1/N")},
              .meaning = "dry friction of coefficient (what the drive transmits)^2",

@@ -31,6 +31,7 @@ class StribeckFrictionEffect final : public VaryingFrictionEffect<FallingBound> 
       : VaryingFrictionEffect(
             {.name = "stribeck_friction",
              .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coulomb", Role::kAmplitude, "N"),
                             NotNegative("breakaway", Role::kAmplitude, "N"),

@@ -41,6 +41,7 @@ class StribeckLoadFrictionEffect final
       : VaryingFrictionEffect(
             {.name = "stribeck_load_friction",
              .family = Family::kFriction,
+             .kind = Kind::kLoadFriction,
              .variable = LawVariable::kVelocity,
              .parameters = {NotNegative("coefficient", Role::kAmplitude, "1"),
                             NotNegative("breakaway", Role::kAmplitude, "1"),

@@ -10,6 +10,7 @@ class ViscousFrictionEffect final : public Effect {
   ViscousFrictionEffect()
       : Effect({.name = "viscous_friction",
                 .family = Family::kFriction,
+                .kind = Kind::kViscousFriction,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {Free("coefficient", Role::kAmplitude, "N s/m")},

@@ -32,6 +32,7 @@ class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
       : VaryingFrictionEffect(
             {.name = "warming_friction",
              .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
              .variable = LawVariable::kTime,
              .parameters = {NotNegative("force", Role::kAmplitude, "N"),
                             Positive("time_constant", Role::kDuration, "s")},

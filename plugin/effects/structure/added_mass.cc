@@ -11,6 +11,7 @@ class AddedMassEffect final : public Effect {
   AddedMassEffect()
       : Effect({.name = "added_mass",
                 .family = Family::kStructure,
+                .kind = Kind::kInertia,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kAcceleration,
                 .parameters = {Free("mass", Role::kAmplitude, "kg")},

@@ -37,6 +37,7 @@ class BacklashEffect final : public Effect {
   BacklashEffect()
       : Effect({.name = "backlash",
                 .family = Family::kStructure,
+                .kind = Kind::kPlay,
                 .site = SiteKind::kHeldJoint,
                 .variable = LawVariable::kPosition,
                 .parameters = {NotNegative("gap", Role::kGap, "m")},

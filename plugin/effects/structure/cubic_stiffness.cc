@@ -14,6 +14,7 @@ class CubicStiffnessEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "cubic_stiffness",
              .family = Family::kStructure,
+             .kind = Kind::kCompliance,
              .variable = LawVariable::kPosition,
              .parameters = {Free("coefficient", Role::kAmplitude, "N/m^3")},
              .meaning = "-coefficient q^3",

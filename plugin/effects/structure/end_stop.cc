@@ -15,6 +15,7 @@ class EndStopEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "end_stop",
              .family = Family::kStructure,
+             .kind = Kind::kEndStop,
              .variable = LawVariable::kPosition,
              .parameters = {Free("position", Role::kPosition, "m"),
                             NotNegative("stiffness", Role::kAmplitude, "N/m")},

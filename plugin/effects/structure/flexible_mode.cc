@@ -54,6 +54,7 @@ class FlexibleModeEffect final : public Effect {
       : Effect(
             {.name = "flexible_mode",
              .family = Family::kStructure,
+             .kind = Kind::kCompliance,
              .variable = LawVariable::kAcceleration,
              .parameters = {NotNegative("mass", Role::kAmplitude, "kg"),
                             Positive("frequency", Role::kFrequency, "Hz"),

@@ -16,6 +16,7 @@ class FloorVibrationEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "floor_vibration",
              .family = Family::kStructure,
+             .kind = Kind::kVibration,
              .variable = LawVariable::kTime,
              .parameters = {Free("amplitude", Role::kAmplitude, "N"),
                             Positive("frequency", Role::kFrequency, "Hz"), Phase()},

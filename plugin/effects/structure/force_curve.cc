@@ -128,6 +128,7 @@ class ForceCurveEffect final : public Effect {
   ForceCurveEffect()
       : Effect({.name = "force_curve",
                 .family = Family::kStructure,
+                .kind = Kind::kUnknownForce,
                 .variable = LawVariable::kTime,
                 .parameters = Parameters(),
                 .meaning = "a force that follows a curve over what predicts it: no "

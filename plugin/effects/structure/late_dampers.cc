@@ -11,6 +11,7 @@ class LateDampersEffect final : public Effect {
   LateDampersEffect()
       : Effect({.name = "late_dampers",
                 .family = Family::kStructure,
+                .kind = Kind::kDelay,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kAcceleration,
                 .parameters = {NotNegative("delay", Role::kTime, "s")},

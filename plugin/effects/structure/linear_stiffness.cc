@@ -11,6 +11,7 @@ class LinearStiffnessEffect final : public Effect {
   LinearStiffnessEffect()
       : Effect({.name = "linear_stiffness",
                 .family = Family::kStructure,
+                .kind = Kind::kCompliance,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kPosition,
                 .parameters = {Free("stiffness", Role::kAmplitude, "N/m")},

@@ -14,6 +14,7 @@ class QuadraticStiffnessEffect final : public JointForceEffect {
       : JointForceEffect(
             {.name = "quadratic_stiffness",
              .family = Family::kStructure,
+             .kind = Kind::kCompliance,
              .variable = LawVariable::kPosition,
              .parameters = {Free("coefficient", Role::kAmplitude, "N/m^2")},
              .meaning = "-coefficient q^2",

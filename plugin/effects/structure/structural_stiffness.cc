@@ -13,6 +13,7 @@ class StructuralStiffnessEffect final : public Effect {
   StructuralStiffnessEffect()
       : Effect({.name = "structural_stiffness",
                 .family = Family::kStructure,
+                .kind = Kind::kCompliance,
                 .site = SiteKind::kHeldJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kPosition,

@@ -1,0 +1,21 @@
+#pragma once
+// What kinds of physics a discovery found and where, in words that need no law.
+
+#include <string>
+
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/report/page/page.h"
+
+namespace mjdiag {
+
+/// "load friction at shaft".
+std::string KindAt(const FoundKind& found);
+/// "all but certain", "likely", "possible".
+std::string SureText(double probability);
+/// One sentence with those that are rather there than not: "The model lacks load friction at
+/// shaft (a resistance that grows with the load). "; empty without any.
+std::string KindsSentence(const Discovery& discovery);
+/// A row each, the most probable first.
+Table KindTable(const Discovery& discovery);
+
+}  // namespace mjdiag
