@@ -9,6 +9,7 @@
 
 #include "mjdiag/discovery/fitting/fit_coordinates.h"
 #include "mjdiag/discovery/fitting/prior_cost.h"
+#include "mjdiag/discovery/fitting/scale_gauge.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -103,6 +104,9 @@ class Simulator {
 
   void NoteJacobian(const VectorXd& theta, bool exact) {
     exact_ = exact;
+    if (numbers_ > 1) {
+      RemoveGauges(ScaleGauges(problem_, candidates_, causes_, theta), jacobian_);
+    }
     jacobian_theta_ = theta;
     jacobian_residual_ = Residual(theta);
   }
