@@ -47,8 +47,10 @@ bool Holds(const ObserverLadder& ladder, const std::vector<Candidate>& candidate
            const SetSearchResult& found) {
   const WeighedModel& best = found.best;
   if (best.fit.causes.empty()) return false;
-  if (ladder.HeldOut(best.rung, best.fit.residual) >=
-      ladder.HeldOut(found.given.rung, found.given.fit.residual)) {
+  const DiscoveryProblem& problem = ladder[best.rung];
+  if (problem.train() < problem.run().samples() &&
+      ladder.HeldOut(best.rung, best.fit.residual) >=
+          ladder.HeldOut(found.given.rung, found.given.fit.residual)) {
     return false;
   }
   const bool to_the_end = best.rung + 1 == ladder.size();

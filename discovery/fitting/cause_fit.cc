@@ -42,6 +42,7 @@ class Simulator {
     for (const FitParameter& parameter : ParametersOf(candidates, causes)) {
       parameters_.push_back(parameter);
     }
+    if (numbers_ > 1) gauges_ = ScaleGauges(problem, candidates, causes);
   }
   const std::vector<FitParameter>& parameters() const { return parameters_; }
 
@@ -77,6 +78,26 @@ class Simulator {
     return jacobian_;
   }
 
+  /// theta, or as good a one that keeps better to what is known beforehand: what no run
+  /// tells (scale_gauge.h).
+  VectorXd Kept(const VectorXd& theta) {
+    if (untold_.empty()) return theta;
+    constexpr double kAsGood = 0.1;  // squared innovations
+    const double before = Residual(theta).squaredNorm();
+    VectorXd kept = KeptToWhatIsKnown(untold_, theta, parameters_);
+    if (Residual(kept).squaredNorm() > before + kAsGood) return theta;
+    // The columns that multiplied what has grown are smaller by as much.
+    for (Index i = 0; i < theta.size(); ++i) {
+      double grown = 1.0;
+      for (const ScaleGauge& gauge : untold_) {
+        if (gauge.exponent[i] == 0.0) continue;
+        grown = (kept[i] + gauge.offset[i]) / (theta[i] + gauge.offset[i]);
+      }
+      if (std::isfinite(grown) && grown != 0.0) jacobian_.col(i) /= grown;
+    }
+    jacobian_theta_ = kept;
+    return kept;
+  }
   /// J of the last step of the fit.
   const MatrixXd& jacobian() const { return jacobian_; }
   bool exact() const { return exact_; }
@@ -105,7 +126,8 @@ class Simulator {
   void NoteJacobian(const VectorXd& theta, bool exact) {
     exact_ = exact;
     if (numbers_ > 1) {
-      RemoveGauges(ScaleGauges(problem_, candidates_, causes_, theta), jacobian_);
+      untold_ = Untold(gauges_, theta, jacobian_);
+      RemoveGauges(untold_, theta, jacobian_);
     }
     jacobian_theta_ = theta;
     jacobian_residual_ = Residual(theta);
@@ -226,6 +248,8 @@ class Simulator {
   MatrixXd jacobian_;   // of the last step of the fit, with where it was taken
   VectorXd jacobian_theta_;
   VectorXd jacobian_residual_;
+  std::vector<ScaleGauge> gauges_;
+  std::vector<ScaleGauge> untold_;  // those that J says nothing of
 };
 
 class InnovationCost final : public ceres::CostFunction {
@@ -384,6 +408,7 @@ CauseFit FitCauses(const DiscoveryProblem& problem,
       throw NumericalError("fit: the run with the first values diverges");
     }
     theta = coordinates.ToTheta(x);
+    if (!options.held) theta = simulator.Kept(theta);
     fit.numbers = theta.head(numbers);
     fit.causes = WithValues(start.causes, theta.tail(values.size()));
   }

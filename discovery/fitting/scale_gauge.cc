@@ -1,12 +1,15 @@
 #include "mjdiag/discovery/fitting/scale_gauge.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cctype>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/plant/fault.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
@@ -105,22 +108,61 @@ std::optional<double> ValueOf(const mjModel& plant, const PlantNumber& number) {
   }
 }
 
-/// d theta / d ln s of a parameter; of one that adds to a number, or scales it, that number
-/// counts with it. None where it cannot be told.
-std::optional<double> SlopeOf(const mjModel& plant, const Effect& effect,
-                              const std::string& site, const EffectParameter& parameter,
-                              double theta) {
-  const int element = mj_name2id(&plant, effect.element(), site.c_str());
+/// n and v of a parameter; of one that adds to a number, or scales it, that number counts
+/// with it. None where they cannot be told.
+std::optional<std::pair<double, double>> LawOf(const mjModel& plant,
+                                               const Candidate& candidate,
+                                               const EffectParameter& parameter) {
+  const Effect& effect = *candidate.effect;
+  const int exponent = ForceExponent(parameter.unit);
+  const int element = mj_name2id(&plant, effect.element(), candidate.site.c_str());
   const auto number = element < 0 ? std::nullopt : effect.Number(plant, element);
-  if (!number) return ForceExponent(parameter.unit) * theta;
-  if (parameter.role == Role::kFactor) return theta;
-  if (ForceExponent(parameter.unit) == 0) return 0.0;
+  if (!number) return std::pair(static_cast<double>(exponent), 0.0);
+  if (parameter.role == Role::kFactor) return std::pair(1.0, 0.0);
+  if (exponent == 0) return std::pair(0.0, 0.0);
   if (number->kind == PlantNumberKind::kMass) {
-    return theta + plant.body_mass[number->element];
+    return std::pair(1.0, plant.body_mass[number->element]);
   }
   const auto value = ValueOf(plant, *number);
   if (!value) return std::nullopt;
-  return theta + *value;
+  return std::pair(1.0, *value);
+}
+
+ScaleGauge Nothing(Index size) {
+  return {VectorXd::Zero(size), VectorXd::Zero(size), VectorXd::Zero(size)};
+}
+
+/// A fault parameter and the numbers that it scales, if all of them are in doubt, are two
+/// ways to say the same.
+std::vector<ScaleGauge> FaultGauges(const DiscoveryProblem& problem,
+                                    const std::vector<Candidate>& candidates,
+                                    const std::vector<FittedCause>& causes,
+                                    Index size) {
+  const std::vector<FaultParameter> faults =
+      FaultParameters(problem.machine().plant());
+  const std::vector<DoubtedNumber>& numbers = problem.numbers();
+  std::vector<ScaleGauge> gauges;
+  auto next = static_cast<Index>(numbers.size());
+  for (const FittedCause& cause : causes) {
+    const Candidate& candidate = candidates[cause.candidate];
+    const Index place = next;
+    next += std::ssize(candidate.parameters);
+    if (!candidate.effect->IsFault()) continue;
+    const auto fault =
+        std::ranges::find(faults, candidate.effect->name(), &FaultParameter::name);
+    if (fault == faults.end()) continue;
+    ScaleGauge gauge = Nothing(size);
+    gauge.exponent[place] = -1.0;
+    std::size_t in_doubt = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i].is_lateness || numbers[i].number.kind != fault->kind) continue;
+      if (!std::ranges::count(fault->elements, numbers[i].number.element)) continue;
+      gauge.shift[static_cast<Index>(i)] = 1.0 / numbers[i].spread;
+      ++in_doubt;
+    }
+    if (in_doubt == fault->elements.size()) gauges.push_back(std::move(gauge));
+  }
+  return gauges;
 }
 
 }  // namespace
@@ -146,23 +188,31 @@ int ForceExponent(const std::string& unit) {
   return exponent;
 }
 
-MatrixXd ScaleGauges(const DiscoveryProblem& problem,
-                     const std::vector<Candidate>& candidates,
-                     const std::vector<FittedCause>& causes, const VectorXd& theta) {
+VectorXd ScaleGauge::Along(const VectorXd& theta) const {
+  return shift + exponent.cwiseProduct(theta + offset);
+}
+
+VectorXd ScaleGauge::Moved(const VectorXd& theta, double t) const {
+  const VectorXd grown = (t * exponent).array().exp().matrix();
+  return t * shift + grown.cwiseProduct(theta + offset) - offset;
+}
+
+std::vector<ScaleGauge> ScaleGauges(const DiscoveryProblem& problem,
+                                    const std::vector<Candidate>& candidates,
+                                    const std::vector<FittedCause>& causes) {
   const Machine& machine = problem.machine();
   const JoinedParts parts(machine);
   const std::vector<bool> stood_for = problem.StoodFor(ChangesOf(candidates, causes));
-  std::map<Index, VectorXd> gauges;
-  const auto of = [&](Index part) -> VectorXd& {
-    return gauges.try_emplace(part, VectorXd::Zero(theta.size())).first->second;
-  };
   const auto numbers = static_cast<Index>(problem.numbers().size());
+  const Index size = numbers + Flatten(causes).size();
+  std::map<Index, ScaleGauge> of_parts;
   for (Index i = 0; i < numbers; ++i) {
     const DoubtedNumber& doubted = problem.numbers()[static_cast<std::size_t>(i)];
     if (doubted.is_lateness || stood_for[static_cast<std::size_t>(i)]) continue;
-    if (const auto part = parts.Of(doubted.number, machine)) {
-      of(*part)[i] = 1.0 / doubted.spread;
-    }
+    const auto part = parts.Of(doubted.number, machine);
+    if (!part) continue;
+    of_parts.try_emplace(*part, Nothing(size)).first->second.shift[i] =
+        1.0 / doubted.spread;
   }
   Index next = numbers;
   for (const FittedCause& cause : causes) {
@@ -171,34 +221,86 @@ MatrixXd ScaleGauges(const DiscoveryProblem& problem,
     const auto& known = candidate.effect->parameters();
     for (std::size_t k = 0; k < candidate.parameters.size(); ++k, ++next) {
       const std::size_t place = static_cast<std::size_t>(candidate.chosen.size()) + k;
-      const auto found = gauges.find(part);
-      if (found == gauges.end() || place >= known.size()) continue;
-      const auto slope = SlopeOf(machine.plant(), *candidate.effect, candidate.site,
-                                 known[place], theta[next]);
-      if (slope) {
-        found->second[next] = *slope;
+      const auto found = of_parts.find(part);
+      if (found == of_parts.end() || place >= known.size()) continue;
+      const auto law = LawOf(machine.plant(), candidate, known[place]);
+      if (law) {
+        found->second.exponent[next] = law->first;
+        found->second.offset[next] = law->second;
       } else {
-        gauges.erase(found);
+        of_parts.erase(found);
       }
     }
   }
-  MatrixXd columns(theta.size(), std::ssize(gauges));
-  Index column = 0;
-  for (const auto& [part, gauge] : gauges) columns.col(column++) = gauge;
-  return columns;
+  std::vector<ScaleGauge> gauges;
+  for (auto& [part, gauge] : of_parts) gauges.push_back(std::move(gauge));
+  for (ScaleGauge& gauge : FaultGauges(problem, candidates, causes, size)) {
+    gauges.push_back(std::move(gauge));
+  }
+  return gauges;
 }
 
-void RemoveGauges(const MatrixXd& gauges, MatrixXd& jacobian) {
+std::vector<ScaleGauge> Untold(std::vector<ScaleGauge> gauges, const VectorXd& theta,
+                               const MatrixXd& jacobian) {
   constexpr double kOff = 0.05;  // of a first order
   const VectorXd squares = jacobian.colwise().squaredNorm();
-  for (Index i = 0; i < gauges.cols(); ++i) {
-    const auto gauge = gauges.col(i);
-    const VectorXd weight = squares.cwiseProduct(gauge);
-    const double size = gauge.dot(weight);
-    const VectorXd says = jacobian * gauge;
-    if (!(size > 0.0) || says.squaredNorm() > kOff * kOff * size) continue;
-    jacobian.noalias() -= says * (weight / size).transpose();
+  std::erase_if(gauges, [&](const ScaleGauge& gauge) {
+    const VectorXd along = gauge.Along(theta);
+    const double size = squares.dot(along.cwiseAbs2());
+    return !(size > 0.0) || (jacobian * along).squaredNorm() > kOff * kOff * size;
+  });
+  return gauges;
+}
+
+void RemoveGauges(const std::vector<ScaleGauge>& gauges, const VectorXd& theta,
+                  MatrixXd& jacobian) {
+  if (gauges.empty()) return;
+  MatrixXd G(theta.size(), std::ssize(gauges));
+  for (std::size_t i = 0; i < gauges.size(); ++i) {
+    G.col(static_cast<Index>(i)) = gauges[i].Along(theta);
   }
+  const MatrixXd weighed =
+      jacobian.colwise().squaredNorm().transpose().asDiagonal() * G;
+  const MatrixXd inverse =
+      (G.transpose() * weighed).completeOrthogonalDecomposition().pseudoInverse();
+  jacobian -= (jacobian * G) * inverse * weighed.transpose();
+}
+
+VectorXd KeptToWhatIsKnown(const std::vector<ScaleGauge>& gauges, VectorXd theta,
+                           const std::vector<FitParameter>& parameters) {
+  constexpr int kSweeps = 4;
+  constexpr int kSteps = 20;
+  const auto is_within = [&](const VectorXd& at) {
+    for (Index i = 0; i < at.size(); ++i) {
+      const FitParameter& parameter = parameters[static_cast<std::size_t>(i)];
+      if (at[i] < parameter.lower || at[i] > parameter.upper) return false;
+    }
+    return true;
+  };
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (const ScaleGauge& gauge : gauges) {
+      // Gauss and Newton in t, of residuals of which each grows or falls steadily.
+      double t = 0.0;
+      for (int step = 0; step < kSteps; ++step) {
+        const VectorXd at = gauge.Moved(theta, t);
+        const VectorXd along = gauge.Along(at);
+        double slope = 0.0;
+        double curvature = 0.0;
+        for (Index i = 0; i < at.size(); ++i) {
+          const FitParameter& parameter = parameters[static_cast<std::size_t>(i)];
+          if (!std::isfinite(parameter.spread)) continue;
+          const double d = along[i] / parameter.spread;
+          slope += d * (at[i] - parameter.nothing) / parameter.spread;
+          curvature += d * d;
+        }
+        if (!(curvature > 0.0)) break;
+        t -= slope / curvature;
+      }
+      const VectorXd moved = gauge.Moved(theta, t);
+      if (moved.allFinite() && is_within(moved)) theta = moved;
+    }
+  }
+  return theta;
 }
 
 }  // namespace mjdiag

@@ -37,9 +37,9 @@ double SizeValue(const VectorXd& unseen, const VectorXd& fitted) {
   return FExceedance(unseen.squaredNorm() / n / (fitted.squaredNorm() / m), n, m);
 }
 
-/// Whether noise is more than the steps of the readings.
-bool IsFine(const SensorSetup& sensor, double noise_sd) {
-  return sensor.resolution <= 2.0 * noise_sd;
+/// Whether what is left of a sensor, or its noise, is more than the steps of its readings.
+bool IsFine(const SensorSetup& sensor, double noise_sd, double left) {
+  return sensor.resolution <= 2.0 * std::max(noise_sd, left);
 }
 
 }  // namespace
@@ -56,7 +56,10 @@ double NoiseValue(const DiscoveryProblem& problem, const VectorXd& innovations,
     const VectorXd fitted =
         problem.MeasuredOf(innovations, c, problem.skip(), problem.train());
     const Index lags = std::min(kLags, fitted.size() / 10);
-    if (lags == 0 || !IsFine(sensor, observer.noise_sd[c])) continue;
+    if (lags == 0) continue;
+    const double left = observer.innovation_sd[c] *
+                        std::sqrt(fitted.squaredNorm() / static_cast<double>(fitted.size()));
+    if (!IsFine(sensor, observer.noise_sd[c], left)) continue;
     // A slow sensor has only every so many of them.
     const Index period = problem.run().PeriodOf(c);
     const VectorXd noise = NoiseCorrelation(observer, c, period * lags);

@@ -53,6 +53,7 @@ TEST(Discovery, SaysNothingOfNoise) {
         Discover(stage.machine, stage.Measure({}, {}, seed), nullptr, CausesOnly());
     EXPECT_EQ(answer.verdict, DiscoveryVerdict::kNoDiscrepancy);
     EXPECT_EQ(Named(answer), "");
+    EXPECT_TRUE(answer.kinds.empty());
   }
 }
 
@@ -67,6 +68,12 @@ TEST(Discovery, NamesDryFrictionAndItsForce) {
   const CauseParameter& force = Parameter(answer, "force");
   EXPECT_NEAR(force.value, 18.0, 4.0 * force.sd);
   EXPECT_EQ(force.unit, "N");
+  // The kind before the law: the unseen part of the record is lost without it.
+  ASSERT_EQ(answer.kinds.size(), 1u);
+  EXPECT_EQ(answer.kinds[0].kind, Kind::kDryFriction);
+  EXPECT_EQ(answer.kinds[0].site, "load");
+  EXPECT_GT(answer.kinds[0].probability, 0.99);
+  EXPECT_GT(answer.kinds[0].share, 0.9);
 }
 
 // Three short records, of which the last is left out of the fit by itself.

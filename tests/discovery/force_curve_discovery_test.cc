@@ -62,6 +62,11 @@ TEST(ForceCurveDiscovery, LearnsALawOverThePosition) {
   EXPECT_NE(Curve(answer)->unnamed.find("load position"), std::string::npos);
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kPartlyExplained);
   EXPECT_GT(answer.gain_validation, 0.8);
+  // It has no name, but a kind: a force of the position alone.
+  ASSERT_FALSE(answer.kinds.empty());
+  EXPECT_EQ(answer.kinds[0].kind, Kind::kCompliance);
+  EXPECT_EQ(answer.kinds[0].site, "load");
+  EXPECT_GT(answer.kinds[0].probability, 0.95);
 }
 
 TEST(ForceCurveDiscovery, LearnsALawOverTheVelocity) {
@@ -70,6 +75,9 @@ TEST(ForceCurveDiscovery, LearnsALawOverTheVelocity) {
   const Discovery answer = DiscoverOutside(law, stage);
   ASSERT_NE(Curve(answer), nullptr);
   EXPECT_GT(answer.gain_validation, 0.8);
+  ASSERT_FALSE(answer.kinds.empty());
+  EXPECT_EQ(answer.kinds[0].kind, Kind::kViscousFriction);
+  EXPECT_GT(answer.kinds[0].probability, 0.95);
 }
 
 }  // namespace

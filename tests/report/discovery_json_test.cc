@@ -47,6 +47,17 @@ TEST(DiscoveryJson, GivesAFaultByItsNameAndValue) {
   EXPECT_EQ(fault.at("alternatives").at(0).at("indistinguishable"), true);
 }
 
+TEST(DiscoveryJson, SaysTheKindOfPhysicsAndWhere) {
+  const json kind = ToJson(SampleDiscovery(), "").at("kinds").at(0);
+  EXPECT_EQ(kind.at("kind"), "dry friction");
+  EXPECT_EQ(kind.at("site"), "load");
+  EXPECT_EQ(kind.at("probability"), 0.998);
+  EXPECT_EQ(kind.at("share"), 0.62);
+  EXPECT_EQ(kind.at("words"),
+            "dry friction at load, a resistance that does not grow with speed: all but "
+            "certain");
+}
+
 TEST(DiscoveryJson, GivesAllExplanationsTheLikeliestFirst) {
   const json explanations = ToJson(SampleDiscovery(), "").at("explanations");
   // Friction or its runner-up, the motor by either of its names.

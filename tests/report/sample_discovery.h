@@ -77,6 +77,7 @@ inline Discovery SampleDiscovery() {
   discovery.setup = "slide <1>";
   discovery.verdict = DiscoveryVerdict::kExplained;
   discovery.causes = {SampleFriction(), SampleFault()};
+  discovery.kinds = {{Kind::kDryFriction, "load", 0.998, 0.62}};
   discovery.notes = {"backlash at load cannot be judged: it is never reversed."};
   discovery.train_share = 0.7;
   discovery.records = {{"slide.csv", true, SampleReplay(5e-6), SampleReplay(1e-7)}};

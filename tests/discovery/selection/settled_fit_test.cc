@@ -23,7 +23,7 @@ TEST(Settled, GoesOnWhereSecantsStall) {
   start.causes.push_back(
       {test::Place(candidates, "eta"), Eigen::VectorXd::Constant(1, 0.6)});
   const auto stalled = TryFit(problem, candidates, start,
-                              CompareFrom(&before.jacobian, 5, 1e-4, Work::kUnlimited));
+                              CompareFrom(&before.jacobian, 3, 1e-4, Work::kUnlimited));
   ASSERT_TRUE(stalled);
   EXPECT_GT(stalled->train, 1.2);
 
