@@ -72,6 +72,8 @@ struct FoundKind {
   double probability = 0.0;
   /// Of the unseen mismatch that the answer takes away, what is back without it.
   double share = 0.0;
+  /// A number of the plant that is another one, no cause.
+  bool of_number = false;
 };
 
 /// After each cause that was added; the first step is the plant as it was given.

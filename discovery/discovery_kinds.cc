@@ -189,7 +189,7 @@ void Discoverer::AddKindsOfNumbers() {
       return other.kind == kind && other.site == site;
     });
     if (is_known) continue;
-    discovery_.kinds.push_back({kind, site, Logistic((z * z - price) / 2.0), 0.0});
+    discovery_.kinds.push_back({kind, site, Logistic((z * z - price) / 2.0), 0.0, true});
   }
 }
 

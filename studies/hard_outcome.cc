@@ -17,6 +17,10 @@ bool MayBe(const FoundCause& found, const Cause& truth) {
   });
 }
 
+bool IsOf(const FoundKind& kind, const Cause& cause) {
+  return kind.kind == cause.effect->kind() && kind.site == cause.site;
+}
+
 /// Takes one that `matches` out of the list; false if none does.
 template <typename Matches>
 bool TakeOut(std::vector<Cause>& causes, const Matches& matches) {
@@ -104,6 +108,26 @@ std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
                       })});
   }
   return claims;
+}
+
+std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
+                            const std::vector<FoundKind>& kinds) {
+  std::vector<Claim> claims;
+  for (const FoundKind& kind : kinds) {
+    if (kind.of_number) continue;
+    claims.push_back({kind.probability, std::ranges::any_of(truth, [&](const Cause& one) {
+                        return IsOf(kind, one);
+                      })});
+  }
+  return claims;
+}
+
+bool HasKindsOf(const std::vector<Cause>& truth, const std::vector<FoundKind>& kinds) {
+  return std::ranges::all_of(truth, [&](const Cause& cause) {
+    return std::ranges::any_of(kinds, [&](const FoundKind& kind) {
+      return kind.probability > kLikely && IsOf(kind, cause);
+    });
+  });
 }
 
 std::vector<ReliabilityBin> ReliabilityOf(const std::vector<Claim>& claims) {

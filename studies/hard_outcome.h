@@ -47,6 +47,13 @@ struct Claim {
 std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
                             const std::vector<FoundCause>& found);
 
+/// The same of kinds of physics at sites, whichever their laws. Numbers of the plant that are
+/// others than the model says are off in every case: they are no claims.
+std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
+                            const std::vector<FoundKind>& kinds);
+/// Whether the kind of every cause is named at its site, and rather there than not.
+bool HasKindsOf(const std::vector<Cause>& truth, const std::vector<FoundKind>& kinds);
+
 /// Claims of about that probability: as many of them should hold.
 struct ReliabilityBin {
   double from = 0.0;  ///< the first bin has its lower end in it, all have their upper

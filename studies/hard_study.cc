@@ -61,6 +61,8 @@ HardOutcome RunHard(const Machine& model, const HardPlan& plan, std::uint64_t se
   outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   const std::vector<FoundCause>& found = outcome.answer.causes;
   outcome.claims = ClaimsOf(hard.truth, found);
+  outcome.kind_claims = ClaimsOf(hard.truth, outcome.answer.kinds);
+  outcome.kinds_are_there = HasKindsOf(hard.truth, outcome.answer.kinds);
   if (hard.outside_joint) {
     const std::vector<Candidate> sites = AllSites(model);
     std::vector<Eigen::Index> joints;

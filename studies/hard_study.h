@@ -21,6 +21,8 @@ struct HardOutcome {
   HardVerdict verdict = HardVerdict::kRight;  ///< of the catalogue, or of nothing
   OutsideVerdict outside = OutsideVerdict::kNothing;  ///< of an outside law
   std::vector<Claim> claims;
+  std::vector<Claim> kind_claims;
+  bool kinds_are_there = false;  ///< HasKindsOf
   /// Root mean square of what free simulation of a motion that no fit saw is off, over
   /// noise, all sensors: beside the model and beside the extended one.
   double before = 0.0;

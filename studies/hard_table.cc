@@ -100,6 +100,10 @@ StudyTable CountsOf(const std::vector<HardOutcome>& outcomes) {
     counts.Add(std::string("outside law, ") + WordOf(verdict), IsOutside,
                [=](const HardOutcome& o) { return o.outside == verdict; });
   }
+  counts.Add("catalogue, every kind at its site", IsKnown,
+             [](const HardOutcome& o) { return o.kinds_are_there; });
+  counts.Add("outside law, its kind at its site", IsOutside,
+             [](const HardOutcome& o) { return o.kinds_are_there; });
   counts.AddFigure("outside law, share of the mismatch on unseen motion taken away",
                    IsOutside, GainOf);
   counts.Add("nothing hidden, something claimed", IsNothing,
@@ -116,19 +120,14 @@ StudyTable CountsOf(const std::vector<HardOutcome>& outcomes) {
   return counts.Take();
 }
 
-StudyTable ReliabilityTable(const std::vector<HardOutcome>& outcomes) {
-  StudyTable table{"Reliability of the probabilities",
+StudyTable ReliabilityTable(const std::string& title, const std::string& of,
+                            const std::string& what, const std::vector<Claim>& claims) {
+  StudyTable table{title,
                    {"probability", "claims", "mean probability", "hold",
                     "share that holds", "95 % interval"},
                    {},
-                   {"Of all causes that were named beside the catalogue's or nothing; "
-                    "intervals of Clopper and Pearson."}};
-  std::vector<Claim> claims;
-  for (const HardOutcome& outcome : outcomes) {
-    if (IsOutside(outcome)) continue;
-    claims.insert(claims.end(), outcome.claims.begin(), outcome.claims.end());
-  }
-  StudyPlot plot{"Share of the named causes that are there over their probability",
+                   {of + "; intervals of Clopper and Pearson."}};
+  StudyPlot plot{"Share of the " + what + " that are there over their probability",
                  "probability",
                  "share that holds",
                  {},
@@ -162,7 +161,22 @@ std::vector<Cell> RowOf(const HardOutcome& outcome, std::uint64_t seed) {
 }  // namespace
 
 std::vector<StudyTable> SummariesOf(const std::vector<HardOutcome>& outcomes) {
-  return {CountsOf(outcomes), ReliabilityTable(outcomes)};
+  std::vector<Claim> names;
+  std::vector<Claim> kinds;
+  for (const HardOutcome& outcome : outcomes) {
+    if (!IsOutside(outcome)) {
+      names.insert(names.end(), outcome.claims.begin(), outcome.claims.end());
+    }
+    kinds.insert(kinds.end(), outcome.kind_claims.begin(), outcome.kind_claims.end());
+  }
+  return {CountsOf(outcomes),
+          ReliabilityTable("Reliability of the probabilities",
+                           "Of all causes that were named beside the catalogue's or "
+                           "nothing",
+                           "named causes", names),
+          ReliabilityTable("Reliability of the probabilities of kinds",
+                           "Of all kinds of physics at sites, beside outside laws, too",
+                           "kinds", kinds)};
 }
 
 std::vector<StudyTable> HardStudy(const Machine& model, bool nothing,

@@ -20,11 +20,12 @@ using Eigen::VectorXd;
 
 // A better score than that is no chance: odds of 400.
 constexpr double kBetter = 12.0;
-// Of what the plant as given lacks, in -2 ln L beyond that of noise, that is worth a name,
-// or of what is left to explain. White noise is no true model of what lasts, and beside a
-// machine that no list explains there are always laws that take a little more of it.
-constexpr double kOfAll = 0.02;
-constexpr double kOfRest = 0.5;
+// Of what a model lacks, in -2 ln L beyond that of noise, that is worth a name. White noise
+// is no true model of what lasts; what is small beside it may be its colour. A model that
+// deserves the fastest observer still is one of a machine that no list explains, where
+// there are always laws that take a little more: there it is of what the plant as given
+// lacked.
+constexpr double kWorth = 0.02;
 
 /// Those that there are, the likeliest first.
 std::vector<WeighedModel> InOrder(std::vector<std::optional<WeighedModel>> models) {
@@ -257,9 +258,8 @@ bool Search::IsWorth(const WeighedModel& after, const WeighedModel& before,
   const double gain = before.score - after.score;
   if (gain < kBetter) return false;
   if (after.fit.causes.size() <= before.fit.causes.size()) return true;
-  const double lacked = std::max(0.0, given - ladder_.Noise());
-  const double lacks = std::max(0.0, before.deviance - ladder_.Noise());
-  return gain > kOfAll * lacked || gain > kOfRest * lacks;
+  const double of = after.rung == 0 ? given : before.deviance;
+  return gain > kWorth * std::max(0.0, of - ladder_.Noise());
 }
 
 SetSearchResult Search::Run(const FittedModel& start) {

@@ -178,6 +178,7 @@ TEST(HardSummary, CountsEveryKindOfCaseByItself) {
   EXPECT_EQ(CountOf(tables[0], "outside law, false name"), "1 of 1");
   EXPECT_EQ(CountOf(tables[0], "nothing hidden, something claimed"), "0 of 1");
   EXPECT_EQ(CountOf(tables[0], "within the budget"), "4 of 5");
+  EXPECT_EQ(CountOf(tables[0], "outside law, its kind at its site"), "0 of 1");
   // Outside laws have no true name that a probability could be one of.
   ASSERT_EQ(tables[1].rows.size(), 1u);
   EXPECT_EQ(tables[1].rows[0][1].number, 3.0);
@@ -186,13 +187,31 @@ TEST(HardSummary, CountsEveryKindOfCaseByItself) {
   EXPECT_NEAR(tables[1].plot->points[0].y, 2.0 / 3.0, 1e-12);
 }
 
+TEST(HardKinds, AreThereWhateverTheirLaws) {
+  const Cause friction{Lasting(CoulombFriction()), "X", ValuesOf({1.0})};
+  const Cause law{Lasting(RootFriction()), "Y", ValuesOf({1.0, 1.0})};
+  const std::vector<Cause> truth = {friction, law};
+  const FoundKind dry{Kind::kDryFriction, "X", 0.99, 0.8};
+  const FoundKind viscous{Kind::kViscousFriction, "Y", 0.9, 0.2};
+  EXPECT_TRUE(HasKindsOf(truth, {dry, viscous}));
+  EXPECT_FALSE(HasKindsOf(truth, {dry}));
+  EXPECT_FALSE(HasKindsOf(truth, {dry, {Kind::kViscousFriction, "X", 0.9}}));
+  EXPECT_FALSE(HasKindsOf(truth, {dry, {Kind::kViscousFriction, "Y", 0.4}}));
+  // A number that is another one is no claim, a kind that is not there a false one.
+  const FoundKind number{Kind::kInertia, "X", 0.99, 0.0, true};
+  const auto claims = ClaimsOf(truth, {dry, number, {Kind::kPlay, "X", 0.6}});
+  ASSERT_EQ(claims.size(), 2u);
+  EXPECT_TRUE(claims[0].holds);
+  EXPECT_FALSE(claims[1].holds);
+}
+
 TEST(HardVerdict, TakesAForceWithoutANameForNoName) {
   const Cause hidden = Catalogue().front();
   FoundCause curve = Named({Lasting(ForceCurve()), "X", {}}, 1.0);
   curve.unnamed = "1 N rms at X that follow Y velocity";
   EXPECT_EQ(VerdictOf({hidden}, {curve}), HardVerdict::kSilent);
   EXPECT_EQ(VerdictOf({hidden}, {Named(hidden), curve}), HardVerdict::kUndecided);
-  EXPECT_TRUE(ClaimsOf({hidden}, {curve}).empty());
+  EXPECT_TRUE(ClaimsOf({hidden}, std::vector<FoundCause>{curve}).empty());
   EXPECT_EQ(VerdictOf(CoulombFriction(), 0, {curve}, {1}), OutsideVerdict::kNothing);
   curve.unnamed.clear();
   EXPECT_EQ(VerdictOf({hidden}, {curve}), HardVerdict::kWrong);
