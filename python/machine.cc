@@ -1,0 +1,412 @@
+// Machine: a model with all that is around it, and what can be asked of it.
+
+#include "python/machine.h"
+
+#include <pybind11/stl.h>
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/plugin/effects/placed_effect.h"
+#include "mjdiag/signals/error.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/linear.h"
+#include "python/record.h"
+#include "python/work.h"
+
+namespace mjdiag::python {
+
+namespace py = pybind11;
+
+namespace {
+
+MachineObject MakeMachine(const py::object& setup, const py::object& plant,
+                          const py::object& set) {
+  MachineSource source = SourceOf(setup, plant, set);
+  const Machine machine(ReadSetup(source.setup, source.overrides));
+  for (const PlacedEffect& effect : machine.effects()) {
+    CheckEffect(machine.plant(), effect);
+  }
+  return {std::move(source), machine};
+}
+
+std::map<std::string, double> NumbersOf(const py::kwargs& values,
+                                        const std::string& what) {
+  std::map<std::string, double> numbers;
+  for (const auto& [name, value] : values) {
+    const std::string key = py::str(name);
+    const double number = PyFloat_AsDouble(value.ptr());
+    if (PyErr_Occurred() != nullptr) {
+      PyErr_Clear();
+      throw InputError(what + " " + key, KindOf(value), "a number");
+    }
+    numbers[key] = number;
+  }
+  return numbers;
+}
+
+MachineObject WithEffect(const MachineObject& machine, const std::string& effect,
+                         const py::kwargs& values) {
+  const std::size_t at = effect.find('@');
+  if (at == effect.npos || effect.find(':') != effect.npos) {
+    if (values.empty()) return machine.WithEffect(ParseEffect(effect));
+    throw InputError("effect '" + effect + "'", "no <effect>@<site>",
+                     "for example coulomb_friction@X");
+  }
+  return machine.WithEffect(Place(effect.substr(0, at), effect.substr(at + 1),
+                                  NumbersOf(values, "effect " + effect)));
+}
+
+Record ReadFor(const MachineObject& machine, const py::object& path) {
+  const MeasuredFile file = MeasuredOf(machine.setup(), path, "Machine.read");
+  Warn(file.notes);
+  return file.record;
+}
+
+std::vector<LateFault> LateFaultsOf(
+    const std::vector<std::tuple<std::string, double, double>>& given) {
+  std::vector<LateFault> late;
+  for (const auto& [name, value, time] : given) late.push_back({{name, value}, time});
+  return late;
+}
+
+/// Record of a `replay` argument, which the caller holds.
+const Record* ReplayOf(const py::object& replay) {
+  if (replay.is_none()) return nullptr;
+  if (py::isinstance<Record>(replay)) return py::cast<const Record*>(replay);
+  throw InputError("replay", KindOf(replay),
+                   "an mjdiag.Record; Machine.read makes one of a file");
+}
+
+Record DoSimulate(const MachineObject& machine, std::uint64_t seed,
+                  const std::string& trajectory, const py::object& replay,
+                  std::optional<double> duration, const std::string& mode, double noise,
+                  bool linear, bool log_joints,
+                  const std::vector<std::tuple<std::string, double, double>>& late,
+                  const py::object& progress) {
+  return SimulateMachine(machine,
+                         {trajectory, ReplayOf(replay), duration, mode, noise, seed,
+                          linear, log_joints, LateFaultsOf(late)},
+                         progress);
+}
+
+py::dict DoRender(const MachineObject& machine, const py::object& other,
+                  const py::object& path, const std::string& trajectory,
+                  std::optional<double> duration, std::uint64_t seed, bool linear,
+                  std::optional<double> begin, std::optional<double> end, double speed,
+                  double fps, int width, int height, const std::string& camera,
+                  bool ghost, const py::object& amplify, const py::object& progress) {
+  ClipOptions options;
+  options.picture.width = width;
+  options.picture.height = height;
+  options.picture.camera = camera;
+  options.picture.begin = begin;
+  options.picture.end = end;
+  options.picture.ghost = ghost;
+  options.speed = speed;
+  options.fps = fps;
+  if (py::isinstance<py::dict>(amplify)) {
+    options.picture.amplify = NumbersOf(py::kwargs(amplify), "amplify");
+  } else if (!amplify.is_none()) {
+    options.picture.amplify_all = py::cast<double>(amplify);
+  }
+  RunRequest request;
+  request.trajectory = trajectory;
+  request.duration = duration;
+  request.seed = seed;
+  request.linear = linear;
+  const ClipSummary summary =
+      RenderMachine(machine, other, path, request, options, progress);
+  py::dict told;
+  told["frames"] = summary.frames;
+  told["codec"] = summary.codec;
+  told["amplification"] = summary.amplification;
+  return told;
+}
+
+DiagnosisObject DoDiagnose(const MachineObject& machine, const py::object& record,
+                           bool linear, const py::object& filters, bool baseline,
+                           const std::string& robust, int nominal_runs,
+                           const py::object& progress) {
+  machine.RequireQuiet("diagnose");
+  if (nominal_runs < 2) {
+    throw InputError("nominal_runs", std::to_string(nominal_runs), "2 or more");
+  }
+  const DiagnoseRequest request{
+      linear, filters.is_none() ? "" : PathOf(filters, "filters").string(), baseline,
+      robust, nominal_runs};
+  MeasuredFile measured = MeasuredOf(machine.setup(), record, "diagnose");
+  std::optional<DiagnosisObject> made;
+  RunLong(progress, false, [&](LongCall& call) {
+    made = DiagnoseRecord(machine, std::move(measured), request, call);
+  });
+  return std::move(*made);
+}
+
+DiscoveryObject DoDiscover(const MachineObject& machine, const py::object& records,
+                           const py::object& validation, double budget,
+                           std::vector<std::string> only,
+                           std::vector<std::string> without,
+                           std::vector<std::string> known, std::optional<bool> doubt,
+                           int most_causes, double train_share, std::uint64_t seed,
+                           const py::object& progress) {
+  DiscoverOptions options;
+  options.budget = budget;
+  options.choice.only = std::move(only);
+  options.choice.without = std::move(without);
+  options.known = std::move(known);
+  options.most_causes = most_causes;
+  options.train_share = train_share;
+  options.seed = seed;
+  if (!(train_share >= 0.1 && train_share <= 0.95)) {
+    throw InputError("train_share", std::to_string(train_share), "0.1 to 0.95");
+  }
+  return DiscoverCauses(machine, records, validation, options, doubt, progress);
+}
+
+py::object CalibrationOf(const MachineObject& machine) {
+  if (!machine.calibration()) return py::none();
+  const auto& [calibration, prior_sd, records, doubts] = *machine.calibration();
+  const py::module_ package = py::module_::import("mjdiag");
+  py::dict numbers;
+  const Eigen::VectorXd sd = calibration.Sd();
+  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    numbers[calibration.numbers[i].c_str()] =
+        package.attr("CalibratedNumber")(calibration.factors[at], sd[at], prior_sd[at]);
+  }
+  py::list misfits;
+  for (const CalibratedRecord& record : records) misfits.append(record.misfit);
+  return package.attr("Calibration")(numbers, Copy(calibration.sensor_noise),
+                                     calibration.force_noise, misfits, doubts);
+}
+
+std::vector<std::string> TrajectoriesOf(const MachineObject& machine) {
+  std::vector<std::string> names;
+  for (const Trajectory& one : machine.setup().trajectories.all) {
+    names.push_back(one.name);
+  }
+  return names;
+}
+
+std::vector<std::string> FaultNamesOf(const MachineObject& machine) {
+  std::vector<std::string> names;
+  for (const FaultParameter& one : FaultParameters(machine.machine().plant())) {
+    names.push_back(one.name);
+  }
+  for (const MultisineSetup& one : machine.setup().disturbances) {
+    names.push_back(one.name);
+  }
+  return names;
+}
+
+std::vector<std::string> EffectsOf(const MachineObject& machine) {
+  std::vector<std::string> effects;
+  for (const PlacedEffect& effect : machine.machine().effects()) {
+    effects.push_back(FormatEffect(effect));
+  }
+  return effects;
+}
+
+using MachineClass = py::class_<MachineObject>;
+
+void BindDescription(MachineClass& machine) {
+  machine
+      .def_property_readonly(
+          "name", [](const MachineObject& object) { return object.setup().name; },
+          "Name of the setup.")
+      .def_property_readonly(
+          "sample_time",
+          [](const MachineObject& object) { return object.setup().rates.tick(); },
+          "The control tick [s].")
+      .def_property_readonly(
+          "sensors",
+          [](const MachineObject& object) {
+            return ChannelsOf(object.setup().channels.sensors);
+          },
+          "Names of the sensor channels.")
+      .def_property_readonly(
+          "actuators",
+          [](const MachineObject& object) {
+            return ChannelsOf(object.setup().channels.actuators);
+          },
+          "Names of the actuator channels.")
+      .def_property_readonly("trajectories", &TrajectoriesOf,
+                             "Names of the trajectories of the setup.")
+      .def_property_readonly("fault_names", &FaultNamesOf,
+                             "Fault parameters of the plant, and disturbances.")
+      .def_property_readonly(
+          "effects", &EffectsOf,
+          "Effects that act in it, \"<effect>@<site>:<name>=<value>\".")
+      .def_property_readonly(
+          "faults",
+          [](const MachineObject& object) {
+            std::map<std::string, double> values = object.disturbances();
+            for (const Fault& fault : object.changes().faults) {
+              values[fault.name] = fault.value;
+            }
+            return values;
+          },
+          "Name -> value of what with_faults has set.")
+      .def_property_readonly(
+          "calibration", &CalibrationOf,
+          "What `calibrate` learned, a named tuple Calibration; None.")
+      .def("__repr__", [](const MachineObject& object) {
+        return "<mjdiag.Machine " + object.setup().name + ": " + Described(object) +
+               ">";
+      });
+}
+
+void BindWork(MachineClass& machine) {
+  machine
+      .def(
+          "simulate", &DoSimulate, py::kw_only(), py::arg("seed") = 1,
+          py::arg("trajectory") = "", py::arg("replay") = py::none(),
+          py::arg("duration") = py::none(), py::arg("mode") = "both",
+          py::arg("noise") = 1.0, py::arg("linear") = false,
+          py::arg("log_joints") = false,
+          py::arg("late_faults") =
+              std::vector<std::tuple<std::string, double, double>>(),
+          py::arg("progress") = py::none(),
+          "A run of the machine, as a Record at the control rate: references, "
+          "sensors,\n"
+          "actuators. The same seed gives the same bits.\n"
+          "seed: of the sensor noise. trajectory: of the setup; \"\": its default "
+          "one.\n"
+          "replay: a Record whose references are followed, or, of a machine without\n"
+          "controllers, whose inputs drive it. duration: of the run [s].\n"
+          "mode: \"both\", \"feedback\" or \"feedforward\". noise: factor on that of "
+          "the\n"
+          "sensors. linear: of the linearised plant. log_joints: joints, too.\n"
+          "late_faults: list of (name, value, time [s]) from which on they act.\n"
+          "progress: a callable of (fraction, text); True: a bar of tqdm.\n"
+          "Ctrl-C raises KeyboardInterrupt. InputError; NumericalError if it diverges.")
+      .def(
+          "diagnose", &DoDiagnose, py::arg("record"), py::kw_only(),
+          py::arg("linear") = false, py::arg("filters") = py::none(),
+          py::arg("baseline") = false, py::arg("robust") = "",
+          py::arg("nominal_runs") = NominalRuns{}.runs,
+          py::arg("progress") = py::none(),
+          "What has worn, beside this machine as the healthy one: a Diagnosis.\n"
+          "record: a Record, or the path of a measured file. linear: the machine is "
+          "taken\n"
+          "as linear. filters: filters.json of `mjdiag design`; None: made now, and "
+          "kept\n"
+          "for the next call. baseline: less the residual of healthy runs of the same\n"
+          "motion. robust: fault for which the residual is the one that friction "
+          "excites\n"
+          "least. nominal_runs: healthy runs that limits come from.\n"
+          "progress: as of simulate.\n"
+          "InputError: channels or rates that do not fit, a machine without "
+          "[diagnosis].")
+      .def("calibrate", &CalibrateMachine, py::arg("records"), py::kw_only(),
+           py::arg("linear") = false, py::arg("progress") = py::none(),
+           "How well the machine is known, from healthy runs: the Machine with what "
+           "they\n"
+           "say of its numbers, its noise and its limits, to diagnose with.\n"
+           "records: list of Record or paths. linear: as of diagnose.\n"
+           "progress: as of simulate. InputError: records that do not fit.")
+      .def("discover", &DoDiscover, py::arg("records"), py::kw_only(),
+           py::arg("validation") = py::none(), py::arg("budget") = 300.0,
+           py::arg("only") = std::vector<std::string>(),
+           py::arg("without") = std::vector<std::string>(),
+           py::arg("known") = std::vector<std::string>(), py::arg("doubt") = py::none(),
+           py::arg("most_causes") = DiscoverOptions{}.most_causes,
+           py::arg("train_share") = DiscoverOptions{}.train_share, py::arg("seed") = 1,
+           py::arg("progress") = py::none(),
+           "What the model gets wrong on measured records, and why: a Discovery.\n"
+           "records: list of Record or paths. validation: those of other motions, to "
+           "which\n"
+           "nothing is fitted. budget: seconds of work of two cores; then the best "
+           "answer\n"
+           "so far is given, and so it is at Ctrl-C (Discovery.stopped).\n"
+           "only, without: families, effects, effects at a site or fault parameters "
+           "that\n"
+           "may or may not be named. known: numbers of the plant that are as it says.\n"
+           "doubt: whether the others are fitted; None: unless the plant says that it "
+           "is\n"
+           "exact. most_causes: that are looked for. train_share: of a single record, "
+           "that\n"
+           "fits see. seed: of the noise floor. progress: as of simulate.\n"
+           "InputError: records that cannot be judged, which says why.")
+      .def("render", &DoRender, py::arg("other"), py::arg("path"), py::kw_only(),
+           py::arg("trajectory") = "", py::arg("duration") = 0.1, py::arg("seed") = 1,
+           py::arg("linear") = false, py::arg("begin") = py::none(),
+           py::arg("end") = py::none(), py::arg("speed") = ClipOptions{}.speed,
+           py::arg("fps") = ClipOptions{}.fps,
+           py::arg("width") = PictureOptions{}.width,
+           py::arg("height") = PictureOptions{}.height, py::arg("camera") = "",
+           py::arg("ghost") = false, py::arg("amplify") = py::none(),
+           py::arg("progress") = py::none(),
+           "Writes a clip, *.mp4: this machine beside another one on the same motion,\n"
+           "small motion enlarged. other: a Machine, a Record of this one, or None.\n"
+           "trajectory, duration [s], seed, linear: of the runs, as of simulate.\n"
+           "begin, end: what is shown [s]. speed: seconds of the machine a second of "
+           "clip.\n"
+           "width, height [px], even. ghost: one in the other.\n"
+           "amplify: factor on the motion of all joints, or joint -> factor; None: "
+           "from\n"
+           "the data. progress: as of simulate.\n"
+           "Returns a dict: frames, codec, amplification. InputError; no screen is "
+           "needed.")
+      .def(
+          "linearize",
+          [](const MachineObject& object) {
+            if (!object.changes().effects.empty()) {
+              throw InputError("linearize", "effects are not linear",
+                               "a machine with fault parameters only");
+            }
+            return LinearObject{object.machine().linear(), object.setup().rates};
+          },
+          "The machine about its static equilibrium: a LinearModel. InputError for "
+          "one\n"
+          "that was given effects.");
+}
+
+}  // namespace
+
+void BindMachine(py::module_& module) {
+  MachineClass machine(
+      module, "Machine",
+      "A machine: a MuJoCo model with its fault parameters, and the setup around it. "
+      "It\n"
+      "does not change; with_faults and with_effect make others, cheaply.");
+  machine
+      .def(
+          py::init(&MakeMachine), py::arg("setup"), py::arg("plant") = py::none(),
+          py::arg("set") = py::none(),
+          "setup: a folder with setup.toml, or a setup file (docs/setup.md); or an "
+          "MJCF\n"
+          "file (*.xml) or MJCF as text, whose position and velocity sensors and\n"
+          "actuators become the channels of a setup with one control tick a time "
+          "step.\n"
+          "plant: MJCF, path or text, in the place of that of the setup.\n"
+          "set: key -> value over what the setup says, {\"sensors.x.noise_sd\": 0.0}.\n"
+          "InputError says file, line and key.")
+      .def(
+          "with_faults",
+          [](const MachineObject& object, const py::kwargs& values) {
+            return object.WithFaults(NumbersOf(values, "fault"));
+          },
+          "with_faults(zeta_x=1.2): the machine with fault parameters at those values\n"
+          "(1: healthy), and disturbances of the setup at those magnitudes (0: "
+          "healthy).\n"
+          "InputError lists the names that there are.")
+      .def("with_effect", &WithEffect, py::arg("effect"),
+           "with_effect(\"coulomb_friction@X\", force=2): the machine with physics "
+           "that the\n"
+           "plant lacks, <effect>@<site> with its parameters in SI units, or\n"
+           "<effect>@<site>:<name>=<value>,... (docs/effects.md). InputError.")
+      .def("read", &ReadFor, py::arg("path"),
+           "A measured file, CSV or MAT, as a Record of this machine: columns as "
+           "[record]\n"
+           "of the setup says, on the grid of the control tick; what is missing is "
+           "marked\n"
+           "as not measured. What was done is said in warnings. InputError.");
+  BindDescription(machine);
+  BindWork(machine);
+}
+
+}  // namespace mjdiag::python
