@@ -115,7 +115,7 @@ void BindFault(py::module_& module) {
                            "A fault parameter as a diagnosis found it: 1 is healthy; "
                            "of a disturbance it is\n"
                            "the magnitude, and 0 is healthy.")
-      .def_readonly("name", &FaultVerdict::name)
+      .def_readonly("name", &FaultVerdict::name, "Of the fault parameter.")
       .def_readonly("value", &FaultVerdict::value, "The fault parameter.")
       .def_readonly("deviation", &FaultVerdict::deviation, "value less healthy.")
       .def_readonly("sd", &FaultVerdict::sd, "Standard deviation of value.")

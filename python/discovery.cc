@@ -76,7 +76,7 @@ void ReportDiscovery(const DiscoveryObject& object, const py::object& path) {
 std::string WriteExtended(const DiscoveryObject& object, const py::object& path) {
   const fs::path folder = PathOf(path, "Discovery.write");
   const MachineObject& machine = object.machine;
-  if (machine.changes() != Changes{}) {
+  if (machine.machine().changes() != Changes{}) {
     throw InputError("Discovery.write", "the machine was not as its file has it",
                      "one that was not given faults or effects");
   }
@@ -94,7 +94,7 @@ std::string WriteExtended(const DiscoveryObject& object, const py::object& path)
 
 void BindCause(py::module_& module) {
   py::class_<CauseParameter>(module, "Parameter", "A parameter of a cause.")
-      .def_readonly("name", &CauseParameter::name)
+      .def_readonly("name", &CauseParameter::name, "Of the parameter.")
       .def_readonly("value", &CauseParameter::value, "In `unit`.")
       .def_readonly("unit", &CauseParameter::unit, "SI.")
       .def_readonly("sd", &CauseParameter::sd, "Standard deviation of value.")

@@ -244,12 +244,12 @@ void BindDescription(MachineClass& machine) {
           "faults",
           [](const MachineObject& object) {
             std::map<std::string, double> values = object.disturbances();
-            for (const Fault& fault : object.changes().faults) {
+            for (const Fault& fault : object.machine().changes().faults) {
               values[fault.name] = fault.value;
             }
             return values;
           },
-          "Name -> value of what with_faults has set.")
+          "Name -> value of what was set, or found by a discovery.")
       .def_property_readonly(
           "calibration", &CalibrationOf,
           "What `calibrate` learned, a named tuple Calibration; None.")
@@ -354,7 +354,7 @@ void BindWork(MachineClass& machine) {
       .def(
           "linearize",
           [](const MachineObject& object) {
-            if (!object.changes().effects.empty()) {
+            if (!object.machine().changes().effects.empty()) {
               throw InputError("linearize", "effects are not linear",
                                "a machine with fault parameters only");
             }
@@ -383,7 +383,7 @@ void BindMachine(py::module_& module) {
           "actuators become the channels of a setup with one control tick a time "
           "step.\n"
           "plant: MJCF, path or text, in the place of that of the setup.\n"
-          "set: key -> value over what the setup says, {\"sensors.x.noise_sd\": 0.0}.\n"
+          "set: key -> value over what the setup says, {\"physics.gravity\": False}.\n"
           "InputError says file, line and key.")
       .def(
           "with_faults",

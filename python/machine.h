@@ -42,7 +42,6 @@ class MachineObject {
   const MachineSource& source() const { return source_; }
   const Machine& machine() const { return machine_; }
   const Setup& setup() const { return machine_.setup(); }
-  const Changes& changes() const { return changes_; }
   /// Magnitudes of disturbances in its runs.
   const std::map<std::string, double>& disturbances() const { return disturbances_; }
   PreparedCache& prepared() const { return *prepared_; }

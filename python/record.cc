@@ -232,7 +232,18 @@ Record Read(const py::object& path) {
   return ReadRecord(file);
 }
 
-std::string Described(const Record& record) {
+/// All of it, for pickle and copy.
+py::tuple StateOf(const py::object& self) {
+  const auto& record = py::cast<const Record&>(self);
+  py::dict data;
+  for (const Channel& channel : record.channels()) {
+    data[channel.name.c_str()] = Copy(channel.samples);
+  }
+  return py::make_tuple(data, UnitsOf(record), record.sample_time(),
+                        record.start_time(), MasksOf(record));
+}
+
+std::string Text(const Record& record) {
   std::string text = "<mjdiag.Record: " + std::to_string(record.samples()) +
                      " samples every " +
                      std::string(py::str(py::float_(record.sample_time()))) + " s of";
@@ -327,7 +338,13 @@ void BindRecord(py::module_& module) {
       .def("slice", &Record::Slice, py::arg("first"), py::arg("count"),
            "Samples first .. first + count - 1 of every channel, as a record of its "
            "own.")
-      .def("__repr__", &Described);
+      .def(py::pickle(&StateOf,
+                      [](const py::tuple& state) {
+                        return MakeRecord(state[0], state[1],
+                                          py::cast<double>(state[2]),
+                                          py::cast<double>(state[3]), state[4]);
+                      }))
+      .def("__repr__", &Text);
 }
 
 }  // namespace mjdiag::python

@@ -119,7 +119,7 @@ std::vector<TitledRecord> RunsOf(const MachineObject& machine,
 }  // namespace
 
 std::string Described(const MachineObject& machine) {
-  const auto& [faults, effects, numbers] = machine.changes();
+  const auto& [faults, effects, numbers] = machine.machine().changes();
   std::string text;
   const auto append = [&text](const std::string& item) {
     text += (text.empty() ? "" : ", ") + item;
