@@ -1,6 +1,7 @@
 #pragma once
-// The parts of the module, in the order in which they are defined: each with the classes
-// of one subject.
+// The parts of the module, each with the classes of one subject, in the order in which
+// they are defined: what a function takes has to be known before it, or its signature
+// would show a name of C++.
 
 #include <pybind11/pybind11.h>
 
@@ -9,8 +10,8 @@ namespace mjdiag::python {
 void BindRecord(pybind11::module_& module);     // Record
 void BindLinear(pybind11::module_& module);     // LinearModel
 void BindDiagnosis(pybind11::module_& module);  // Diagnosis, Fault
-void BindMonitor(pybind11::module_& module);    // Monitor
 void BindDiscovery(pybind11::module_& module);  // Discovery, Cause, Parameter
-void BindMachine(pybind11::module_& module);    // Machine, Calibration
+void BindMachine(pybind11::module_& module);    // Machine
+void BindMonitor(pybind11::module_& module);    // Monitor
 
 }  // namespace mjdiag::python

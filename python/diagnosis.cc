@@ -112,9 +112,9 @@ py::tuple PairOf(const Interval& interval) {
 
 void BindFault(py::module_& module) {
   py::class_<FaultVerdict>(module, "Fault",
-                           "A fault parameter as a diagnosis found it: 1 is healthy; "
-                           "of a disturbance it is\n"
-                           "the magnitude, and 0 is healthy.")
+                           R"(
+                           A fault parameter as a diagnosis found it: 1 is healthy; of a
+                           disturbance it is the magnitude, and 0 is healthy.)")
       .def_readonly("name", &FaultVerdict::name, "Of the fault parameter.")
       .def_readonly("value", &FaultVerdict::value, "The fault parameter.")
       .def_readonly("deviation", &FaultVerdict::deviation, "value less healthy.")
@@ -135,9 +135,10 @@ void BindFault(py::module_& module) {
 void BindDiagnosis(py::module_& module) {
   BindFault(module);
   py::class_<DiagnosisObject>(module, "Diagnosis",
-                              "The answer of Machine.diagnose: is something wrong, "
-                              "since when, which fault and how\n"
-                              "large. In a notebook it shows its verdict and table.")
+                              R"(
+                              The answer of Machine.diagnose: is something wrong, since
+                              when, which fault and how large. In a notebook it shows
+                              its verdict and table.)")
       .def_property_readonly(
           "detected",
           [](const DiagnosisObject& object) {
@@ -145,8 +146,9 @@ void BindDiagnosis(py::module_& module) {
           },
           "Whether anything is wrong.")
       .def_property_readonly("faults", &FaultsOf,
-                             "Name -> Fault of every fault parameter of the plant and\n"
-                             "every disturbance of the setup.")
+                             R"(
+                             Name -> Fault of every fault parameter of the plant and
+                             every disturbance of the setup.)")
       .def_property_readonly(
           "first_detection",
           [](const DiagnosisObject& object) {
@@ -160,8 +162,9 @@ void BindDiagnosis(py::module_& module) {
       .def_property_readonly(
           "misfit",
           [](const DiagnosisObject& object) { return object.diagnosis.result.misfit; },
-          "Squared innovations of the twin over what is expected: 1 where it explains\n"
-          "all that it sees.")
+          R"(
+          Squared innovations of the twin over what is expected: 1 where it explains all
+          that it sees.)")
       .def_property_readonly(
           "residual",
           [](const py::object& self) {

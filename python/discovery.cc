@@ -121,8 +121,9 @@ void BindCause(py::module_& module) {
       .def_readonly("probability", &FoundCause::probability,
                     "Among all that could be in its place.")
       .def_property_readonly("alternatives", &AlternativesOf,
-                             "Pairs (name, probability) of what else could be, 1 % or\n"
-                             "more, likeliest first.")
+                             R"(
+                             Pairs (name, probability) of what else could be, 1 % or
+                             more, likeliest first.)")
       .def_readonly(
           "words", &FoundCause::unnamed,
           "Of a force that was learned and has no name, what it is; else \"\".")
@@ -135,11 +136,10 @@ void BindCause(py::module_& module) {
 
 void BindDiscovery(py::module_& module) {
   BindCause(module);
-  py::class_<DiscoveryObject>(
-      module, "Discovery",
-      "The answer of Machine.discover: what the model gets wrong, why, and the model "
-      "with\n"
-      "that in it. In a notebook it shows its answer and the causes.")
+  py::class_<DiscoveryObject>(module, "Discovery",
+                              R"(
+      The answer of Machine.discover: what the model gets wrong, why, and the model with
+      that in it. In a notebook it shows its answer and the causes.)")
       .def_property_readonly(
           "verdict",
           [](const DiscoveryObject& object) {
@@ -165,15 +165,17 @@ void BindDiscovery(py::module_& module) {
       .def_property_readonly(
           "numbers",
           [](const DiscoveryObject& object) { return NumbersOf(object.discovery); },
-          "Name -> (factor, ci95, is_off) of the numbers of the plant that were in\n"
-          "doubt, as times what the model says.")
+          R"(
+          Name -> (factor, ci95, is_off) of the numbers of the plant that were in doubt,
+          as times what the model says.)")
       .def_property_readonly(
           "mismatch_before",
           [](const DiscoveryObject& object) {
             return FiguresOf(object.discovery.mismatch_before);
           },
-          "Two dicts, channel -> rms of measured less simulated in its unit: on what\n"
-          "fits saw, and on what they did not see.")
+          R"(
+          Two dicts, channel -> rms of measured less simulated in its unit: on what fits
+          saw, and on what they did not see.)")
       .def_property_readonly(
           "mismatch_after",
           [](const DiscoveryObject& object) {
@@ -205,10 +207,10 @@ void BindDiscovery(py::module_& module) {
       .def("report", &ReportDiscovery, py::arg("path"),
            "Writes one self-contained HTML page. InputError if that cannot be written.")
       .def("write", &WriteExtended, py::arg("folder"),
-           "Writes the extended plant and its setup: a folder for Machine, for the\n"
-           "command and, the plant, for any MuJoCo viewer. Returns the path of the "
-           "MJCF.\n"
-           "InputError if the machine was not as its files have it.")
+           R"(
+           Writes the extended plant and its setup: a folder for Machine, for the
+           command and, the plant, for any MuJoCo viewer. Returns the path of the MJCF.
+           InputError if the machine was not as its files have it.)")
       .def("_repr_html_", &DiscoveryHtml)
       .def("__repr__", [](const DiscoveryObject& object) {
         return "<mjdiag.Discovery: " + DiscoveryAnswer(object.discovery) + ">";

@@ -44,11 +44,11 @@ py::array MatrixOf(const py::object& self) {
 
 void BindLinear(py::module_& module) {
   py::class_<LinearObject>(module, "LinearModel",
-                           "M q'' + D q' + K q = Gamma u, y = b.T q: a machine about "
-                           "its static equilibrium,\n"
-                           "q the deviations of its n joints, u its m inputs, y its p "
-                           "outputs, in SI units.\n"
-                           "Matrices are read-only views.")
+                           R"(
+                           M q'' + D q' + K q = Gamma u, y = b.T q: a machine about its
+                           static equilibrium, q the deviations of its n joints, u its m
+                           inputs, y its p outputs, in SI units. Matrices are read-only
+                           views.)")
       .def_property_readonly("M", &MatrixOf<&MechanicalModel::M>,
                              "Inertia, (n, n) [kg, kg m, kg m^2].")
       .def_property_readonly("D", &MatrixOf<&MechanicalModel::D>,
@@ -69,18 +69,16 @@ void BindLinear(py::module_& module) {
       .def_property_readonly(
           "outputs", [](const LinearObject& linear) { return linear.model.outputs; },
           "Names of the p sensor channels.")
-      .def_property_readonly(
-          "modes", &ModesOf,
-          "Modes by frequency, rigid ones left out: frequency [Hz],\n"
-          "damping_ratio, shape (n,).")
-      .def(
-          "state_space", &StateSpaceOf, py::kw_only(), py::arg("continuous") = false,
-          "x[k+1] = A x + B u, y = C x + D u with x = [q, q'] of shape (2 n,): the "
-          "exact\n"
-          "map of one control tick of dt seconds, as the controllers see the machine.\n"
-          "continuous: x' = A x + B u, and dt is None.\n"
-          "A named tuple (A, B, C, D, dt) as scipy.signal takes it:\n"
-          "scipy.signal.dlsim(linear.state_space(), u).")
+      .def_property_readonly("modes", &ModesOf,
+                             R"(
+          Modes by frequency, rigid ones left out: frequency [Hz], damping_ratio, shape
+          (n,).)")
+      .def("state_space", &StateSpaceOf, py::kw_only(), py::arg("continuous") = false,
+           R"(
+          x[k+1] = A x + B u, y = C x + D u with x = [q, q'] of shape (2 n,): the exact
+          map of one control tick of dt seconds, as the controllers see the machine.
+          continuous: x' = A x + B u, and dt is None. A named tuple (A, B, C, D, dt) as
+          scipy.signal takes it: scipy.signal.dlsim(linear.state_space(), u).)")
       .def("__repr__", [](const LinearObject& linear) {
         return "<mjdiag.LinearModel: " +
                std::to_string(linear.model.coordinates.size()) + " joints, " +

@@ -261,53 +261,60 @@ void BindDescription(MachineClass& machine) {
 
 void BindWork(MachineClass& machine) {
   machine
-      .def(
-          "simulate", &DoSimulate, py::kw_only(), py::arg("seed") = 1,
-          py::arg("trajectory") = "", py::arg("replay") = py::none(),
-          py::arg("duration") = py::none(), py::arg("mode") = "both",
-          py::arg("noise") = 1.0, py::arg("linear") = false,
-          py::arg("log_joints") = false,
-          py::arg("late_faults") =
-              std::vector<std::tuple<std::string, double, double>>(),
-          py::arg("progress") = py::none(),
-          "A run of the machine, as a Record at the control rate: references, "
-          "sensors,\n"
-          "actuators. The same seed gives the same bits.\n"
-          "seed: of the sensor noise. trajectory: of the setup; \"\": its default "
-          "one.\n"
-          "replay: a Record whose references are followed, or, of a machine without\n"
-          "controllers, whose inputs drive it. duration: of the run [s].\n"
-          "mode: \"both\", \"feedback\" or \"feedforward\". noise: factor on that of "
-          "the\n"
-          "sensors. linear: of the linearised plant. log_joints: joints, too.\n"
-          "late_faults: list of (name, value, time [s]) from which on they act.\n"
-          "progress: a callable of (fraction, text); True: a bar of tqdm.\n"
-          "Ctrl-C raises KeyboardInterrupt. InputError; NumericalError if it diverges.")
-      .def(
-          "diagnose", &DoDiagnose, py::arg("record"), py::kw_only(),
-          py::arg("linear") = false, py::arg("filters") = py::none(),
-          py::arg("baseline") = false, py::arg("robust") = "",
-          py::arg("nominal_runs") = NominalRuns{}.runs,
-          py::arg("progress") = py::none(),
-          "What has worn, beside this machine as the healthy one: a Diagnosis.\n"
-          "record: a Record, or the path of a measured file. linear: the machine is "
-          "taken\n"
-          "as linear. filters: filters.json of `mjdiag design`; None: made now, and "
-          "kept\n"
-          "for the next call. baseline: less the residual of healthy runs of the same\n"
-          "motion. robust: fault for which the residual is the one that friction "
-          "excites\n"
-          "least. nominal_runs: healthy runs that limits come from.\n"
-          "progress: as of simulate.\n"
-          "InputError: channels or rates that do not fit, a machine without "
-          "[diagnosis].")
+      .def("simulate", &DoSimulate, py::kw_only(), py::arg("seed") = 1,
+           py::arg("trajectory") = "", py::arg("replay") = py::none(),
+           py::arg("duration") = py::none(), py::arg("mode") = "both",
+           py::arg("noise") = 1.0, py::arg("linear") = false,
+           py::arg("log_joints") = false,
+           py::arg("late_faults") =
+               std::vector<std::tuple<std::string, double, double>>(),
+           py::arg("progress") = py::none(),
+           R"(
+          A run of the machine, as a Record at the control rate: references, sensors,
+          actuators. The same seed gives the same bits.
+
+          seed: of the sensor noise.
+          trajectory: of the setup; "": its default one.
+          replay: a Record whose references are followed, or, of a machine without
+          controllers, whose inputs drive it.
+          duration: of the run [s].
+          mode: "both", "feedback" or "feedforward".
+          noise: factor on that of the sensors.
+          linear: of the linearised plant.
+          log_joints: joints, too.
+          late_faults: list of (name, value, time [s]) from which on they act.
+          progress: a callable of (fraction, text); True: a bar of tqdm.
+
+          Ctrl-C raises KeyboardInterrupt. InputError; NumericalError if it diverges.)")
+      .def("diagnose", &DoDiagnose, py::arg("record"), py::kw_only(),
+           py::arg("linear") = false, py::arg("filters") = py::none(),
+           py::arg("baseline") = false, py::arg("robust") = "",
+           py::arg("nominal_runs") = NominalRuns{}.runs,
+           py::arg("progress") = py::none(),
+           R"(
+          What has worn, beside this machine as the healthy one: a Diagnosis.
+
+          record: a Record, or the path of a measured file.
+          linear: the machine is taken as linear.
+          filters: filters.json of `mjdiag design`; None: made now, and kept for the
+          next call.
+          baseline: less the residual of healthy runs of the same motion.
+          robust: fault for which the residual is the one that friction excites least.
+          nominal_runs: healthy runs that limits come from.
+          progress: as of simulate.
+
+          InputError: channels or rates that do not fit, a machine without [diagnosis].)")
       .def("calibrate", &CalibrateMachine, py::arg("records"), py::kw_only(),
            py::arg("linear") = false, py::arg("progress") = py::none(),
-           "How well the machine is known, from healthy runs: the Machine with what "
-           "they\n"
-           "say of its numbers, its noise and its limits, to diagnose with.\n"
-           "records: list of Record or paths. linear: as of diagnose.\n"
-           "progress: as of simulate. InputError: records that do not fit.")
+           R"(
+           How well the machine is known, from healthy runs: the Machine with what they
+           say of its numbers, its noise and its limits, to diagnose with.
+
+           records: list of Record or paths.
+           linear: as of diagnose.
+           progress: as of simulate.
+
+           InputError: records that do not fit.)")
       .def("discover", &DoDiscover, py::arg("records"), py::kw_only(),
            py::arg("validation") = py::none(), py::arg("budget") = 300.0,
            py::arg("only") = std::vector<std::string>(),
@@ -316,21 +323,24 @@ void BindWork(MachineClass& machine) {
            py::arg("most_causes") = DiscoverOptions{}.most_causes,
            py::arg("train_share") = DiscoverOptions{}.train_share, py::arg("seed") = 1,
            py::arg("progress") = py::none(),
-           "What the model gets wrong on measured records, and why: a Discovery.\n"
-           "records: list of Record or paths. validation: those of other motions, to "
-           "which\n"
-           "nothing is fitted. budget: seconds of work of two cores; then the best "
-           "answer\n"
-           "so far is given, and so it is at Ctrl-C (Discovery.stopped).\n"
-           "only, without: families, effects, effects at a site or fault parameters "
-           "that\n"
-           "may or may not be named. known: numbers of the plant that are as it says.\n"
-           "doubt: whether the others are fitted; None: unless the plant says that it "
-           "is\n"
-           "exact. most_causes: that are looked for. train_share: of a single record, "
-           "that\n"
-           "fits see. seed: of the noise floor. progress: as of simulate.\n"
-           "InputError: records that cannot be judged, which says why.")
+           R"(
+           What the model gets wrong on measured records, and why: a Discovery.
+
+           records: list of Record or paths.
+           validation: those of other motions, to which nothing is fitted.
+           budget: seconds of work of two cores; then the best answer so far is given,
+           and so it is at Ctrl-C (Discovery.stopped).
+           only, without: families, effects, effects at a site or fault parameters that
+           may or may not be named.
+           known: numbers of the plant that are as it says.
+           doubt: whether the others are fitted; None: unless the plant says that it is
+           exact.
+           most_causes: that are looked for.
+           train_share: of a single record, that fits see.
+           seed: of the noise floor.
+           progress: as of simulate.
+
+           InputError: records that cannot be judged, which says why.)")
       .def("render", &DoRender, py::arg("other"), py::arg("path"), py::kw_only(),
            py::arg("trajectory") = "", py::arg("duration") = 0.1, py::arg("seed") = 1,
            py::arg("linear") = false, py::arg("begin") = py::none(),
@@ -340,17 +350,22 @@ void BindWork(MachineClass& machine) {
            py::arg("height") = PictureOptions{}.height, py::arg("camera") = "",
            py::arg("ghost") = false, py::arg("amplify") = py::none(),
            py::arg("progress") = py::none(),
-           "Writes a clip, *.mp4: this machine beside another one on the same motion,\n"
-           "small motion enlarged. other: a Machine, a Record of this one, or None.\n"
-           "trajectory, duration [s], seed, linear: of the runs, as of simulate.\n"
-           "begin, end: what is shown [s]. speed: seconds of the machine a second of "
-           "clip.\n"
-           "width, height [px], even. ghost: one in the other.\n"
-           "amplify: factor on the motion of all joints, or joint -> factor; None: "
-           "from\n"
-           "the data. progress: as of simulate.\n"
-           "Returns a dict: frames, codec, amplification. InputError; no screen is "
-           "needed.")
+           R"(
+           Writes a clip, *.mp4: this machine beside another one on the same motion,
+           small motion enlarged.
+
+           other: a Machine, a Record of this one, or None.
+           trajectory, duration [s], seed, linear: of the runs, as of simulate.
+           begin, end: what is shown [s].
+           speed: seconds of the machine a second of clip.
+           width, height: [px], even.
+           ghost: one in the other.
+           amplify: factor on the motion of all joints, or joint -> factor; None: from
+           the data.
+           progress: as of simulate.
+
+           Returns a dict: frames, codec, amplification.
+           InputError; no screen is needed.)")
       .def(
           "linearize",
           [](const MachineObject& object) {
@@ -360,51 +375,47 @@ void BindWork(MachineClass& machine) {
             }
             return LinearObject{object.machine().linear(), object.setup().rates};
           },
-          "The machine about its static equilibrium: a LinearModel. InputError for "
-          "one\n"
-          "that was given effects.");
+          R"(
+          The machine about its static equilibrium: a LinearModel. InputError for one
+          that was given effects.)");
 }
 
 }  // namespace
 
 void BindMachine(py::module_& module) {
-  MachineClass machine(
-      module, "Machine",
-      "A machine: a MuJoCo model with its fault parameters, and the setup around it. "
-      "It\n"
-      "does not change; with_faults and with_effect make others, cheaply.");
+  MachineClass machine(module, "Machine",
+                       R"(
+      A machine: a MuJoCo model with its fault parameters, and the setup around it. It
+      does not change; with_faults and with_effect make others, cheaply.)");
   machine
-      .def(
-          py::init(&MakeMachine), py::arg("setup"), py::arg("plant") = py::none(),
-          py::arg("set") = py::none(),
-          "setup: a folder with setup.toml, or a setup file (docs/setup.md); or an "
-          "MJCF\n"
-          "file (*.xml) or MJCF as text, whose position and velocity sensors and\n"
-          "actuators become the channels of a setup with one control tick a time "
-          "step.\n"
-          "plant: MJCF, path or text, in the place of that of the setup.\n"
-          "set: key -> value over what the setup says, {\"physics.gravity\": False}.\n"
-          "InputError says file, line and key.")
+      .def(py::init(&MakeMachine), py::arg("setup"), py::arg("plant") = py::none(),
+           py::arg("set") = py::none(),
+           R"(
+          setup: a folder with setup.toml, or a setup file (docs/setup.md); or an MJCF
+          file (*.xml) or MJCF as text, whose position and velocity sensors and
+          actuators become the channels of a setup with one control tick a time step.
+          plant: MJCF, path or text, in the place of that of the setup.
+          set: key -> value over what the setup says, {"physics.gravity": False}.
+          InputError says file, line and key.)")
       .def(
           "with_faults",
           [](const MachineObject& object, const py::kwargs& values) {
             return object.WithFaults(NumbersOf(values, "fault"));
           },
-          "with_faults(zeta_x=1.2): the machine with fault parameters at those values\n"
-          "(1: healthy), and disturbances of the setup at those magnitudes (0: "
-          "healthy).\n"
-          "InputError lists the names that there are.")
+          R"(
+          with_faults(zeta_x=1.2): the machine with fault parameters at those values (1:
+          healthy), and disturbances of the setup at those magnitudes (0: healthy).
+          InputError lists the names that there are.)")
       .def("with_effect", &WithEffect, py::arg("effect"),
-           "with_effect(\"coulomb_friction@X\", force=2): the machine with physics "
-           "that the\n"
-           "plant lacks, <effect>@<site> with its parameters in SI units, or\n"
-           "<effect>@<site>:<name>=<value>,... (docs/effects.md). InputError.")
+           R"(
+           with_effect("coulomb_friction@X", force=2): the machine with physics that the
+           plant lacks, <effect>@<site> with its parameters in SI units, or
+           <effect>@<site>:<name>=<value>,... (docs/effects.md). InputError.)")
       .def("read", &ReadFor, py::arg("path"),
-           "A measured file, CSV or MAT, as a Record of this machine: columns as "
-           "[record]\n"
-           "of the setup says, on the grid of the control tick; what is missing is "
-           "marked\n"
-           "as not measured. What was done is said in warnings. InputError.");
+           R"(
+           A measured file, CSV or MAT, as a Record of this machine: columns as [record]
+           of the setup says, on the grid of the control tick; what is missing is marked
+           as not measured. What was done is said in warnings. InputError.)");
   BindDescription(machine);
   BindWork(machine);
 }

@@ -64,7 +64,7 @@ PYBIND11_MODULE(_mjdiag, module) {
   mjdiag::python::BindRecord(module);
   mjdiag::python::BindLinear(module);
   mjdiag::python::BindDiagnosis(module);
-  mjdiag::python::BindMonitor(module);
   mjdiag::python::BindDiscovery(module);
   mjdiag::python::BindMachine(module);
+  mjdiag::python::BindMonitor(module);
 }

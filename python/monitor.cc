@@ -193,10 +193,10 @@ void BindReadings(py::class_<MonitorObject>& monitor) {
             return TimeOf(object, object.monitor().first_detection());
           },
           "When the residual first was outside, since the first tick [s]; None.")
-      .def_property_readonly(
-          "estimates", &EstimatesOf,
-          "What the fault parameters are taken for now, in the order\n"
-          "of fault_names, (faults,).")
+      .def_property_readonly("estimates", &EstimatesOf,
+                             R"(
+          What the fault parameters are taken for now, in the order of fault_names,
+          (faults,).)")
       .def_property_readonly(
           "estimate_sd",
           [](const MonitorObject& object) {
@@ -211,31 +211,31 @@ void BindReadings(py::class_<MonitorObject>& monitor) {
 
 void BindMonitor(py::module_& module) {
   py::class_<MonitorObject> monitor(module, "Monitor",
-                                    "A diagnosis that runs beside a machine: it gets "
-                                    "the readings and commands of every\n"
-                                    "control tick and can be asked between ticks what "
-                                    "is wrong. One thread at a time.");
+                                    R"(
+                                    A diagnosis that runs beside a machine: it gets the
+                                    readings and commands of every control tick and can
+                                    be asked between ticks what is wrong. One thread at
+                                    a time.)");
   monitor
-      .def(
-          py::init(&MakeMonitor), py::arg("machine") = py::none(), py::kw_only(),
-          py::arg("linear") = false, py::arg("filters") = py::none(),
-          py::arg("capacity") = 0, py::arg("progress") = py::none(),
-          "machine: the healthy Machine; None: filters alone, without a twin, and "
-          "faults\n"
-          "are told apart less well.\n"
-          "linear: it is taken as linear, without dry friction.\n"
-          "filters: filters.json of `mjdiag design`; None: made now, with limits from\n"
-          "simulated healthy runs, which takes seconds.\n"
-          "capacity: ticks of the longest run that is to be concluded.\n"
-          "progress: as of Machine.simulate.\n"
-          "InputError: filters of another machine, one that cannot be diagnosed.")
-      .def(
-          "step", &MonitorObject::Step, py::arg("y"), py::arg("u"),
-          "One control tick: y the readings (outputs,), u the commands (inputs,), in "
-          "SI\n"
-          "units and in the order of the channels. Contiguous float64 arrays are not\n"
-          "copied. Returns alarm. InputError: another length, or a number that is not\n"
-          "finite, which ends the run.")
+      .def(py::init(&MakeMonitor), py::arg("machine") = py::none(), py::kw_only(),
+           py::arg("linear") = false, py::arg("filters") = py::none(),
+           py::arg("capacity") = 0, py::arg("progress") = py::none(),
+           R"(
+          machine: the healthy Machine; None: filters alone, without a twin, and faults
+          are told apart less well.
+          linear: it is taken as linear, without dry friction.
+          filters: filters.json of `mjdiag design`; None: made now, with limits from
+          simulated healthy runs, which takes seconds.
+          capacity: ticks of the longest run that is to be concluded.
+          progress: as of Machine.simulate.
+
+          InputError: filters of another machine, one that cannot be diagnosed.)")
+      .def("step", &MonitorObject::Step, py::arg("y"), py::arg("u"),
+           R"(
+          One control tick: y the readings (outputs,), u the commands (inputs,), in SI
+          units and in the order of the channels. Contiguous float64 arrays are not
+          copied. Returns alarm. InputError: another length, or a number that is not
+          finite, which ends the run.)")
       .def("conclude", &MonitorObject::Conclude,
            "Ends the run: its Diagnosis. InputError for more ticks than capacity.")
       .def("restart", &MonitorObject::Restart, "Makes it ready for another run.")

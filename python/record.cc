@@ -258,44 +258,47 @@ std::string Text(const Record& record) {
 
 void BindRecord(py::module_& module) {
   py::class_<Record>(module, "Record",
-                     "Named channels that were sampled together, at t[k] = start_time "
-                     "+ k sample_time,\n"
-                     "in SI units. A mapping of names to read-only float64 arrays of "
-                     "shape (samples,),\n"
-                     "which are views: they cost nothing and keep the record alive. A "
-                     "record does not\n"
-                     "change; take record[\"x\"].copy() to work on.")
+                     R"(
+                     Named channels that were sampled together, at t[k] = start_time + k
+                     sample_time, in SI units. A mapping of names to read-only float64
+                     arrays of shape (samples,), which are views: they cost nothing and
+                     keep the record alive. A record does not change; take
+                     record["x"].copy() to work on.)")
       .def(py::init(&MakeRecord), py::arg("data"), py::arg("units"),
            py::arg("sample_time"), py::kw_only(), py::arg("start_time") = 0.0,
            py::arg("measured") = py::none(),
-           "data: name -> array of shape (samples,), finite real numbers.\n"
-           "units: name -> unit of every channel, such as \"m\", \"um\", \"N m\", "
-           "\"1\";\n"
-           "values are converted to SI.\n"
-           "sample_time: time between samples [s]. start_time: of the first [s].\n"
-           "measured: name -> array of bool, False where a sample only bridges those\n"
-           "beside it and counts for nothing; channels left out were measured "
-           "throughout.\n\n"
-           "InputError: shapes, dtypes, units or names that do not fit; NaN, infinity.")
-      .def_static(
-          "read", &Read, py::arg("path"),
-          "The record in a CSV file with a header such as\n"
-          "`time [s],x [um],u_x [N]`, or in a MAT file (v5, v7.3). For files with\n"
-          "other names or gaps see Machine.read. InputError says file and line.")
+           R"(
+           data: name -> array of shape (samples,), finite real numbers.
+           units: name -> unit of every channel, such as "m", "um", "N m", "1"; values
+           are converted to SI.
+           sample_time: time between samples [s].
+           start_time: of the first [s].
+           measured: name -> array of bool, False where a sample only bridges those
+           beside it and counts for nothing; channels left out were measured throughout.
+
+           InputError: shapes, dtypes, units or names that do not fit; NaN, infinity.)")
+      .def_static("read", &Read, py::arg("path"),
+                  R"(
+          The record in a CSV file with a header such as `time [s],x [um],u_x [N]`, or
+          in a MAT file (v5, v7.3). For files with other names or gaps see Machine.read.
+          InputError says file and line.)")
       .def("write", &Write, py::arg("path"),
-           "Writes *.csv or *.mat (v5); read back it is the same to the last bit.\n"
-           "InputError if the file cannot be written.")
-      .def_static(
-          "from_pandas", &FromPandas, py::arg("frame"), py::arg("units") = py::none(),
-          py::kw_only(), py::arg("sample_time") = py::none(),
-          "frame: a DataFrame with a column for every channel; its index is the\n"
-          "time, numbers in s or a TimedeltaIndex, uniform to 1 % of a sample.\n"
-          "units: as of Record; None: those of frame.attrs[\"units\"].\n"
-          "sample_time: in the place of the index [s].\n"
-          "InputError as Record, and on times that are not uniform.")
+           R"(
+           Writes *.csv or *.mat (v5); read back it is the same to the last bit.
+           InputError if the file cannot be written.)")
+      .def_static("from_pandas", &FromPandas, py::arg("frame"),
+                  py::arg("units") = py::none(), py::kw_only(),
+                  py::arg("sample_time") = py::none(),
+                  R"(
+          frame: a DataFrame with a column for every channel; its index is the time,
+          numbers in s or a TimedeltaIndex, uniform to 1 % of a sample.
+          units: as of Record; None: those of frame.attrs["units"].
+          sample_time: in the place of the index [s]. InputError as Record, and on times
+          that are not uniform.)")
       .def("to_pandas", &ToPandas,
-           "A DataFrame with a column for every channel over the time [s], with\n"
-           "attrs[\"units\"]. ImportError without pandas.")
+           R"(
+           A DataFrame with a column for every channel over the time [s], with
+           attrs["units"]. ImportError without pandas.)")
       .def("__getitem__", &ArrayOf, py::arg("name"),
            "The samples of a channel, read-only, of shape (samples,). KeyError.")
       .def("__contains__",
@@ -323,8 +326,9 @@ void BindRecord(py::module_& module) {
           "The array of that name, or the default.")
       .def_property_readonly("units", &UnitsOf, "Name -> SI unit.")
       .def_property_readonly("measured", &MasksOf,
-                             "Name -> array of bool, of channels of which not every\n"
-                             "sample was measured.")
+                             R"(
+                             Name -> array of bool, of channels of which not every
+                             sample was measured.)")
       .def_property_readonly("sample_time", &Record::sample_time,
                              "Time between samples [s].")
       .def_property_readonly("start_time", &Record::start_time,

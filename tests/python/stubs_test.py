@@ -54,6 +54,7 @@ class StubsTest(unittest.TestCase):
                 if isinstance(vars(bound)[key], property):
                     continue
                 self.assertIn("\n", doc, f"{name}.{key} says nothing")
+                self.assertNotIn("::", doc.split("\n")[0])
                 self.assertEqual(arguments_of(members[key]), bound_arguments(doc),
                                  f"{name}.{key}")
 

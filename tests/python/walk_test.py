@@ -21,7 +21,7 @@ class WalkTest(Test):
         with open("mjcf/ab383/setup.toml") as file:
             setup = file.read()
         for long, short in (('default_trajectory = "multi"', 'default_trajectory = "xy"'),
-                            ("duration = 0.5", "duration = 0.3")):
+                            ("duration = 0.5", "duration = 0.26")):
             self.assertIn(long, setup)
             setup = setup.replace(long, short)
         with open("mjcf/ab383/setup.toml", "w") as file:
