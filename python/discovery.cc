@@ -4,15 +4,11 @@
 
 #include <pybind11/stl.h>
 
-#include <filesystem>
 #include <utility>
 
-#include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
 #include "mjdiag/report/discovery_text.h"
-#include "mjdiag/signals/error.h"
-#include "mjdiag/signals/text_file.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/diagnosis.h"
@@ -20,7 +16,6 @@
 
 namespace mjdiag::python {
 
-namespace fs = std::filesystem;
 namespace py = pybind11;
 
 namespace {
@@ -70,26 +65,6 @@ void ReportDiscovery(const DiscoveryObject& object, const py::object& path) {
       "",
       ""};
   WriteReportFile(DiscoveryPage(object.discovery, run), path);
-}
-
-/// The extended plant and its setup, into a folder.
-std::string WriteExtended(const DiscoveryObject& object, const py::object& path) {
-  const fs::path folder = PathOf(path, "Discovery.write");
-  const MachineObject& machine = object.machine;
-  if (machine.machine().changes() != Changes{}) {
-    throw InputError("Discovery.write", "the machine was not as its file has it",
-                     "one that was not given faults or effects");
-  }
-  MakeOutputFolder(folder);
-  const Changes changes = ChangesOf(object.discovery);
-  // Both texts first: neither file is written if one of them cannot be made.
-  const std::string plant =
-      ExtendMjcf(machine.setup().plant, machine.machine().plant(), changes, folder);
-  const std::string setup =
-      ExtendSetup(machine.source().setup, machine.setup(), changes.effects, folder);
-  WriteTextFile(folder / "plant.xml", plant);
-  WriteTextFile(folder / "setup.toml", setup);
-  return (folder / "plant.xml").string();
 }
 
 void BindCause(py::module_& module) {
@@ -206,11 +181,17 @@ void BindDiscovery(py::module_& module) {
           "All of it as a dict, schema \"mjdiag.discovery/1\".")
       .def("report", &ReportDiscovery, py::arg("path"),
            "Writes one self-contained HTML page. InputError if that cannot be written.")
-      .def("write", &WriteExtended, py::arg("folder"),
-           R"(
-           Writes the extended plant and its setup: a folder for Machine, for the
-           command and, the plant, for any MuJoCo viewer. Returns the path of the MJCF.
-           InputError if the machine was not as its files have it.)")
+      .def(
+          "write",
+          [](const DiscoveryObject& object, const py::object& folder) {
+            return object.machine.Extended(ChangesOf(object.discovery))
+                .Write(PathOf(folder, "Discovery.write"))
+                .string();
+          },
+          py::arg("folder"),
+          R"(
+          The same as machine.write: a folder with the extended plant and its setup.
+          Returns the path of the MJCF.)")
       .def("_repr_html_", &DiscoveryHtml)
       .def("__repr__", [](const DiscoveryObject& object) {
         return "<mjdiag.Discovery: " + DiscoveryAnswer(object.discovery) + ">";

@@ -416,6 +416,20 @@ void BindMachine(py::module_& module) {
            A measured file, CSV or MAT, as a Record of this machine: columns as [record]
            of the setup says, on the grid of the control tick; what is missing is marked
            as not measured. What was done is said in warnings. InputError.)");
+  machine.def(
+      "write",
+      [](const MachineObject& object, const py::object& folder) {
+        return object.Write(PathOf(folder, "Machine.write")).string();
+      },
+      py::arg("folder"),
+      R"(
+      Makes a folder that is a setup, for Machine and for the command: with the faults,
+      effects and numbers that were put in, its plant.xml also for any MuJoCo viewer; or
+      what `calibrate` learned, with filters and limits. Returns the path of the MJCF, or
+      of the calibrated setup.
+
+      InputError: a machine with disturbances, which are part of its runs; the folder of
+      the setup itself; a calibrated one with other changes.)");
   BindDescription(machine);
   BindWork(machine);
 }

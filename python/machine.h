@@ -28,16 +28,21 @@ class PreparedCache {
   std::shared_ptr<const PreparedDiagnosis> For(const Machine& machine, bool linear,
                                                LongCall& call);
   void Keep(PreparedDiagnosis prepared);
+  /// The first of those that are made; null if none is.
+  std::shared_ptr<const PreparedDiagnosis> Kept() const;
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<bool, std::shared_ptr<const PreparedDiagnosis>> made_;
 };
 
 class MachineObject {
  public:
   MachineObject(MachineSource source, Machine machine)
-      : source_(std::move(source)), nominal_(machine), machine_(std::move(machine)) {}
+      : source_(std::move(source)),
+        original_(machine),
+        nominal_(machine),
+        machine_(std::move(machine)) {}
 
   const MachineSource& source() const { return source_; }
   const Machine& machine() const { return machine_; }
@@ -57,6 +62,10 @@ class MachineObject {
   /// The machine with that in it, as if it had been given so.
   MachineObject Extended(const Changes& changes) const;
 
+  /// Makes a folder of it, which is a setup: with all that was put into the plant, or with
+  /// what a calibration said. @return plant.xml or, of the latter, setup.toml
+  std::filesystem::path Write(const std::filesystem::path& folder) const;
+
   /// What it is asked of has to be a machine that runs by itself. InputError beginning
   /// with `what` if it has disturbances.
   void RequireQuiet(const std::string& what) const;
@@ -65,9 +74,10 @@ class MachineObject {
   MachineObject Changed(Changes changes) const;
 
   MachineSource source_;
-  Machine nominal_;
-  Machine machine_;
-  Changes changes_;
+  Machine original_;  // as its files have it
+  Machine nominal_;   // what faults and effects are put into
+  Machine machine_;   // with them
+  Changes changes_;   // from nominal to machine
   std::map<std::string, double> disturbances_;
   std::shared_ptr<PreparedCache> prepared_ = std::make_shared<PreparedCache>();
   std::optional<CalibrationReport> calibration_;

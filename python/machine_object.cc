@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mjdiag/discovery/extension/setup_folder.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
 #include "python/arrays.h"
@@ -29,6 +30,14 @@ void PreparedCache::Keep(PreparedDiagnosis prepared) {
   const std::lock_guard lock(mutex_);
   const bool linear = prepared.nominal.linear;
   made_[linear] = std::make_shared<PreparedDiagnosis>(std::move(prepared));
+}
+
+std::shared_ptr<const PreparedDiagnosis> PreparedCache::Kept() const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [linear, prepared] : made_) {
+    if (prepared) return prepared;
+  }
+  return nullptr;
 }
 
 MachineObject MachineObject::Changed(Changes changes) const {
@@ -70,14 +79,38 @@ MachineObject MachineObject::WithEffect(const PlacedEffect& effect) const {
 MachineObject MachineObject::WithCalibration(const CalibrationReport& report,
                                              const Machine& calibrated,
                                              PreparedDiagnosis prepared) const {
-  MachineObject changed(source_, calibrated);
+  MachineObject changed = *this;
+  changed.nominal_ = changed.machine_ = calibrated;
+  changed.changes_ = {};
+  changed.prepared_ = std::make_shared<PreparedCache>();
   changed.calibration_ = report;
   changed.prepared_->Keep(std::move(prepared));
   return changed;
 }
 
 MachineObject MachineObject::Extended(const Changes& changes) const {
-  return {source_, machine_.With(changes)};
+  MachineObject extended = *this;
+  extended.nominal_ = machine_.With(changes);
+  extended.machine_ = extended.nominal_;
+  extended.changes_ = {};
+  extended.prepared_ = std::make_shared<PreparedCache>();
+  return extended;
+}
+
+std::filesystem::path MachineObject::Write(const std::filesystem::path& folder) const {
+  RequireQuiet("Machine.write");
+  if (!calibration_) {
+    return WriteExtendedSetup(folder, source_.setup, original_, machine_.changes());
+  }
+  if (machine_.changes() != Changes{} || !source_.overrides.empty()) {
+    throw InputError("Machine.write",
+                     "a calibrated machine that is not as its files have it",
+                     "one without faults, effects and keys that were set");
+  }
+  const auto prepared = prepared_->Kept();
+  WriteCalibratedSetup(folder, source_.setup, calibration_->calibration,
+                       prepared->design);
+  return folder / "setup.toml";
 }
 
 void MachineObject::RequireQuiet(const std::string& what) const {

@@ -120,10 +120,11 @@ std::string ChannelText(const std::string& kind, const std::string& name,
 }
 
 /// A setup of the MJCF alone, open loop.
-std::string SetupOf(const fs::path& mjcf) {
+/// @param plant  where it is, from the setup
+std::string SetupOf(const fs::path& mjcf, const fs::path& plant) {
   const ModelPtr model = LoadModel(mjcf);
   std::string text = "schema = \"mjdiag.setup/1\"\nname = \"" + mjcf.stem().string() +
-                     "\"\nplant = \"" + mjcf.string() + "\"\n\n[rates]\ncontrol = " +
+                     "\"\nplant = \"" + plant.string() + "\"\n\n[rates]\ncontrol = " +
                      std::string(py::repr(py::float_(1.0 / model->opt.timestep))) +
                      "\nsubsteps = 1\n";
   for (int i = 0; i < model->nsensor; ++i) {
@@ -159,7 +160,7 @@ MachineSource SourceOf(const py::object& machine, const py::object& plant,
       throw InputError("Machine", "a plant for an MJCF", "a plant for a setup");
     }
     const fs::path mjcf = MjcfFile(text, source);
-    const std::string setup = SetupOf(mjcf);
+    const std::string setup = SetupOf(mjcf, source.texts ? mjcf.filename() : mjcf);
     if (!source.texts) source.texts = std::make_shared<TemporaryFolder>();
     source.setup = source.texts->path() / "setup.toml";
     WriteTextFile(source.setup, setup);

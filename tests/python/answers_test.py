@@ -55,6 +55,11 @@ class AnswersTest(Test):
         self.assertEqual((len(known.misfits), known.doubts), (2, []))
         self.assertTrue(calibrated.diagnose(self.worn).faults["zeta"].detected)
         self.assertIsNone(self.coil.calibration)
+        calibrated.write("calibrated")
+        again = mjdiag.Machine("calibrated")
+        self.assertEqual(again.diagnose(self.worn).to_dict(),
+                         calibrated.diagnose(self.worn).to_dict())
+        self.assertRefuses(lambda: calibrated.with_faults(zeta=2).write("x"), "faults")
         self.assertRefuses(lambda: self.coil.calibrate([]), "no records")
         self.assertRefuses(lambda: self.coil.calibrate(3), "int")
 

@@ -116,6 +116,17 @@ class MachineTest(Test):
         np.testing.assert_array_equal(run[:500], whole[:500])
         self.assertGreater(abs(run - whole).max(), 1e-5)
 
+    def test_is_written_with_what_was_put_in(self):
+        push = current(0.1)
+        worn = (voice_coil().with_faults(zeta=1.2)
+                .with_effect("cubic_stiffness@stage", coefficient=4e6))
+        self.assertEqual(worn.write("worn"), "worn/plant.xml")
+        np.testing.assert_array_equal(
+            mjdiag.Machine("worn").simulate(replay=push)["x"],
+            worn.simulate(replay=push)["x"])
+        mjdiag.Machine(SLIDE).with_effect("coulomb_friction@slide", force=1).write("rub")
+        self.assertEqual(mjdiag.Machine("rub").sensors, ["position"])
+
     def test_is_made_of_mjcf_alone(self):
         with open("slide.xml", "w") as file:
             file.write(SLIDE)
