@@ -120,7 +120,7 @@ void BindDiscovery(py::module_& module) {
           [](const DiscoveryObject& object) {
             return VerdictName(object.discovery.verdict);
           },
-          "\"no_discrepancy\", \"explained\", \"partly_explained\" or \"unexplained\".")
+          R"("no_discrepancy", "explained", "partly_explained" or "unexplained".)")
       .def_property_readonly(
           "answer",
           [](const DiscoveryObject& object) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "mjdiag/signals/error.h"
 #include "python/bindings.h"
@@ -42,7 +43,7 @@ void BindErrors(py::module_& module) {
                "singular, not converged.");
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
-      if (pointer) std::rethrow_exception(pointer);
+      if (pointer) std::rethrow_exception(std::move(pointer));
     } catch (const InputError& error) {
       Raise(input_error, error.what());
     } catch (const std::filesystem::filesystem_error& error) {

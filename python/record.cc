@@ -176,7 +176,7 @@ py::object ToPandas(const py::object& self) {
   for (const Channel& channel : record.channels()) {
     columns[channel.name.c_str()] = View(channel.samples, self);
   }
-  const py::object frame = pandas.attr("DataFrame")(
+  py::object frame = pandas.attr("DataFrame")(
       columns, py::arg("index") = pandas.attr("Index")(Copy(record.Time()),
                                                        py::arg("name") = "time [s]"));
   frame.attr("attrs")["units"] = UnitsOf(record);

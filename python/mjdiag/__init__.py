@@ -10,7 +10,7 @@ docs/python.md walks through it. All numbers are in SI units.
 from collections.abc import Mapping as _Mapping
 from typing import NamedTuple as _NamedTuple
 
-from . import _mjdiag
+from . import _mjdiag, _plots
 from ._mjdiag import (
     Cause,
     Diagnosis,
@@ -84,6 +84,8 @@ class Calibration(_NamedTuple):
 
 
 _Mapping.register(Record)
+Record.plot = _plots.plot_record
+Diagnosis.plot = _plots.plot_diagnosis
 
 __all__ = [
     "CalibratedNumber",

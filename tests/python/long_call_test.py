@@ -2,9 +2,11 @@
 
 import os
 import signal
+import sys
 import threading
 import time
 import unittest
+from unittest import mock
 
 
 import mjdiag
@@ -50,6 +52,14 @@ class LongCallTest(Test):
         self.bonder.simulate(duration=0.01, progress=True)
         self.bonder.simulate(duration=0.01, progress=False)
         self.assertRefuses(lambda: self.bonder.simulate(progress=3), "progress", "int")
+
+    def test_a_bar_of_tqdm_goes_to_its_end_and_is_closed(self):
+        tqdm = mock.MagicMock()
+        with mock.patch.dict(sys.modules, {"tqdm": tqdm, "tqdm.auto": tqdm}):
+            self.bonder.simulate(duration=0.1, progress=True)
+        bar = tqdm.tqdm.return_value
+        self.assertEqual(bar.n, 100.0)
+        bar.close.assert_called_once()
 
     def test_other_threads_run_meanwhile(self):
         done, counted = threading.Event(), []

@@ -3,8 +3,10 @@
 import copy
 import gc
 import pickle
+import sys
 import unittest
 from collections.abc import Mapping
+from unittest import mock
 
 import numpy as np
 
@@ -131,6 +133,19 @@ class RecordTest(Test):
         with self.assertRaisesRegex(ImportError, "pandas is not installed"):
             ramp().to_pandas()
         self.assertRefuses(lambda: mjdiag.Record.from_pandas({}), "dict", "DataFrame")
+
+    def test_is_drawn_channel_by_channel(self):
+        record, axes = ramp(), [mock.Mock(), mock.Mock()]
+        self.assertIs(record.plot(axes=axes), axes)
+        np.testing.assert_array_equal(axes[0].plot.call_args[0][1], record["x"])
+        axes[1].set_ylabel.assert_called_with("u [N]")
+        axes[1].set_xlabel.assert_called_with("time [s]")
+        self.assertEqual(len(record.plot("u", axes=axes[:1])), 1)
+        with self.assertRaises(KeyError):
+            record.plot("y", axes=axes)
+        with mock.patch.dict(sys.modules, {"matplotlib": None}):
+            with self.assertRaisesRegex(ImportError, "matplotlib is not installed"):
+                record.plot()
 
     def test_slice_has_its_own_time(self):
         part = current(0.01).slice(10, 5)
