@@ -146,8 +146,8 @@ DiagnosisObject DoDiagnose(const MachineObject& machine, const py::object& recor
 }
 
 DiscoveryObject DoDiscover(const MachineObject& machine, const py::object& records,
-                           const py::object& validation, double budget,
-                           std::vector<std::string> only,
+                           const py::object& validation, const py::object& data,
+                           double budget, std::vector<std::string> only,
                            std::vector<std::string> without,
                            std::vector<std::string> known, std::optional<bool> doubt,
                            int most_causes, double train_share, std::uint64_t seed,
@@ -163,7 +163,7 @@ DiscoveryObject DoDiscover(const MachineObject& machine, const py::object& recor
   if (!(train_share >= 0.1 && train_share <= 0.95)) {
     throw InputError("train_share", std::to_string(train_share), "0.1 to 0.95");
   }
-  return DiscoverCauses(machine, records, validation, options, doubt, progress);
+  return DiscoverCauses(machine, records, data, validation, options, doubt, progress);
 }
 
 py::object CalibrationOf(const MachineObject& machine) {
@@ -316,8 +316,8 @@ void BindWork(MachineClass& machine) {
 
            InputError: records that do not fit.)")
       .def("discover", &DoDiscover, py::arg("records"), py::kw_only(),
-           py::arg("validation") = py::none(), py::arg("budget") = 300.0,
-           py::arg("only") = std::vector<std::string>(),
+           py::arg("validation") = py::none(), py::arg("data") = py::none(),
+           py::arg("budget") = 300.0, py::arg("only") = std::vector<std::string>(),
            py::arg("without") = std::vector<std::string>(),
            py::arg("known") = std::vector<std::string>(), py::arg("doubt") = py::none(),
            py::arg("most_causes") = DiscoverOptions{}.most_causes,
@@ -326,8 +326,10 @@ void BindWork(MachineClass& machine) {
            R"(
            What the model gets wrong on measured records, and why: a Discovery.
 
-           records: list of Record or paths.
+           records: list of Record or paths; or the path of a manifest, *.toml, that
+           lists files with what was set in each (docs/setup.md).
            validation: those of other motions, to which nothing is fitted.
+           data: folder of the files of a manifest.
            budget: seconds of work of two cores; then the best answer so far is given,
            and so it is at Ctrl-C (Discovery.stopped).
            only, without: families, effects, effects at a site or fault parameters that

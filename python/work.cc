@@ -116,6 +116,21 @@ std::vector<TitledRecord> RunsOf(const MachineObject& machine,
   return runs;
 }
 
+/// The records of a manifest, which tells what was set in each; none if it is no manifest.
+Measurements Listed(const MachineObject& object, const py::object& records,
+                    const py::object& data) {
+  const bool is_manifest =
+      IsPath(records) && PathOf(records, "record").extension() == ".toml";
+  if (is_manifest == data.is_none()) {
+    throw InputError("data", is_manifest ? "is missing" : "goes with a manifest only",
+                     "a list of records in TOML, with the folder of their files");
+  }
+  if (!is_manifest) return {};
+  return ReadMeasurements(
+      object.machine(), object.source().setup, object.source().overrides,
+      ReadRecordManifest(PathOf(records, "record"), PathOf(data, "data")));
+}
+
 }  // namespace
 
 std::string Described(const MachineObject& machine) {
@@ -200,11 +215,12 @@ MachineObject CalibrateMachine(const MachineObject& object, const py::object& re
 }
 
 DiscoveryObject DiscoverCauses(const MachineObject& object, const py::object& records,
-                               const py::object& validation, DiscoverOptions options,
-                               std::optional<bool> doubt, const py::object& progress) {
+                               const py::object& data, const py::object& validation,
+                               DiscoverOptions options, std::optional<bool> doubt,
+                               const py::object& progress) {
   object.RequireQuiet("discover");
   const Machine& machine = object.machine();
-  Measurements measurements;
+  Measurements measurements = Listed(object, records, data);
   const auto take = [&](const py::object& given, const char* what,
                         std::vector<MeasuredRecord>& into) {
     for (MeasuredFile& file : AllMeasured(object.setup(), given, what)) {
@@ -212,7 +228,7 @@ DiscoveryObject DiscoverCauses(const MachineObject& object, const py::object& re
       into.push_back({std::move(file.record), machine, name, std::move(file.notes)});
     }
   };
-  take(records, "record", measurements.fit);
+  if (measurements.fit.empty()) take(records, "record", measurements.fit);
   take(validation, "validation", measurements.unseen);
   if (measurements.fit.empty()) {
     throw InputError("discover", "no records", "one or more");

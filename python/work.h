@@ -42,9 +42,11 @@ MachineObject CalibrateMachine(const MachineObject& machine,
                                const pybind11::object& records, bool linear,
                                const pybind11::object& progress);
 
+/// @param data   folder of the records, if `records` is a manifest; else None
 /// @param doubt  as in DiscoverOptions; none: unless the plant says that it is exact
 DiscoveryObject DiscoverCauses(const MachineObject& machine,
                                const pybind11::object& records,
+                               const pybind11::object& data,
                                const pybind11::object& validation,
                                DiscoverOptions options, std::optional<bool> doubt,
                                const pybind11::object& progress);

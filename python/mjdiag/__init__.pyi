@@ -291,6 +291,7 @@ class Machine:
         records: Union[_Measured, Sequence[_Measured]],
         *,
         validation: Union[None, _Measured, Sequence[_Measured]] = None,
+        data: Optional[_Path] = None,
         budget: float = 300.0,
         only: Sequence[str] = (),
         without: Sequence[str] = (),

@@ -114,27 +114,31 @@ class AnswersTest(Test):
         self.assertRefuses(lambda: mjdiag.Monitor(), "filters")
         self.assertRefuses(monitor.conclude, "ticks")
 
+    @unittest.skipUnless(os.environ.get("MJDIAG_OPTIMISED"), "for optimised builds")
     def test_a_step_adds_no_more_than_two_microseconds(self):
-        monitor = mjdiag.Monitor(self.coil)
-        y, u = np.zeros(1), np.zeros(2)
+        self.coil.calibrate(self.healthy[:1]).write("calibrated")
+        # Without a twin there is hardly any work behind the call.
+        monitor = mjdiag.Monitor(filters="calibrated/filters.json")
+        y, u, times = np.zeros(1), np.zeros(1), []
+        for _ in range(5000):
+            start = time.perf_counter()
+            monitor.step(y, u)
+            times.append(time.perf_counter() - start)
+        self.assertLess(sorted(times)[len(times) // 10], 2e-6)
 
-        def least(call):
-            times = []
-            for _ in range(2000):
-                start = time.perf_counter()
-                call()
-                times.append(time.perf_counter() - start)
-            return sorted(times)[len(times) // 10]
-
-        def refused():
-            try:
-                monitor.step(y, u)
-            except mjdiag.InputError:
-                pass
-
-        # A property is a call without work; a step that is refused has all but it.
-        self.assertLess(least(lambda: monitor.alarm), 2e-6)
-        self.assertLess(least(refused), 2e-5)
+    def test_records_of_a_manifest_have_their_roles(self):
+        hidden = self.coil.with_effect("cubic_stiffness@stage", coefficient=4e6)
+        hidden.simulate(replay=self.push).write("a.csv")
+        hidden.simulate(replay=current(1.0), seed=9).write("b.csv")
+        with open("records.toml", "w") as file:
+            file.write('[[record]]\nfile = "a.csv"\nrole = "fit"\n'
+                       '[[record]]\nfile = "b.csv"\nrole = "validation"\n')
+        found = self.coil.discover("records.toml", data=".", budget=20,
+                                   only=["structure"])
+        self.assertEqual([(one["file"], one["role"]) for one in found.to_dict()["records"]],
+                         [("a.csv", "fit"), ("b.csv", "validation")])
+        self.assertRefuses(lambda: self.coil.discover("records.toml"), "data")
+        self.assertRefuses(lambda: self.coil.discover("a.csv", data="."), "data")
 
     @unittest.skipUnless(
         os.path.exists("/usr/share/javascript/dygraphs"), "needs libjs-dygraphs")
