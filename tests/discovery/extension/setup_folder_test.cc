@@ -39,7 +39,7 @@ TEST(SetupFolder, OfACalibratedMachineIsASetupOfItsOwn) {
   calibration.records = 1;
   const DiagnosisDesign filters = DesignFilters(coil);
   WriteCalibratedSetup(folder.path() / "calibrated", kCoil, calibration, filters);
-  const Setup read = ReadSetup(folder.path() / "calibrated");
+  const auto read = ReadSetup(folder.path() / "calibrated");
   EXPECT_EQ(read.calibration, calibration);
   EXPECT_TRUE(std::filesystem::exists(read.folder / kCalibratedFilters));
   EXPECT_TRUE(std::filesystem::exists(read.plant));
