@@ -108,6 +108,9 @@ void RunLong(const py::object& progress, bool has_answer,
       const bool is_wish =
           has_answer && is_first && error.matches(PyExc_KeyboardInterrupt);
       if (!is_wish) raised = std::current_exception();
+    } catch (...) {
+      call.stopped_ = true;
+      raised = std::current_exception();
     }
   }
   thread.join();

@@ -24,6 +24,8 @@ class LongCallTest(Test):
     @classmethod
     def setUpClass(cls):
         cls.bonder = mjdiag.Machine(os.path.join(MJCF, "ab383"))
+        # A shell lets what it runs in the background ignore Ctrl-C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def test_tells_how_far_it_is_in_the_calling_thread(self):
         told = []
