@@ -344,7 +344,7 @@ void BindWork(MachineClass& machine) {
 
            InputError: records that cannot be judged, which says why.)")
       .def("render", &DoRender, py::arg("other"), py::arg("path"), py::kw_only(),
-           py::arg("trajectory") = "", py::arg("duration") = 0.1, py::arg("seed") = 1,
+           py::arg("trajectory") = "", py::arg("duration") = 0.06, py::arg("seed") = 1,
            py::arg("linear") = false, py::arg("begin") = py::none(),
            py::arg("end") = py::none(), py::arg("speed") = ClipOptions{}.speed,
            py::arg("fps") = ClipOptions{}.fps,

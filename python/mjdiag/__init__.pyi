@@ -308,7 +308,7 @@ class Machine:
         path: _Path,
         *,
         trajectory: str = "",
-        duration: Optional[float] = 0.1,
+        duration: Optional[float] = 0.06,
         seed: int = 1,
         linear: bool = False,
         begin: Optional[float] = None,

@@ -76,6 +76,8 @@ class AnswersTest(Test):
         self.assertEqual(parameter.unit, "N/m^3")
         self.assertEqual(found.verdict, "explained")
         self.assertGreater(found.gain[1], 0.99)
+        for after, before in zip(found.mismatch_after, found.mismatch_before):
+            self.assertLess(after["x"], 0.01 * before["x"])
         again = found.machine.simulate(replay=self.push, noise=0.0)
         np.testing.assert_allclose(again["x"], measured["x"], atol=1e-6)
         self.assertIn("cubic_stiffness", found._repr_html_())

@@ -146,6 +146,22 @@ class MachineTest(Test):
         machine = voice_coil(plant=softer)
         self.assertAlmostEqual(machine.linearize().K[0, 0], 450.0)
 
+    def test_reads_files_as_loggers_leave_them(self):
+        push = current(0.5)
+        run = voice_coil().simulate(replay=push)
+        with open("logged.csv", "w") as file:
+            file.write("time [ms],i [mA],x [um]\n")
+            for k, (i, x) in enumerate(zip(run["i"], run["x"])):
+                reading = "" if k == 700 else repr(1e6 * x)
+                file.write(f"{k / 5},{1e3 * i!r},{reading}\n")
+        with self.assertWarns(UserWarning):
+            read = voice_coil().read("logged.csv")
+        self.assertEqual(read.units, run.units)
+        self.assertEqual(read.sample_time, run.sample_time)
+        self.assertFalse(read.measured["x"][700])
+        known = read.measured["x"]
+        np.testing.assert_allclose(read["x"][known], run["x"][known], rtol=1e-12)
+
     def test_keys_of_the_setup_are_set(self):
         machine = voice_coil(set={"name": 'a "new" one', "rates": {"substeps": 2},
                                   "sensors.x.noise_sd": np.float64(1e-6)})
