@@ -40,11 +40,9 @@ class Display {
   Display& operator=(const Display&) = delete;
   ~Display() {
     if (!bar_) return;
-    try {
-      bar_.attr("close")();
-    } catch (py::error_already_set& error) {
-      error.discard_as_unraisable("progress bar");
-    }
+    PyObject* closed = PyObject_CallMethod(bar_.ptr(), "close", nullptr);
+    if (closed == nullptr) PyErr_WriteUnraisable(bar_.ptr());
+    Py_XDECREF(closed);
   }
 
   void Show(double fraction, const std::string& what) {

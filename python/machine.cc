@@ -32,17 +32,19 @@ MachineObject MakeMachine(const py::object& setup, const py::object& plant,
   return {std::move(source), machine};
 }
 
+double NumberOf(py::handle value, const std::string& what, const std::string& name) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() == nullptr) return number;
+  PyErr_Clear();
+  throw InputError(what + " " + name, KindOf(value), "a number");
+}
+
 std::map<std::string, double> NumbersOf(const py::kwargs& values,
                                         const std::string& what) {
   std::map<std::string, double> numbers;
-  for (const auto& [name, value] : values) {
-    const std::string key = py::str(name);
-    const double number = PyFloat_AsDouble(value.ptr());
-    if (PyErr_Occurred() != nullptr) {
-      PyErr_Clear();
-      throw InputError(what + " " + key, KindOf(value), "a number");
-    }
-    numbers[key] = number;
+  for (const auto& [key, value] : values) {
+    const std::string name = py::str(key);
+    numbers[name] = NumberOf(value, what, name);
   }
   return numbers;
 }
@@ -68,6 +70,7 @@ Record ReadFor(const MachineObject& machine, const py::object& path) {
 std::vector<LateFault> LateFaultsOf(
     const std::vector<std::tuple<std::string, double, double>>& given) {
   std::vector<LateFault> late;
+  late.reserve(given.size());
   for (const auto& [name, value, time] : given) late.push_back({{name, value}, time});
   return late;
 }

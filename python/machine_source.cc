@@ -107,9 +107,10 @@ std::string SensorUnit(const mjModel& model, int sensor) {
 
 /// "1" of an actuator with a gear, whose control is no force.
 std::string ActuatorUnit(const mjModel& model, int actuator) {
-  if (model.actuator_gear[6 * actuator] != 1.0) return "1";
-  const bool hinge = model.actuator_trntype[actuator] == mjTRN_JOINT &&
-                     model.jnt_type[model.actuator_trnid[2 * actuator]] == mjJNT_HINGE;
+  if (*RowOf(model.actuator_gear, 6, actuator) != 1.0) return "1";
+  const bool hinge =
+      model.actuator_trntype[actuator] == mjTRN_JOINT &&
+      model.jnt_type[*RowOf(model.actuator_trnid, 2, actuator)] == mjJNT_HINGE;
   return hinge ? "N m" : "N";
 }
 
@@ -144,7 +145,7 @@ std::string SetupOf(const fs::path& mjcf, const fs::path& plant) {
 fs::path MjcfFile(const std::string& mjcf, MachineSource& source) {
   if (!IsMjcfText(mjcf)) return fs::absolute(mjcf);
   if (!source.texts) source.texts = std::make_shared<TemporaryFolder>();
-  const fs::path file = source.texts->path() / "plant.xml";
+  fs::path file = source.texts->path() / "plant.xml";
   WriteTextFile(file, mjcf);
   return file;
 }
