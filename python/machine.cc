@@ -169,21 +169,30 @@ DiscoveryObject DoDiscover(const MachineObject& machine, const py::object& recor
   return DiscoverCauses(machine, records, data, validation, options, doubt, progress);
 }
 
+/// What was read beside a setup says no more than the numbers.
 py::object CalibrationOf(const MachineObject& machine) {
-  if (!machine.calibration()) return py::none();
-  const auto& [calibration, prior_sd, records, doubts] = *machine.calibration();
+  const std::optional<Calibration>& known = machine.setup().calibration;
+  if (!known) return py::none();
+  const std::optional<CalibrationReport>& report = machine.calibration();
   const py::module_ package = py::module_::import("mjdiag");
   py::dict numbers;
-  const Eigen::VectorXd sd = calibration.Sd();
-  for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
+  const Eigen::VectorXd sd = known->Sd();
+  for (std::size_t i = 0; i < known->numbers.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    numbers[calibration.numbers[i].c_str()] =
-        package.attr("CalibratedNumber")(calibration.factors[at], sd[at], prior_sd[at]);
+    numbers[known->numbers[i].c_str()] = package.attr("CalibratedNumber")(
+        known->factors[at], sd[at],
+        report ? py::object(py::float_(report->prior_sd[at])) : py::none());
   }
   py::list misfits;
-  for (const CalibratedRecord& record : records) misfits.append(record.misfit);
-  return package.attr("Calibration")(numbers, Copy(calibration.sensor_noise),
-                                     calibration.force_noise, misfits, doubts);
+  py::list doubts;
+  if (report) {
+    for (const CalibratedRecord& record : report->records) {
+      misfits.append(record.misfit);
+    }
+    for (const std::string& name : report->doubts) doubts.append(name);
+  }
+  return package.attr("Calibration")(numbers, Copy(known->sensor_noise),
+                                     known->force_noise, misfits, doubts);
 }
 
 std::vector<std::string> TrajectoriesOf(const MachineObject& machine) {
@@ -255,7 +264,7 @@ void BindDescription(MachineClass& machine) {
           "Name -> value of what was set, or found by a discovery.")
       .def_property_readonly(
           "calibration", &CalibrationOf,
-          "What `calibrate` learned, a named tuple Calibration; None.")
+          "What healthy runs said, a named tuple Calibration; None without.")
       .def("__repr__", [](const MachineObject& object) {
         return "<mjdiag.Machine " + object.setup().name + ": " + Described(object) +
                ">";

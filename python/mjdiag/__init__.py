@@ -60,7 +60,10 @@ class PlantNumber(_NamedTuple):
 
 
 class CalibratedNumber(_NamedTuple):
-    """factor times what the plant says; sd, prior_sd: of its logarithm, now and before."""
+    """factor times what the plant says; sd, prior_sd: of its logarithm, now and before.
+
+    prior_sd is None of a calibration that was read beside its setup.
+    """
 
     factor: float
     sd: float
@@ -73,7 +76,8 @@ class Calibration(_NamedTuple):
     numbers: name -> CalibratedNumber. sensor_noise: sd of a reading of every sensor.
     force_noise: bandwidth with which the twin is pulled along [Hz]; 0: the model lacks
     nothing. misfits: of every record, 1 where the model explains it. doubts: numbers far
-    from what was known of them, as on a machine that was not healthy.
+    from what was known of them, as on a machine that was not healthy. A calibration that
+    was read beside its setup has neither misfits nor doubts.
     """
 
     numbers: dict

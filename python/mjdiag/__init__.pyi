@@ -37,7 +37,7 @@ class PlantNumber(NamedTuple):
 class CalibratedNumber(NamedTuple):
     factor: float
     sd: float
-    prior_sd: float
+    prior_sd: Optional[float]
 
 class Calibration(NamedTuple):
     numbers: dict[str, CalibratedNumber]

@@ -57,6 +57,9 @@ class AnswersTest(Test):
         self.assertIsNone(self.coil.calibration)
         calibrated.write("calibrated")
         again = mjdiag.Machine("calibrated")
+        read = again.calibration
+        self.assertEqual(read.numbers["stiffness@stage"][:2], number[:2])
+        self.assertEqual((read.misfits, read.force_noise), ([], known.force_noise))
         self.assertEqual(again.diagnose(self.worn).to_dict(),
                          calibrated.diagnose(self.worn).to_dict())
         self.assertRefuses(lambda: calibrated.with_faults(zeta=2).write("x"), "faults")
