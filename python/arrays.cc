@@ -44,6 +44,13 @@ py::array Converted(py::handle object, const std::string& what, const char* kind
   return made.attr("astype")(type);
 }
 
+double NumberOf(py::handle value, const std::string& what, const std::string& name) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() == nullptr) return number;
+  PyErr_Clear();
+  throw InputError(what + " " + name, KindOf(value), "a number");
+}
+
 }  // namespace
 
 py::array View(const Eigen::VectorXd& values, py::handle owner) {
@@ -109,6 +116,16 @@ const double* DataOf(py::handle object, std::size_t* size) noexcept {
   if (!is_plain) return nullptr;
   *size = static_cast<std::size_t>(array->dimensions[0]);
   return reinterpret_cast<const double*>(array->data);
+}
+
+std::map<std::string, double> NumbersOf(const py::kwargs& values,
+                                        const std::string& what) {
+  std::map<std::string, double> numbers;
+  for (const auto& [key, value] : values) {
+    const std::string name = py::str(key);
+    numbers[name] = NumberOf(value, what, name);
+  }
+  return numbers;
 }
 
 std::string KindOf(py::handle object) {

@@ -7,7 +7,7 @@
 #include <pybind11/numpy.h>
 
 #include <Eigen/Core>
-#include <span>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,6 +32,10 @@ SampleMask MaskOf(pybind11::handle array, const std::string& what);
 /// The numbers of a float64 array without gaps between them, where they lie; null for
 /// anything else, which VectorOf copies. For what is called thousands of times a second.
 const double* DataOf(pybind11::handle array, std::size_t* size) noexcept;
+
+/// Numbers by name, of keyword arguments. InputError begins with `what` and the name.
+std::map<std::string, double> NumbersOf(const pybind11::kwargs& values,
+                                        const std::string& what);
 
 /// "a str", of what is no such thing as was expected, for messages.
 std::string KindOf(pybind11::handle object);

@@ -36,7 +36,7 @@ py::list AlternativesOf(const FoundCause& found) {
   return alternatives;
 }
 
-py::dict NumbersOf(const Discovery& discovery) {
+py::dict DoubtedNumbers(const Discovery& discovery) {
   const py::object make = py::module_::import("mjdiag").attr("PlantNumber");
   py::dict numbers;
   for (const CalibratedNumber& number : discovery.calibration) {
@@ -139,7 +139,9 @@ void BindDiscovery(py::module_& module) {
           "The Machine with all causes in it, ready to simulate.")
       .def_property_readonly(
           "numbers",
-          [](const DiscoveryObject& object) { return NumbersOf(object.discovery); },
+          [](const DiscoveryObject& object) {
+            return DoubtedNumbers(object.discovery);
+          },
           R"(
           Name -> (factor, ci95, is_off) of the numbers of the plant that were in doubt,
           as times what the model says.)")

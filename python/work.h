@@ -54,4 +54,7 @@ DiscoveryObject DiscoverCauses(const MachineObject& machine,
 /// "healthy", or what was put into it: "zeta_x = 1.2, coulomb_friction at X".
 std::string Described(const MachineObject& machine);
 
+/// Methods of Machine for all of that.
+void BindMachineWork(pybind11::class_<MachineObject>& machine);
+
 }  // namespace mjdiag::python
