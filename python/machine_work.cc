@@ -52,10 +52,11 @@ Record DoSimulate(const MachineObject& machine, std::uint64_t seed,
 
 py::dict DoRender(const MachineObject& machine, const py::object& other,
                   const py::object& path, const std::string& trajectory,
-                  std::optional<double> duration, std::uint64_t seed, bool linear,
-                  std::optional<double> begin, std::optional<double> end, double speed,
-                  double fps, int width, int height, const std::string& camera,
-                  bool ghost, const py::object& amplify, const py::object& progress) {
+                  const py::object& replay, std::optional<double> duration,
+                  std::uint64_t seed, bool linear, std::optional<double> begin,
+                  std::optional<double> end, double speed, double fps, int width,
+                  int height, const std::string& camera, bool ghost,
+                  const py::object& amplify, const py::object& progress) {
   ClipOptions options;
   options.picture.width = width;
   options.picture.height = height;
@@ -72,6 +73,7 @@ py::dict DoRender(const MachineObject& machine, const py::object& other,
   }
   RunRequest request;
   request.trajectory = trajectory;
+  request.replay = ReplayOf(replay);
   request.duration = duration;
   request.seed = seed;
   request.linear = linear;
@@ -211,10 +213,10 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
 
            InputError: records that cannot be judged, which says why.)")
       .def("render", &DoRender, py::arg("other"), py::arg("path"), py::kw_only(),
-           py::arg("trajectory") = "", py::arg("duration") = 0.06, py::arg("seed") = 1,
-           py::arg("linear") = false, py::arg("begin") = py::none(),
-           py::arg("end") = py::none(), py::arg("speed") = ClipOptions{}.speed,
-           py::arg("fps") = ClipOptions{}.fps,
+           py::arg("trajectory") = "", py::arg("replay") = py::none(),
+           py::arg("duration") = 0.06, py::arg("seed") = 1, py::arg("linear") = false,
+           py::arg("begin") = py::none(), py::arg("end") = py::none(),
+           py::arg("speed") = ClipOptions{}.speed, py::arg("fps") = ClipOptions{}.fps,
            py::arg("width") = PictureOptions{}.width,
            py::arg("height") = PictureOptions{}.height, py::arg("camera") = "",
            py::arg("ghost") = false, py::arg("amplify") = py::none(),
@@ -224,7 +226,7 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
            small motion enlarged.
 
            other: a Machine, a Record of this one, or None.
-           trajectory, duration [s], seed, linear: of the runs, as of simulate.
+           trajectory, replay, duration [s], seed, linear: of the runs, as of simulate.
            begin, end: what is shown [s].
            speed: seconds of the machine a second of clip.
            width, height: [px], even.

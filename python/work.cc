@@ -100,7 +100,7 @@ std::vector<TitledRecord> RunsOf(const MachineObject& machine,
                                  const RunRequest& request, LongCall& call) {
   RunRequest with_joints = request;
   with_joints.log_joints = true;
-  with_joints.replay = record;
+  if (record != nullptr) with_joints.replay = record;
   const Excitation excitation = ExcitationOf(machine.setup(), with_joints);
   const auto run = [&](const MachineObject& object, const std::string& what) {
     return TitledRecord{Described(object), RunOnce(object.machine(), excitation,

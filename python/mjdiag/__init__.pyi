@@ -308,6 +308,7 @@ class Machine:
         path: _Path,
         *,
         trajectory: str = "",
+        replay: Optional[Record] = None,
         duration: Optional[float] = 0.06,
         seed: int = 1,
         linear: bool = False,

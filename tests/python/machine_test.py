@@ -193,6 +193,17 @@ class MachineTest(Test):
         volts = mjdiag.Record({"i": [0.0, 0.0]}, {"i": "V"}, 1 / 5000)
         self.assertRefuses(lambda: coil.simulate(replay=volts), "V", "A")
 
+    def test_renders_machines_and_records(self):
+        coil, push = voice_coil(), current(0.02)
+        small = {"width": 320, "height": 240, "speed": 0.05, "duration": 0.02}
+        told = coil.render(coil.with_faults(eta=0.5), "a.mp4", replay=push, **small)
+        self.assertEqual(told["frames"], 12)
+        coil.render(coil.simulate(replay=push), "b.mp4", **small)
+        for name in ("a.mp4", "b.mp4"):
+            self.assertGreater(os.path.getsize(name), 1000)
+        self.assertRefuses(lambda: coil.render(None, "a.avi", replay=push), "a.avi")
+        self.assertRefuses(lambda: coil.render("worn", "a.mp4", replay=push), "str")
+
     def test_divergence_is_a_numerical_error(self):
         runaway = mjdiag.Machine(BONDER, set={"axes.x.drive_gain": -50.0})
         with self.assertRaises(mjdiag.NumericalError) as caught:
