@@ -11,18 +11,13 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
-#include "mjdiag/diagnosis/filters_file.h"
-#include "mjdiag/discovery/extension/calibrated_setup.h"
-#include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/discovery/extension/setup_folder.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kCalibrationFile = "calibration.json";
 
 struct CalibrateCommand {
   MachineOptions machine;
@@ -36,17 +31,6 @@ void RequireOtherFolder(const fs::path& setup_file, const fs::path& folder) {
   if (fs::exists(folder) && fs::equivalent(setup_file.parent_path(), folder)) {
     throw InputError("--out", "is the folder of the setup itself", "another folder");
   }
-}
-
-/// Everything that stands beside the setup, so that the folder is one by itself.
-void CopySetup(const fs::path& setup_file, const fs::path& folder) {
-  MakeOutputFolder(folder);
-  for (const auto& entry : fs::directory_iterator(setup_file.parent_path())) {
-    const fs::path name = entry.path().filename();
-    if (!entry.is_regular_file() || name == setup_file.filename()) continue;
-    fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
-  }
-  WriteTextFile(folder / "setup.toml", CalibratedSetup(setup_file, kCalibrationFile));
 }
 
 std::string CalibrationText(const CalibrateCommand& command,
@@ -160,9 +144,7 @@ void RunCalibration(CalibrateCommand& command) {
     command.runs.progress = [&bar](double part) { bar.Show(part); };
     design = CalibratedFilters(calibrated, records, command.runs);
   }
-  CopySetup(setup_file, folder);
-  WriteCalibration(folder / kCalibrationFile, report.calibration);
-  WriteFilters(folder / kCalibratedFilters, design);
+  WriteCalibratedSetup(folder, setup_file, report.calibration, design);
   nlohmann::json document = CalibrationDocument(command, report);
   std::string text = CalibrationText(command, report);
   AddNotes(notes, document, text);

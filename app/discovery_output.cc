@@ -4,15 +4,12 @@
 #include <filesystem>
 
 #include "app/format.h"
-#include "mjdiag/discovery/extension/extended_plant.h"
+#include "mjdiag/discovery/extension/setup_folder.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"
-#include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// A table of the page under its heading; nothing without rows.
 std::string Section(const std::string& heading, const mjdiag::Table& content) {
@@ -53,17 +50,9 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
   const bool changed =
       std::ranges::any_of(discovery.calibration, IsOff) || !discovery.causes.empty();
   if (!changed) return "";
-  const fs::path extended = fs::path(folder) / "extended";
-  MakeOutputFolder(extended);
-  const Changes changes = ChangesOf(discovery);
-  // Both texts first: neither file is written if one of them cannot be made.
-  const std::string plant =
-      ExtendMjcf(machine.setup().plant, machine.plant(), changes, extended);
-  const std::string text =
-      ExtendSetup(setup, machine.setup(), changes.effects, extended);
-  WriteTextFile(extended / "plant.xml", plant);
-  WriteTextFile(extended / "setup.toml", text);
-  return (extended / "plant.xml").string();
+  return WriteExtendedSetup(std::filesystem::path(folder) / "extended", setup, machine,
+                            ChangesOf(discovery))
+      .string();
 }
 
 }  // namespace mjdiag::app

@@ -1,5 +1,6 @@
 # Installs the build into an empty prefix, and builds and runs what others make of it.
-#   cmake -DBUILD=<build> -DSOURCE=<this folder> -P try_package.cmake
+#   cmake -DBUILD=<build> -DSOURCE=<this folder> [-DPYTHON=<interpreter>
+#         -DPYTHON_FOLDER=<of packages, below the prefix>] -P try_package.cmake
 set(work ${BUILD}/try_package)
 set(prefix ${work}/prefix)
 file(REMOVE_RECURSE ${work})
@@ -39,3 +40,9 @@ build(${SOURCE}/diagnosis_only diagnosis_only)
 run(${prefix}/bin/mjdiag design --setup mjcf/ab383 --linear --out .)
 run(${work}/diagnosis_only/example_diagnosis)
 expect("no alarm")
+
+if(PYTHON)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_FOLDER}
+      ${PYTHON} -c "from mjdiag import *\nprint(Machine('mjcf/ab383'), Machine)")
+  expect("AB383 wire bonder.*mjdiag.Machine")
+endif()

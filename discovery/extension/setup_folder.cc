@@ -1,0 +1,52 @@
+#include "mjdiag/discovery/extension/setup_folder.h"
+
+#include <string>
+
+#include "mjdiag/diagnosis/filters_file.h"
+#include "mjdiag/discovery/extension/calibrated_setup.h"
+#include "mjdiag/discovery/extension/extended_plant.h"
+#include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
+
+namespace mjdiag {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCalibrationFile = "calibration.json";
+
+}  // namespace
+
+fs::path WriteExtendedSetup(const fs::path& folder, const fs::path& setup,
+                            const Machine& machine, const Changes& changes) {
+  MakeOutputFolder(folder);
+  const std::string plant =
+      ExtendMjcf(machine.setup().plant, machine.plant(), changes, folder);
+  const std::string text = ExtendSetup(setup, machine.setup(), changes.effects, folder);
+  WriteTextFile(folder / "plant.xml", plant);
+  WriteTextFile(folder / "setup.toml", text);
+  return folder / "plant.xml";
+}
+
+void WriteCalibratedSetup(const fs::path& folder, const fs::path& setup,
+                          const Calibration& calibration,
+                          const DiagnosisDesign& filters) {
+  const fs::path file = fs::absolute(FindSetupFile(setup));
+  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
+    throw InputError(folder.string(), "is the folder of the setup itself",
+                     "another folder");
+  }
+  const std::string text = CalibratedSetup(file, kCalibrationFile);
+  MakeOutputFolder(folder);
+  for (const auto& entry : fs::directory_iterator(file.parent_path())) {
+    const fs::path name = entry.path().filename();
+    if (!entry.is_regular_file() || name == file.filename()) continue;
+    fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
+  }
+  WriteTextFile(folder / "setup.toml", text);
+  WriteCalibration(folder / kCalibrationFile, calibration);
+  WriteFilters(folder / kCalibratedFilters, filters);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,33 @@
+#pragma once
+// Folders that are setups of their own: of an extended plant, and of a calibrated machine.
+// Every command takes them, and the plants load in stock MuJoCo.
+
+#include <filesystem>
+
+#include "mjdiag/diagnosis/diagnosis_design.h"
+#include "mjdiag/plugin/effects/changes.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/setup/calibration_file.h"
+
+namespace mjdiag {
+
+/// Makes a folder with plant.xml and setup.toml of a machine with those changes.
+/// @param setup    of the machine, a file or its folder
+/// @param machine  as that setup has it
+/// @return plant.xml. InputError as ExtendMjcf and ExtendSetup; neither file is written
+///         if one of them cannot be made
+std::filesystem::path WriteExtendedSetup(const std::filesystem::path& folder,
+                                         const std::filesystem::path& setup,
+                                         const Machine& machine,
+                                         const Changes& changes);
+
+/// Makes a folder with everything that stands beside a setup, with the setup that names the
+/// calibration, with calibration.json and with filters.json, whose limits hold for the
+/// healthy runs.
+/// @param setup  of the machine, a file or its folder. InputError if it is in `folder`
+void WriteCalibratedSetup(const std::filesystem::path& folder,
+                          const std::filesystem::path& setup,
+                          const Calibration& calibration,
+                          const DiagnosisDesign& filters);
+
+}  // namespace mjdiag

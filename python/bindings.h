@@ -1,0 +1,17 @@
+#pragma once
+// The parts of the module, each with the classes of one subject, in the order in which
+// they are defined: what a function takes has to be known before it, or its signature
+// would show a name of C++.
+
+#include <pybind11/pybind11.h>
+
+namespace mjdiag::python {
+
+void BindRecord(pybind11::module_& module);     // Record
+void BindLinear(pybind11::module_& module);     // LinearModel
+void BindDiagnosis(pybind11::module_& module);  // Diagnosis, Fault
+void BindDiscovery(pybind11::module_& module);  // Discovery, Cause, Parameter
+void BindMachine(pybind11::module_& module);    // Machine
+void BindMonitor(pybind11::module_& module);    // Monitor
+
+}  // namespace mjdiag::python

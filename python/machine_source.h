@@ -1,0 +1,44 @@
+#pragma once
+// Where a machine comes from: a folder with a setup, or an MJCF, and keys that are set
+// over what the setup says.
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace mjdiag::python {
+
+/// A folder that is there as long as somebody holds it.
+class TemporaryFolder {
+ public:
+  /// InputError if it cannot be made.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct MachineSource {
+  std::filesystem::path setup;         ///< for ReadSetup
+  std::vector<std::string> overrides;  ///< the same
+  /// Holds what was given as text; null if nothing was.
+  std::shared_ptr<const TemporaryFolder> texts{};
+};
+
+/// @param machine  a folder with setup.toml, a setup file, an MJCF file (*.xml), or MJCF
+///                 itself. An MJCF alone gets a setup with its scalar sensors and its
+///                 actuators as channels, a tick of its time step, and no noise
+/// @param plant    the MJCF in the place of that of the setup, a file or text; None
+/// @param set      key -> value, or None
+/// InputError
+MachineSource SourceOf(const pybind11::object& machine, const pybind11::object& plant,
+                       const pybind11::object& set);
+
+}  // namespace mjdiag::python

@@ -1,0 +1,60 @@
+#pragma once
+// What a machine is asked to do and takes long: each as one call, from Python's arguments
+// to the result, told and ended as RunLong says.
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/render/clip.h"
+#include "mjdiag/signals/record.h"
+#include "python/diagnosis.h"
+#include "python/discovery.h"
+#include "python/machine.h"
+
+namespace mjdiag::python {
+
+/// What moves a machine, and how.
+struct RunRequest {
+  std::string trajectory;          ///< empty: the default one of the setup
+  const Record* replay = nullptr;  ///< motion or inputs of this record
+  std::optional<double> duration;  ///< [s]
+  std::string mode = "both";
+  double noise = 1.0;  ///< times that of the sensors
+  std::uint64_t seed = 1;
+  bool linear = false;
+  bool log_joints = false;
+  std::vector<LateFault> late_faults;
+};
+
+Record SimulateMachine(const MachineObject& machine, const RunRequest& request,
+                       const pybind11::object& progress);
+
+/// Of the machine beside another one, or beside a record of it; none: alone.
+ClipSummary RenderMachine(const MachineObject& machine, const pybind11::object& other,
+                          const pybind11::object& path, const RunRequest& request,
+                          ClipOptions options, const pybind11::object& progress);
+
+MachineObject CalibrateMachine(const MachineObject& machine,
+                               const pybind11::object& records, bool linear,
+                               const pybind11::object& progress);
+
+/// @param data   folder of the records, if `records` is a manifest; else None
+/// @param doubt  as in DiscoverOptions; none: unless the plant says that it is exact
+DiscoveryObject DiscoverCauses(const MachineObject& machine,
+                               const pybind11::object& records,
+                               const pybind11::object& data,
+                               const pybind11::object& validation,
+                               DiscoverOptions options, std::optional<bool> doubt,
+                               const pybind11::object& progress);
+
+/// "healthy", or what was put into it: "zeta_x = 1.2, coulomb_friction at X".
+std::string Described(const MachineObject& machine);
+
+/// Methods of Machine for all of that.
+void BindMachineWork(pybind11::class_<MachineObject>& machine);
+
+}  // namespace mjdiag::python

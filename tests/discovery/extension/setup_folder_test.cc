@@ -1,0 +1,59 @@
+#include "mjdiag/discovery/extension/setup_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
+#include "mjdiag/signals/error.h"
+#include "support/temporary_folder.h"
+
+namespace mjdiag {
+namespace {
+
+const std::filesystem::path kCoil =
+    std::filesystem::path(MJDIAG_SOURCE_DIR) / "mjcf" / "voice_coil";
+
+TEST(SetupFolder, OfAnExtendedPlantIsThatMachine) {
+  const test::TemporaryFolder folder;
+  const Machine coil(ReadSetup(kCoil));
+  const Changes changes{{{"zeta", 1.2}},
+                        {ParseEffect("cubic_stiffness@stage:coefficient=4e6")}};
+  const auto extended = folder.path() / "extended";
+  EXPECT_EQ(WriteExtendedSetup(extended, kCoil, coil, changes), extended / "plant.xml");
+  const Machine read(ReadSetup(extended));
+  EXPECT_EQ(read.effects(), changes.effects);
+  EXPECT_EQ(read.linear().D, coil.With(changes).linear().D);
+}
+
+TEST(SetupFolder, OfACalibratedMachineIsASetupOfItsOwn) {
+  const test::TemporaryFolder folder;
+  const Machine coil(ReadSetup(kCoil));
+  Calibration calibration;
+  calibration.numbers = {"mass@stage"};
+  calibration.factors = Eigen::VectorXd::Constant(1, 1.01);
+  calibration.root = Eigen::MatrixXd::Constant(1, 1, 0.001);
+  calibration.sensor_noise = Eigen::VectorXd::Constant(1, 4e-8);
+  calibration.records = 1;
+  const DiagnosisDesign filters = DesignFilters(coil);
+  WriteCalibratedSetup(folder.path() / "calibrated", kCoil, calibration, filters);
+  const auto read = ReadSetup(folder.path() / "calibrated");
+  EXPECT_EQ(read.calibration, calibration);
+  EXPECT_TRUE(std::filesystem::exists(read.folder / kCalibratedFilters));
+  EXPECT_TRUE(std::filesystem::exists(read.plant));
+  EXPECT_EQ(read.plant.parent_path(), read.folder);
+}
+
+TEST(SetupFolder, IsNeverThatOfTheSetupItself) {
+  const test::TemporaryFolder folder;
+  const auto copy = folder.path() / "coil";
+  std::filesystem::copy(kCoil, copy);
+  EXPECT_THROW(WriteCalibratedSetup(copy, copy, {}, {}), InputError);
+  EXPECT_THROW(WriteExtendedSetup(copy, copy, Machine(ReadSetup(copy)), {}),
+               InputError);
+}
+
+}  // namespace
+}  // namespace mjdiag
