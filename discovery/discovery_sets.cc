@@ -1,5 +1,5 @@
-// Sets of causes at first (sets/set_search.h): where they leave a model that deserves a
-// slower observer than the fastest, they are what the rest of a discovery goes on from.
+// Sets of causes at first (sets/set_search.h): where what no fit saw agrees with them, they
+// are what the rest of a discovery goes on from.
 
 #include <algorithm>
 #include <cmath>
