@@ -28,7 +28,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kLeast = 0.05;  // probability that is told
+constexpr double kLeast = 0.05;   // probability that is told,
+constexpr double kRather = 0.5;   // and of numbers, of which there are many
 
 double Logistic(double half_deviance) { return 1.0 / (1.0 + std::exp(-half_deviance)); }
 
@@ -188,8 +189,9 @@ void Discoverer::AddKindsOfNumbers() {
     const bool is_known = std::ranges::any_of(discovery_.kinds, [&](const auto& other) {
       return other.kind == kind && other.site == site;
     });
-    if (is_known) continue;
-    discovery_.kinds.push_back({kind, site, Logistic((z * z - price) / 2.0), 0.0, true});
+    const double probability = Logistic((z * z - price) / 2.0);
+    if (is_known || probability < kRather) continue;
+    discovery_.kinds.push_back({kind, site, probability, 0.0, true});
   }
 }
 

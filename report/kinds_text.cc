@@ -5,6 +5,17 @@
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
+namespace {
+
+/// Neither certain nor nothing: "> 99.9 %", "< 0.1 %".
+std::string PartText(double share) {
+  constexpr double kLeast = 1e-3;
+  if (share < kLeast) return "< 0.1 %";
+  if (share > 1.0 - kLeast) return "> 99.9 %";
+  return FormatNumber(100.0 * share, 3) + " %";
+}
+
+}  // namespace
 
 std::string KindAt(const FoundKind& found) {
   return KindName(found.kind) + " at " + found.site;
@@ -25,7 +36,7 @@ std::string KindsSentence(const Discovery& discovery) {
     there.push_back(KindAt(found) + " (" + KindMeaning(found.kind) + ")");
   }
   if (there.empty()) return "";
-  std::string text = "The model lacks ";
+  std::string text = "The model is wrong about ";
   for (std::size_t i = 0; i < there.size(); ++i) {
     const bool last = i + 1 == there.size();
     text += (i == 0 ? "" : last ? " and " : ", ") + there[i];
@@ -42,8 +53,8 @@ Table KindTable(const Discovery& discovery) {
                    {"What it is"}};
   for (const FoundKind& found : discovery.kinds) {
     table.rows.push_back({KindName(found.kind), found.site,
-                          FormatNumber(100.0 * found.probability, 3) + " %",
-                          FormatNumber(100.0 * found.share, 2) + " %",
+                          PartText(found.probability),
+                          found.of_number ? "-" : PartText(found.share),
                           KindMeaning(found.kind)});
   }
   return table;

@@ -12,8 +12,8 @@ namespace mjdiag {
 std::string KindAt(const FoundKind& found);
 /// "all but certain", "likely", "possible".
 std::string SureText(double probability);
-/// One sentence with those that are rather there than not: "The model lacks load friction at
-/// shaft (a resistance that grows with the load). "; empty without any.
+/// One sentence with those that are rather there than not: "The model is wrong about load
+/// friction at shaft (a resistance that grows with the load). "; empty without any.
 std::string KindsSentence(const Discovery& discovery);
 /// A row each, the most probable first.
 Table KindTable(const Discovery& discovery);
