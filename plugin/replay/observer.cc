@@ -298,8 +298,7 @@ Observer DesignObserver(const Machine& machine, const MeasuredRun& run,
   Observer observer =
       DesignObserver(machine.linear(), machine.plant().opt.timestep,
                      machine.rates().substeps, noise_sd, bandwidth);
-  if (RestGainHolds(machine, run, bandwidth)) return observer;
-  if (!path) path = PathAlong(machine, run);
+  if (!path && !RestGainHolds(machine, run, bandwidth)) path = PathAlong(machine, run);
   if (path) FollowMotion(std::move(path), observer);
   return observer;
 }

@@ -84,7 +84,7 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
 
 /// The observer of a run: that of the machine at rest if the run stays near it, else one
 /// that follows the measured motion. Errors as above.
-/// @param path  along that run, of an observer that was designed before; null: none known
+/// @param path  along that run, which the observer is to follow anyhow; null: none known
 Observer DesignObserver(const Machine& machine, const MeasuredRun& run,
                         const Eigen::VectorXd& noise_sd, double bandwidth,
                         std::shared_ptr<const MotionPath> path = nullptr);
