@@ -104,6 +104,11 @@ class ForcedPath {
     }
     return C;
   }
+  /// How many readings count.
+  double Values(Index k) const {
+    if (run_.Counted().size() == 0) return static_cast<double>(e_.rows());
+    return static_cast<double>(run_.Counted().col(k).count());
+  }
   auto e(Index k) const { return e_.col(k); }
   /// Whether nothing is known of the state: at the start of a record, and where readings
   /// have pulled the observer that do not count.
@@ -164,8 +169,14 @@ class Filter {
     return {VectorXd::Zero(n), sd.cwiseAbs2().asDiagonal()};
   }
 
-  /// Adds sample k. @return -2 ln of its likelihood
-  double Advance(Index k, State& state, Step* step) const {
+  /// nu^T S^-1 nu and ln det S of a sample.
+  struct Misfit {
+    double square = 0.0;
+    double log_det = 0.0;
+  };
+
+  /// Adds sample k.
+  Misfit Advance(Index k, State& state, Step* step) const {
     if (path_.IsFree(k)) state = Free();
     const std::size_t stretch = path_.StretchOf(k);
     const MatrixXd& A = path_.A(stretch);
@@ -188,7 +199,7 @@ class Filter {
     state.P = A * updated * A.transpose();
     state.P.diagonal().tail(path_.forces()) += walk_.cwiseAbs2();
     state.P = 0.5 * (state.P + state.P.transpose()).eval();
-    return nu.dot(weighed) + 2.0 * S.matrixLLT().diagonal().array().log().sum();
+    return {nu.dot(weighed), 2.0 * S.matrixLLT().diagonal().array().log().sum()};
   }
 
  private:
@@ -197,20 +208,32 @@ class Filter {
   VectorXd bandwidth_;
 };
 
-/// -2 ln likelihood of the middle of the run.
-double Deviance(const ForcedPath& path, const VectorXd& bandwidth) {
+struct Likelihood {
+  double deviance = std::numeric_limits<double>::infinity();  ///< -2 ln L
+  double noise = 1.0;                                         ///< c
+};
+
+/// Of the middle of the run.
+Likelihood LikelihoodOf(const ForcedPath& path, const VectorXd& bandwidth) {
   constexpr Index kSamples = 4000;
   constexpr Index kSettling = 200;
   const Index count = std::min(kSamples, path.samples());
   const Index first = (path.samples() - count) / 2;
   const Filter filter(path, bandwidth);
   Filter::State state = filter.Free();
-  double sum = 0.0;
+  double square = 0.0;
+  double log_det = 0.0;
+  double values = 0.0;
   for (Index k = first; k < first + count; ++k) {
-    const double one = filter.Advance(k, state, nullptr);
-    if (k >= first + std::min(kSettling, count / 4)) sum += one;
+    const Filter::Misfit one = filter.Advance(k, state, nullptr);
+    if (k < first + std::min(kSettling, count / 4)) continue;
+    square += one.square;
+    log_det += one.log_det;
+    values += path.Values(k);
   }
-  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+  const double deviance = values * std::log(square / values) + log_det;
+  if (!std::isfinite(deviance)) return {};
+  return {deviance, std::sqrt(square / values)};
 }
 
 /// Of those to try that with the least deviance.
@@ -218,7 +241,7 @@ VectorXd Likeliest(const ForcedPath& path, const std::vector<VectorXd>& tried) {
   std::vector<double> deviance(tried.size());
   ParallelFor(static_cast<int>(tried.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    deviance[i] = Deviance(path, tried[i]);
+    deviance[i] = LikelihoodOf(path, tried[i]).deviance;
   });
   const auto best = std::ranges::min_element(deviance);
   return tried[static_cast<std::size_t>(best - deviance.begin())];
@@ -308,6 +331,7 @@ std::vector<MissingForce> MissingForces(const Machine& machine, const MeasuredRu
   const ForcedPath path(machine, run, observer, innovations, dofs);
   const VectorXd bandwidth = FindBandwidth(path);
   const Smoothed smoothed = Smooth(path, bandwidth);
+  const double noise = LikelihoodOf(path, bandwidth).noise;
   const mjModel& plant = machine.plant();
   std::vector<MissingForce> forces;
   for (std::size_t j = 0; j < dofs.size(); ++j) {
@@ -318,7 +342,7 @@ std::vector<MissingForce> MissingForces(const Machine& machine, const MeasuredRu
     force.unit = plant.jnt_type[joint] == mjJNT_HINGE ? "N m" : "N";
     force.value = path.unit()[row] * smoothed.value.row(row).transpose();
     force.rms = Rms(force.value);
-    force.sd = path.unit()[row] * std::sqrt(std::max(0.0, smoothed.variance[row]));
+    force.sd = noise * path.unit()[row] * std::sqrt(std::max(0.0, smoothed.variance[row]));
     force.bandwidth = bandwidth[row] / (2.0 * std::numbers::pi * run.sample_time);
     forces.push_back(std::move(force));
   }

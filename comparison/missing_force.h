@@ -14,8 +14,14 @@
 //   W[k-1] = C^T S^-1 C + F^T W[k] F,                  covariance P - P W[k-1] P
 //
 // s stands for a bandwidth b [rad a tick], s = z0 b^3, z0 the force that moves a reading by
-// its noise in a tick. b is that of the largest likelihood of nu over octaves, of all
-// joints together first, then of one after the other, from four thousand samples.
+// its noise in a tick. How noisy readings are against a motion is known roughly only: clocks
+// that jitter, torques that are late. n and w are therefore c times that, which leaves K as
+// it is, and with c of the largest likelihood of m values of nu
+//
+//   -2 ln L = m ln (sum nu^T S^-1 nu / m) + sum ln det S.
+//
+// b is that of the largest L over octaves, of all joints together first, then of one after
+// the other, from four thousand samples.
 
 #include <Eigen/Core>
 #include <string>

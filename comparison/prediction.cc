@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 constexpr double kHorizons[] = {0.01, 0.1, 1.0};  // [s]
 constexpr Index kStarts = 200;
 
-/// -2 ln L over ticks.
+/// -2 ln L over n, but for a constant.
 double Deviance(const FollowedRun& followed) {
   const MatrixXd& S = followed.observer.innovation_covariance;
   const VectorXd r = followed.observer.noise_sd;
@@ -36,7 +36,10 @@ double Deviance(const FollowedRun& followed) {
   const MatrixXd e = r.cwiseInverse().asDiagonal() * followed.track.innovations;
   const MatrixXd weighed = Solve(scaled, e);
   const Eigen::LLT<MatrixXd> factor(scaled);
-  return weighed.cwiseProduct(e).sum() / static_cast<double>(e.cols()) +
+  const auto values = static_cast<double>(e.rows());
+  const double square =
+      weighed.cwiseProduct(e).sum() / static_cast<double>(e.cols()) / values;
+  return values * std::log(square) +
          2.0 * factor.matrixLLT().diagonal().array().log().sum();
 }
 

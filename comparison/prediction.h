@@ -9,9 +9,9 @@
 // Of all bandwidths of the observer from a sixth of the control rate down by factors of
 // three, that is taken at which its innovations e are likeliest,
 //
-//   -2 ln L = sum e^T S^-1 e + n ln det S,     S = C P C^T + R,
+//   -2 ln L = m ln (sum e^T S^-1 e / m) + n ln det S,     S = C P C^T + R,
 //
-// as if what the model lacks were white forces: the states are then as near to the truth
+// for m values in n ticks, the noise being known to a common factor (missing_force.h), as if what the model lacks were white forces: the states are then as near to the truth
 // as the model allows. Effects with a memory begin every prediction without it.
 
 #include <Eigen/Core>
