@@ -208,6 +208,11 @@ class Filter {
   VectorXd bandwidth_;
 };
 
+/// By E. B. Wilson and M. M. Hilferty, Proc. National Academy of Sciences 17, 1931.
+double MedianOfChiSquared(double freedom) {
+  return freedom * std::pow(1.0 - 2.0 / (9.0 * freedom), 3.0);
+}
+
 struct Likelihood {
   double deviance = std::numeric_limits<double>::infinity();  ///< -2 ln L
   double noise = 1.0;                                         ///< c
@@ -221,19 +226,24 @@ Likelihood LikelihoodOf(const ForcedPath& path, const VectorXd& bandwidth) {
   const Index first = (path.samples() - count) / 2;
   const Filter filter(path, bandwidth);
   Filter::State state = filter.Free();
-  double square = 0.0;
+  std::vector<double> squares;  // over what is expected of their median
   double log_det = 0.0;
   double values = 0.0;
   for (Index k = first; k < first + count; ++k) {
     const Filter::Misfit one = filter.Advance(k, state, nullptr);
     if (k < first + std::min(kSettling, count / 4)) continue;
-    square += one.square;
+    const double readings = path.Values(k);
+    if (readings == 0.0) continue;
+    squares.push_back(one.square / MedianOfChiSquared(readings));
     log_det += one.log_det;
-    values += path.Values(k);
+    values += readings;
   }
-  const double deviance = values * std::log(square / values) + log_det;
+  if (squares.empty()) return {};
+  const auto middle = squares.begin() + std::ssize(squares) / 2;
+  std::nth_element(squares.begin(), middle, squares.end());
+  const double deviance = values * std::log(*middle) + log_det;
   if (!std::isfinite(deviance)) return {};
-  return {deviance, std::sqrt(square / values)};
+  return {deviance, std::sqrt(*middle)};
 }
 
 /// Of those to try that with the least deviance.

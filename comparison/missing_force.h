@@ -16,9 +16,12 @@
 // s stands for a bandwidth b [rad a tick], s = z0 b^3, z0 the force that moves a reading by
 // its noise in a tick. How noisy readings are against a motion is known roughly only: clocks
 // that jitter, torques that are late. n and w are therefore c times that, which leaves K as
-// it is, and with c of the largest likelihood of m values of nu
+// it is, and with c of the largest likelihood of n ticks with m readings each
 //
-//   -2 ln L = m ln (sum nu^T S^-1 nu / m) + sum ln det S.
+//   -2 ln L = n m ln c^2 + sum ln det S,     c^2 = mean nu^T S^-1 nu / m.
+//
+// Ticks that a logger has missed or doubled would decide alone over that mean: c is taken
+// from the median instead, over that of chi-squared with m degrees of freedom.
 //
 // b is that of the largest L over octaves, of all joints together first, then of one after
 // the other, from four thousand samples.

@@ -11,6 +11,7 @@
 
 #include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
+#include "mjdiag/plugin/replay/motion_noise.h"
 #include "mjdiag/plugin/replay/motion_path.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
@@ -105,30 +106,23 @@ std::vector<Index> Starts(const MeasuredRun& run, Index longest, Index skip) {
 
 FollowedRun FollowLikeliest(const Machine& machine, MeasuredRun run,
                             const VectorXd& noise_sd) {
-  constexpr double kFastest = 0.15;  // of the control rate
   constexpr double kStep = 3.0;
   constexpr double kPeriods = 25.0;
+  const std::shared_ptr<const MotionPath> path = PathAlong(machine, run);
+  const VectorXd noise = NoiseInMotion(machine, run, noise_sd, path);
   std::vector<double> bandwidths;
   const double slowest = kPeriods / run.Time().maxCoeff();
-  const double fastest =
-      kFastest * machine.rates().control / static_cast<double>([&] {
-        Index period = 1;
-        for (Index i = 0; i < run.outputs.rows(); ++i) {
-          period = std::max(period, run.PeriodOf(i));
-        }
-        return period;
-      }());
+  const double fastest = FastestBandwidth(machine, run);
   for (double hertz = fastest; hertz > slowest; hertz /= kStep) {
     bandwidths.push_back(hertz);
   }
   if (bandwidths.empty()) bandwidths.push_back(fastest);
-  const std::shared_ptr<const MotionPath> path = PathAlong(machine, run);
   std::vector<std::optional<FollowedRun>> followed(bandwidths.size());
   ParallelFor(static_cast<int>(bandwidths.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     try {
       Observer observer =
-          DesignObserver(machine, run, noise_sd, bandwidths[i], path);
+          DesignObserver(machine, run, noise, bandwidths[i], path);
       Track track = FollowRun(machine, {}, run, observer, true);
       followed[i] = {run, std::move(observer), std::move(track)};
     } catch (const NumericalError&) {
@@ -153,8 +147,9 @@ FollowedRun FollowLikeliest(const Machine& machine, MeasuredRun run,
 
 FollowedRun FollowAt(const Machine& machine, const Changes& changes, MeasuredRun run,
                      const VectorXd& noise_sd, double bandwidth) {
-  Observer observer =
-      DesignObserver(machine, run, noise_sd, bandwidth, PathAlong(machine, run));
+  const std::shared_ptr<const MotionPath> path = PathAlong(machine, run);
+  const VectorXd noise = NoiseInMotion(machine, run, noise_sd, path);
+  Observer observer = DesignObserver(machine, run, noise, bandwidth, path);
   Track track = FollowRun(machine, changes, run, observer, true);
   return {std::move(run), std::move(observer), std::move(track)};
 }

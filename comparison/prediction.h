@@ -33,7 +33,8 @@ struct FollowedRun {
 };
 
 /// The run with the observer of the likeliest innovations.
-/// @param noise_sd  of every sensor, all > 0
+/// @param noise_sd  of every sensor, all > 0; against the motion it may be larger
+///                  (motion_noise.h)
 /// NumericalError if the plant stays beside the run at no bandwidth.
 FollowedRun FollowLikeliest(const Machine& machine, MeasuredRun run,
                             const Eigen::VectorXd& noise_sd);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/replay/motion_noise.h"
 #include "mjdiag/plugin/replay/motion_path.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
@@ -84,6 +85,7 @@ Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
               double fastest) {
   constexpr double kFaster = 1.5;
   std::shared_ptr<const MotionPath> path;
+  VectorXd in_motion;
   for (;; hertz *= kFaster) {
     if (hertz > fastest) {
       throw NumericalError(
@@ -91,13 +93,19 @@ Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
           "was measured, and in which units?");
     }
     const auto design = [&](const Eigen::MatrixXd& innovations) {
-      const VectorXd noise = SensorNoise(machine.channels(), run, innovations);
+      VectorXd noise = SensorNoise(machine.channels(), run, innovations);
+      if (in_motion.size() > 0) noise = noise.cwiseMax(in_motion);
       Observer observer =
           AtPeriods(DesignObserver(machine, run, noise, hertz, path), run);
-      if (observer.following) path = observer.following->path;
       return observer;
     };
-    const auto first = Beside(machine, run, design({}));
+    Observer start = design({});
+    if (start.following && !path) {
+      path = start.following->path;
+      in_motion = NoiseInMotion(machine, run, start.noise_sd, path);
+      start = design({});
+    }
+    const auto first = Beside(machine, run, start);
     if (!first) continue;
     Observer observer = design(first->innovations);
     if (!observer.following || Beside(machine, run, observer)) return observer;
