@@ -54,10 +54,10 @@ Index SettlingSamples(double hertz, const MeasuredRun& run) {
   return std::min(samples, shortest / kShare);
 }
 
-/// Whether a machine that leaves its rest is where the readings are: its first order, which
-/// is taken there, is its own then.
+/// Whether a machine that leaves its rest is where the readings are: of its first order,
+/// which is taken there, the second then leaves a hundredth.
 bool IsBeside(const MeasuredRun& run, const Track& track) {
-  constexpr double kShare = 0.1;  // of the span of the readings
+  constexpr double kShare = 0.01;  // of the span of the readings
   for (Index i = 0; i < run.outputs.rows(); ++i) {
     const double span = run.outputs.row(i).maxCoeff() - run.outputs.row(i).minCoeff();
     if (track.innovations.row(i).cwiseAbs().maxCoeff() > kShare * span) return false;

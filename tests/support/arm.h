@@ -20,10 +20,11 @@ struct Arm {
 
   const Setup& setup() const { return machine.setup(); }
 
-  /// Three seconds under the controller, with these effects.
+  /// Three seconds under the controller, with these effects; 2 substeps: those of the
+  /// model.
   static Record Measure(const std::vector<std::string>& effects = {},
-                        double noise_scale = 1.0) {
-    const Machine held = Load(8, kController);
+                        double noise_scale = 1.0, int substeps = 8) {
+    const Machine held = Load(substeps, kController);
     RunOptions options;
     options.noise_scale = noise_scale;
     return Simulate(held.With(With(effects)),
