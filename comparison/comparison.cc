@@ -108,10 +108,9 @@ bool HasLeftRest(const Machine& machine, const Record& measured) {
 Eigen::VectorXd NoiseOf(const Machine& machine, const Record& measured) {
   Eigen::VectorXd sd = MeasuredNoise(machine.channels(), measured);
   for (Eigen::Index i = 0; i < sd.size(); ++i) {
-    const Channel& channel = measured.At(
-        machine.channels().sensors[static_cast<std::size_t>(i)].channel);
-    sd[i] = std::max(
-        {sd[i], 1e-12 * channel.samples.cwiseAbs().maxCoeff(), 1e-15});
+    const Channel& channel =
+        measured.At(machine.channels().sensors[static_cast<std::size_t>(i)].channel);
+    sd[i] = std::max({sd[i], 1e-12 * channel.samples.cwiseAbs().maxCoeff(), 1e-15});
   }
   return sd;
 }
@@ -121,8 +120,8 @@ Comparison BesideObserver(Comparison result, const Machine& machine,
                           const Record& measured, const FollowedRun& followed) {
   result.falls = true;
   result.bandwidth = followed.observer.bandwidth;
-  result.measured = Select(measured, ChannelsOf(machine.channels().sensors),
-                           measured.start_time());
+  result.measured =
+      Select(measured, ChannelsOf(machine.channels().sensors), measured.start_time());
   result.simulated = Record(measured.sample_time(), measured.start_time());
   const auto samples = static_cast<double>(measured.samples());
   Eigen::Index row = 0;
@@ -142,9 +141,8 @@ Comparison BesideObserver(Comparison result, const Machine& machine,
 /// Of a machine that falls.
 Comparison CompareFalling(const Comparison& frame, const Machine& machine,
                           const Record& measured) {
-  const FollowedRun followed =
-      FollowLikeliest(machine, ToMeasuredRun(machine.setup(), measured),
-                      NoiseOf(machine, measured));
+  const FollowedRun followed = FollowLikeliest(
+      machine, ToMeasuredRun(machine.setup(), measured), NoiseOf(machine, measured));
   Comparison result = BesideObserver(frame, machine, measured, followed);
   result.prediction = Predict(machine, followed, result.options.skip_samples);
   result.missing_force = MissingForces(machine, followed.run, followed.observer,
@@ -232,10 +230,10 @@ Comparison CompareFollowed(const Machine& machine, const Changes& changes,
                            const Record& measured, double bandwidth) {
   std::vector<std::string> names;
   const Comparison frame = Begin(machine, measured, names);
-  return BesideObserver(frame, machine, measured,
-                        FollowAt(machine, changes,
-                                 ToMeasuredRun(machine.setup(), measured),
-                                 NoiseOf(machine, measured), bandwidth));
+  return BesideObserver(
+      frame, machine, measured,
+      FollowAt(machine, changes, ToMeasuredRun(machine.setup(), measured),
+               NoiseOf(machine, measured), bandwidth));
 }
 
 }  // namespace mjdiag

@@ -49,7 +49,8 @@ class ForcedPath {
     const Index nq = machine.plant().nv;
     states_ = 2 * nq;
     scale_.resize(states_);
-    scale_ << VectorXd::Constant(nq, unit), VectorXd::Constant(nq, unit / run.sample_time);
+    scale_ << VectorXd::Constant(nq, unit),
+        VectorXd::Constant(nq, unit / run.sample_time);
     e_ = noise.cwiseInverse().asDiagonal() * innovations;
     VectorXd light = VectorXd::Zero(forces);
     std::vector<StateSpace> ticks;
@@ -308,8 +309,7 @@ Smoothed Smooth(const ForcedPath& path, const VectorXd& bandwidth) {
       const Filter::Step& step = steps[static_cast<std::size_t>(k - first)];
       r = step.pull + step.F.transpose() * r;
       W = step.to_state * step.C + step.F.transpose() * W * step.F;
-      smoothed.value.col(k) =
-          step.x.tail(path.forces()) + step.P_forces * r;
+      smoothed.value.col(k) = step.x.tail(path.forces()) + step.P_forces * r;
       if (k == first) {
         const MatrixXd& P = step.P_forces;
         smoothed.variance +=
@@ -352,7 +352,8 @@ std::vector<MissingForce> MissingForces(const Machine& machine, const MeasuredRu
     force.unit = plant.jnt_type[joint] == mjJNT_HINGE ? "N m" : "N";
     force.value = path.unit()[row] * smoothed.value.row(row).transpose();
     force.rms = Rms(force.value);
-    force.sd = noise * path.unit()[row] * std::sqrt(std::max(0.0, smoothed.variance[row]));
+    force.sd =
+        noise * path.unit()[row] * std::sqrt(std::max(0.0, smoothed.variance[row]));
     force.bandwidth = bandwidth[row] / (2.0 * std::numbers::pi * run.sample_time);
     forces.push_back(std::move(force));
   }

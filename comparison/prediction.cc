@@ -121,8 +121,7 @@ FollowedRun FollowLikeliest(const Machine& machine, MeasuredRun run,
   ParallelFor(static_cast<int>(bandwidths.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     try {
-      Observer observer =
-          DesignObserver(machine, run, noise, bandwidths[i], path);
+      Observer observer = DesignObserver(machine, run, noise, bandwidths[i], path);
       Track track = FollowRun(machine, {}, run, observer, true);
       followed[i] = {run, std::move(observer), std::move(track)};
     } catch (const NumericalError&) {
@@ -139,8 +138,9 @@ FollowedRun FollowLikeliest(const Machine& machine, MeasuredRun run,
     best = std::move(one);
   }
   if (!best) {
-    throw NumericalError("replay: the plant stays beside the record at no bandwidth of "
-                         "the observer");
+    throw NumericalError(
+        "replay: the plant stays beside the record at no bandwidth of "
+        "the observer");
   }
   return std::move(*best);
 }
@@ -192,8 +192,8 @@ Prediction Predict(const Machine& machine, const FollowedRun& followed, Index sk
           if (run.measured.size() > 0 && !run.measured(c, sample)) continue;
           counts[i](c, at) = 1.0;
           const double error = run.outputs(c, sample) - control.reading()[c];
-          squares[i](c, at) = diverged ? std::numeric_limits<double>::infinity()
-                                       : error * error;
+          squares[i](c, at) =
+              diverged ? std::numeric_limits<double>::infinity() : error * error;
         }
       }
       if (diverged) break;

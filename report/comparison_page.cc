@@ -30,11 +30,10 @@ void AddRecordFacts(Page& page, const Comparison& comparison,
       {"Setup", comparison.setup},
       {"Record", run.record},
       {"Replayed", comparison.closed_loop ? "measured reference, in closed loop"
-                   : comparison.falls
-                       ? "measured input, beside an observer of " +
-                             FormatQuantity(comparison.bandwidth, "Hz") +
-                             " that follows the motion"
-                       : "measured input, in open loop"},
+                   : comparison.falls     ? "measured input, beside an observer of " +
+                                            FormatQuantity(comparison.bandwidth, "Hz") +
+                                            " that follows the motion"
+                                      : "measured input, in open loop"},
       {"Length", std::to_string(record.samples()) + " samples at " +
                      FormatQuantity(1.0 / record.sample_time(), "Hz") + ", " +
                      FormatQuantity(record.duration(), "s")},
@@ -102,7 +101,8 @@ void AddFollowed(Page& page, const Comparison& comparison) {
   Table ahead;
   ahead.columns = {{"Channel"}};
   for (const double horizon : prediction.horizons) {
-    ahead.columns.push_back({"Error over " + FormatQuantity(horizon, "s") + ", rms", true});
+    ahead.columns.push_back(
+        {"Error over " + FormatQuantity(horizon, "s") + ", rms", true});
   }
   for (const Prediction::Sensor& sensor : prediction.sensors) {
     std::vector<std::string> row = {sensor.channel};
@@ -202,7 +202,8 @@ std::string ComparisonVerdict(const Comparison& comparison) {
                 FormatQuantity(force.rms, force.unit);
     }
     return "Driven by its inputs alone the plant does not stay with the measurement. "
-           "Beside it a force is missing (rms): " + forces + ".";
+           "Beside it a force is missing (rms): " +
+           forces + ".";
   }
   if (!comparison.exceeds_noise()) {
     std::vector<std::string> names;

@@ -89,7 +89,8 @@ Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
   for (;; hertz *= kFaster) {
     if (hertz > fastest) {
       throw NumericalError(
-          "replay: no observer keeps the plant beside the record; is it the machine that "
+          "replay: no observer keeps the plant beside the record; is it the machine "
+          "that "
           "was measured, and in which units?");
     }
     const auto design = [&](const Eigen::MatrixXd& innovations) {

@@ -61,7 +61,7 @@ class TangentRecorder {
   /// Puts the part of the motors that are on into K and D.
   void Switch(const mjModel& plant, const mjData& data, std::span<const int> off);
 
-  Eigen::VectorXd springs_;           // of the nominal plant
+  Eigen::VectorXd springs_;  // of the nominal plant
   Eigen::VectorXd dampers_;
   MotorBias all_motors_;       // at qpos0, none off
   Eigen::MatrixXd stiffness_;  // what is not of springs in the joints nor of motors

@@ -155,7 +155,8 @@ ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) con
     if (block.C.size() > 0) {
       if (block_ > 1) multiplier += SeenMean(block).transpose() * e.col(k);
       if (k + 1 < blocks) {
-        multiplier += SeenMean(blocks_[static_cast<std::size_t>(k + 1)]).transpose() * later;
+        multiplier +=
+            SeenMean(blocks_[static_cast<std::size_t>(k + 1)]).transpose() * later;
       }
     } else {
       multiplier +=

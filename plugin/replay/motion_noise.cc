@@ -34,13 +34,13 @@ double FastestBandwidth(const Machine& machine, const MeasuredRun& run) {
 VectorXd NoiseInMotion(const Machine& machine, const MeasuredRun& run,
                        const VectorXd& noise_sd,
                        const std::shared_ptr<const MotionPath>& path) {
-  const Observer observer = DesignObserver(machine, run, noise_sd,
-                                           FastestBandwidth(machine, run), path);
+  const Observer observer =
+      DesignObserver(machine, run, noise_sd, FastestBandwidth(machine, run), path);
   const Track track = FollowRun(machine, {}, run, observer, false);
   VectorXd sd = noise_sd;
   for (Index i = 0; i < sd.size(); ++i) {
-    const double seen = SpreadOf(
-        Kept(track.innovations.row(i), run.CountedOf(i, 0, run.samples())));
+    const double seen =
+        SpreadOf(Kept(track.innovations.row(i), run.CountedOf(i, 0, run.samples())));
     const double expected = std::sqrt(observer.innovation_covariance(i, i));
     sd[i] *= std::max(1.0, seen / expected);
   }

@@ -37,9 +37,9 @@ MatrixXd QuadraticAt(const MatrixXd& samples, Index at, Index side, double tick)
     basis.row(i) << 1.0, t, 0.5 * t * t;
   }
   const MatrixXd normal = basis.transpose() * basis;
-  MatrixXd fit = Solve(normal, basis.transpose() *
-                                   samples.middleCols(first, n).transpose())
-                     .transpose();
+  MatrixXd fit =
+      Solve(normal, basis.transpose() * samples.middleCols(first, n).transpose())
+          .transpose();
   fit.col(1) /= tick;
   fit.col(2) /= tick * tick;
   return fit;
@@ -77,8 +77,8 @@ class Configurations {
       const VectorXd error = readings.col(0) - Read();
       if (Largest(error, readings.col(0)) <= 1.0) {
         if (i > 1) Turn();
-        return MotionPoint{position_, step_ * readings.col(1), step_ * readings.col(2),
-                           {}};
+        return MotionPoint{
+            position_, step_ * readings.col(1), step_ * readings.col(2), {}};
       }
       position_ += step_ * error;
       if (i > 0) Turn();
@@ -111,8 +111,8 @@ class Configurations {
 double Largest(const MatrixXd& matrix) { return matrix.cwiseAbs().maxCoeff(); }
 
 std::vector<Index> StretchStarts(const MeasuredRun& run) {
-  const auto length = std::max<Index>(
-      1, static_cast<Index>(std::lround(kStretch / run.sample_time)));
+  const auto length =
+      std::max<Index>(1, static_cast<Index>(std::lround(kStretch / run.sample_time)));
   std::vector<Index> starts;
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
@@ -134,7 +134,8 @@ std::vector<MechanicalModel> ModelsAt(const Machine& machine,
 
 }  // namespace
 
-std::vector<MotionPoint> MotionOfReadings(const Machine& machine, const MeasuredRun& run,
+std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
+                                          const MeasuredRun& run,
                                           const std::vector<Index>& samples) {
   const Index side = SideOf(run);
   Configurations configurations(machine);
@@ -151,11 +152,12 @@ std::vector<MotionPoint> MotionOfReadings(const Machine& machine, const Measured
     const auto of_record = [&](const MatrixXd& all) -> MatrixXd {
       return all.middleCols(first, run.SamplesOf(record));
     };
-    auto point = configurations.At(QuadraticAt(of_record(run.outputs), sample - first,
-                                               side, run.sample_time));
+    auto point = configurations.At(
+        QuadraticAt(of_record(run.outputs), sample - first, side, run.sample_time));
     if (!point) return {};
     point->inputs =
-        QuadraticAt(of_record(run.inputs), sample - first, side, run.sample_time).col(0);
+        QuadraticAt(of_record(run.inputs), sample - first, side, run.sample_time)
+            .col(0);
     points.push_back(std::move(*point));
   }
   return points;

@@ -34,7 +34,7 @@ struct MotionPath {
     StateSpace tick;  ///< of the model, x = [q; v]
   };
   std::vector<Stretch> stretches;  ///< in order; each record begins with one of its own
-  std::vector<std::size_t> of_sample;  ///< which stretch every sample is in
+  std::vector<std::size_t> of_sample;        ///< which stretch every sample is in
   std::vector<std::size_t> first_stretches;  ///< of every record
   std::vector<MotionPoint> starts;           ///< where every record begins
 };
@@ -42,7 +42,8 @@ struct MotionPath {
 /// Joint positions, velocities and accelerations of a run at some of its samples, as the
 /// readings say. Empty if they do not say it: if no configuration gives the readings.
 /// @param samples  in order
-std::vector<MotionPoint> MotionOfReadings(const Machine& machine, const MeasuredRun& run,
+std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
+                                          const MeasuredRun& run,
                                           const std::vector<Eigen::Index>& samples);
 
 /// The first order along the run, null if its readings do not say the configuration.

@@ -82,7 +82,8 @@ class Scaling {
   }
 
   ScaledTick Of(const StateSpace& tick, const VectorXd& force_sd) const {
-    const MatrixXd B = state_.cwiseInverse().asDiagonal() * tick.B * force_sd.asDiagonal();
+    const MatrixXd B =
+        state_.cwiseInverse().asDiagonal() * tick.B * force_sd.asDiagonal();
     return {state_.cwiseInverse().asDiagonal() * tick.A * state_.asDiagonal(),
             noise_.cwiseInverse().asDiagonal() * tick.C * state_.asDiagonal(),
             B * B.transpose()};
@@ -116,7 +117,8 @@ Observer DesignObserver(const MechanicalModel& model, double step, int substeps,
   observer.noise_sd = noise_sd;
 
   const Scaling scaling(observer.tick, noise_sd, model.M.rows());
-  const ScaledTick scaled = scaling.Of(observer.tick, ForceNoise(model, noise_sd, bandwidth));
+  const ScaledTick scaled =
+      scaling.Of(observer.tick, ForceNoise(model, noise_sd, bandwidth));
   const MatrixXd P = SolveRiccati(
       scaled.A, scaled.C, scaled.Q, 1e-14,
       "observer: no stable one exists; a motion that nothing holds is not seen by any "
@@ -206,7 +208,8 @@ struct MovingCovariance {
   MatrixXd F(Index sample) const {
     const MotionPath& path = *observer.following->path;
     const std::size_t i = path.of_sample[static_cast<std::size_t>(sample)];
-    return path.stretches[i].tick.A - observer.following->L[i] * path.stretches[i].tick.C;
+    return path.stretches[i].tick.A -
+           observer.following->L[i] * path.stretches[i].tick.C;
   }
   void Advance(Index sample) {
     const MatrixXd now = F(sample);
@@ -295,9 +298,8 @@ const MatrixXd& Observer::OutputsAt(Index sample) const {
 Observer DesignObserver(const Machine& machine, const MeasuredRun& run,
                         const VectorXd& noise_sd, double bandwidth,
                         std::shared_ptr<const MotionPath> path) {
-  Observer observer =
-      DesignObserver(machine.linear(), machine.plant().opt.timestep,
-                     machine.rates().substeps, noise_sd, bandwidth);
+  Observer observer = DesignObserver(machine.linear(), machine.plant().opt.timestep,
+                                     machine.rates().substeps, noise_sd, bandwidth);
   if (!path && !RestGainHolds(machine, run, bandwidth)) path = PathAlong(machine, run);
   if (path) FollowMotion(std::move(path), observer);
   return observer;
@@ -308,8 +310,7 @@ Observer OnRun(const Observer& observer, const Machine& machine,
   if (!observer.following && RestGainHolds(machine, run, observer.bandwidth)) {
     return observer;
   }
-  Observer other =
-      DesignObserver(machine, run, observer.noise_sd, observer.bandwidth);
+  Observer other = DesignObserver(machine, run, observer.noise_sd, observer.bandwidth);
   ScaleGain(observer.gain_factors, other);
   // What is compared is weighed alike.
   other.innovation_sd = observer.innovation_sd;
@@ -326,8 +327,7 @@ void ScaleGain(const VectorXd& factors, Observer& observer) {
     const double r = observer.noise_sd[i];
     const double fed_back =
         observer.innovation_sd[i] * observer.innovation_sd[i] - r * r;
-    observer.innovation_sd[i] =
-        std::sqrt(r * r + factors[i] * std::max(0.0, fed_back));
+    observer.innovation_sd[i] = std::sqrt(r * r + factors[i] * std::max(0.0, fed_back));
   }
   if (!observer.following) return;
   auto gain = std::make_shared<FollowingGain>(*observer.following);

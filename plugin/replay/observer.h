@@ -90,7 +90,8 @@ Observer DesignObserver(const Machine& machine, const MeasuredRun& run,
                         std::shared_ptr<const MotionPath> path = nullptr);
 
 /// That observer on another run of the machine.
-Observer OnRun(const Observer& observer, const Machine& machine, const MeasuredRun& run);
+Observer OnRun(const Observer& observer, const Machine& machine,
+               const MeasuredRun& run);
 
 /// Gain of every sensor times a factor, as of one that is read every so many ticks: as much
 /// more at a time it holds the same. What of innovations is fed back grows with it.

@@ -27,10 +27,10 @@ struct Arm {
     const Machine held = Load(substeps, kController);
     RunOptions options;
     options.noise_scale = noise_scale;
-    return Simulate(held.With(With(effects)),
-                    FollowTrajectory(held.setup(),
-                                     held.setup().trajectories.Find("default")),
-                    options);
+    return Simulate(
+        held.With(With(effects)),
+        FollowTrajectory(held.setup(), held.setup().trajectories.Find("default")),
+        options);
   }
 
  private:

@@ -44,8 +44,7 @@ TEST(MotionLinearization, HasTheAccelerationsOfDeviationsFromAMotion) {
   const VectorXd u = (VectorXd(2) << 6.0, 1.5).finished();
   const VectorXd a = Accelerate(arm.machine, q, v, u);
   const MechanicalModel here =
-      MotionLinearization(arm.machine.plant(), arm.machine.channels())
-          .At({q, v, a, u});
+      MotionLinearization(arm.machine.plant(), arm.machine.channels()).At({q, v, a, u});
   constexpr double kStep = 1e-5;
   for (int j = 0; j < 2; ++j) {
     const VectorXd step = kStep * VectorXd::Unit(2, j);

@@ -71,8 +71,7 @@ TEST(FollowingObserver, KnowsTheirColour) {
   const VectorXd one = e.row(0).tail(2500);
   const VectorXd noise = NoiseCorrelation(observer, 0, 3);
   for (Index l = 1; l <= 3; ++l) {
-    const double seen =
-        one.head(2500 - l).dot(one.tail(2500 - l)) / one.squaredNorm();
+    const double seen = one.head(2500 - l).dot(one.tail(2500 - l)) / one.squaredNorm();
     EXPECT_NEAR(seen, noise[l - 1], 4.0 / std::sqrt(2500.0)) << l;
   }
   EXPECT_LT(noise[0], -0.05);
@@ -81,9 +80,8 @@ TEST(FollowingObserver, KnowsTheirColour) {
 TEST(FollowingObserver, IsThatOfTheRestToTheDigitWhereTheMachineStaysNearIt) {
   const test::Stage stage;
   const test::Replay replay(stage.machine, stage.Measure({}));
-  const Observer observer =
-      DesignObserver(stage.machine, replay.run, replay.observer.noise_sd,
-                     replay.observer.bandwidth);
+  const Observer observer = DesignObserver(
+      stage.machine, replay.run, replay.observer.noise_sd, replay.observer.bandwidth);
   EXPECT_FALSE(observer.following);
   EXPECT_EQ(observer.L, replay.observer.L);
   EXPECT_EQ(observer.innovation_sd, replay.observer.innovation_sd);
@@ -101,9 +99,9 @@ TEST(FollowingObserver, StaysAtRestOnTheBonder) {
 TEST(FollowingObserver, BeginsInMotion) {
   const Record measured = test::Arm::Measure({}, 0.0);
   const Followed followed(measured.Slice(400, 1600));
-  const MatrixXd e = FollowRun(followed.arm.machine, {}, followed.run,
-                               followed.At(8.0), false)
-                         .innovations;
+  const MatrixXd e =
+      FollowRun(followed.arm.machine, {}, followed.run, followed.At(8.0), false)
+          .innovations;
   // At rest it would be behind by 4 mrad after the first tick.
   EXPECT_LT(e.leftCols(10).cwiseAbs().maxCoeff(), 2e-4);
 }
