@@ -258,10 +258,36 @@ VectorXd Likeliest(const ForcedPath& path, const std::vector<VectorXd>& tried) {
   return tried[static_cast<std::size_t>(best - deviance.begin())];
 }
 
-VectorXd FindBandwidth(const ForcedPath& path) {
-  const double slowest = 6.0 * std::numbers::pi / static_cast<double>(path.samples());
+/// Changes of every row in a tick, over 20 ms to each side.
+MatrixXd ChangesOf(const MatrixXd& rows, double tick) {
+  constexpr double kSide = 0.02;  // [s]
+  const auto side = std::max<Index>(2, static_cast<Index>(std::lround(kSide / tick)));
+  MatrixXd changes(rows.rows(), rows.cols());
+  for (Index k = 0; k < rows.cols(); ++k) {
+    const Index first = std::max<Index>(0, k - side);
+    const Index last = std::min(rows.cols() - 1, k + side);
+    changes.col(k) = (rows.col(last) - rows.col(first)) /
+                     static_cast<double>(std::max<Index>(1, last - first));
+  }
+  return changes;
+}
+
+/// [rad a tick] Of the fastest reading, by its rms acceleration over its rms velocity.
+double MotionBandwidth(const MeasuredRun& run) {
+  const MatrixXd velocity = ChangesOf(run.outputs, run.sample_time);
+  const MatrixXd acceleration = ChangesOf(velocity, run.sample_time);
+  return (acceleration.rowwise().norm().array() /
+          velocity.rowwise().norm().array().max(1e-300))
+      .maxCoeff();
+}
+
+VectorXd FindBandwidth(const ForcedPath& path, double motion) {
+  constexpr double kFastest = 32.0;
+  const double fastest = std::min(1.0, kFastest * motion);
+  const double slowest =
+      std::min(fastest, 6.0 * std::numbers::pi / static_cast<double>(path.samples()));
   std::vector<VectorXd> together;
-  for (double b = slowest; b <= 1.0; b *= 2.0) {
+  for (double b = slowest; b <= fastest; b *= 2.0) {
     together.push_back(VectorXd::Constant(path.forces(), b));
   }
   VectorXd best = Likeliest(path, together);
@@ -269,7 +295,7 @@ VectorXd FindBandwidth(const ForcedPath& path) {
     std::vector<VectorXd> alone;
     for (const double factor : {1.0, 0.25, 0.5, 2.0, 4.0}) {
       alone.push_back(best);
-      alone.back()[j] = std::clamp(best[j] * factor, slowest, 1.0);
+      alone.back()[j] = std::clamp(best[j] * factor, slowest, fastest);
     }
     best = Likeliest(path, alone);
   }
@@ -339,7 +365,7 @@ std::vector<MissingForce> MissingForces(const Machine& machine, const MeasuredRu
   const std::vector<Index> dofs = ForcedDofs(machine);
   if (dofs.empty()) return {};
   const ForcedPath path(machine, run, observer, innovations, dofs);
-  const VectorXd bandwidth = FindBandwidth(path);
+  const VectorXd bandwidth = FindBandwidth(path, MotionBandwidth(run));
   const Smoothed smoothed = Smooth(path, bandwidth);
   const double noise = LikelihoodOf(path, bandwidth).noise;
   const mjModel& plant = machine.plant();
