@@ -1,5 +1,6 @@
 // mjdiag compare: what the simulation gets wrong on a measured record.
 
+#include <cmath>
 #include <memory>
 
 #include "app/command.h"
@@ -48,6 +49,30 @@ std::string DerivedTable(const Comparison& comparison) {
   return "\n" + table.ToString();
 }
 
+/// Of a machine that falls: errors of predictions, and forces that are missing.
+std::string FollowedTables(const Comparison& comparison) {
+  const Prediction& prediction = comparison.prediction;
+  std::vector<std::string> columns = {"prediction error, rms"};
+  for (const double horizon : prediction.horizons) {
+    columns.push_back("over " + FormatQuantity(horizon, "s"));
+  }
+  Table ahead(columns);
+  for (const Prediction::Sensor& sensor : prediction.sensors) {
+    std::vector<std::string> row = {sensor.channel};
+    for (const double rms : sensor.rms) {
+      row.push_back(std::isfinite(rms) ? FormatQuantity(rms, sensor.unit) : "diverges");
+    }
+    ahead.Add(row);
+  }
+  Table forces({"joint", "missing force, rms", "known to", "up to"});
+  for (const MissingForce& force : comparison.missing_force) {
+    forces.Add({force.joint, FormatQuantity(force.rms, force.unit),
+                FormatQuantity(force.sd, force.unit),
+                FormatQuantity(force.bandwidth, "Hz")});
+  }
+  return ahead.ToString() + "\n" + forces.ToString();
+}
+
 void Compare(const CompareOptions& options) {
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
@@ -69,8 +94,10 @@ void Compare(const CompareOptions& options) {
   document.update(ToJson(subject));
   document["record"] = options.record;
   document["command"] = CommandLine();
-  std::string text = ComparisonVerdict(comparison) + "\n\n" + ChannelTable(comparison) +
-                     DerivedTable(comparison);
+  std::string text =
+      ComparisonVerdict(comparison) + "\n\n" +
+      (comparison.falls ? FollowedTables(comparison)
+                        : ChannelTable(comparison) + DerivedTable(comparison));
   AddNotes(notes, document, text);
   const RunDescription run{CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
   Publish(options.output, "compare", document, text, [&] {

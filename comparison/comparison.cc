@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "mjdiag/comparison/noise_floor.h"
+#include "mjdiag/plugin/replay/motion_path.h"
+#include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -57,6 +59,97 @@ void CheckUnits(const Record& measured, const Record& simulated) {
   }
 }
 
+/// The frame of a comparison: what is compared, and from where on.
+Comparison Begin(const Machine& machine, const Record& measured,
+                 std::vector<std::string>& names) {
+  Comparison result;
+  result.setup = machine.setup().name;
+  result.closed_loop = !machine.setup().control.axes.empty();
+  result.options.skip_samples = machine.setup().compare.skip_samples;
+  for (const std::string& name : ComparedChannels(machine.setup())) {
+    (measured.Find(name) ? names : result.not_measured).push_back(name);
+  }
+  if (names.empty()) {
+    throw InputError("record", "none of the setup's sensors",
+                     "a channel '" + result.not_measured.front() + "'");
+  }
+  const Eigen::Index samples = measured.samples() - result.options.skip_samples;
+  if (samples < kShortestComparison) {
+    throw InputError("record",
+                     std::to_string(measured.samples()) + " samples, of which " +
+                         std::to_string(result.options.skip_samples) + " are left out",
+                     "at least " + std::to_string(kShortestComparison) + " to compare");
+  }
+  return result;
+}
+
+/// Whether a sensor is somewhere further from its measurement than that spans.
+bool Leaves(const Record& measured, const Record& simulated,
+            const std::vector<std::string>& names) {
+  return std::ranges::any_of(names, [&](const std::string& name) {
+    const Channel& channel = measured.At(name);
+    const Eigen::VectorXd& y = channel.samples;
+    const double off = MismatchOf(channel, simulated.At(name), 0).cwiseAbs().maxCoeff();
+    return off > y.maxCoeff() - y.minCoeff();
+  });
+}
+
+/// Whether it has left its rest, and its readings say where it is.
+bool HasLeftRest(const Machine& machine, const Record& measured) {
+  for (const SensorSetup& sensor : machine.channels().sensors) {
+    if (measured.Find(sensor.channel) == nullptr) return false;
+  }
+  const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
+  constexpr double kPeriods = 25.0;
+  return !RestGainHolds(machine, run, kPeriods / run.Time().maxCoeff());
+}
+
+/// Noise of the sensors, none without any: of one that rests only rounding is left.
+Eigen::VectorXd NoiseOf(const Machine& machine, const Record& measured) {
+  Eigen::VectorXd sd = MeasuredNoise(machine.channels(), measured);
+  for (Eigen::Index i = 0; i < sd.size(); ++i) {
+    const Channel& channel =
+        measured.At(machine.channels().sensors[static_cast<std::size_t>(i)].channel);
+    sd[i] = std::max({sd[i], 1e-12 * channel.samples.cwiseAbs().maxCoeff(), 1e-15});
+  }
+  return sd;
+}
+
+/// What is predicted over one tick.
+Comparison BesideObserver(Comparison result, const Machine& machine,
+                          const Record& measured, const FollowedRun& followed) {
+  result.falls = true;
+  result.bandwidth = followed.observer.bandwidth;
+  result.measured =
+      Select(measured, ChannelsOf(machine.channels().sensors), measured.start_time());
+  result.simulated = Record(measured.sample_time(), measured.start_time());
+  const auto samples = static_cast<double>(measured.samples());
+  Eigen::Index row = 0;
+  for (const SensorSetup& sensor : machine.channels().sensors) {
+    Channel predicted = measured.At(sensor.channel);
+    predicted.samples -= followed.track.innovations.row(row).transpose();
+    result.simulated.Add(std::move(predicted));
+    const NoiseFloor floor{.rms = followed.observer.innovation_sd[row++],
+                           .mismatch_freedom = samples,
+                           .floor_freedom = samples};
+    result.channels.push_back(MeasureMismatch(result.measured, result.simulated,
+                                              sensor.channel, floor, result.options));
+  }
+  return result;
+}
+
+/// Of a machine that falls.
+Comparison CompareFalling(const Comparison& frame, const Machine& machine,
+                          const Record& measured) {
+  const FollowedRun followed = FollowLikeliest(
+      machine, ToMeasuredRun(machine.setup(), measured), NoiseOf(machine, measured));
+  Comparison result = BesideObserver(frame, machine, measured, followed);
+  result.prediction = Predict(machine, followed, result.options.skip_samples);
+  result.missing_force = MissingForces(machine, followed.run, followed.observer,
+                                       followed.track.innovations);
+  return result;
+}
+
 }  // namespace
 
 bool Comparison::exceeds_noise() const {
@@ -78,34 +171,25 @@ const ChannelMismatch* Comparison::Worst() const {
 
 Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options) {
-  Comparison result;
-  result.setup = machine.setup().name;
-  result.closed_loop = !machine.setup().control.axes.empty();
-  result.options.skip_samples = machine.setup().compare.skip_samples;
-
   std::vector<std::string> names;
-  for (const std::string& name : ComparedChannels(machine.setup())) {
-    (measured.Find(name) ? names : result.not_measured).push_back(name);
-  }
-  if (names.empty()) {
-    throw InputError("record", "none of the setup's sensors",
-                     "a channel '" + result.not_measured.front() + "'");
-  }
-
-  const Eigen::Index samples = measured.samples() - result.options.skip_samples;
-  if (samples < kShortestComparison) {
-    throw InputError("record",
-                     std::to_string(measured.samples()) + " samples, of which " +
-                         std::to_string(result.options.skip_samples) + " are left out",
-                     "at least " + std::to_string(kShortestComparison) + " to compare");
-  }
+  Comparison result = Begin(machine, measured, names);
 
   const Machine noisy =
       machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
   const Excitation excitation = Replay(noisy.setup(), measured);
   RunOptions without_noise = options;
   without_noise.noise_scale = 0.0;
-  const Record simulated = Simulate(noisy, excitation, without_noise);
+  Record simulated;
+  try {
+    simulated = Simulate(noisy, excitation, without_noise);
+  } catch (const NumericalError&) {
+    if (result.closed_loop || !HasLeftRest(machine, measured)) throw;
+    return CompareFalling(result, machine, measured);
+  }
+  if (!result.closed_loop && Leaves(measured, simulated, names) &&
+      HasLeftRest(machine, measured)) {
+    return CompareFalling(result, machine, measured);
+  }
   const auto floors = EstimateNoiseFloor(noisy, excitation, simulated, options,
                                          result.options.skip_samples);
 
@@ -126,6 +210,30 @@ Comparison Compare(const Machine& machine, const Record& measured,
   result.derived = MeasureDerived(result.measured_derived, result.simulated_derived,
                                   result.options.skip_samples);
   return result;
+}
+
+bool Falls(const Machine& machine, const Record& measured) {
+  if (!machine.setup().control.axes.empty() || !HasLeftRest(machine, measured)) {
+    return false;
+  }
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  try {
+    return Leaves(measured, Simulate(machine, Replay(machine.setup(), measured), quiet),
+                  ChannelsOf(machine.channels().sensors));
+  } catch (const NumericalError&) {
+    return true;
+  }
+}
+
+Comparison CompareFollowed(const Machine& machine, const Changes& changes,
+                           const Record& measured, double bandwidth) {
+  std::vector<std::string> names;
+  const Comparison frame = Begin(machine, measured, names);
+  return BesideObserver(
+      frame, machine, measured,
+      FollowAt(machine, changes, ToMeasuredRun(machine.setup(), measured),
+               NoiseOf(machine, measured), bandwidth));
 }
 
 }  // namespace mjdiag

@@ -9,11 +9,22 @@
 
 #include "mjdiag/comparison/derived.h"
 #include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/comparison/missing_force.h"
+#include "mjdiag/comparison/prediction.h"
+#include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
+
+// Driven by its inputs alone a machine may fall that did not when it was measured: a
+// controller held it that nobody wrote down. An open-loop simulation says nothing of the
+// model then. Where it diverges, or a sensor goes further from its measurement than that
+// spans, and the machine has left its rest (motion_path.h), the comparison is one beside an
+// observer that follows the measured motion: how far ahead the model predicts
+// (prediction.h), and the force that it lacks at every joint (missing_force.h). Simulated
+// is then what it predicts from one tick to the next.
 
 struct Comparison {
   std::string setup;         ///< its name
@@ -26,6 +37,10 @@ struct Comparison {
   std::vector<ChannelMismatch> channels;  ///< sensors, then actuators
   std::vector<DerivedMismatch> derived;
   std::vector<std::string> not_measured;  ///< channels that the record lacks
+  bool falls = false;  ///< as above: what follows is there, derived is not
+  Prediction prediction;
+  std::vector<MissingForce> missing_force;
+  double bandwidth = 0.0;  ///< of the observer [Hz]
 
   /// True if any channel exceeds its noise floor.
   bool exceeds_noise() const;
@@ -41,5 +56,17 @@ struct Comparison {
 /// InputError if the record lacks what Replay needs or has no sensor of the setup.
 Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options);
+
+/// Whether a machine falls that is driven with the inputs of the record alone.
+/// InputError as above.
+bool Falls(const Machine& machine, const Record& measured);
+
+/// The comparison of a machine that falls.
+/// Of all that has been put into it, `changes` alone is unknown to the observer, which is
+/// that of `machine`: comparisons with and without changes stand beside one another.
+/// Without prediction and missing forces.
+/// @param bandwidth  of the observer [Hz]
+Comparison CompareFollowed(const Machine& machine, const Changes& changes,
+                           const Record& measured, double bandwidth);
 
 }  // namespace mjdiag

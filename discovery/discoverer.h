@@ -129,6 +129,7 @@ class Discoverer {
   std::shared_ptr<Work> work_;
   std::vector<Candidate> candidates_;
   DiscoveryProblem problem_;
+  bool falls_ = false;  ///< without a controller that nobody knows (comparison.h)
   double most_seconds_ = 0.0;  // of this machine, that the budget takes; for people
   double nominal_ = 0.0;  // mean square of the plant as given, behind this observer
   SearchResult search_;

@@ -12,6 +12,7 @@
 #include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+#include "mjdiag/discovery/record_replay.h"
 #include "mjdiag/discovery/selection/coarse_problem.h"
 #include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/learned_numbers.h"
@@ -183,7 +184,9 @@ void Discoverer::SearchAll() {
   if (!measurements_.unseen.empty()) {
     unseen = RunOf(measurements_.unseen);
     options.unseen = &*unseen;
-    options.free_run = [this](const Changes& changes) { return UnseenFree(changes); };
+    if (!falls_) {
+      options.free_run = [this](const Changes& changes) { return UnseenFree(changes); };
+    }
   }
   if (options_.doubt && work_->MayBegin("numbers of the plant")) {
     Report("numbers of the plant", 0.0);
@@ -240,6 +243,7 @@ Discovery Discoverer::Run() {
   discovery_.train_share = static_cast<double>(problem_.train()) /
                            static_cast<double>(problem_.run().samples());
   discovery_.sample_time = machine_.rates().tick();
+  falls_ = problem_.observer().following && AnyFalls(measurements_);
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();
   if (options_.progress) MeasureSpeed();

@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
@@ -66,6 +67,16 @@ double Gain(const std::map<std::string, double>& before,
   return was > 0.0 ? 1.0 - std::sqrt(is / was) : 0.0;
 }
 
+/// The same of a machine that leaves its rest.
+std::vector<UnknownSignal> Named(const std::vector<MissingForce>& forces) {
+  std::vector<UnknownSignal> signals;
+  for (const MissingForce& force : forces) {
+    signals.push_back(
+        {force.joint, force.unit, force.value, force.sd, 0, force.bandwidth});
+  }
+  return signals;
+}
+
 }  // namespace
 
 std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
@@ -76,6 +87,10 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
   for (const std::string& joint : joints) {
     const int id = FindElement(machine_.plant(), mjOBJ_JOINT, joint);
     units.emplace_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
+  }
+  if (problem_.observer().following) {
+    return Named(MissingForces(problem_.machine(), problem_.run(), problem_.observer(),
+                               track.innovations));
   }
   return UnexplainedForces(problem_.machine().linear(), problem_.observer(),
                            problem_.step(), machine_.rates().substeps,
@@ -196,6 +211,8 @@ void Discoverer::AddLadder() {
           std::sqrt(unseen ? MeanSquare(*unseen, unseen->Residual(changes),
                                         unseen->skip(), unseen->run().samples())
                            : MeanSquare(problem_, rest, problem_.train(), samples));
+    } else if (falls_) {
+      // No free simulation of it says anything.
     } else if (number % replays == 1) {
       entry.error_percent = MeanReplayErrors(measurements_.fit, changes);
     } else {
@@ -206,7 +223,8 @@ void Discoverer::AddLadder() {
 
 void Discoverer::AddComparisons() {
   work_->Add(2.0 * problem_.RunWork());
-  discovery_.records = ReplayAll(measurements_, changes_, options_.seed);
+  discovery_.records = ReplayAll(measurements_, changes_, options_.seed,
+                                 falls_ ? problem_.observer().bandwidth : 0.0);
   const Index skip = problem_.skip();
   const Index train = problem_.train();
   const bool one = measurements_.fit.size() == 1;

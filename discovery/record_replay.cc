@@ -12,7 +12,8 @@
 namespace mjdiag {
 
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
-                                    const Changes& changes, std::uint64_t seed) {
+                                    const Changes& changes, std::uint64_t seed,
+                                    double bandwidth) {
   RunOptions options;
   options.seed = seed;
   std::vector<const MeasuredRecord*> records;
@@ -28,13 +29,24 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
   ParallelFor(2 * static_cast<int>(records.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / 2);
     const auto& [record, machine, name, notes] = *records[i];
-    if (number % 2 == 0) {
+    if (bandwidth > 0.0) {
+      (number % 2 == 0 ? replays[i].before : replays[i].after) = CompareFollowed(
+          machine, number % 2 == 0 ? Changes{} : changes, record, bandwidth);
+    } else if (number % 2 == 0) {
       replays[i].before = Compare(machine, record, options);
     } else {
       replays[i].after = Compare(machine.With(changes), record, options);
     }
   });
   return replays;
+}
+
+bool AnyFalls(const Measurements& measurements) {
+  const auto falls = [](const MeasuredRecord& one) {
+    return Falls(one.machine, one.record);
+  };
+  return std::ranges::any_of(measurements.fit, falls) ||
+         std::ranges::any_of(measurements.unseen, falls);
 }
 
 Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,

@@ -20,9 +20,16 @@ struct RecordReplay {
   Comparison after;   ///< extended plant
 };
 
-/// Of all records, those that fits saw first. @param seed  of the noise floors
+/// Of all records, those that fits saw first. A machine that falls is followed by an
+/// observer instead (CompareFollowed).
+/// @param seed       of the noise floors
+/// @param bandwidth  of that observer [Hz]; 0: the machine does not fall
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
-                                    const Changes& changes, std::uint64_t seed);
+                                    const Changes& changes, std::uint64_t seed,
+                                    double bandwidth);
+
+/// Whether the machine falls on any of the records.
+bool AnyFalls(const Measurements& measurements);
 
 /// Measured less simulated of every sensor, one record after the other, sensors x
 /// samples; 0 where it was not measured. NumericalError where one diverges.

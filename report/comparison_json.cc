@@ -26,6 +26,22 @@ nlohmann::json ToJson(const ChannelMismatch& channel) {
             {"rms", channel.worst.rms}}}};
 }
 
+/// Of a machine that falls.
+void AddFollowed(const Comparison& comparison, nlohmann::json& document) {
+  document["bandwidth"] = comparison.bandwidth;
+  document["prediction"]["horizons"] = comparison.prediction.horizons;
+  document["prediction"]["rms"] = nlohmann::json::object();
+  for (const Prediction::Sensor& sensor : comparison.prediction.sensors) {
+    auto& rms = document["prediction"]["rms"][sensor.channel];
+    rms = nlohmann::json::array();
+    for (const double value : sensor.rms) rms.push_back(FiniteOrNull(value));
+  }
+  document["missing_force"] = nlohmann::json::object();
+  for (const MissingForce& force : comparison.missing_force) {
+    document["missing_force"][force.joint] = force.rms;
+  }
+}
+
 }  // namespace
 
 nlohmann::json ToJson(const Comparison& comparison) {
@@ -39,6 +55,7 @@ nlohmann::json ToJson(const Comparison& comparison) {
   json["level"] = comparison.options.level;
   json["exceeds_noise"] = comparison.exceeds_noise();
   json["channels"] = nlohmann::json::object();
+  if (comparison.falls) AddFollowed(comparison, json);
   for (const ChannelMismatch& channel : comparison.channels) {
     json["channels"][channel.name] = ToJson(channel);
   }

@@ -30,7 +30,10 @@ void AddRecordFacts(Page& page, const Comparison& comparison,
       {"Setup", comparison.setup},
       {"Record", run.record},
       {"Replayed", comparison.closed_loop ? "measured reference, in closed loop"
-                                          : "measured input, in open loop"},
+                   : comparison.falls     ? "measured input, beside an observer of " +
+                                            FormatQuantity(comparison.bandwidth, "Hz") +
+                                            " that follows the motion"
+                                      : "measured input, in open loop"},
       {"Length", std::to_string(record.samples()) + " samples at " +
                      FormatQuantity(1.0 / record.sample_time(), "Hz") + ", " +
                      FormatQuantity(record.duration(), "s")},
@@ -88,6 +91,41 @@ void AddDerivedTable(Page& page, const Comparison& comparison) {
                           PercentText(derived.relative_error_percent)});
   }
   page.AddTable(table);
+}
+
+/// Of a machine that falls.
+void AddFollowed(Page& page, const Comparison& comparison) {
+  const Prediction& prediction = comparison.prediction;
+  if (prediction.sensors.empty()) return;
+  page.AddHeading("Prediction");
+  Table ahead;
+  ahead.columns = {{"Channel"}};
+  for (const double horizon : prediction.horizons) {
+    ahead.columns.push_back(
+        {"Error over " + FormatQuantity(horizon, "s") + ", rms", true});
+  }
+  for (const Prediction::Sensor& sensor : prediction.sensors) {
+    std::vector<std::string> row = {sensor.channel};
+    for (const double rms : sensor.rms) row.push_back(FormatQuantity(rms, sensor.unit));
+    ahead.rows.push_back(row);
+  }
+  page.AddTable(ahead);
+  page.AddParagraph(
+      "The plant runs on with the measured inputs alone, from states that an observer "
+      "has found from the readings up to then.");
+  page.AddHeading("Missing forces");
+  for (const MissingForce& force : comparison.missing_force) {
+    TimePlot plot;
+    plot.quantity = force.joint;
+    plot.unit = force.unit;
+    plot.start_time = comparison.measured.start_time();
+    plot.sample_time = comparison.measured.sample_time();
+    plot.caption = force.joint + ", force that the plant lacks, " +
+                   FormatQuantity(force.rms, force.unit) + " rms";
+    plot.curves = {{"missing force", CurveRole::kMismatch, force.value}};
+    plot.height = 200;
+    page.AddPlot(plot);
+  }
 }
 
 TimePlot TimeAxis(const Record& record, const Channel& channel) {
@@ -157,6 +195,16 @@ void AddMismatchSpectrum(Page& page, const ChannelMismatch& channel) {
 }  // namespace
 
 std::string ComparisonVerdict(const Comparison& comparison) {
+  if (comparison.falls && !comparison.missing_force.empty()) {
+    std::string forces;
+    for (const MissingForce& force : comparison.missing_force) {
+      forces += (forces.empty() ? "" : ", ") + force.joint + " " +
+                FormatQuantity(force.rms, force.unit);
+    }
+    return "Driven by its inputs alone the plant does not stay with the measurement. "
+           "Beside it a force is missing (rms): " +
+           forces + ".";
+  }
   if (!comparison.exceeds_noise()) {
     std::vector<std::string> names;
     for (const ChannelMismatch& channel : comparison.channels) {
@@ -180,7 +228,8 @@ Page ComparisonPage(const Comparison& comparison, const RunDescription& run) {
   page.SetVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
                   ComparisonVerdict(comparison));
   AddRecordFacts(page, comparison, run);
-  page.AddHeading("Channels");
+  AddFollowed(page, comparison);
+  page.AddHeading(comparison.falls ? "Channels, predicted over one tick" : "Channels");
   AddChannelTable(page, comparison);
   AddDerivedTable(page, comparison);
   for (const ChannelMismatch& channel : comparison.channels) {

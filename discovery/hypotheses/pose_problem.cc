@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/replay/motion_noise.h"
+#include "mjdiag/plugin/replay/motion_path.h"
+#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
 namespace mjdiag {
@@ -18,17 +23,13 @@ using Eigen::VectorXd;
 // Periods of the slowest error of the model that a record has to hold for it to count.
 constexpr double kPeriods = 25.0;
 
-/// That of a slow sensor pulls less often: as much more at a time it holds the same.
+/// That of a slow sensor pulls less often.
 Observer AtPeriods(Observer observer, const MeasuredRun& run) {
-  for (Index i = 0; i < observer.L.cols(); ++i) {
-    const auto period = static_cast<double>(run.PeriodOf(i));
-    if (period == 1.0) continue;
-    observer.L.col(i) *= period;
-    const double r = observer.noise_sd[i];
-    const double fed_back =
-        observer.innovation_sd[i] * observer.innovation_sd[i] - r * r;
-    observer.innovation_sd[i] = std::sqrt(r * r + period * std::max(0.0, fed_back));
+  VectorXd periods(observer.L.cols());
+  for (Index i = 0; i < periods.size(); ++i) {
+    periods[i] = static_cast<double>(run.PeriodOf(i));
   }
+  if ((periods.array() != 1.0).any()) ScaleGain(periods, observer);
   return observer;
 }
 
@@ -51,6 +52,65 @@ Index SettlingSamples(double hertz, const MeasuredRun& run) {
   const double seconds = kForgotten / (2.0 * std::numbers::pi * hertz);
   const auto samples = static_cast<Index>(std::ceil(seconds / run.sample_time));
   return std::min(samples, shortest / kShare);
+}
+
+/// Whether a machine that leaves its rest is where the readings are: of its first order,
+/// which is taken there, the second then leaves a hundredth.
+bool IsBeside(const MeasuredRun& run, const Track& track) {
+  constexpr double kShare = 0.01;  // of the span of the readings
+  for (Index i = 0; i < run.outputs.rows(); ++i) {
+    const double span = run.outputs.row(i).maxCoeff() - run.outputs.row(i).minCoeff();
+    if (track.innovations.row(i).cwiseAbs().maxCoeff() > kShare * span) return false;
+  }
+  return true;
+}
+
+/// The nominal machine beside an observer, nothing if it does not stay beside the run.
+std::optional<Track> Beside(const Machine& machine, const MeasuredRun& run,
+                            const Observer& observer) {
+  if (!observer.following) return FollowRun(machine, {}, run, observer, false);
+  try {
+    Track track = FollowRun(machine, {}, run, observer, false);
+    if (IsBeside(run, track)) return track;
+  } catch (const NumericalError&) {
+    // Further from the readings than that.
+  }
+  return std::nullopt;
+}
+
+/// The observer of a problem. Twice: the noise is known better once the motion is taken
+/// out. Of a machine that leaves its rest the slowest that keeps it beside the readings:
+/// what the model lacks must not bend it into another configuration.
+Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
+              double fastest) {
+  constexpr double kFaster = 1.5;
+  std::shared_ptr<const MotionPath> path;
+  VectorXd in_motion;
+  for (;; hertz *= kFaster) {
+    if (hertz > fastest) {
+      throw NumericalError(
+          "replay: no observer keeps the plant beside the record; is it the machine "
+          "that "
+          "was measured, and in which units?");
+    }
+    const auto design = [&](const Eigen::MatrixXd& innovations) {
+      VectorXd noise = SensorNoise(machine.channels(), run, innovations);
+      if (in_motion.size() > 0) noise = noise.cwiseMax(in_motion);
+      Observer observer =
+          AtPeriods(DesignObserver(machine, run, noise, hertz, path), run);
+      return observer;
+    };
+    Observer start = design({});
+    if (start.following && !path) {
+      path = start.following->path;
+      in_motion = NoiseInMotion(machine, run, start.noise_sd, path);
+      start = design({});
+    }
+    const auto first = Beside(machine, run, start);
+    if (!first) continue;
+    Observer observer = design(first->innovations);
+    if (!observer.following || Beside(machine, run, observer)) return observer;
+  }
 }
 
 }  // namespace
@@ -90,17 +150,8 @@ DiscoveryProblem PoseProblem(const Machine& machine, MeasuredRun run,
   const double fastest = 0.1 * machine.rates().control / static_cast<double>(period);
   double hertz = bandwidth > 0.0 ? bandwidth : std::min(SlowestBandwidth(run), fastest);
   if (period > 1) hertz = std::min(hertz, fastest);
-  const auto design = [&](const Eigen::MatrixXd& innovations) {
-    return AtPeriods(
-        DesignObserver(machine.linear(), machine.plant().opt.timestep,
-                       machine.rates().substeps,
-                       SensorNoise(machine.channels(), run, innovations), hertz),
-        run);
-  };
-  // Twice: the noise is known better once the motion is taken out.
-  const Observer first = design({});
-  const Observer observer =
-      design(FollowRun(machine, {}, run, first, false).innovations);
+  const Observer observer = Pose(machine, run, hertz, fastest);
+  hertz = observer.bandwidth;
   const double share = run.records.size() > 1 ? 1.0 : train_share;
   const auto train =
       static_cast<Index>(std::lround(share * static_cast<double>(run.samples())));

@@ -224,7 +224,8 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
   std::vector<bool> stood_for = StoodFor(changes);
   std::vector<PlantNumber> by_steps;
   std::vector<Index> places;
-  if (run_->on.size() == 0 && StaysNearRest(machine, run->track)) {
+  if (run_->on.size() == 0 && !observer_.following &&
+      StaysNearRest(machine, run->track)) {
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const DoubtedNumber& doubted = numbers_[i];
       if (stood_for[i] || doubted.is_lateness ||
@@ -332,8 +333,9 @@ DiscoveryProblem DiscoveryProblem::Shifted(VectorXd shift) const {
 }
 
 DiscoveryProblem DiscoveryProblem::WithRun(MeasuredRun run) const {
-  return DiscoveryProblem(in_steps_of_setup_ ? *in_steps_of_setup_ : machine_,
-                          observer_, std::move(run), skip_, train_)
+  const Machine& machine = in_steps_of_setup_ ? *in_steps_of_setup_ : machine_;
+  Observer observer = OnRun(observer_, machine, run);
+  return DiscoveryProblem(machine, std::move(observer), std::move(run), skip_, train_)
       .Charging(work_)
       .Doubting(numbers_);
 }

@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/sets/likelihood.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace mjdiag {
@@ -27,11 +28,14 @@ std::vector<double> BandwidthsDownTo(double slowest, double rate) {
 ObserverLadder::ObserverLadder(const DiscoveryProblem& problem) {
   const Machine& machine = problem.machine();
   const VectorXd& r = problem.observer().noise_sd;
-  bandwidths_ =
-      BandwidthsDownTo(SlowestBandwidth(problem.run()), machine.rates().control);
+  // A machine that leaves its rest does not stay beside slower ones.
+  const std::shared_ptr<const FollowingGain>& following = problem.observer().following;
+  const double slowest =
+      following ? problem.observer().bandwidth : SlowestBandwidth(problem.run());
+  bandwidths_ = BandwidthsDownTo(slowest, machine.rates().control);
   for (const double hertz : bandwidths_) {
-    Observer observer = DesignObserver(machine.linear(), machine.plant().opt.timestep,
-                                       machine.rates().substeps, r, hertz);
+    Observer observer = DesignObserver(machine, problem.run(), r, hertz,
+                                       following ? following->path : nullptr);
     const VectorXd S = observer.innovation_covariance.diagonal();
     observer.innovation_sd = S.cwiseSqrt();
     logarithms_.push_back(S.cwiseQuotient(r.cwiseAbs2()).array().log());

@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
@@ -126,13 +127,18 @@ MatrixXd OtherDamping(const mjModel& model, const VectorXd& position) {
                         dynamics.size());
 }
 
-/// Generalised forces per unit of the setup's actuator signals.
-MatrixXd InputMatrix(const mjModel& model, const Channels& channels,
-                     const VectorXd& position) {
-  const ModelPtr unlimited = CopyModel(model);
+ModelPtr WithoutLimits(const mjModel& model) {
+  ModelPtr unlimited = CopyModel(model);
   std::fill_n(unlimited->actuator_ctrllimited, unlimited->nu, mjtByte{0});
   std::fill_n(unlimited->actuator_forcelimited, unlimited->nu, mjtByte{0});
-  SmoothDynamics dynamics(*unlimited, position);
+  return unlimited;
+}
+
+/// Generalised forces per unit of the setup's actuator signals.
+/// @param model  WithoutLimits
+MatrixXd InputMatrix(const mjModel& model, const Channels& channels,
+                     const VectorXd& position) {
+  SmoothDynamics dynamics(model, position);
   dynamics.Update();
   const VectorXd at_rest = VectorXd::Map(dynamics.data().qfrc_actuator, model.nv);
   MatrixXd gamma(model.nv, static_cast<Index>(channels.actuators.size()));
@@ -248,8 +254,51 @@ MechanicalModel Linearize(const mjModel& model, const Channels& channels,
   result.D = JointDamping(model) + OtherDamping(model, rest);
   result.K = GeometricStiffness(model, rest);
   result.K += JointStiffness(model).asDiagonal();
-  result.Gamma = InputMatrix(model, channels, rest);
+  result.Gamma = InputMatrix(*WithoutLimits(model), channels, rest);
   result.b = OutputMatrix(model, channels, rest);
+  return result;
+}
+
+// Models are copied once: one with meshes is large.
+MotionLinearization::MotionLinearization(const mjModel& model, const Channels& channels)
+    : model_(model),
+      channels_(channels),
+      bare_(WithoutJointSprings(model)),
+      unlimited_(WithoutLimits(model)) {
+  RequireSlidesAndHinges(model);
+  DropScenery(*bare_);
+  DropScenery(*unlimited_);
+}
+
+MechanicalModel MotionLinearization::At(const MotionPoint& point) const {
+  const std::vector<int> actuators = ActuatorAddresses(channels_, model_);
+  SmoothDynamics dynamics(*bare_, point.position);
+  mjData& data = dynamics.data();
+  VectorXd::Map(data.qvel, model_.nv) = point.velocity;
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    data.ctrl[actuators[i]] = point.inputs[static_cast<Index>(i)];
+  }
+  VectorXd inertial(model_.nv);
+  MechanicalModel result;
+  result.K = -Differentiate(
+      [&]() -> VectorXd {
+        const VectorXd force = dynamics.Force();
+        mj_mulM(bare_.get(), &data, inertial.data(), point.acceleration.data());
+        return force - inertial;
+      },
+      data.qpos, dynamics.size());
+  result.D =
+      -Differentiate([&] { return dynamics.Force(); }, data.qvel, dynamics.size());
+  result.K += JointStiffness(model_).asDiagonal();
+  result.D += JointDamping(model_);
+  for (int joint = 0; joint < model_.njnt; ++joint) {
+    result.coordinates.push_back(ElementName(model_, mjOBJ_JOINT, joint));
+  }
+  result.inputs = ChannelsOf(channels_.actuators);
+  result.outputs = ChannelsOf(channels_.sensors);
+  result.M = SmoothDynamics(*bare_, point.position).Mass();
+  result.Gamma = InputMatrix(*unlimited_, channels_, point.position);
+  result.b = OutputMatrix(*bare_, channels_, point.position);
   return result;
 }
 

@@ -3,7 +3,10 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
+
 #include "mjdiag/diagnosis/model/mechanical_model.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
@@ -23,5 +26,33 @@ Eigen::MatrixXd OutputMatrix(const mjModel& model, const Channels& channels,
 /// and hinge joints only (InputError names others).
 MechanicalModel Linearize(const mjModel& model, const Channels& channels,
                           const Eigen::VectorXd& rest);
+
+/// Where a machine is, at one moment of a motion.
+struct MotionPoint {
+  Eigen::VectorXd position;      ///< nq
+  Eigen::VectorXd velocity;      ///< nq
+  Eigen::VectorXd acceleration;  ///< nq
+  Eigen::VectorXd inputs;        ///< of the actuator channels, nu
+};
+
+/// M, D, K, Gamma and b of deviations from a motion: with the smooth force f of springs,
+/// dampers, motors, gravity and inertia,
+///
+///   K = -d/dq (f(q, q', u) - M(q) q''),     D = -d/dq' f(q, q', u)
+///
+/// At rest without inputs that is what Linearize gives. InputError as there.
+class MotionLinearization {
+ public:
+  /// Both have to outlive it.
+  MotionLinearization(const mjModel& model, const Channels& channels);
+  /// May be called by several threads.
+  MechanicalModel At(const MotionPoint& point) const;
+
+ private:
+  const mjModel& model_;
+  const Channels& channels_;
+  ModelPtr bare_;
+  ModelPtr unlimited_;
+};
 
 }  // namespace mjdiag

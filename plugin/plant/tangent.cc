@@ -32,13 +32,21 @@ TickTangent NoTime(Index nv) {
 }  // namespace
 
 TangentRecorder::TangentRecorder(const mjModel& plant, const MechanicalModel& model)
-    : stiffness_(model.K - MatrixXd(JointStiffness(plant).asDiagonal())),
-      damping_(model.D - MatrixXd(DampingOf(plant).asDiagonal())),
-      motors_(MotorBiasAtQpos0(plant)),
+    : springs_(JointStiffness(plant)),
+      dampers_(DampingOf(plant)),
+      all_motors_(MotorBiasAtQpos0(plant)),
+      motors_(all_motors_),
       mass_(plant.nv, plant.nv),
       tick_(NoTime(plant.nv)) {
-  stiffness_ -= motors_.stiffness;
-  damping_ -= motors_.damping;
+  MoveTo(model);
+}
+
+void TangentRecorder::MoveTo(const MechanicalModel& model) {
+  stiffness_ = model.K - MatrixXd(springs_.asDiagonal());
+  damping_ = model.D - MatrixXd(dampers_.asDiagonal());
+  stiffness_ -= all_motors_.stiffness;
+  damping_ -= all_motors_.damping;
+  known_.clear();
 }
 
 bool TangentRecorder::MassChanged(const mjModel& plant, const mjData& data) {

@@ -40,6 +40,9 @@ class TangentRecorder {
   /// @param plant  the nominal one, which `model` is the linear model of
   TangentRecorder(const mjModel& plant, const MechanicalModel& model);
 
+  /// From the next substep on the machine is about there and not about its rest any more.
+  /// @param model  of the nominal plant (MotionLinearization)
+  void MoveTo(const MechanicalModel& model);
   /// After every substep. @param plant  of the run, changes and all
   /// @param off  actuators that are an open circuit in it
   void Substep(const mjModel& plant, const mjData& data, std::span<const int> off = {});
@@ -58,6 +61,9 @@ class TangentRecorder {
   /// Puts the part of the motors that are on into K and D.
   void Switch(const mjModel& plant, const mjData& data, std::span<const int> off);
 
+  Eigen::VectorXd springs_;  // of the nominal plant
+  Eigen::VectorXd dampers_;
+  MotorBias all_motors_;       // at qpos0, none off
   Eigen::MatrixXd stiffness_;  // what is not of springs in the joints nor of motors
   Eigen::MatrixXd damping_;    // what is not of dampers in the joints nor of motors
   MotorBias motors_;           // of those that are on

@@ -10,10 +10,11 @@ using Eigen::VectorXd;
 
 ErrorDynamics::ErrorDynamics(const Observer& observer, Index block)
     : block_(block),
+      observer_(observer),
       C_(observer.innovation_sd.cwiseInverse().asDiagonal() * observer.tick.C),
-      L_(observer.L),
       LC_(observer.L * observer.tick.C),
-      weight_(observer.innovation_sd.cwiseInverse()) {}
+      weight_(observer.innovation_sd.cwiseInverse()),
+      always_(weight_.cwiseInverse().asDiagonal() * C_) {}
 
 // The state that what was leaves is none.
 void ErrorDynamics::Begin() {
@@ -26,14 +27,19 @@ void ErrorDynamics::Begin() {
 
 void ErrorDynamics::Add(const TickTangent& tick, const SampleMask& measured,
                         const SampleMask& counted) {
-  if (measured.size() == 0 || measured.all()) {
-    Add(tick.A - LC_, tick.B, L_);
+  const MatrixXd& L = observer_.GainAt(sample_);
+  const MatrixXd& C = observer_.OutputsAt(sample_);
+  ++sample_;
+  if (measured.size() > 0 && !measured.all()) {
+    const MatrixXd pull = L * measured.cast<double>().matrix().asDiagonal();
+    Add(tick.A - pull * (observer_.following ? C : always_), tick.B, pull);
+  } else if (observer_.following) {
+    Add(tick.A - L * C, tick.B, L);
   } else {
-    const MatrixXd pull = L_ * measured.cast<double>().matrix().asDiagonal();
-    const MatrixXd C = weight_.cwiseInverse().asDiagonal() * C_;
-    Add(tick.A - pull * C, tick.B, pull);
+    Add(tick.A - LC_, tick.B, L);
   }
   Miss(counted.size() > 0 ? counted : measured);
+  if (observer_.following && in_open_ == 0) open_.C = weight_.asDiagonal() * C;
   if (++in_open_ < block_) return;
   blocks_.push_back(std::move(open_));
   in_open_ = 0;
@@ -56,15 +62,16 @@ void ErrorDynamics::Miss(const SampleMask& counted) {
 }
 
 // The mean over a block is that of its ends, x and next, whose sum it is applied to.
-MatrixXd ErrorDynamics::SeenMean() const {
-  return block_ == 1 ? C_ : MatrixXd(0.5 * std::sqrt(static_cast<double>(block_)) * C_);
+MatrixXd ErrorDynamics::SeenMean(const Block& block) const {
+  const MatrixXd& C = block.C.size() > 0 ? block.C : C_;
+  return block_ == 1 ? C : MatrixXd(0.5 * std::sqrt(static_cast<double>(block_)) * C);
 }
 
 template <typename Drive, typename Seen>
 MatrixXd ErrorDynamics::Respond(Index blocks, Index signals, const Drive& drive,
                                 const Seen& seen) const {
   const Index ny = C_.rows();
-  const MatrixXd mean = SeenMean();
+  const MatrixXd always = SeenMean({});
   MatrixXd x = MatrixXd::Zero(C_.cols(), signals);
   MatrixXd next(x.rows(), x.cols());
   MatrixXd response(ny * blocks, signals);
@@ -73,9 +80,14 @@ MatrixXd ErrorDynamics::Respond(Index blocks, Index signals, const Drive& drive,
     drive(next, k);
     if (block_ > 1) x += next;
     auto now = response.middleRows(ny * k, ny);
-    now.noalias() = mean * x;
+    const Block& block = blocks_[static_cast<std::size_t>(k)];
+    if (block.C.size() > 0) {
+      now.noalias() = SeenMean(block) * x;
+    } else {
+      now.noalias() = always * x;
+    }
     seen(now, k);
-    const VectorXd& share = blocks_[static_cast<std::size_t>(k)].seen;
+    const VectorXd& share = block.seen;
     if (share.size() > 0) now.array().colwise() *= share.array();
     x.swap(next);
   }
@@ -130,7 +142,7 @@ ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) con
     if (share.size() > 0) e.col(k) = share.cwiseProduct(e.col(k)).eval();
   }
   const double root = std::sqrt(static_cast<double>(block_));
-  const MatrixXd seen = SeenMean();
+  const MatrixXd always = SeenMean({});
   Adjoint adjoint{MatrixXd(blocks, C_.cols() / 2), MatrixXd(blocks, ny)};
   VectorXd multiplier = VectorXd::Zero(C_.cols());
   VectorXd later = VectorXd::Zero(ny);
@@ -139,8 +151,17 @@ ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) con
     if (k + 1 < blocks) {
       multiplier = blocks_[static_cast<std::size_t>(k + 1)].F.transpose() * multiplier;
     }
-    multiplier += seen.transpose() * (block_ > 1 ? VectorXd(e.col(k) + later) : later);
     const Block& block = blocks_[static_cast<std::size_t>(k)];
+    if (block.C.size() > 0) {
+      if (block_ > 1) multiplier += SeenMean(block).transpose() * e.col(k);
+      if (k + 1 < blocks) {
+        multiplier +=
+            SeenMean(blocks_[static_cast<std::size_t>(k + 1)]).transpose() * later;
+      }
+    } else {
+      multiplier +=
+          always.transpose() * (block_ > 1 ? VectorXd(e.col(k) + later) : later);
+    }
     adjoint.forces.row(k) = (block.B.transpose() * multiplier).transpose();
     adjoint.readings.row(k) =
         (root * weight_.cwiseProduct(e.col(k)) - block.L.transpose() * multiplier)

@@ -1,0 +1,65 @@
+// Machines that no known controller holds.
+
+#include <gtest/gtest.h>
+
+#include "mjdiag/comparison/comparison.h"
+#include "support/arm.h"
+#include "support/stage.h"
+
+namespace mjdiag {
+namespace {
+
+const Prediction::Sensor& Elbow(const Comparison& comparison) {
+  return comparison.prediction.sensors.at(1);
+}
+
+TEST(CompareFalling, PredictsTheTrueArmOverATickToItsNoise) {
+  const test::Arm arm;
+  const Comparison comparison = Compare(arm.machine, test::Arm::Measure(), {});
+  ASSERT_TRUE(comparison.falls);
+  ASSERT_EQ(comparison.prediction.horizons.size(), 3U);
+  EXPECT_DOUBLE_EQ(comparison.prediction.horizons[0], 1e-3);
+  EXPECT_DOUBLE_EQ(comparison.prediction.horizons[2], 0.1);
+  EXPECT_LT(Elbow(comparison).rms[0], 2.0 * test::Arm::kNoise);
+  // The error of a prediction grows.
+  EXPECT_GT(Elbow(comparison).rms[2], Elbow(comparison).rms[0]);
+}
+
+TEST(CompareFalling, FindsTheFrictionThatIsMissingAtItsJoint) {
+  const test::Arm arm;
+  const Comparison comparison = Compare(
+      arm.machine, test::Arm::Measure({"coulomb_friction@elbow:force=0.3"}), {});
+  ASSERT_TRUE(comparison.falls);
+  ASSERT_EQ(comparison.missing_force.size(), 2U);
+  EXPECT_EQ(comparison.missing_force[1].joint, "elbow");
+  EXPECT_EQ(comparison.missing_force[1].unit, "N m");
+  // It rests for a part of the time, when friction is anything up to that.
+  EXPECT_GT(comparison.missing_force[1].rms, 0.2);
+  EXPECT_LT(comparison.missing_force[1].rms, 0.33);
+  EXPECT_LT(comparison.missing_force[0].rms, 0.06);
+}
+
+TEST(CompareFalling, MissesNextToNothingOnTheTrueArm) {
+  const test::Arm arm;
+  const Comparison comparison = Compare(arm.machine, test::Arm::Measure(), {});
+  ASSERT_TRUE(comparison.falls);
+  for (const MissingForce& force : comparison.missing_force) {
+    EXPECT_LT(force.rms, 0.06) << force.joint;
+  }
+}
+
+TEST(CompareFalling, LeavesAMachineWithAControllerInItsLoop) {
+  const test::Stage stage;
+  EXPECT_FALSE(Compare(stage.machine, stage.Measure({}), {}).falls);
+}
+
+// It drifts away, but does not leave what it is at rest.
+TEST(CompareFalling, LeavesAStageThatDriftsInOpenLoop) {
+  const test::Stage stage;
+  const Machine open = stage.machine.WithSetup(WithoutControllers(stage.setup()));
+  EXPECT_FALSE(
+      Compare(open, stage.Measure({"coulomb_friction@load:force=20"}), {}).falls);
+}
+
+}  // namespace
+}  // namespace mjdiag
