@@ -28,8 +28,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kLeast = 0.05;   // probability that is told,
-constexpr double kRather = 0.5;   // and of numbers, of which there are many
+constexpr double kLeast = 0.05;  // probability that is told,
+constexpr double kRather = 0.5;  // and of numbers, of which there are many
 
 double Logistic(double half_deviance) { return 1.0 / (1.0 + std::exp(-half_deviance)); }
 
@@ -39,18 +39,19 @@ Kind KindOfResistance(const VectorXd& values) {
   Eigen::MatrixX2d shapes(axis.knots, 2);
   for (int i = 0; i < axis.knots; ++i) {
     const double v = axis.KnotAt(i);
-    const bool is_second_half = axis.shape == CurveShapes::kSplit && 2 * i >= axis.knots;
-    const double sign = axis.shape == CurveShapes::kSplit ? (is_second_half ? 1.0 : -1.0)
-                                                          : std::copysign(1.0, v);
+    const bool is_second_half =
+        axis.shape == CurveShapes::kSplit && 2 * i >= axis.knots;
+    const double sign = axis.shape == CurveShapes::kSplit
+                            ? (is_second_half ? 1.0 : -1.0)
+                            : std::copysign(1.0, v);
     shapes.row(i) << sign, v;
   }
   const VectorXd force = values.segment(force_curve::kFirst, axis.knots);
-  const Eigen::Vector2d size =
-      (shapes.transpose() * shapes)
-          .ldlt()
-          .solve(shapes.transpose() * force)
-          .cwiseProduct(shapes.colwise().norm().transpose())
-          .cwiseAbs();
+  const Eigen::Vector2d size = (shapes.transpose() * shapes)
+                                   .ldlt()
+                                   .solve(shapes.transpose() * force)
+                                   .cwiseProduct(shapes.colwise().norm().transpose())
+                                   .cwiseAbs();
   return size[0] > size[1] ? Kind::kDryFriction : Kind::kViscousFriction;
 }
 
@@ -176,13 +177,12 @@ void Discoverer::FindKinds() {
 /// Numbers of the plant that are others than the model says are a kind of physics, too. By
 /// their intervals, with Bonferroni's price for how many were in doubt.
 void Discoverer::AddKindsOfNumbers() {
-  const double price =
-      2.0 * std::log(static_cast<double>(std::max<std::size_t>(
-                1, discovery_.calibration.size())));
+  const double price = 2.0 * std::log(static_cast<double>(std::max<std::size_t>(
+                                 1, discovery_.calibration.size())));
   for (const CalibratedNumber& number : discovery_.calibration) {
     if (!IsOff(number)) continue;
-    const double sd = std::log(number.high / number.low) /
-                      (2.0 * TwoSidedNormalQuantile(0.05));
+    const double sd =
+        std::log(number.high / number.low) / (2.0 * TwoSidedNormalQuantile(0.05));
     const double z = std::log(number.factor) / sd;
     const Kind kind = KindOf(number.number.kind);
     const std::string site = number.name.substr(number.name.find('@') + 1);

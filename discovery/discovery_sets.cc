@@ -76,7 +76,8 @@ bool IsBetterUnseen(const EvidenceData& data, const FittedModel& model,
 bool Discoverer::TakeSets(const SearchOptions& search) {
   // An observer of a sensor that is read now and then has no ladder. Of machines that leave
   // their rest the fastest one is the likeliest whatever is found, which tells nothing.
-  if (options_.bandwidth != 0.0 || problem_.observer().following || LongestPeriod(problem_.run()) > 1 ||
+  if (options_.bandwidth != 0.0 || problem_.observer().following ||
+      LongestPeriod(problem_.run()) > 1 ||
       !work_->MayBegin("sets of causes", RoundWork(problem_))) {
     return false;
   }

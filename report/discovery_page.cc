@@ -68,7 +68,8 @@ constexpr const char* kHowToReadExplanations =
 
 constexpr const char* kHowToReadKinds =
     "The kind of physics that the model lacks and where, whichever law it follows: the "
-    "probability is what data that no fit saw say against the best model without it. A law "
+    "probability is what data that no fit saw say against the best model without it. A "
+    "law "
     "that is in no list makes the names below less certain, and the kind not.";
 
 void AddKinds(Page& page, const Discovery& discovery) {

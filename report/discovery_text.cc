@@ -227,7 +227,8 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
       }
       return "Nothing is wrong that this record shows: noise explains the mismatch.";
     case DiscoveryVerdict::kExplained:
-      return KindsSentence(discovery) + FoundText(discovery) + " Noise explains the rest." + UnseenText(discovery);
+      return KindsSentence(discovery) + FoundText(discovery) +
+             " Noise explains the rest." + UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
       return KindsSentence(discovery) + FoundText(discovery) + UnseenText(discovery) +
              (discovery.unexplained || !IsComplete(discovery.complete)

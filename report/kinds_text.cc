@@ -52,8 +52,7 @@ Table KindTable(const Discovery& discovery) {
                    {"Mismatch back without it", true},
                    {"What it is"}};
   for (const FoundKind& found : discovery.kinds) {
-    table.rows.push_back({KindName(found.kind), found.site,
-                          PartText(found.probability),
+    table.rows.push_back({KindName(found.kind), found.site, PartText(found.probability),
                           found.of_number ? "-" : PartText(found.share),
                           KindMeaning(found.kind)});
   }

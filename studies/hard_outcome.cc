@@ -115,9 +115,9 @@ std::vector<Claim> ClaimsOf(const std::vector<Cause>& truth,
   std::vector<Claim> claims;
   for (const FoundKind& kind : kinds) {
     if (kind.of_number) continue;
-    claims.push_back({kind.probability, std::ranges::any_of(truth, [&](const Cause& one) {
-                        return IsOf(kind, one);
-                      })});
+    claims.push_back({kind.probability,
+                      std::ranges::any_of(
+                          truth, [&](const Cause& one) { return IsOf(kind, one); })});
   }
   return claims;
 }

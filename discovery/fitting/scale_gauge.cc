@@ -138,8 +138,7 @@ std::vector<ScaleGauge> FaultGauges(const DiscoveryProblem& problem,
                                     const std::vector<Candidate>& candidates,
                                     const std::vector<FittedCause>& causes,
                                     Index size) {
-  const std::vector<FaultParameter> faults =
-      FaultParameters(problem.machine().plant());
+  const std::vector<FaultParameter> faults = FaultParameters(problem.machine().plant());
   const std::vector<DoubtedNumber>& numbers = problem.numbers();
   std::vector<ScaleGauge> gauges;
   auto next = static_cast<Index>(numbers.size());

@@ -57,8 +57,9 @@ double NoiseValue(const DiscoveryProblem& problem, const VectorXd& innovations,
         problem.MeasuredOf(innovations, c, problem.skip(), problem.train());
     const Index lags = std::min(kLags, fitted.size() / 10);
     if (lags == 0) continue;
-    const double left = observer.innovation_sd[c] *
-                        std::sqrt(fitted.squaredNorm() / static_cast<double>(fitted.size()));
+    const double left =
+        observer.innovation_sd[c] *
+        std::sqrt(fitted.squaredNorm() / static_cast<double>(fitted.size()));
     if (!IsFine(sensor, observer.noise_sd[c], left)) continue;
     // A slow sensor has only every so many of them.
     const Index period = problem.run().PeriodOf(c);

@@ -16,7 +16,8 @@ using Row = std::vector<std::string>;
 
 TEST(DiscoveryAnswer, NamesTheCausesAndWhatTheyGained) {
   EXPECT_EQ(DiscoveryAnswer(SampleDiscovery()),
-            "The model is wrong about dry friction at load (a resistance that does not grow with "
+            "The model is wrong about dry friction at load (a resistance that does not "
+            "grow with "
             "speed). "
             "Found: coulomb_friction at load (force 20.39 N) and eta = 1.034200. Noise "
             "explains the rest. On unseen data the mismatch falls by 97.2 %, to 1.10 "

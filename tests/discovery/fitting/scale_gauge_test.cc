@@ -77,8 +77,8 @@ TEST(ScaleGauges, AreNoneOfAKnownMass) {
   const VectorXd z = VectorXd::Zero(std::ssize(numbers));
   const auto gauges = ScaleGauges(problem, doubted.candidates, doubted.friction);
   const MatrixXd J = FitCauses(problem, doubted.candidates, {doubted.friction, z},
-                         {.iterations = 0, .jacobian = true})
-                   .jacobian;
+                               {.iterations = 0, .jacobian = true})
+                         .jacobian;
   EXPECT_EQ(gauges.size(), 1u);
   EXPECT_TRUE(Untold(gauges, doubted.Theta(z), J).empty());
 }
