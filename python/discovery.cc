@@ -9,6 +9,7 @@
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
 #include "mjdiag/report/discovery_text.h"
+#include "mjdiag/report/kinds_text.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/diagnosis.h"
@@ -55,6 +56,7 @@ std::string DiscoveryHtml(const DiscoveryObject& object) {
   const bool found = discovery.verdict != DiscoveryVerdict::kNoDiscrepancy;
   Page page(discovery.setup);
   page.SetVerdict(found ? Tone::kNeutral : Tone::kGood, DiscoveryAnswer(discovery));
+  if (!discovery.kinds.empty()) page.AddTable(KindTable(discovery));
   if (!discovery.causes.empty()) page.AddTable(CauseTable(discovery));
   return NotebookHtml(page);
 }
@@ -107,14 +109,33 @@ void BindCause(py::module_& module) {
       });
 }
 
+void BindKind(py::module_& module) {
+  py::class_<FoundKind>(module, "Kind",
+                        "A kind of physics at a place, whichever law it follows.")
+      .def_property_readonly(
+          "name", [](const FoundKind& found) { return KindName(found.kind); },
+          R"("dry friction", "compliance", "drive gain", ...)")
+      .def_readonly("site", &FoundKind::site,
+                    "The joint, actuator or sensor at which it acts.")
+      .def_readonly("probability", &FoundKind::probability,
+                    "By what data that no fit saw lose without it.")
+      .def_readonly("share", &FoundKind::share,
+                    "Of the unseen mismatch that the answer takes away, what is back "
+                    "without it; 0 of a number of the plant.")
+      .def("__repr__", [](const FoundKind& found) {
+        return "<mjdiag.Kind: " + KindAt(found) + ">";
+      });
+}
+
 }  // namespace
 
 void BindDiscovery(py::module_& module) {
   BindCause(module);
+  BindKind(module);
   py::class_<DiscoveryObject>(module, "Discovery",
                               R"(
       The answer of Machine.discover: what the model gets wrong, why, and the model with
-      that in it. In a notebook it shows its answer and the causes.)")
+      that in it. In a notebook it shows its answer, the kinds of physics and the causes.)")
       .def_property_readonly(
           "verdict",
           [](const DiscoveryObject& object) {
@@ -131,6 +152,9 @@ void BindDiscovery(py::module_& module) {
           "causes",
           [](const DiscoveryObject& object) { return object.discovery.causes; },
           "List of Cause.")
+      .def_property_readonly(
+          "kinds", [](const DiscoveryObject& object) { return object.discovery.kinds; },
+          "List of Kind, the most probable first.")
       .def_property_readonly(
           "machine",
           [](const DiscoveryObject& object) {

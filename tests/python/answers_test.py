@@ -77,6 +77,9 @@ class AnswersTest(Test):
         parameter = cause.parameters["coefficient"]
         self.assertLess(abs(parameter.value - 4e6), 4 * parameter.sd)
         self.assertEqual(parameter.unit, "N/m^3")
+        (kind,) = found.kinds
+        self.assertEqual((kind.name, kind.site), ("compliance", "stage"))
+        self.assertGreater(kind.probability, 0.99)
         self.assertEqual(found.verdict, "explained")
         self.assertGreater(found.gain[1], 0.99)
         for after, before in zip(found.mismatch_after, found.mismatch_before):
