@@ -1,5 +1,5 @@
-// Sets of causes at first (sets/set_search.h): where what no fit saw agrees with them, they
-// are what the rest of a discovery goes on from.
+// Sets of causes at first (sets/set_search.h): where they leave a model that deserves a
+// slower observer than the fastest, they are what the rest of a discovery goes on from.
 
 #include <algorithm>
 #include <cmath>
@@ -41,12 +41,18 @@ std::vector<std::vector<Hypothesis>> RivalsIn(const SetSearchResult& found) {
   return rivals;
 }
 
-/// Whether the causes are worth going on from: the rest of the record is likelier with them,
-/// too, and no law is one of which the fit makes another.
-bool Holds(const ObserverLadder& ladder, const std::vector<Candidate>& candidates,
-           const SetSearchResult& found) {
+/// Whether the causes are what the plant lacks, and not the nearest of the laws that are
+/// known: what is left of it beyond noise, on samples that the fit saw and on others, is
+/// little, and no law is one of which the fit makes another.
+bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candidates,
+              const SetSearchResult& found) {
+  constexpr double kLeft = 0.1;
   const WeighedModel& best = found.best;
-  if (best.fit.causes.empty()) return false;
+  if (best.fit.causes.empty() || best.rung == 0) return false;
+  if (best.deviance - ladder.Noise() >
+      kLeft * (found.given.deviance - ladder.Noise())) {
+    return false;
+  }
   const DiscoveryProblem& problem = ladder[best.rung];
   if (problem.train() < problem.run().samples() &&
       ladder.HeldOut(best.rung, best.fit.residual) >=
@@ -112,7 +118,7 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   };
   SetSearchResult found = SearchSets(ladder, candidates_, start, options);
   const WeighedModel& best = found.best;
-  if (!Holds(ladder, candidates_, found)) return false;
+  if (!Explains(ladder, candidates_, found)) return false;
   FittedModel model = best.fit;
   FittedModel given = found.given.fit;
   std::vector<DoubtedNumber> numbers = problem.numbers();

@@ -86,8 +86,9 @@ Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
   constexpr double kFaster = 1.5;
   std::shared_ptr<const MotionPath> path;
   VectorXd in_motion;
-  for (;; hertz *= kFaster) {
-    if (hertz > fastest) {
+  for (const double first = hertz;; hertz *= kFaster) {
+    // One that was asked for may be faster.
+    if (hertz > std::max(first, fastest)) {
       throw NumericalError(
           "replay: no observer keeps the plant beside the record; is it the machine "
           "that "
@@ -106,9 +107,9 @@ Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
       in_motion = NoiseInMotion(machine, run, start.noise_sd, path);
       start = design({});
     }
-    const auto first = Beside(machine, run, start);
-    if (!first) continue;
-    Observer observer = design(first->innovations);
+    const auto beside = Beside(machine, run, start);
+    if (!beside) continue;
+    Observer observer = design(beside->innovations);
     if (!observer.following || Beside(machine, run, observer)) return observer;
   }
 }

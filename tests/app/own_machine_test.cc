@@ -83,7 +83,9 @@ TEST_F(OwnMachine, WalkEndsAtTheHiddenCause) {
   const std::vector<CommandResult> found = Walk("5.");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0].out,
-              StartsWith("Found: cubic_stiffness at stage (coefficient "));
+              StartsWith("The model is wrong about compliance at stage (a spring, or a "
+                         "structure that gives). Found: cubic_stiffness at stage "
+                         "(coefficient "));
   const json discovery = Json("voice_coil/found/discovery.json");
   EXPECT_EQ(discovery["verdict"], "explained");
   ASSERT_EQ(discovery["causes"].size(), 1u) << discovery["causes"].dump(2);
