@@ -56,6 +56,8 @@ TEST(Readme, CommandsDoWhatTheySay) {
   const auto servo = DataFolder("MJDIAG_SERVO_DATA");
   if (emps) LinkFiles(*emps, folder.path());
   if (servo) LinkFiles(*servo, folder.path());
+  const auto panda = DataFolder("MJDIAG_PANDA_DATA");
+  if (panda) LinkFiles(*panda, folder.path());
 
   const std::vector<std::string> commands = CommandsOfReadme();
   ASSERT_GE(commands.size(), 18u);
@@ -66,6 +68,7 @@ TEST(Readme, CommandsDoWhatTheySay) {
     // What needs measured data that are not here.
     if (!emps && command.find("DATA_EMPS") != std::string::npos) continue;
     if (!servo && command.find("mjcf/servo") != std::string::npos) continue;
+    if (!panda && command.find("mjcf/panda") != std::string::npos) continue;
     // FOLDER is where the reader has the records of the servo.
     if (const auto at = command.find(" FOLDER"); at != std::string::npos) {
       command.replace(at, 7, " '" + servo->string() + "'");
