@@ -1,5 +1,5 @@
-// Sets of causes at first (sets/set_search.h): where they leave a model that deserves a
-// slower observer than the fastest, they are what the rest of a discovery goes on from.
+// Sets of causes at first (sets/set_search.h): where they take away most of what the plant
+// lacks, they are what the rest of a discovery goes on from.
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candid
               const SetSearchResult& found) {
   constexpr double kLeft = 0.1;
   const WeighedModel& best = found.best;
-  if (best.fit.causes.empty() || best.rung == 0) return false;
+  if (best.fit.causes.empty()) return false;
   if (best.deviance - ladder.Noise() >
       kLeft * (found.given.deviance - ladder.Noise())) {
     return false;
