@@ -50,7 +50,8 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
   const bool changed =
       std::ranges::any_of(discovery.calibration, IsOff) || !discovery.causes.empty();
   if (!changed) return "";
-  return WriteExtendedSetup(std::filesystem::path(folder) / "extended", setup, machine,
+  return WriteExtendedSetup(std::filesystem::path(folder) / "extended", setup,
+                            machine.WithSubsteps(discovery.substeps),
                             ChangesOf(discovery))
       .string();
 }

@@ -56,6 +56,8 @@ class Discoverer {
   /// True if sets of causes were found that nothing has to be added to; search_ goes on
   /// from them.
   bool TakeSets(const SearchOptions& search);
+  /// Goes on in that many physics steps a tick.
+  void TakeSubsteps(int substeps);
   /// As closely as possible, behind the observer that they deserve.
   void FitSets(const SearchOptions& options);
   std::vector<PlantNumber> KnownNumbers() const;
@@ -123,8 +125,8 @@ class Discoverer {
   void AddComparisons();
   void AddLimits();
 
-  const Machine& machine_;
-  const Measurements& measurements_;
+  Machine machine_;
+  Measurements measurements_;
   const DiscoverOptions& options_;
   std::shared_ptr<Work> work_;
   std::vector<Candidate> candidates_;

@@ -243,6 +243,7 @@ Discovery Discoverer::Run() {
   discovery_.train_share = static_cast<double>(problem_.train()) /
                            static_cast<double>(problem_.run().samples());
   discovery_.sample_time = machine_.rates().tick();
+  discovery_.substeps = machine_.rates().substeps;
   falls_ = problem_.observer().following && AnyFalls(measurements_);
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();

@@ -171,6 +171,9 @@ struct Discovery {
   std::vector<LawPlot> laws;
   std::vector<FaultLimit> fault_limits;
   double sample_time = 0.0;
+  /// Physics steps a control tick that the answer is said of: those of the setup, or more
+  /// where the record tells that they are too few. 0 of an answer that is not made yet.
+  int substeps = 0;
   Budget budget;
 };
 

@@ -9,6 +9,7 @@
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/sets/set_search.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
@@ -118,19 +119,20 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   };
   SetSearchResult found = SearchSets(ladder, candidates_, start, options);
   const WeighedModel& best = found.best;
-  if (!Explains(ladder, candidates_, found)) return false;
+  TakeSubsteps(found.ladder[0].machine().rates().substeps);
+  if (!Explains(found.ladder, candidates_, found)) return false;
   FittedModel model = best.fit;
   FittedModel given = found.given.fit;
-  std::vector<DoubtedNumber> numbers = problem.numbers();
+  std::vector<DoubtedNumber> numbers = found.ladder[0].numbers();
   constexpr double kSteps = 0.1;  // of what physics steps may be off by
   if (exact && std::abs(model.numbers[0]) < kSteps) {
     numbers.clear();
     model.numbers.resize(0);
     given.numbers.resize(0);
   }
-  const bool to_the_end = best.rung + 1 == ladder.size();
+  const bool to_the_end = best.rung + 1 == found.ladder.size();
   DiscoveryProblem deserved =
-      (to_the_end ? problem_ : Pose(ladder.bandwidth(best.rung)))
+      (to_the_end ? problem_ : Pose(found.ladder.bandwidth(best.rung)))
           .Doubting(std::move(numbers));
   if (!IsBetterUnseen(DataOf(deserved, candidates_, search.unseen), model, given)) {
     return false;
@@ -149,6 +151,29 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   static_cast<FittedModel&>(fit) = std::move(model);
   search_.evidence = search_.evidence.Changed(std::move(fit));
   return found.ended;
+}
+
+void Discoverer::TakeSubsteps(int substeps) {
+  if (substeps == machine_.rates().substeps) return;
+  const double step = problem_.step();
+  machine_ = machine_.WithSubsteps(substeps);
+  for (auto* records : {&measurements_.fit, &measurements_.unseen}) {
+    for (MeasuredRecord& one : *records) {
+      one.machine = one.machine.WithSubsteps(substeps);
+    }
+  }
+  std::vector<DoubtedNumber> numbers = problem_.numbers();
+  for (DoubtedNumber& number : numbers) {
+    if (number.is_lateness) number = LatenessOf(machine_);
+  }
+  problem_ = Pose(options_.bandwidth).Doubting(std::move(numbers));
+  MeasureNominal();
+  discovery_.substeps = substeps;
+  discovery_.notes.push_back("physics steps of " + FormatQuantity(step, "s") +
+                             " are too long for what the record tells: all of this is "
+                             "said of steps of " +
+                             FormatQuantity(problem_.step(), "s") + ", " +
+                             std::to_string(substeps) + " a control tick");
 }
 
 void Discoverer::FitSets(const SearchOptions& options) {

@@ -158,7 +158,8 @@ void BindDiscovery(py::module_& module) {
       .def_property_readonly(
           "machine",
           [](const DiscoveryObject& object) {
-            return object.machine.Extended(ChangesOf(object.discovery));
+            return object.machine.Extended(ChangesOf(object.discovery),
+                                           object.discovery.substeps);
           },
           "The Machine with all causes in it, ready to simulate.")
       .def_property_readonly(
@@ -210,7 +211,8 @@ void BindDiscovery(py::module_& module) {
       .def(
           "write",
           [](const DiscoveryObject& object, const py::object& folder) {
-            return object.machine.Extended(ChangesOf(object.discovery))
+            return object.machine
+                .Extended(ChangesOf(object.discovery), object.discovery.substeps)
                 .Write(PathOf(folder, "Discovery.write"))
                 .string();
           },

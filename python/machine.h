@@ -60,7 +60,7 @@ class MachineObject {
                                 const Machine& calibrated,
                                 PreparedDiagnosis prepared) const;
   /// The machine with that in it, as if it had been given so.
-  MachineObject Extended(const Changes& changes) const;
+  MachineObject Extended(const Changes& changes, int substeps) const;
 
   /// Makes a folder of it, which is a setup: with all that was put into the plant, or with
   /// what a calibration said. @return plant.xml or, of the latter, setup.toml

@@ -88,9 +88,9 @@ MachineObject MachineObject::WithCalibration(const CalibrationReport& report,
   return changed;
 }
 
-MachineObject MachineObject::Extended(const Changes& changes) const {
+MachineObject MachineObject::Extended(const Changes& changes, int substeps) const {
   MachineObject extended = *this;
-  extended.nominal_ = machine_.With(changes);
+  extended.nominal_ = machine_.WithSubsteps(substeps).With(changes);
   extended.machine_ = extended.nominal_;
   extended.changes_ = {};
   extended.prepared_ = std::make_shared<PreparedCache>();
@@ -100,7 +100,9 @@ MachineObject MachineObject::Extended(const Changes& changes) const {
 std::filesystem::path MachineObject::Write(const std::filesystem::path& folder) const {
   RequireQuiet("Machine.write");
   if (!calibration_) {
-    return WriteExtendedSetup(folder, source_.setup, original_, machine_.changes());
+    return WriteExtendedSetup(folder, source_.setup,
+                              original_.WithSubsteps(machine_.rates().substeps),
+                              machine_.changes());
   }
   if (machine_.changes() != Changes{} || !source_.overrides.empty()) {
     throw InputError("Machine.write",

@@ -211,6 +211,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"unexplained", UnexplainedOf(discovery)},
           {"train_share", Finite(discovery.train_share)},
           {"sample_time", Finite(discovery.sample_time)},
+          {"substeps", discovery.substeps},
           {"samples", SamplesOf(discovery)},
           {"derived",
            {{"before", DerivedOf(discovery, &RecordReplay::before)},

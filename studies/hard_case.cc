@@ -21,7 +21,7 @@ constexpr std::uint64_t kDrawStream = 0x68617264;
 constexpr std::uint64_t kEveryOutside = 5;  // cases
 constexpr int kFiner = 2;        // physics steps of the measurement over the model's
 constexpr double kTicks = 8000;  // of a record at most
-constexpr double kLeastScale = 0.03;
+constexpr double kLeastScale = 0.005;
 
 /// The default motion, as long as a record may be.
 Trajectory DefaultTrajectory(const Setup& setup) {

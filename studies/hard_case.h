@@ -7,7 +7,7 @@
 // - The measurement is made with twice the physics steps of the model.
 // - One to three effects and fault parameters at once, or a law that the engine does not
 //   have (outside_law.h), alone. Sizes are shares of what the machine itself does
-//   (Effect::Draw), evenly in the logarithm from 0.03 to 1, raised to what the record can
+//   (Effect::Draw), evenly in the logarithm from 0.005 to 1, raised to what the record can
 //   show at least beside the wrong numbers, the other causes and, of a law with a simpler
 //   one in it, that one (visible_size.h), or drawn anew. What another law of the catalogue
 //   shows as well, with the other causes there, is drawn anew, too.

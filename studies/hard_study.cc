@@ -75,7 +75,8 @@ HardOutcome RunHard(const Machine& model, const HardPlan& plan, std::uint64_t se
     outcome.verdict = VerdictOf(hard.truth, found);
   }
   outcome.before = UnseenMismatch(model, hard, {});
-  outcome.after = UnseenMismatch(model, hard, ChangesOf(outcome.answer));
+  outcome.after = UnseenMismatch(model.WithSubsteps(outcome.answer.substeps), hard,
+                                 ChangesOf(outcome.answer));
   return outcome;
 }
 

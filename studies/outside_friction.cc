@@ -71,7 +71,7 @@ class RateAndStateFrictionLaw final : public Effect {
     const double state = rate * r.Uniform(1.2, 2.0);
     const double velocity = k.speed * r.Log(0.05, 0.3);
     const double length = k.stroke * r.Log(3e-3, 0.05);
-    return [=, force = k.SmallForce()](double s) {
+    return [=, force = k.FrictionForce()](double s) {
       return ValuesOf({s * force, rate, state, velocity, length});
     };
   }
@@ -96,7 +96,7 @@ class RootFrictionLaw final : public JointForceEffect {
     return -values[0] * ratio / std::pow(ratio * ratio + kSlow * kSlow, 0.25);
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return [force = k.SmallForce(), velocity = k.speed](double s) {
+    return [force = k.FrictionForce(), velocity = k.speed](double s) {
       return ValuesOf({s * force, velocity});
     };
   }
@@ -147,7 +147,7 @@ class ReversalFrictionLaw final : public Effect {
   Sized Draw(const Scales& k, Random& r) const override {
     const double fresh = r.Uniform(0.5, 2.0);
     const double length = k.stroke * r.Log(0.05, 0.3);
-    return [=, force = k.SmallForce(), slow = 0.02 * k.speed](double s) {
+    return [=, force = k.FrictionForce(), slow = 0.02 * k.speed](double s) {
       return ValuesOf({s * force, fresh, length, slow});
     };
   }
@@ -181,7 +181,7 @@ class PeriodicDampingLaw final : public JointForceEffect {
     const double share = r.Uniform(0.3, 0.7);
     const double first = k.stroke * r.Log(0.1, 0.4);
     const double second = first * r.Uniform(0.2, 0.7);
-    return [=, coefficient = k.SmallForce() / k.speed](double s) {
+    return [=, coefficient = k.FrictionForce() / k.speed](double s) {
       return ValuesOf({s * coefficient, share, first, second});
     };
   }

@@ -37,7 +37,7 @@ class DeadZoneLaw final : public Effect {
     return std::make_unique<Deaf>(actuator, values[0]);
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.SmallForce());
+    return Proportional(k.FrictionForce());
   }
 };
 
@@ -64,7 +64,7 @@ class SpeedSofteningLaw final : public JointForceEffect {
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double velocity = k.speed * r.Uniform(0.1, 0.5);
-    return [=, stiffness = k.SmallForce() / k.stroke](double s) {
+    return [=, stiffness = k.FrictionForce() / k.stroke](double s) {
       return ValuesOf({s * stiffness, velocity});
     };
   }
@@ -112,7 +112,7 @@ class GyroscopicCouplingLaw final : public Effect {
     return map.Joints(joints);
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    return Proportional(r.Sign() * k.SmallForce() / (k.stroke * k.speed));
+    return Proportional(r.Sign() * k.FrictionForce() / (k.stroke * k.speed));
   }
 };
 

@@ -64,6 +64,7 @@ class MjcfEditor {
         after_(after) {}
 
   void WriteAttributes() {
+    EditOption();
     for (int joint = 0; joint < before_.njnt; ++joint) EditJoint(joint);
     for (int body = 1; body < before_.nbody; ++body) EditMass(body);
     for (int actuator = 0; actuator < before_.nu; ++actuator) EditActuator(actuator);
@@ -87,6 +88,7 @@ class MjcfEditor {
       xml_.SetAttribute(element, name, value);
   }
 
+  void EditOption();
   void EditJoint(int joint);
   void EditMass(int body);
   void EditActuator(int actuator);
@@ -127,6 +129,25 @@ std::string MjcfEditor::CompilerOption(std::string_view option) const {
     if (const std::string* given = element.Find(option)) value = *given;
   }
   return value;
+}
+
+/// The last <option> that gives it is the one that counts.
+void MjcfEditor::EditOption() {
+  Attributes changed;
+  AddIfChanged(changed, "timestep", {&before_.opt.timestep, 1},
+               {&after_.opt.timestep, 1});
+  if (changed.empty()) return;
+  int last = -1;
+  for (std::size_t i = 0; i < xml_.elements().size(); ++i) {
+    const XmlElement& element = xml_.elements()[i];
+    if (element.tag != "option" || element.parent != 0) continue;
+    if (last < 0 || element.Find("timestep") != nullptr) last = static_cast<int>(i);
+  }
+  if (last >= 0) {
+    Set(last, changed);
+  } else {
+    xml_.InsertFirst(0, "<option timestep=\"" + changed.front().second + "\"/>");
+  }
 }
 
 void MjcfEditor::EditJoint(int joint) {

@@ -24,6 +24,17 @@ void WriteNoise(SetupText& text, const Setup& setup, const SensorSetup& sensor,
   }
 }
 
+void WriteSubsteps(SetupText& text, int substeps) {
+  const auto given = text.At("rates.substeps");
+  if ((given ? given.value_or(1) : 1) == substeps) return;
+  if (given) {
+    text.Replace(*given.node(), std::to_string(substeps));
+  } else if (const auto control = text.At("rates.control")) {
+    text.AddBeside(*text.At("rates").as_table(), *control.node(), "control", "substeps",
+                   std::to_string(substeps));
+  }
+}
+
 /// Puts `suffix` in front of the closing quotation marks of a TOML string.
 std::string WithSuffix(std::string quoted, const std::string& suffix) {
   const bool multiline = quoted.starts_with(R"(""")") || quoted.starts_with("'''");
@@ -54,6 +65,7 @@ std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
   if (const auto friction = text.At("physics.static_friction")) {
     text.Replace(*friction.node(), "true");
   }
+  WriteSubsteps(text, setup.rates.substeps);
   for (const SensorSetup& sensor : setup.channels.sensors) {
     double sd = sensor.noise_sd;
     for (const PlacedEffect& placed : effects) {

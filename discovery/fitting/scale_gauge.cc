@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -91,18 +92,20 @@ class JoinedParts {
   std::vector<Index> root_;
 };
 
-/// Of a number of a joint as the plant has it; none of others.
+/// Of a number of a joint or a body as the plant has it; none of others.
 std::optional<double> ValueOf(const mjModel& plant, const PlantNumber& number) {
-  const int dof = plant.jnt_dofadr[number.element];
+  const auto dof = [&] { return plant.jnt_dofadr[number.element]; };
   switch (number.kind) {
+    case PlantNumberKind::kMass:
+      return plant.body_mass[number.element];
     case PlantNumberKind::kStiffness:
       return plant.jnt_stiffness[number.element];
     case PlantNumberKind::kDamping:
-      return plant.dof_damping[dof];
+      return plant.dof_damping[dof()];
     case PlantNumberKind::kFriction:
-      return plant.dof_frictionloss[dof];
+      return plant.dof_frictionloss[dof()];
     case PlantNumberKind::kArmature:
-      return plant.dof_armature[dof];
+      return plant.dof_armature[dof()];
     default:
       return std::nullopt;
   }
@@ -120,9 +123,6 @@ std::optional<std::pair<double, double>> LawOf(const mjModel& plant,
   if (!number) return std::pair(static_cast<double>(exponent), 0.0);
   if (parameter.role == Role::kFactor) return std::pair(1.0, 0.0);
   if (exponent == 0) return std::pair(0.0, 0.0);
-  if (number->kind == PlantNumberKind::kMass) {
-    return std::pair(1.0, plant.body_mass[number->element]);
-  }
   const auto value = ValueOf(plant, *number);
   if (!value) return std::nullopt;
   return std::pair(1.0, *value);
@@ -194,6 +194,54 @@ VectorXd ScaleGauge::Along(const VectorXd& theta) const {
 VectorXd ScaleGauge::Moved(const VectorXd& theta, double t) const {
   const VectorXd grown = (t * exponent).array().exp().matrix();
   return t * shift + grown.cwiseProduct(theta + offset) - offset;
+}
+
+FittedModel HandedOver(const DiscoveryProblem& problem,
+                       const std::vector<Candidate>& candidates,
+                       const FittedModel& model, std::size_t cause) {
+  FittedModel without{Without(model.causes, {cause}), model.numbers,
+                      model.prior_weight};
+  const FittedCause& fitted = model.causes[cause];
+  const Candidate& candidate = candidates[fitted.candidate];
+  const std::vector<DoubtedNumber>& numbers = problem.numbers();
+  if (fitted.value.size() != 1 || without.numbers.size() != std::ssize(numbers)) {
+    return without;
+  }
+  const auto take = [&](std::size_t i, double from, double factor) {
+    if (!(factor > 0.0)) return;
+    without.numbers[static_cast<Index>(i)] =
+        std::clamp(from + std::log(factor) / numbers[i].spread, numbers[i].Least(),
+                   numbers[i].Most());
+  };
+  if (candidate.effect->IsFault()) {
+    const auto gauges = FaultGauges(problem, candidates, {fitted},
+                                    std::ssize(numbers) + fitted.value.size());
+    if (gauges.empty()) return without;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto place = static_cast<Index>(i);
+      if (gauges.front().shift[place] == 0.0) continue;
+      take(i, without.numbers[place], fitted.value[0]);
+    }
+    return without;
+  }
+  const mjModel& plant = problem.machine().plant();
+  const int element =
+      mj_name2id(&plant, candidate.effect->element(), candidate.site.c_str());
+  const auto number =
+      element < 0 ? std::nullopt : candidate.effect->Number(plant, element);
+  if (!number) return without;
+  const EffectParameter& parameter = candidate.effect->parameters().front();
+  const auto own = ValueOf(plant, *number);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i].is_lateness || numbers[i].number != *number) continue;
+    // Beside the cause the number was as the plant says.
+    if (parameter.role == Role::kFactor) {
+      take(i, 0.0, fitted.value[0]);
+    } else if (own && *own > 0.0) {
+      take(i, 0.0, 1.0 + fitted.value[0] / *own);
+    }
+  }
+  return without;
 }
 
 std::vector<ScaleGauge> ScaleGauges(const DiscoveryProblem& problem,

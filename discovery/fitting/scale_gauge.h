@@ -40,6 +40,12 @@ std::vector<ScaleGauge> ScaleGauges(const DiscoveryProblem& problem,
                                     const std::vector<Candidate>& candidates,
                                     const std::vector<FittedCause>& causes);
 
+/// The model without a cause, with what it did in the numbers in doubt that it scales or adds
+/// to: the same machine, if that is all that it does.
+FittedModel HandedOver(const DiscoveryProblem& problem,
+                       const std::vector<Candidate>& candidates,
+                       const FittedModel& model, std::size_t cause);
+
 /// Those along which J says no more than first orders are off by.
 std::vector<ScaleGauge> Untold(std::vector<ScaleGauge> gauges,
                                const Eigen::VectorXd& theta,

@@ -49,6 +49,19 @@ ObserverLadder::ObserverLadder(const DiscoveryProblem& problem) {
   noise_ = ticks * (logarithms_.back().sum() + static_cast<double>(r.size()));
 }
 
+ObserverLadder ObserverLadder::WithSubsteps(int substeps) const {
+  const DiscoveryProblem& slowest = problems_.back();
+  const Machine machine = slowest.machine().WithSubsteps(substeps);
+  std::vector<DoubtedNumber> numbers = slowest.numbers();
+  for (DoubtedNumber& number : numbers) {
+    if (number.is_lateness) number = LatenessOf(machine);
+  }
+  return ObserverLadder(DiscoveryProblem(machine, slowest.observer(), slowest.run(),
+                                         slowest.skip(), slowest.train())
+                            .Charging(slowest.work())
+                            .Doubting(std::move(numbers)));
+}
+
 double ObserverLadder::Deviance(std::size_t rung, const VectorXd& residual, Index first,
                                 Index last) const {
   const DiscoveryProblem& problem = problems_[rung];

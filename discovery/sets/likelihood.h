@@ -29,6 +29,9 @@ class ObserverLadder {
   /// The numbers of the problem are in doubt behind all of them.
   explicit ObserverLadder(const DiscoveryProblem& problem);
 
+  /// Of the same machine in that many physics steps a tick, which are late by less.
+  ObserverLadder WithSubsteps(int substeps) const;
+
   std::size_t size() const { return problems_.size(); }
   const DiscoveryProblem& operator[](std::size_t rung) const { return problems_[rung]; }
   double bandwidth(std::size_t rung) const { return bandwidths_[rung]; }

@@ -11,6 +11,11 @@
 //   away a share of what the model lacked that is worth a name; and leaves out causes that
 //   it does as well without, or puts a simpler law in the place of one at its end.
 //
+// Where the inputs of the machine seem to act later than in the simulation, by about what
+// its physics steps are off by, the model is tried in twice as many steps; where the record
+// is likelier with these, the search goes on in them. What is of second order in the steps
+// no lateness makes good, and laws that are not there do.
+//
 // It ends where no set is worth it. As the model becomes right the observer becomes slow and
 // sees what is small: sets of large effects come first, small ones in later rounds.
 
@@ -43,6 +48,8 @@ struct SetSearchResult {
   /// The other models that were fitted in the last round that added causes.
   std::vector<WeighedModel> others;
   bool ended = false;  ///< no set was worth it; else there was no work left
+  /// That `best` stands behind, in the physics steps that the record asks for.
+  ObserverLadder ladder;
 };
 
 /// What a round takes at least [s of work].

@@ -1,7 +1,7 @@
 #pragma once
 // How a benchmark draws effects to hide: shapes at random, sizes in proportion to what
-// the machine has. Ranges are those of machines: dry friction of a few per cent of the
-// motor's force, and so on.
+// the machine has. Ranges are those of machines: dry friction of up to 30 % of the motor's
+// force, gains that are off by as much, and so on.
 
 #include <Eigen/Core>
 #include <cmath>

@@ -19,8 +19,8 @@ struct Scales {
   double duration = 0.0;
   double noise = 0.0;  ///< standard deviation, of a sensor
 
-  /// A twentieth of what the motor does: what friction takes of it.
-  double SmallForce() const { return 0.05 * force; }
+  /// What friction takes of what the motor does, where there is much of it.
+  double FrictionForce() const { return 0.3 * force; }
 };
 
 /// Along an observed motion. The force is that of the motors on the joint; of a joint

@@ -27,7 +27,7 @@ class ForceOffsetEffect final : public JointForceEffect {
     return {LinearTrial(Eigen::VectorXd::Ones(at.motion.samples()), at.JointEntry())};
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    return Proportional(r.Sign() * 0.3 * k.SmallForce());
+    return Proportional(r.Sign() * 0.3 * k.FrictionForce());
   }
 };
 

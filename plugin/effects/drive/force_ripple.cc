@@ -40,7 +40,7 @@ class ForceRippleEffect final : public JointForceEffect {
   Sized Draw(const Scales& k, Random& r) const override {
     const double period = k.stroke * r.Log(0.05, 1.0);
     const double phase = r.Uniform(-std::numbers::pi, std::numbers::pi);
-    const double amplitude = 0.3 * k.SmallForce();
+    const double amplitude = 0.3 * k.FrictionForce();
     return [=](double s) { return ValuesOf({s * amplitude, period, phase}); };
   }
 };

@@ -32,7 +32,7 @@ class MotorConstantEffect final : public Effect {
   }
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.3}); }
   Sized Draw(const Scales&, Random& r) const override {
-    return AroundOne(r.Sign() * 0.1);
+    return AroundOne(r.Sign() * 0.3);
   }
 };
 

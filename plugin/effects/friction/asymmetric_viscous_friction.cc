@@ -53,7 +53,7 @@ class AsymmetricViscousFrictionEffect final : public JointDampingEffect {
     return PlantNumber{PlantNumberKind::kDamping, joint};
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    const double up = r.Uniform(0.2, 1.0) * k.SmallForce() / k.speed;
+    const double up = r.Uniform(0.2, 1.0) * k.FrictionForce() / k.speed;
     const double down = up * r.Uniform(1.5, 4.0);
     return [=](double s) { return ValuesOf({s * up, s * down}); };
   }

@@ -136,7 +136,7 @@ class BoucWenEffect final : public Effect {
   Sized Draw(const Scales& k, Random& r) const override {
     const double length = k.stroke * r.Log(0.01, 0.1);
     const double share = r.Uniform(0.5, 1.0);
-    return [=, stiffness = k.SmallForce() / length](double s) {
+    return [=, stiffness = k.FrictionForce() / length](double s) {
       return ValuesOf({s * stiffness, share / length, (1.0 - share) / length, 1.0});
     };
   }

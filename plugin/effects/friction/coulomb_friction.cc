@@ -31,7 +31,7 @@ class CoulombFrictionEffect final : public Effect {
     return -values[0] * Sign(v);
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.SmallForce());
+    return Proportional(k.FrictionForce());
   }
 };
 

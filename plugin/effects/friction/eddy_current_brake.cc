@@ -46,7 +46,7 @@ class EddyCurrentBrakeEffect final : public JointForceEffect {
   // At its largest it takes half of coefficient velocity.
   Sized Draw(const Scales& k, Random& r) const override {
     const double velocity = k.speed * r.Log(0.1, 0.5);
-    return [=, most = 2.0 * k.SmallForce() / velocity](double s) {
+    return [=, most = 2.0 * k.FrictionForce() / velocity](double s) {
       return ValuesOf({s * most, velocity});
     };
   }

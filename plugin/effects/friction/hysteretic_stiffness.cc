@@ -83,7 +83,7 @@ class HystereticStiffnessEffect final : public Effect {
   Sized Draw(const Scales& k, Random& r) const override {
     const double length = k.stroke * r.Log(0.02, 0.3);
     const double loss = r.Uniform(0.3, 2.0);
-    const double stiffness = 0.3 * k.SmallForce() / k.stroke;
+    const double stiffness = 0.3 * k.FrictionForce() / k.stroke;
     return [=](double s) { return ValuesOf({s * stiffness, loss, length}); };
   }
 };

@@ -135,7 +135,7 @@ class LugreFrictionEffect final : public Effect {
   // The bristles are as long as presliding of guides, and damped to a tenth of what they
   // are critically with the mass.
   Sized Draw(const Scales& k, Random& r) const override {
-    const double force = k.SmallForce();
+    const double force = k.FrictionForce();
     const double length = k.stroke * r.Log(3e-3, 0.05);
     const double velocity = k.speed * r.Log(0.05, 0.3);
     const double share = r.Uniform(0.3, 0.7);

@@ -32,7 +32,7 @@ class PositionDependentDampingEffect final : public JointDampingEffect {
     return {LinearTrial(parts, at.JointEntry(2))};
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    const double damping = k.SmallForce() / k.speed;
+    const double damping = k.FrictionForce() / k.speed;
     const double slope = r.Sign() * damping / k.stroke;
     const double curvature = r.Uniform(0.2, 1.0) * damping / (k.stroke * k.stroke);
     return [=](double s) { return ValuesOf({s * slope, s * curvature}); };

@@ -55,9 +55,9 @@ class PositionDependentFrictionEffect final
   // A machine rubs by a few per cent of what its motor does, here or there; by itself the
   // law has to be positive at one end of the stroke at least.
   Sized Draw(const Scales& k, Random& r) const override {
-    const double slope = r.Sign() * 0.5 * k.SmallForce() / k.stroke;
+    const double slope = r.Sign() * 0.5 * k.FrictionForce() / k.stroke;
     const double curvature =
-        r.Uniform(1.0, 2.0) * k.SmallForce() / (k.stroke * k.stroke);
+        r.Uniform(1.0, 2.0) * k.FrictionForce() / (k.stroke * k.stroke);
     return [=](double s) { return ValuesOf({s * slope, s * curvature}); };
   }
 };

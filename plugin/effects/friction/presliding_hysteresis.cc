@@ -64,7 +64,7 @@ class PreslidingHysteresisEffect final : public Effect {
     return PlacedEffect{Lasting(CoulombFriction()), self.site, self.values.head(1)};
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    const double force = k.SmallForce();
+    const double force = k.FrictionForce();
     const double length = k.stroke * r.Log(1e-3, 0.1);
     return [=](double s) { return ValuesOf({s * force, s * force / length}); };
   }

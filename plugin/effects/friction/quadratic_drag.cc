@@ -31,7 +31,7 @@ class QuadraticDragEffect final : public JointForceEffect {
                         true)};
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.SmallForce() / (k.speed * k.speed));
+    return Proportional(k.FrictionForce() / (k.speed * k.speed));
   }
 };
 

@@ -52,7 +52,7 @@ class StribeckFrictionEffect final : public VaryingFrictionEffect<FallingBound> 
     return -Sign(v) * (values[0] + values[1] * StribeckShare(v, values[2]));
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    const double force = k.SmallForce();
+    const double force = k.FrictionForce();
     const double share = r.Uniform(0.2, 1.0);
     const double velocity = k.speed * r.Log(0.01, 0.2);
     return [=](double s) { return ValuesOf({s * share * force, s * force, velocity}); };

@@ -34,7 +34,7 @@ class ViscousFrictionEffect final : public Effect {
     return -values[0] * v;
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.SmallForce() / k.speed);
+    return Proportional(k.FrictionForce() / k.speed);
   }
 };
 

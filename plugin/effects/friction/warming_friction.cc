@@ -59,7 +59,7 @@ class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
   // Within the run, or nobody could see it.
   Sized Draw(const Scales& k, Random& r) const override {
     const double constant = k.duration * r.Log(0.1, 0.5);
-    return [=, force = k.SmallForce()](double s) {
+    return [=, force = k.FrictionForce()](double s) {
       return ValuesOf({s * force, constant});
     };
   }

@@ -55,7 +55,7 @@ class AddedMassEffect final : public Effect {
     return ValuesOf({0.5 * k.mass});
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(0.1 * k.mass);
+    return Proportional(0.3 * k.mass);
   }
 };
 

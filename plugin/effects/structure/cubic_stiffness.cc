@@ -32,7 +32,7 @@ class CubicStiffnessEffect final : public JointForceEffect {
     return {LinearTrial(-at.q().array().cube().matrix(), at.JointEntry())};
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.SmallForce() / std::pow(k.stroke, 3));
+    return Proportional(k.FrictionForce() / std::pow(k.stroke, 3));
   }
 };
 

@@ -56,7 +56,7 @@ class EndStopEffect final : public JointForceEffect {
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double position = r.Uniform(0.5, 0.95) * k.stroke;
-    return [=, force = k.SmallForce(), stroke = k.stroke](double s) {
+    return [=, force = k.FrictionForce(), stroke = k.stroke](double s) {
       return ValuesOf({position, s * force / (0.1 * stroke)});
     };
   }

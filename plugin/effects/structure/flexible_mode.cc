@@ -109,7 +109,7 @@ class FlexibleModeEffect final : public Effect {
     const double frequency = r.Log(40.0, 400.0);
     const double ratio = r.Uniform(0.01, 0.1);
     return [=, mass = k.mass](double s) {
-      return ValuesOf({s * 0.05 * mass, frequency, ratio});
+      return ValuesOf({s * 0.3 * mass, frequency, ratio});
     };
   }
 };

@@ -161,7 +161,7 @@ class ForceCurveEffect final : public Effect {
     values[kWidth] = 2.0 * k.speed;
     values[kKnots] = kFewestKnots + 1;
     for (int i = 0; i <= kFewestKnots; ++i) {
-      values[kFirst + i] = r.Uniform(-1.0, 1.0) * k.SmallForce();
+      values[kFirst + i] = r.Uniform(-1.0, 1.0) * k.FrictionForce();
     }
     return [values](double s) {
       EffectValues sized = values;

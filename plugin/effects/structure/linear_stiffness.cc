@@ -42,7 +42,7 @@ class LinearStiffnessEffect final : public Effect {
     return -values[0] * q;
   }
   Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.SmallForce() / k.stroke);
+    return Proportional(k.FrictionForce() / k.stroke);
   }
 };
 

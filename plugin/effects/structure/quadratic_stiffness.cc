@@ -28,7 +28,7 @@ class QuadraticStiffnessEffect final : public JointForceEffect {
     return {LinearTrial(-at.q().array().square().matrix(), at.JointEntry())};
   }
   Sized Draw(const Scales& k, Random& r) const override {
-    return Proportional(r.Sign() * k.SmallForce() / (k.stroke * k.stroke));
+    return Proportional(r.Sign() * k.FrictionForce() / (k.stroke * k.stroke));
   }
 };
 

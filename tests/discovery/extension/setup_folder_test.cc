@@ -28,6 +28,16 @@ TEST(SetupFolder, OfAnExtendedPlantIsThatMachine) {
   EXPECT_EQ(read.linear().D, coil.With(changes).linear().D);
 }
 
+TEST(SetupFolder, OfAPlantInFinerStepsHasThese) {
+  const test::TemporaryFolder folder;
+  const Machine coil(ReadSetup(kCoil));
+  const Machine finer = coil.WithSubsteps(2 * coil.rates().substeps);
+  WriteExtendedSetup(folder.path() / "extended", kCoil, finer, {});
+  const Machine read(ReadSetup(folder.path() / "extended"));
+  EXPECT_EQ(read.rates().substeps, finer.rates().substeps);
+  EXPECT_EQ(read.plant().opt.timestep, finer.plant().opt.timestep);
+}
+
 TEST(SetupFolder, OfACalibratedMachineIsASetupOfItsOwn) {
   const test::TemporaryFolder folder;
   const Machine coil(ReadSetup(kCoil));

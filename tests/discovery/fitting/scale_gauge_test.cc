@@ -67,6 +67,31 @@ TEST(ScaleGauges, AreWhatNoRunTells) {
   EXPECT_LT((residual(larger) - before).norm(), 1e-3 * before.norm());
 }
 
+// What a fault parameter or a mass of its own says is said as well by the number in doubt.
+TEST(HandedOver, LeavesTheMachineAsItWas) {
+  const Doubted doubted;
+  const auto numbers = static_cast<Index>(doubted.problem.numbers().size());
+  const auto residual = [&](const FittedModel& model) {
+    return doubted.problem.Residual(
+        ChangesOf(doubted.problem, doubted.candidates, model));
+  };
+  const std::vector<std::pair<std::string, double>> causes{
+      {"eta", 0.9}, {"zeta", 1.2}, {"added_mass@load", 5.0}};
+  for (const auto& [name, value] : causes) {
+    FittedModel model{doubted.friction, VectorXd::Constant(numbers, 0.1)};
+    model.numbers[numbers - 1] = 0.0;  // how late inputs are
+    model.causes.push_back(
+        {test::Place(doubted.candidates, name), VectorXd::Constant(1, value)});
+    const VectorXd before = residual(model);
+    const FittedModel without =
+        HandedOver(doubted.problem, doubted.candidates, model, 1);
+    EXPECT_EQ(without.causes.size(), 1u);
+    const FittedModel dropped{doubted.friction, model.numbers};
+    EXPECT_GT((residual(dropped) - before).norm(), 1.0) << name;
+    EXPECT_LT((residual(without) - before).norm(), 1e-3) << name;
+  }
+}
+
 TEST(ScaleGauges, AreNoneOfAKnownMass) {
   const Doubted doubted;
   std::vector<DoubtedNumber> numbers = doubted.problem.numbers();

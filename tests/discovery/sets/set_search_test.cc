@@ -78,6 +78,28 @@ TEST_F(SetSearch, ProposesTheLargestCauseWithNearlyItsValue) {
   EXPECT_GT(right->gain, 1000.0);
 }
 
+// The sway of the stage on its springs is off by the second order of the steps, which no
+// lateness of its motor makes good.
+TEST_F(SetSearch, GoesOnInTheStepsThatTheRecordAsksFor) {
+  EXPECT_EQ(SearchSets(ladder_, candidates_, Nothing(), {})
+                .ladder[0]
+                .machine()
+                .rates()
+                .substeps,
+            stage_.machine.rates().substeps);
+  const int substeps = 2 * stage_.machine.rates().substeps;
+  const Machine finer = stage_.machine.WithSubsteps(substeps).With(
+      test::With({"coulomb_friction@load:force=18",
+                  "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"}));
+  const DiscoveryProblem problem = stage_.Pose(Simulate(finer, stage_.Motion(), {}))
+                                       .Doubting({LatenessOf(stage_.machine)});
+  const SetSearchResult found =
+      SearchSets(ObserverLadder(problem), candidates_, Nothing(), {});
+  EXPECT_EQ(found.ladder[0].machine().rates().substeps, substeps);
+  EXPECT_EQ(NamesIn(found.best.fit), both_);
+  EXPECT_LT(found.best.fit.numbers[0], 0.1);
+}
+
 class SetSearchOfNothing : public SetSearch {
  protected:
   SetSearchOfNothing() : SetSearch({}) {}
