@@ -54,7 +54,7 @@ class Discoverer {
   void SearchBeginning(SearchOptions options);
   void SearchBehindObservers(SearchOptions options);
   /// True if sets of causes were found that nothing has to be added to; search_ goes on
-  /// from them.
+  /// from them, or from those that explain the larger part.
   bool TakeSets(const SearchOptions& search);
   /// Goes on in that many physics steps a tick.
   void TakeSubsteps(int substeps);
