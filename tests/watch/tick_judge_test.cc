@@ -1,0 +1,150 @@
+#include "mjdiag/watch/judge/tick_judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "mjdiag/plugin/runtime/running_machine.h"
+#include "support/stage.h"
+
+namespace mjdiag {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// The linear stage at work, watched.
+class TickJudgeTest : public testing::Test, public TickObserver {
+ protected:
+  void SetUp() override {
+    RunOptions run;
+    run.repeat = true;
+    run.observer = this;
+    run.linear_part = true;
+    running_ = StartLinear(stage_.machine, stage_.Motion(), run);
+    judge_.OnNewRun();
+  }
+
+  void OnTick(std::span<const double> outputs,
+              std::span<const double> inputs) noexcept override {
+    values_.assign(outputs.begin(), outputs.end());
+    values_.insert(values_.end(), inputs.begin(), inputs.end());
+  }
+
+  /// That many seconds of the machine.
+  void Watch(double seconds) {
+    for (double end = time_ + seconds; time_ < end; time_ += kTick) {
+      running_->Tick();
+      judge_.OnTick({1, number_++, kMissing, 1000.0 + time_}, values_);
+    }
+  }
+  /// Ticks that never come.
+  void Lose(int ticks) {
+    for (int k = 0; k < ticks; ++k, time_ += kTick) running_->Tick();
+    number_ += ticks;
+    judge_.OnMissing(ticks);
+  }
+  const Look& last() const { return looks_.back(); }
+  const FaultVerdict& Fault(const std::string& name) const {
+    for (const FaultVerdict& fault : last().result.faults) {
+      if (fault.name == name) return fault;
+    }
+    throw std::runtime_error("no fault " + name);
+  }
+
+  static constexpr double kTick = 5e-4;
+
+  static PreparedDiagnosis Prepare(const Machine& machine) {
+    DiagnosisSource source;
+    source.nominal.linear = true;
+    source.nominal.runs = 8;
+    return PrepareDiagnosis(machine, source);
+  }
+
+  test::Stage stage_;
+  PreparedDiagnosis prepared_ = Prepare(stage_.machine);
+  std::vector<Look> looks_;
+  TickJudge judge_{stage_.machine, prepared_, JudgeOptions{},
+                   [this](const Look& look) { looks_.push_back(look); }};
+  std::unique_ptr<RunningMachine> running_;
+  std::vector<double> values_;
+  double time_ = 0.0;
+  std::int64_t number_ = 0;
+};
+
+TEST_F(TickJudgeTest, LooksTenTimesASecondAndFindsNothingOnAHealthyMachine) {
+  Watch(20.0);
+  EXPECT_EQ(looks_.size(), 200U);
+  for (const Look& look : looks_) {
+    const bool early = look.run_time < 2.0 - kTick;
+    EXPECT_EQ(look.kind, early ? VerdictKind::kSettling : VerdictKind::kHealthy)
+        << look.run_time << " s: " << look.words;
+  }
+}
+
+TEST_F(TickJudgeTest, NamesAFaultThatAppears) {
+  Watch(10.0);
+  running_->Become(stage_.machine.With({{{"zeta", 1.3}}, {}}));
+  Watch(20.0);
+  EXPECT_EQ(last().kind, VerdictKind::kFault) << last().words;
+  EXPECT_TRUE(Fault("zeta").detected);
+  EXPECT_NEAR(Fault("zeta").value, 1.3, 5.0 * Fault("zeta").sd);
+  EXPECT_FALSE(Fault("eta").detected);
+}
+
+TEST_F(TickJudgeTest, BridgesAFewTicksAndGoesOn) {
+  for (int k = 0; k < 10; ++k) {
+    Watch(2.0);
+    Lose(1);
+  }
+  Watch(2.0);
+  EXPECT_EQ(judge_.runs(), 1);
+  EXPECT_EQ(judge_.bridged(), 10);
+  EXPECT_EQ(last().kind, VerdictKind::kHealthy) << last().words;
+  for (const Look& look : looks_) EXPECT_NE(look.kind, VerdictKind::kFault);
+}
+
+TEST_F(TickJudgeTest, BeginsAnewBehindAGapAndSaysNothingWrong) {
+  Watch(5.0);
+  Lose(777);
+  Watch(10.0);
+  EXPECT_EQ(judge_.runs(), 2);
+  for (const Look& look : looks_) {
+    EXPECT_TRUE(look.kind == VerdictKind::kHealthy ||
+                look.kind == VerdictKind::kSettling)
+        << look.time << ": " << look.words;
+  }
+}
+
+TEST_F(TickJudgeTest, FindsAFaultInARunThatBeginsInMotion) {
+  running_->Become(stage_.machine.With({{{"zeta", 1.3}}, {}}));
+  for (int k = 0; k < 1234; ++k) running_->Tick();
+  Watch(20.0);
+  EXPECT_EQ(last().kind, VerdictKind::kFault) << last().words;
+  EXPECT_NEAR(Fault("zeta").value, 1.3, 5.0 * Fault("zeta").sd);
+}
+
+TEST_F(TickJudgeTest, DoesWithoutReadingsThatAreMissing) {
+  Watch(5.0);
+  for (int k = 0; k < 10; ++k) {
+    Watch(1.0);
+    running_->Tick();
+    time_ += kTick;
+    judge_.OnTick({1, number_++, kMissing, 1000.0 + time_},
+                  std::vector<double>{kMissing, values_[1]});
+  }
+  EXPECT_EQ(judge_.runs(), 1);
+  EXPECT_EQ(last().kind, VerdictKind::kHealthy) << last().words;
+}
+
+TEST_F(TickJudgeTest, ACommandThatIsMissingIsATickThatIs) {
+  Watch(5.0);
+  const double reading = values_[0];
+  judge_.OnTick({1, number_++, kMissing, 1000.0 + time_},
+                std::vector<double>{reading, kMissing});
+  Watch(1.0);
+  EXPECT_EQ(judge_.bridged(), 1);
+}
+
+}  // namespace
+}  // namespace mjdiag

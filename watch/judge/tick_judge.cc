@@ -1,0 +1,211 @@
+#include "mjdiag/watch/judge/tick_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/diagnosis/diagnosis_verdict.h"
+#include "mjdiag/diagnosis/twin/twin_estimator.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+
+/// Of the filters of a stretch, and of a high-pass of 100 Hz ten times over [s].
+constexpr double kFiltersSettle = 0.1;
+/// An alarm of the residual counts for so long [s].
+constexpr double kAlarmLasts = 1.0;
+/// Unmeasured readings in a row from which on nothing is judged by what bridges them.
+constexpr int kGapTicks = 2;
+constexpr Index kSegments = 4;
+/// Bins of a spectrum within which two tones are one.
+constexpr double kSameTone = 2.0;
+
+/// What both stretches show.
+DisturbanceReport Confirmed(const DisturbanceReport& before, DisturbanceReport now) {
+  const double near = kSameTone * now.spectrum.resolution();
+  std::erase_if(now.tones, [&](const DisturbanceTone& tone) {
+    return std::ranges::none_of(before.tones, [&](const DisturbanceTone& other) {
+      return std::abs(other.frequency - tone.frequency) <= near;
+    });
+  });
+  const auto too_much = [](const DisturbanceReport& report) {
+    return report.total > report.total_threshold;
+  };
+  now.noise_raised = now.noise_raised && before.noise_raised;
+  now.disturbed =
+      !now.tones.empty() || now.noise_raised || (too_much(now) && too_much(before));
+  return now;
+}
+
+}  // namespace
+
+TickJudge::TickJudge(const Machine& machine, const PreparedDiagnosis& prepared,
+                     const JudgeOptions& options,
+                     std::function<void(const Look&)> on_look)
+    : machine_(machine),
+      prepared_(prepared),
+      options_(options),
+      on_look_(std::move(on_look)) {
+  const auto ticks = [&](double time) {
+    return std::max<Index>(1, std::llround(time / design().sample_time()));
+  };
+  look_ticks_ = ticks(options.look);
+  skipped_ticks_ = ticks(kFiltersSettle);
+  stretch_ticks_ = skipped_ticks_ +
+                   std::max(ticks(options.stretch),
+                            kSegments * design().limits.disturbance.segment);
+  const std::size_t outputs = design().outputs.size();
+  measured_ = std::make_unique<bool[]>(outputs);
+  unmeasured_.assign(outputs, 0);
+  last_.resize(outputs + design().inputs.size());
+  bridge_ = last_;
+}
+
+void TickJudge::OnNewRun() {
+  recording_.reset();
+  missing_ = 0;
+}
+
+void TickJudge::OnMissing(std::int64_t ticks) {
+  missing_ += ticks;
+  missing_since_look_ += ticks;
+}
+
+void TickJudge::Begin() {
+  recording_ = std::make_unique<DiagnosisRecording>(
+      BeginDiagnosis(machine_, prepared_, stretch_ticks_));
+  ++runs_;
+  missing_ = 0;
+  since_look_ = 0;
+  residual_ = {};
+  alarm_ = any_alarm_ = false;
+  stretch_before_.reset();
+  disturbance_ = {};
+  analysed_ = false;
+  std::ranges::fill(unmeasured_, 0);
+}
+
+void TickJudge::OnTick(const TickHead& head, std::span<const double> values) {
+  const std::size_t outputs = design().outputs.size();
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  const bool begun = HasBegun();
+  if (!std::ranges::all_of(values.subspan(outputs), is_finite) ||
+      (!begun && !std::ranges::all_of(values, is_finite))) {
+    // Without its command it is as good as not there.
+    if (begun) OnMissing(1);
+    return;
+  }
+  if (!begun || missing_ > options_.bridged) {
+    Begin();
+    std::ranges::copy(values, last_.begin());
+    if (!std::ranges::all_of(values, is_finite)) return recording_.reset();
+  }
+  if (missing_ > 0) Bridge(values);
+  Feed(values);
+  AfterTick(head.arrived);
+}
+
+void TickJudge::Bridge(std::span<const double> next) {
+  const std::size_t outputs = design().outputs.size();
+  const std::vector<double> from = last_;
+  const auto steps = static_cast<double>(missing_ + 1);
+  for (std::int64_t k = 1; k <= missing_; ++k) {
+    const double part = static_cast<double>(k) / steps;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      bridge_[i] = std::isfinite(next[i]) ? from[i] + part * (next[i] - from[i]) : from[i];
+    }
+    std::fill_n(measured_.get(), outputs, false);
+    recording_->Add(std::span(bridge_).first(outputs),
+                    std::span(bridge_).subspan(outputs),
+                    std::span<const bool>(measured_.get(), outputs),
+                    missing_ > kGapTicks - 1);
+    ++bridged_;
+  }
+  missing_ = 0;
+}
+
+void TickJudge::Feed(std::span<const double> values) {
+  const std::size_t outputs = design().outputs.size();
+  bool all = true;
+  bool gap = false;
+  for (std::size_t i = 0; i < outputs; ++i) {
+    measured_[i] = std::isfinite(values[i]);
+    all = all && measured_[i];
+    unmeasured_[i] = measured_[i] ? 0 : unmeasured_[i] + 1;
+    gap = gap || unmeasured_[i] >= kGapTicks;
+    if (measured_[i]) last_[i] = values[i];
+  }
+  std::ranges::copy(values.subspan(outputs), last_.begin() + outputs);
+  const std::span<const double> readings = std::span(last_).first(outputs);
+  const std::span<const double> commands = std::span(last_).subspan(outputs);
+  if (all) {
+    recording_->Add(readings, commands);
+  } else {
+    recording_->Add(readings, commands, std::span<const bool>(measured_.get(), outputs),
+                    gap);
+  }
+}
+
+void TickJudge::AfterTick(double arrived) {
+  const DiagnosisMonitor& monitor = recording_->monitor;
+  residual_.Add(monitor.residuals()[0]);
+  alarm_ = alarm_ || monitor.residual_alarm();
+  if (++since_look_ >= look_ticks_) LookAt(arrived);
+  if (recording_->recorder.samples() >= stretch_ticks_) AnalyseStretchOfRun();
+}
+
+void TickJudge::AnalyseStretchOfRun() {
+  const MonitorLog log = recording_->recorder.Log();
+  recording_->recorder = MonitorRecorder(design(), stretch_ticks_);
+  DisturbanceReport report =
+      AnalyseStretch(design(), log, JudgeFaults(recording_->monitor), skipped_ticks_);
+  if (stretch_before_) {
+    disturbance_ = Confirmed(*stretch_before_, report);
+    analysed_ = true;
+  }
+  stretch_before_ = std::move(report);
+}
+
+void TickJudge::LookAt(double time) {
+  const DiagnosisMonitor& monitor = recording_->monitor;
+  Look look;
+  look.time = time;
+  look.run_time =
+      static_cast<double>(monitor.samples()) * monitor.design().sample_time();
+  look.missing = std::exchange(missing_since_look_, 0);
+  look.residual = std::exchange(residual_, {});
+  look.integral = monitor.integral();
+  look.residual_alarm = std::exchange(alarm_, false);
+  look.lasting_alarm = monitor.lasting_alarm();
+  since_look_ = 0;
+  if (look.residual_alarm) last_alarm_ = look.run_time;
+  any_alarm_ = any_alarm_ || look.residual_alarm;
+
+  DiagnosisResult& result = look.result;
+  result.setup = design().setup;
+  result.samples = monitor.samples();
+  result.sample_time = design().sample_time();
+  result.residual = {look.residual.least, look.residual.most};
+  result.limits = design().limits.residual.limits;
+  result.faults = JudgeFaults(monitor);
+  if (const TwinEstimator* twin = monitor.twin(); twin != nullptr) {
+    result.by_twin = true;
+    if (twin->estimator().began()) result.misfit = twin->estimator().surprise();
+  }
+  result.disturbance = disturbance_;
+  const bool alarm = any_alarm_ && look.run_time - last_alarm_ < kAlarmLasts;
+  result.detected = alarm || look.lasting_alarm || disturbance_.disturbed ||
+                    std::ranges::any_of(result.faults, &FaultVerdict::detected);
+  look.analysed = analysed_;
+  look.kind = KindOf(result);
+  look.words = DiagnosisVerdict(result);
+  if (look.run_time < options_.settle && look.kind != VerdictKind::kFault) {
+    look.kind = VerdictKind::kSettling;
+    look.words = "The diagnosis of this run has just begun.";
+  }
+  on_look_(look);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,89 @@
+#pragma once
+// The diagnosis of a running machine: a monitor with its twin (mjdiag/diagnosis/monitor.h)
+// that is fed with ticks in their order, and looked at a few times a second.
+//
+// What it does about what is missing:
+//   a reading             it is bridged by the one before; the twin does without it
+//   a few ticks           readings and commands go straight from the tick before to the
+//                         one behind, and the twin does without the readings
+//   more                  nobody knows what drove the machine: another run begins, and the
+//                         monitor, its twin and its filters begin anew. What was said
+//                         stands till the new run says something else.
+//
+// Tones and noise are looked for in stretches of the disturbance residual, one after the
+// other; a tone counts, and noise is raised, that two of them in a row show: one in
+// ten thousand stretches shows one by chance, and a day has tens of thousands.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/watch/judge/look.h"
+#include "mjdiag/watch/stream/tick_order.h"
+
+namespace mjdiag {
+
+struct JudgeOptions {
+  double look = 0.1;     ///< [s] between looks
+  double stretch = 2.0;  ///< [s] in which tones are looked for; four segments at least
+  double settle = 2.0;   ///< [s] of a run before it says that something is wrong
+  int bridged = 8;       ///< ticks in a row that may be missing in a run
+};
+
+class TickJudge final : public OrderedSink {
+ public:
+  /// @param prepared  outlives it, as the machine
+  /// @param on_look   called at every look, from within OnTick
+  TickJudge(const Machine& machine, const PreparedDiagnosis& prepared,
+            const JudgeOptions& options, std::function<void(const Look&)> on_look);
+
+  void OnNewRun() override;
+  void OnMissing(std::int64_t ticks) override;
+  void OnTick(const TickHead& head, std::span<const double> values) override;
+
+  const DiagnosisDesign& design() const { return prepared_.design; }
+  std::int64_t runs() const { return runs_; }        ///< of the diagnosis
+  std::int64_t bridged() const { return bridged_; }  ///< ticks
+
+ private:
+  void Begin();
+  void Bridge(std::span<const double> next);
+  void Feed(std::span<const double> values);
+  void AfterTick(double arrived);
+  void AnalyseStretchOfRun();
+  void LookAt(double time);
+  bool HasBegun() const { return recording_ != nullptr; }
+
+  const Machine& machine_;
+  const PreparedDiagnosis& prepared_;
+  JudgeOptions options_;
+  std::function<void(const Look&)> on_look_;
+  Eigen::Index look_ticks_;
+  Eigen::Index stretch_ticks_;
+  Eigen::Index skipped_ticks_;  // of a stretch, in which filters settle
+  std::unique_ptr<DiagnosisRecording> recording_;
+  std::vector<double> last_;  // values that were fed
+  std::vector<double> bridge_;
+  std::unique_ptr<bool[]> measured_;
+  std::vector<int> unmeasured_;  // ticks in a row, of every reading
+  std::int64_t missing_ = 0;     // before the next tick
+  std::int64_t missing_since_look_ = 0;
+  std::int64_t runs_ = 0;
+  std::int64_t bridged_ = 0;
+  Eigen::Index since_look_ = 0;
+  Stretch residual_;
+  bool alarm_ = false;
+  std::optional<DisturbanceReport> stretch_before_;
+  DisturbanceReport disturbance_;
+  bool analysed_ = false;
+  double last_alarm_ = 0.0;  // since the run began [s]
+  bool any_alarm_ = false;
+};
+
+}  // namespace mjdiag
