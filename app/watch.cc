@@ -9,9 +9,11 @@
 #include "app/broker.h"
 #include "app/command.h"
 #include "app/diagnosis_output.h"
+#include "app/format.h"
 #include "app/interrupt.h"
 #include "app/subject.h"
 #include "mjdiag/plugin/plant/fault.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/render/marked_machine.h"
 #include "mjdiag/report/page/page_assets.h"
 #include "mjdiag/report/page/plot_library.h"
@@ -62,7 +64,8 @@ std::vector<FaultMeaning> MeaningsOf(const Machine& machine,
     std::string& words = meanings.back().meaning;
     for (const FaultParameter& fault : FaultParameters(plant)) {
       if (fault.name != name) continue;
-      const int type = fault.kind == PlantNumberKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
+      const mjtObj type =
+          fault.kind == PlantNumberKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
       for (const int element : fault.elements) {
         words += (words.empty() ? WordsOf(fault.kind) : ", ") +
                  ElementName(plant, type, element);

@@ -45,7 +45,7 @@ std::vector<std::string> HistoryQuantities(const DiagnosisDesign& design) {
   return names;
 }
 
-std::vector<HistoryValue> HistoryValuesOf(const Look& look) {
+std::vector<HistoryValue> HistoryValuesOf(const Finding& look) {
   std::vector<HistoryValue> values = {{static_cast<float>(look.residual.least),
                                        static_cast<float>(look.residual.mean()),
                                        static_cast<float>(look.residual.most)},

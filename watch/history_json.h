@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "mjdiag/watch/judge/history.h"
-#include "mjdiag/watch/judge/look.h"
+#include "mjdiag/watch/judge/finding.h"
 
 namespace mjdiag {
 
 /// residual, integral, misfit, missing; then every fault and its standard deviation.
 std::vector<std::string> HistoryQuantities(const DiagnosisDesign& design);
 /// In that order.
-std::vector<HistoryValue> HistoryValuesOf(const Look& look);
+std::vector<HistoryValue> HistoryValuesOf(const Finding& look);
 
 /// Rows of a level from a time on: {"width", "time": [...], "quantities": {name: {"min",
 /// "mean", "max": [...]}}}. Empty if there is no such level.

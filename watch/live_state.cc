@@ -11,7 +11,7 @@ nlohmann::json Finite(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
-nlohmann::json FaultsJson(const Look& look, const std::vector<FaultMeaning>& meanings) {
+nlohmann::json FaultsJson(const Finding& look, const std::vector<FaultMeaning>& meanings) {
   nlohmann::json faults = nlohmann::json::array();
   for (std::size_t i = 0; i < look.result.faults.size(); ++i) {
     const FaultVerdict& fault = look.result.faults[i];
@@ -26,7 +26,7 @@ nlohmann::json FaultsJson(const Look& look, const std::vector<FaultMeaning>& mea
   return faults;
 }
 
-nlohmann::json DisturbanceJson(const Look& look) {
+nlohmann::json DisturbanceJson(const Finding& look) {
   const DisturbanceReport& report = look.result.disturbance;
   nlohmann::json tones = nlohmann::json::array();
   for (const DisturbanceTone& tone : report.tones) {
@@ -113,7 +113,7 @@ nlohmann::json ToJson(const LiveState& state, const std::vector<FaultMeaning>& f
                          {"picture", state.picture},
                          {"look", nullptr}};
   if (!state.looked) return json;
-  const Look& look = state.look;
+  const Finding& look = state.look;
   json["look"] = {
       {"time", look.time},
       {"run_time", look.run_time},

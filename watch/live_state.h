@@ -60,7 +60,7 @@ struct LiveState {
   SourceReport source;
   LoadReport load;
   bool looked = false;  ///< whether there is a look
-  Look look;            ///< the last
+  Finding look;            ///< the last
   std::deque<LiveEvent> events;  ///< the latest last
   int picture = 0;      ///< another one has another number; 0: there is none
 };

@@ -62,7 +62,7 @@ class LiveWatch::Work final : public OrderedSink {
       : options_(options),
         layout_(LayoutOf(machine.setup())),
         history_(HistoryQuantities(prepared.design)),
-        judge_(machine, prepared, options.judge, [this](const Look& look) { See(look); }),
+        judge_(machine, prepared, options.judge, [this](const Finding& look) { See(look); }),
         order_(options.order, *this),
         clock_(layout_.sample_time, IsLive(options.source)),
         queue_(layout_.channels.size(),
@@ -181,7 +181,7 @@ class LiveWatch::Work final : public OrderedSink {
   std::string StateText() const { return ToJson(state(), options_.faults).dump(); }
 
   /// From the judge.
-  void See(const Look& look) {
+  void See(const Finding& look) {
     history_.Add(look.time, HistoryValuesOf(look));
     const std::optional<VerdictChange> change = keeper_.Take(look);
     {

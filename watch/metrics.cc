@@ -96,7 +96,7 @@ void AddSource(const SourceReport& source, MetricText& metrics) {
               source.clock.offset);
 }
 
-void AddLook(const Look& look, MetricText& metrics) {
+void AddLook(const Finding& look, MetricText& metrics) {
   metrics.Describe("residual", "gauge",
                    "Residual since the look before, in units of its noise.");
   metrics.Add("residual", "of", "min", look.residual.least);

@@ -17,7 +17,7 @@ constexpr double kDate = 1.7e9;  // s since 1970
 
 /// Twenty seconds of ticks.
 /// @param sent, arrived  what a tick takes by these clocks, over what it should
-StreamClock Run(double sent, double arrived, double offset = 0.0) {
+StreamClock Ticked(double sent, double arrived, double offset = 0.0) {
   StreamClock clock(kTick, true);
   for (std::int64_t k = 0; k < 20000; ++k) {
     const double time = static_cast<double>(k) * kTick;
@@ -27,30 +27,30 @@ StreamClock Run(double sent, double arrived, double offset = 0.0) {
 }
 
 TEST(StreamClockTest, HasNothingToSayOfClocksThatAgree) {
-  const StreamClock clock = Run(1.0 + 2e-5, 1.0 - 2e-5);
+  const StreamClock clock = Ticked(1.0 + 2e-5, 1.0 - 2e-5);
   EXPECT_FALSE(clock.wrong_rate());
   EXPECT_THAT(clock.Notes(), IsEmpty());
   EXPECT_NEAR(clock.report().sent_rate, 2e-5, 1e-6);
 }
 
 TEST(StreamClockTest, NoticesTicksOfAnotherRateByTheClockOfTheSender) {
-  const StreamClock clock = Run(2.0, 2.0);
+  const StreamClock clock = Ticked(2.0, 2.0);
   EXPECT_TRUE(clock.wrong_rate());
   EXPECT_THAT(clock.Notes(), Contains(HasSubstr("every 2 ms, the setup says every 1 ms")));
 }
 
 TEST(StreamClockTest, NoticesTicksOfAnotherRateWithoutAClockOfTheSender) {
-  EXPECT_TRUE(Run(std::nan(""), 0.5).wrong_rate());
+  EXPECT_TRUE(Ticked(std::nan(""), 0.5).wrong_rate());
 }
 
 TEST(StreamClockTest, SaysThatClocksDrift) {
-  const StreamClock clock = Run(1.0 + 5e-4, 1.0);
+  const StreamClock clock = Ticked(1.0 + 5e-4, 1.0);
   EXPECT_FALSE(clock.wrong_rate());
   EXPECT_THAT(clock.Notes(), Contains(HasSubstr("differ by 500 ppm")));
 }
 
 TEST(StreamClockTest, SaysThatDatesDiffer) {
-  EXPECT_THAT(Run(1.0, 1.0, -3600.0).Notes(), Contains(HasSubstr("behind this one")));
+  EXPECT_THAT(Ticked(1.0, 1.0, -3600.0).Notes(), Contains(HasSubstr("behind this one")));
 }
 
 TEST(StreamClockTest, AClockThatIsSetIsNoGapAndNoOtherRate) {

@@ -44,7 +44,7 @@ class TickJudgeTest : public testing::Test, public TickObserver {
     number_ += ticks;
     judge_.OnMissing(ticks);
   }
-  const Look& last() const { return looks_.back(); }
+  const Finding& last() const { return looks_.back(); }
   const FaultVerdict& Fault(const std::string& name) const {
     for (const FaultVerdict& fault : last().result.faults) {
       if (fault.name == name) return fault;
@@ -63,9 +63,9 @@ class TickJudgeTest : public testing::Test, public TickObserver {
 
   test::Stage stage_;
   PreparedDiagnosis prepared_ = Prepare(stage_.machine);
-  std::vector<Look> looks_;
+  std::vector<Finding> looks_;
   TickJudge judge_{stage_.machine, prepared_, JudgeOptions{},
-                   [this](const Look& look) { looks_.push_back(look); }};
+                   [this](const Finding& look) { looks_.push_back(look); }};
   std::unique_ptr<RunningMachine> running_;
   std::vector<double> values_;
   double time_ = 0.0;
@@ -75,7 +75,7 @@ class TickJudgeTest : public testing::Test, public TickObserver {
 TEST_F(TickJudgeTest, LooksTenTimesASecondAndFindsNothingOnAHealthyMachine) {
   Watch(20.0);
   EXPECT_EQ(looks_.size(), 200U);
-  for (const Look& look : looks_) {
+  for (const Finding& look : looks_) {
     const bool early = look.run_time < 2.0 - kTick;
     EXPECT_EQ(look.kind, early ? VerdictKind::kSettling : VerdictKind::kHealthy)
         << look.run_time << " s: " << look.words;
@@ -101,7 +101,7 @@ TEST_F(TickJudgeTest, BridgesAFewTicksAndGoesOn) {
   EXPECT_EQ(judge_.runs(), 1);
   EXPECT_EQ(judge_.bridged(), 10);
   EXPECT_EQ(last().kind, VerdictKind::kHealthy) << last().words;
-  for (const Look& look : looks_) EXPECT_NE(look.kind, VerdictKind::kFault);
+  for (const Finding& look : looks_) EXPECT_NE(look.kind, VerdictKind::kFault);
 }
 
 TEST_F(TickJudgeTest, BeginsAnewBehindAGapAndSaysNothingWrong) {
@@ -109,7 +109,7 @@ TEST_F(TickJudgeTest, BeginsAnewBehindAGapAndSaysNothingWrong) {
   Lose(777);
   Watch(10.0);
   EXPECT_EQ(judge_.runs(), 2);
-  for (const Look& look : looks_) {
+  for (const Finding& look : looks_) {
     EXPECT_TRUE(look.kind == VerdictKind::kHealthy ||
                 look.kind == VerdictKind::kSettling)
         << look.time << ": " << look.words;

@@ -14,7 +14,7 @@ class VerdictKeeperTest : public testing::Test {
   int Say(VerdictKind kind, int looks, const std::string& fault = "") {
     int changed = -1;
     for (int k = 0; k < looks; ++k) {
-      Look look;
+      Finding look;
       look.kind = kind;
       look.words = NameOf(kind);
       look.time = 1000.0 + 0.1 * looks_++;
@@ -76,7 +76,7 @@ TEST_F(VerdictKeeperTest, GoesOnWithWhatWasSaidBefore) {
   Say(VerdictKind::kFault, 10, "zeta");
   VerdictKeeper next;
   next.Resume(VerdictFromJson(ToJson(keeper_.now())));
-  Look look;
+  Finding look;
   look.kind = VerdictKind::kFault;
   look.time = 5000.0;
   look.result.faults = keeper_.now().faults;

@@ -43,7 +43,7 @@ DisturbanceReport Confirmed(const DisturbanceReport& before, DisturbanceReport n
 
 TickJudge::TickJudge(const Machine& machine, const PreparedDiagnosis& prepared,
                      const JudgeOptions& options,
-                     std::function<void(const Look&)> on_look)
+                     std::function<void(const Finding&)> on_look)
     : machine_(machine),
       prepared_(prepared),
       options_(options),
@@ -170,7 +170,7 @@ void TickJudge::AnalyseStretchOfRun() {
 
 void TickJudge::LookAt(double time) {
   const DiagnosisMonitor& monitor = recording_->monitor;
-  Look look;
+  Finding look;
   look.time = time;
   look.run_time =
       static_cast<double>(monitor.samples()) * monitor.design().sample_time();

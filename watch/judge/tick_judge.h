@@ -24,7 +24,7 @@
 
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/machine/machine.h"
-#include "mjdiag/watch/judge/look.h"
+#include "mjdiag/watch/judge/finding.h"
 #include "mjdiag/watch/stream/tick_order.h"
 
 namespace mjdiag {
@@ -41,7 +41,7 @@ class TickJudge final : public OrderedSink {
   /// @param prepared  outlives it, as the machine
   /// @param on_look   called at every look, from within OnTick
   TickJudge(const Machine& machine, const PreparedDiagnosis& prepared,
-            const JudgeOptions& options, std::function<void(const Look&)> on_look);
+            const JudgeOptions& options, std::function<void(const Finding&)> on_look);
 
   void OnNewRun() override;
   void OnMissing(std::int64_t ticks) override;
@@ -63,7 +63,7 @@ class TickJudge final : public OrderedSink {
   const Machine& machine_;
   const PreparedDiagnosis& prepared_;
   JudgeOptions options_;
-  std::function<void(const Look&)> on_look_;
+  std::function<void(const Finding&)> on_look_;
   Eigen::Index look_ticks_;
   Eigen::Index stretch_ticks_;
   Eigen::Index skipped_ticks_;  // of a stretch, in which filters settle

@@ -10,7 +10,7 @@
 namespace mjdiag {
 namespace {
 
-Verdict VerdictOf(const Look& look) {
+Verdict VerdictOf(const Finding& look) {
   Verdict verdict;
   verdict.kind = look.kind;
   verdict.words = look.words;
@@ -30,7 +30,7 @@ bool IsNone(const Verdict& verdict) { return verdict.kind == VerdictKind::kSettl
 
 }  // namespace
 
-std::optional<VerdictChange> VerdictKeeper::Take(const Look& look) {
+std::optional<VerdictChange> VerdictKeeper::Take(const Finding& look) {
   if (look.kind == VerdictKind::kSettling) return std::nullopt;
   Verdict seen = VerdictOf(look);
   if (now_.SameAs(seen)) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/watch/judge/look.h"
+#include "mjdiag/watch/judge/finding.h"
 
 namespace mjdiag {
 
@@ -50,7 +50,7 @@ class VerdictKeeper {
   void Resume(const Verdict& verdict) { now_ = verdict; }
 
   /// What a look says; the change if it makes one.
-  std::optional<VerdictChange> Take(const Look& look);
+  std::optional<VerdictChange> Take(const Finding& look);
 
   /// kSettling as long as there is none.
   const Verdict& now() const { return now_; }

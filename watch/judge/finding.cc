@@ -1,4 +1,4 @@
-#include "mjdiag/watch/judge/look.h"
+#include "mjdiag/watch/judge/finding.h"
 
 #include <algorithm>
 #include <array>

@@ -39,7 +39,7 @@ struct Stretch {
   double mean() const { return sum / static_cast<double>(count); }
 };
 
-struct Look {
+struct Finding {
   double time = 0.0;              ///< of its last tick, by our clock [s since 1970]
   double run_time = 0.0;          ///< since the run of the diagnosis began [s]
   std::int64_t missing = 0;       ///< ticks since the look before
