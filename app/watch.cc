@@ -24,7 +24,6 @@ namespace mjdiag::app {
 namespace {
 
 constexpr int kPort = 9871;
-constexpr double kLongestBridge = 10000.0;  // ticks
 constexpr double kLongestTime = 1e6;        // s
 /// Of its picture [px].
 constexpr int kPictureWidth = 720;
@@ -181,10 +180,6 @@ void AddWatch(CLI::App& app) {
   command->add_option("--publish", options->publish,
                       "mqtt:HOST[:PORT]/TOPIC for changes of the verdict");
   AddBrokerOptions(*command, options->watch.login);
-  command
-      ->add_option("--bridge", options->watch.judge.bridged,
-                   "Ticks in a row that may be missing before the diagnosis begins anew")
-      ->check(Within(0.0, kLongestBridge));
   command->add_option("--save-every", options->watch.save_every,
                       "Seconds between two writings of the history")
       ->check(Within(1.0, kLongestTime));

@@ -180,8 +180,7 @@
     const source = state.source;
     const rows = [
       ['ticks judged', source.taken],
-      ['missing', source.missing + ' in ' + source.gaps + ' gaps, ' + source.bridged +
-          ' of them bridged'],
+      ['missing', source.missing + ' in ' + source.gaps + ' gaps'],
       ['repeated, reordered, late', [source.repeated, source.reordered,
         source.late].join(', ')],
       ['of other senders', source.foreign],

@@ -54,7 +54,6 @@ nlohmann::json SourceJson(const SourceReport& source) {
           {"taken", source.order.taken},
           {"missing", source.order.missing},
           {"gaps", source.order.gaps},
-          {"bridged", source.bridged},
           {"repeated", source.order.repeated},
           {"reordered", source.order.reordered},
           {"late", source.order.late},

@@ -33,7 +33,6 @@ struct SourceReport {
   std::int64_t no_room = 0;  ///< ticks lost because the diagnosis was behind
   std::int64_t kernel = 0;   ///< datagrams lost in the system
   OrderCounts order;
-  std::int64_t bridged = 0;  ///< ticks of those that are missing
   std::int64_t runs = 0;     ///< of the diagnosis
   ClockReport clock;
   std::vector<std::string> notes;  ///< what is worth saying, each a sentence

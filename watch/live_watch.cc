@@ -26,6 +26,8 @@ constexpr const char* kHistoryFile = "watch.history";
 constexpr double kTellEvery = 0.2;
 /// A source is silent that has sent nothing for so long [s].
 constexpr double kSilence = 1.0;
+/// Without a verdict on a machine that runs [s].
+constexpr double kTooLong = 10.0;
 /// Time in which ticks gather that are judged at once.
 constexpr std::chrono::milliseconds kGather{10};
 constexpr double kTakePatience = 0.05;  // s
@@ -106,6 +108,7 @@ class LiveWatch::Work final : public OrderedSink {
       }
       if (last && block.size() == 0) break;
       const double now = WallClock();
+      if (block.size() > 0) heard_ = now;
       order_.Pass(now);
       UpdateSource(now);
       Tell(now);
@@ -182,6 +185,8 @@ class LiveWatch::Work final : public OrderedSink {
 
   /// From the judge.
   void See(const Finding& look) {
+    look_is_early_ = look.kind == VerdictKind::kSettling;
+    if (!look_is_early_) judged_ = look.time;
     history_.Add(look.time, HistoryValuesOf(look));
     const std::optional<VerdictChange> change = keeper_.Take(look);
     {
@@ -206,7 +211,8 @@ class LiveWatch::Work final : public OrderedSink {
 
   SourceState SourceStateAt(double now) const {
     if (last_tick_ == 0.0) return SourceState::kWaiting;
-    if (now - last_tick_ > kSilence) return SourceState::kSilent;
+    // What has waited here was no silence of the source.
+    if (now - std::max(last_tick_, heard_) > kSilence) return SourceState::kSilent;
     return clock_.wrong_rate() ? SourceState::kOtherRate : SourceState::kRunning;
   }
 
@@ -223,15 +229,21 @@ class LiveWatch::Work final : public OrderedSink {
     source.no_room = counts_.no_room;
     source.kernel = counts_.kernel;
     source.order = order_.counts();
-    source.bridged = judge_.bridged();
     source.runs = judge_.runs();
     source.clock = clock_.report();
     source.notes = clock_.Notes();
+    if (look_is_early_ && now - judged_ > kTooLong &&
+        source.state == SourceState::kRunning) {
+      source.notes.push_back(
+          "Gaps come too often: the diagnosis begins anew behind every one, and needs "
+          "two seconds before it says anything.");
+    }
     if (const std::string trouble = source_->Trouble(); !trouble.empty()) {
       source.notes.push_back(trouble);
     }
     UpdateLoad(now);
     if (source.state == before) return;
+    judged_ = now;
     source.since = now;
     AddEvent({now, "source", SourceWords(source)});
     const WatchEvent event = SourceEvent(now, source, SourceWords(source));
@@ -326,6 +338,9 @@ class LiveWatch::Work final : public OrderedSink {
   TickQueue queue_;
   EventLog events_;
   double last_tick_ = 0.0;
+  double heard_ = 0.0;   // when anything was taken
+  bool look_is_early_ = true;
+  double judged_ = 0.0;  // when there was a verdict, or the source began to run
   double told_ = 0.0;
   double load_since_ = 0.0;
   double load_seconds_ = 0.0;

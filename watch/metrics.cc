@@ -75,7 +75,6 @@ void AddSource(const SourceReport& source, MetricText& metrics) {
   count("ticks_missing_total", "Ticks that never came, or too late.",
         source.order.missing);
   count("gaps_total", "Stretches of missing ticks.", source.order.gaps);
-  count("ticks_bridged_total", "Missing ticks that were bridged.", source.bridged);
   count("ticks_repeated_total", "Ticks that came again.", source.order.repeated);
   count("ticks_reordered_total", "Ticks that came out of order, in time.",
         source.order.reordered);

@@ -36,7 +36,7 @@ TEST(StreamClockTest, HasNothingToSayOfClocksThatAgree) {
 TEST(StreamClockTest, NoticesTicksOfAnotherRateByTheClockOfTheSender) {
   const StreamClock clock = Ticked(2.0, 2.0);
   EXPECT_TRUE(clock.wrong_rate());
-  EXPECT_THAT(clock.Notes(), Contains(HasSubstr("every 2 ms, the setup says every 1 ms")));
+  EXPECT_THAT(clock.Notes(), Contains(HasSubstr("every 2.00 ms, the setup says every 1.00 ms")));
 }
 
 TEST(StreamClockTest, NoticesTicksOfAnotherRateWithoutAClockOfTheSender) {

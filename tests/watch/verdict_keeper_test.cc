@@ -44,7 +44,7 @@ TEST_F(VerdictKeeperTest, AnotherOneHasToStandForAMoment) {
   Say(VerdictKind::kHealthy, 10);
   EXPECT_EQ(Say(VerdictKind::kUnexplained, 2), -1);
   EXPECT_EQ(Say(VerdictKind::kHealthy, 10), -1);
-  EXPECT_EQ(Say(VerdictKind::kFault, 10, "zeta"), 25);
+  EXPECT_EQ(Say(VerdictKind::kFault, 10, "zeta"), 26);
   EXPECT_NEAR(keeper_.now().since, 1002.2, 1e-9);
 }
 

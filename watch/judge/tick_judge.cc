@@ -16,8 +16,6 @@ using Eigen::Index;
 constexpr double kFiltersSettle = 0.1;
 /// An alarm of the residual counts for so long [s].
 constexpr double kAlarmLasts = 1.0;
-/// Unmeasured readings in a row from which on nothing is judged by what bridges them.
-constexpr int kGapTicks = 2;
 constexpr Index kSegments = 4;
 /// Bins of a spectrum within which two tones are one.
 constexpr double kSameTone = 2.0;
@@ -58,83 +56,50 @@ TickJudge::TickJudge(const Machine& machine, const PreparedDiagnosis& prepared,
                             kSegments * design().limits.disturbance.segment);
   const std::size_t outputs = design().outputs.size();
   measured_ = std::make_unique<bool[]>(outputs);
-  unmeasured_.assign(outputs, 0);
   last_.resize(outputs + design().inputs.size());
-  bridge_ = last_;
 }
 
-void TickJudge::OnNewRun() {
-  recording_.reset();
-  missing_ = 0;
-}
+void TickJudge::OnNewRun() { recording_.reset(); }
 
 void TickJudge::OnMissing(std::int64_t ticks) {
+  recording_.reset();
   missing_ += ticks;
-  missing_since_look_ += ticks;
 }
 
 void TickJudge::Begin() {
   recording_ = std::make_unique<DiagnosisRecording>(
       BeginDiagnosis(machine_, prepared_, stretch_ticks_));
   ++runs_;
-  missing_ = 0;
   since_look_ = 0;
   residual_ = {};
   alarm_ = any_alarm_ = false;
   stretch_before_.reset();
   disturbance_ = {};
   analysed_ = false;
-  std::ranges::fill(unmeasured_, 0);
 }
 
 void TickJudge::OnTick(const TickHead& head, std::span<const double> values) {
   const std::size_t outputs = design().outputs.size();
   const auto is_finite = [](double value) { return std::isfinite(value); };
-  const bool begun = HasBegun();
-  if (!std::ranges::all_of(values.subspan(outputs), is_finite) ||
-      (!begun && !std::ranges::all_of(values, is_finite))) {
-    // Without its command it is as good as not there.
-    if (begun) OnMissing(1);
-    return;
-  }
-  if (!begun || missing_ > options_.bridged) {
-    Begin();
-    std::ranges::copy(values, last_.begin());
-    if (!std::ranges::all_of(values, is_finite)) return recording_.reset();
-  }
-  if (missing_ > 0) Bridge(values);
+  const bool begun = recording_ != nullptr;
+  // Without its command a tick is as good as not there; and a run begins with all readings.
+  if (!std::ranges::all_of(values.subspan(outputs), is_finite)) return OnMissing(1);
+  if (!begun && !std::ranges::all_of(values, is_finite)) return OnMissing(1);
+  if (!begun) Begin();
   Feed(values);
   AfterTick(head.arrived);
 }
 
-void TickJudge::Bridge(std::span<const double> next) {
-  const std::size_t outputs = design().outputs.size();
-  const std::vector<double> from = last_;
-  const auto steps = static_cast<double>(missing_ + 1);
-  for (std::int64_t k = 1; k <= missing_; ++k) {
-    const double part = static_cast<double>(k) / steps;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      bridge_[i] = std::isfinite(next[i]) ? from[i] + part * (next[i] - from[i]) : from[i];
-    }
-    std::fill_n(measured_.get(), outputs, false);
-    recording_->Add(std::span(bridge_).first(outputs),
-                    std::span(bridge_).subspan(outputs),
-                    std::span<const bool>(measured_.get(), outputs),
-                    missing_ > kGapTicks - 1);
-    ++bridged_;
-  }
-  missing_ = 0;
+void TickJudge::BeginStretch() {
+  recording_->recorder = MonitorRecorder(design(), stretch_ticks_);
 }
 
 void TickJudge::Feed(std::span<const double> values) {
   const std::size_t outputs = design().outputs.size();
   bool all = true;
-  bool gap = false;
   for (std::size_t i = 0; i < outputs; ++i) {
     measured_[i] = std::isfinite(values[i]);
     all = all && measured_[i];
-    unmeasured_[i] = measured_[i] ? 0 : unmeasured_[i] + 1;
-    gap = gap || unmeasured_[i] >= kGapTicks;
     if (measured_[i]) last_[i] = values[i];
   }
   std::ranges::copy(values.subspan(outputs), last_.begin() + outputs);
@@ -144,7 +109,8 @@ void TickJudge::Feed(std::span<const double> values) {
     recording_->Add(readings, commands);
   } else {
     recording_->Add(readings, commands, std::span<const bool>(measured_.get(), outputs),
-                    gap);
+                    true);
+    BeginStretch();
   }
 }
 
@@ -158,7 +124,7 @@ void TickJudge::AfterTick(double arrived) {
 
 void TickJudge::AnalyseStretchOfRun() {
   const MonitorLog log = recording_->recorder.Log();
-  recording_->recorder = MonitorRecorder(design(), stretch_ticks_);
+  BeginStretch();
   DisturbanceReport report =
       AnalyseStretch(design(), log, JudgeFaults(recording_->monitor), skipped_ticks_);
   if (stretch_before_) {
@@ -174,7 +140,7 @@ void TickJudge::LookAt(double time) {
   look.time = time;
   look.run_time =
       static_cast<double>(monitor.samples()) * monitor.design().sample_time();
-  look.missing = std::exchange(missing_since_look_, 0);
+  look.missing = std::exchange(missing_, 0);
   look.residual = std::exchange(residual_, {});
   look.integral = monitor.integral();
   look.residual_alarm = std::exchange(alarm_, false);
@@ -201,7 +167,7 @@ void TickJudge::LookAt(double time) {
   look.analysed = analysed_;
   look.kind = KindOf(result);
   look.words = DiagnosisVerdict(result);
-  if (look.run_time < options_.settle && look.kind != VerdictKind::kFault) {
+  if (look.run_time < options_.settle) {
     look.kind = VerdictKind::kSettling;
     look.words = "The diagnosis of this run has just begun.";
   }

@@ -3,16 +3,18 @@
 // that is fed with ticks in their order, and looked at a few times a second.
 //
 // What it does about what is missing:
-//   a reading             it is bridged by the one before; the twin does without it
-//   a few ticks           readings and commands go straight from the tick before to the
-//                         one behind, and the twin does without the readings
-//   more                  nobody knows what drove the machine: another run begins, and the
-//                         monitor, its twin and its filters begin anew. What was said
-//                         stands till the new run says something else.
+//   a reading         it is bridged by the one before; the twin does without it, and the
+//                     residual is not judged till its filters have forgotten it: to
+//                     encoders a tick in motion is far from nothing
+//   a command, a tick nobody knows what drove the machine, and the error that any guess
+//                     leaves stays with the twin for good: another run begins, in which
+//                     monitor, twin and filters begin anew, in motion. What was said
+//                     stands till the new run has something to say
 //
 // Tones and noise are looked for in stretches of the disturbance residual, one after the
 // other; a tone counts, and noise is raised, that two of them in a row show: one in
-// ten thousand stretches shows one by chance, and a day has tens of thousands.
+// ten thousand stretches shows one by chance, and a day has tens of thousands. A stretch
+// in which something was bridged is none.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -32,8 +34,7 @@ namespace mjdiag {
 struct JudgeOptions {
   double look = 0.1;     ///< [s] between looks
   double stretch = 2.0;  ///< [s] in which tones are looked for; four segments at least
-  double settle = 2.0;   ///< [s] of a run before it says that something is wrong
-  int bridged = 8;       ///< ticks in a row that may be missing in a run
+  double settle = 2.0;   ///< [s] of a run before it says anything
 };
 
 class TickJudge final : public OrderedSink {
@@ -48,17 +49,15 @@ class TickJudge final : public OrderedSink {
   void OnTick(const TickHead& head, std::span<const double> values) override;
 
   const DiagnosisDesign& design() const { return prepared_.design; }
-  std::int64_t runs() const { return runs_; }        ///< of the diagnosis
-  std::int64_t bridged() const { return bridged_; }  ///< ticks
+  std::int64_t runs() const { return runs_; }  ///< of the diagnosis
 
  private:
   void Begin();
-  void Bridge(std::span<const double> next);
   void Feed(std::span<const double> values);
   void AfterTick(double arrived);
+  void BeginStretch();
   void AnalyseStretchOfRun();
   void LookAt(double time);
-  bool HasBegun() const { return recording_ != nullptr; }
 
   const Machine& machine_;
   const PreparedDiagnosis& prepared_;
@@ -69,13 +68,9 @@ class TickJudge final : public OrderedSink {
   Eigen::Index skipped_ticks_;  // of a stretch, in which filters settle
   std::unique_ptr<DiagnosisRecording> recording_;
   std::vector<double> last_;  // values that were fed
-  std::vector<double> bridge_;
   std::unique_ptr<bool[]> measured_;
-  std::vector<int> unmeasured_;  // ticks in a row, of every reading
-  std::int64_t missing_ = 0;     // before the next tick
-  std::int64_t missing_since_look_ = 0;
+  std::int64_t missing_ = 0;     // ticks since the last look
   std::int64_t runs_ = 0;
-  std::int64_t bridged_ = 0;
   Eigen::Index since_look_ = 0;
   Stretch residual_;
   bool alarm_ = false;
