@@ -71,8 +71,8 @@ class Tap final : public TickObserver {
   void OnTick(std::span<const double> outputs,
               std::span<const double> inputs) noexcept override {
     std::ranges::copy(outputs, values_.begin());
-    std::ranges::copy(inputs, values_.begin() + static_cast<std::ptrdiff_t>(
-                                                     outputs.size()));
+    std::ranges::copy(inputs,
+                      values_.begin() + static_cast<std::ptrdiff_t>(outputs.size()));
   }
   const std::vector<double>& values() const { return values_; }
 
@@ -95,9 +95,8 @@ void StreamMachine(const Subject& subject, const MotionOptions& motion,
   RunOptions run = subject.options;
   run.observer = &tap;
   run.repeat = true;
-  const auto running = motion.linear
-                           ? StartLinear(subject.machine, excitation, run)
-                           : StartNonlinear(subject.machine, excitation, run);
+  const auto running = motion.linear ? StartLinear(subject.machine, excitation, run)
+                                     : StartNonlinear(subject.machine, excitation, run);
   const std::vector<MachineStage> stages =
       StagesOf(subject.machine, subject.options.late_faults);
   auto stage = stages.begin();
@@ -128,7 +127,8 @@ void PlayRecord(const Subject& subject, const StreamOptions& options,
     samples = measured.select(samples, std::numeric_limits<double>::quiet_NaN());
   }
   Pace pace(record.sample_time(), options.speed, sender.batch());
-  const Index ticks = std::min(record.samples(), TicksOf(options, record.sample_time()));
+  const Index ticks =
+      std::min(record.samples(), TicksOf(options, record.sample_time()));
   for (Index tick = 0; tick < ticks && !Interrupt::IsWished(); ++tick) {
     pace.Await(tick);
     sender.Add({samples.col(tick).data(), names.size()}, pace.TimeOf(tick));
@@ -138,13 +138,15 @@ void PlayRecord(const Subject& subject, const StreamOptions& options,
 }  // namespace
 
 void AddStreamOptions(CLI::App& command, StreamOptions& options) {
-  command.add_option("--stream", options.target,
-                     "Run in real time, the motion again and again, and send every tick: "
-                     "stdout, udp:HOST:PORT or mqtt:HOST[:PORT]/TOPIC");
+  command.add_option(
+      "--stream", options.target,
+      "Run in real time, the motion again and again, and send every tick: "
+      "stdout, udp:HOST:PORT or mqtt:HOST[:PORT]/TOPIC");
   command.add_option("--stream-format", options.format, "How ticks are sent")
       ->check(CLI::IsMember({"binary", "csv"}));
-  command.add_option("--stream-for", options.duration,
-                     "End after this time of the machine [s]")
+  command
+      .add_option("--stream-for", options.duration,
+                  "End after this time of the machine [s]")
       ->check(Within(0.0, kLongestStream));
   command
       .add_option("--speed", options.speed,
@@ -154,8 +156,9 @@ void AddStreamOptions(CLI::App& command, StreamOptions& options) {
       ->check(CLI::Range(1, 60000));
   command.add_flag("--twice", options.send.twice,
                    "Send every tick in two packets, so that one may get lost");
-  command.add_option("--play", options.play,
-                     "Send the samples of this record instead of a simulation")
+  command
+      .add_option("--play", options.play,
+                  "Send the samples of this record instead of a simulation")
       ->excludes("--fault")
       ->excludes("--effect")
       ->excludes("--replay")
@@ -173,8 +176,7 @@ void Stream(const Subject& subject, const MotionOptions& motion,
   const TickLayout layout = LayoutOf(subject.setup());
   const auto sender = OpenSender(address, layout, wanted.login, wanted.send);
   if (address.kind != StreamAddress::Kind::kProcess) {
-    std::printf("%s: %s to %s, %d ticks of %s a packet\n",
-                subject.setup().name.c_str(),
+    std::printf("%s: %s to %s, %d ticks of %s a packet\n", subject.setup().name.c_str(),
                 options.play.empty() ? Describe(subject).c_str() : options.play.c_str(),
                 mjdiag::Describe(address).c_str(), sender->batch(),
                 mjdiag::Describe(layout).c_str());

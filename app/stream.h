@@ -12,8 +12,8 @@ namespace mjdiag::app {
 struct StreamOptions {
   std::string target;  ///< empty: no stream
   std::string format = "binary";
-  std::string play;   ///< record whose samples are sent as they are
-  double speed = 1.0;  ///< seconds of the machine a second; 0: as fast as it goes
+  std::string play;       ///< record whose samples are sent as they are
+  double speed = 1.0;     ///< seconds of the machine a second; 0: as fast as it goes
   double duration = 0.0;  ///< [s] of the machine; 0: till it is interrupted
   SendOptions send;
   MqttLogin login;

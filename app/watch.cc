@@ -24,7 +24,7 @@ namespace mjdiag::app {
 namespace {
 
 constexpr int kPort = 9871;
-constexpr double kLongestTime = 1e6;        // s
+constexpr double kLongestTime = 1e6;  // s
 /// Of its picture [px].
 constexpr int kPictureWidth = 720;
 constexpr int kPictureHeight = 480;
@@ -58,8 +58,8 @@ std::vector<FaultMeaning> MeaningsOf(const Machine& machine,
   std::vector<FaultMeaning> meanings;
   const mjModel& plant = machine.plant();
   for (const std::string& name : design.FaultNames()) {
-    meanings.push_back({name, "", design.Healthy(static_cast<Eigen::Index>(
-                                      meanings.size()))});
+    meanings.push_back(
+        {name, "", design.Healthy(static_cast<Eigen::Index>(meanings.size()))});
     std::string& words = meanings.back().meaning;
     for (const FaultParameter& fault : FaultParameters(plant)) {
       if (fault.name != name) continue;
@@ -174,14 +174,15 @@ void AddWatch(CLI::App& app) {
                       "[HOST:]PORT of the page; port 0: any that is free");
   command
       ->add_option("--token", options->watch.server.token,
-                      "What everybody has to bring who looks; needed where --listen is "
-                      "open to other machines")
+                   "What everybody has to bring who looks; needed where --listen is "
+                   "open to other machines")
       ->envname("MJDIAG_WATCH_TOKEN");
   command->add_option("--publish", options->publish,
                       "mqtt:HOST[:PORT]/TOPIC for changes of the verdict");
   AddBrokerOptions(*command, options->watch.login);
-  command->add_option("--save-every", options->watch.save_every,
-                      "Seconds between two writings of the history")
+  command
+      ->add_option("--save-every", options->watch.save_every,
+                   "Seconds between two writings of the history")
       ->check(Within(1.0, kLongestTime));
   command->add_option("--camera", options->camera,
                       "Camera of the plant for its picture (default: machine)");

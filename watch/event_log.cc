@@ -28,17 +28,22 @@ std::string IsoTime(double time) {
 
 WatchEvent VerdictEvent(double time, const VerdictChange& change) {
   const nlohmann::json verdict = ToJson(change.now);
-  const nlohmann::json event = {
-      {"event", "verdict"}, {"time", time}, {"iso", IsoTime(time)},
-      {"verdict", verdict}, {"before", ToJson(change.before)}};
+  const nlohmann::json event = {{"event", "verdict"},
+                                {"time", time},
+                                {"iso", IsoTime(time)},
+                                {"verdict", verdict},
+                                {"before", ToJson(change.before)}};
   return {event.dump(), verdict.dump()};
 }
 
 WatchEvent SourceEvent(double time, const SourceReport& source,
                        const std::string& words) {
-  const nlohmann::json event = {{"event", "source"},     {"time", time},
-                                {"iso", IsoTime(time)},  {"source", source.name},
-                                {"state", NameOf(source.state)}, {"words", words}};
+  const nlohmann::json event = {{"event", "source"},
+                                {"time", time},
+                                {"iso", IsoTime(time)},
+                                {"source", source.name},
+                                {"state", NameOf(source.state)},
+                                {"words", words}};
   return {event.dump(), ""};
 }
 

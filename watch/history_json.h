@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/watch/judge/history.h"
 #include "mjdiag/watch/judge/finding.h"
+#include "mjdiag/watch/judge/history.h"
 
 namespace mjdiag {
 

@@ -44,8 +44,7 @@ bool SameText(std::string_view a, std::string_view b) {
 }
 
 std::string HostOf(const std::string& header) {
-  const std::size_t end =
-      header.starts_with('[') ? header.find(']') : header.find(':');
+  const std::size_t end = header.starts_with('[') ? header.find(']') : header.find(':');
   return header.substr(header.starts_with('[') ? 1 : 0,
                        end - (header.starts_with('[') ? 1 : 0));
 }
@@ -146,12 +145,13 @@ void LiveServer::State::Configure() {
              [this](const httplib::Request& request, httplib::Response& response) {
                AnswerHistory(request, response);
              });
-  server.Get("/picture.png", [this](const httplib::Request&,
-                                    httplib::Response& response) {
-    const std::string png = answers.picture();
-    if (png.empty()) return Refuse(kNotFound, "there is no picture", response);
-    response.set_content(png, "image/png");
-  });
+  server.Get("/picture.png",
+             [this](const httplib::Request&, httplib::Response& response) {
+               const std::string png = answers.picture();
+               if (png.empty())
+                 return Refuse(kNotFound, "there is no picture", response);
+               response.set_content(png, "image/png");
+             });
   server.Get("/events", [this](const httplib::Request&, httplib::Response& response) {
     OpenEvents(response);
   });
@@ -166,7 +166,8 @@ Handling LiveServer::State::Check(const httplib::Request& request,
   }
   if (options.token.empty()) {
     // A page from elsewhere may have its own name point here; it does not get in.
-    if (IsLoopback(HostOf(request.get_header_value("Host")))) return Handling::Unhandled;
+    if (IsLoopback(HostOf(request.get_header_value("Host"))))
+      return Handling::Unhandled;
     Refuse(kForbidden, "ask for this machine by its own name, localhost", response);
     return Handling::Handled;
   }
@@ -205,8 +206,9 @@ void LiveServer::State::OpenEvents(httplib::Response& response) {
       [this, seen](std::size_t, httplib::DataSink& sink) {
         std::string state;
         if (!board.Wait(*seen, state)) return false;
-        const std::string event =
-            state.empty() ? ": still here\n\n" : "event: state\ndata: " + state + "\n\n";
+        const std::string event = state.empty()
+                                      ? ": still here\n\n"
+                                      : "event: state\ndata: " + state + "\n\n";
         return sink.write(event.data(), event.size());
       },
       [this](bool) { --readers; });

@@ -11,7 +11,8 @@ nlohmann::json Finite(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
-nlohmann::json FaultsJson(const Finding& look, const std::vector<FaultMeaning>& meanings) {
+nlohmann::json FaultsJson(const Finding& look,
+                          const std::vector<FaultMeaning>& meanings) {
   nlohmann::json faults = nlohmann::json::array();
   for (std::size_t i = 0; i < look.result.faults.size(); ++i) {
     const FaultVerdict& fault = look.result.faults[i];

@@ -33,15 +33,15 @@ struct SourceReport {
   std::int64_t no_room = 0;  ///< ticks lost because the diagnosis was behind
   std::int64_t kernel = 0;   ///< datagrams lost in the system
   OrderCounts order;
-  std::int64_t runs = 0;     ///< of the diagnosis
+  std::int64_t runs = 0;  ///< of the diagnosis
   ClockReport clock;
   std::vector<std::string> notes;  ///< what is worth saying, each a sentence
 };
 
 struct LoadReport {
   double share = 0.0;  ///< of a core that the diagnosis takes, over the last seconds
-  std::int64_t deepest = 0;   ///< ticks that have waited, at most
-  std::int64_t room = 0;      ///< for ticks that wait
+  std::int64_t deepest = 0;  ///< ticks that have waited, at most
+  std::int64_t room = 0;     ///< for ticks that wait
 };
 
 /// What has changed.
@@ -58,10 +58,10 @@ struct LiveState {
   Verdict verdict;
   SourceReport source;
   LoadReport load;
-  bool looked = false;  ///< whether there is a look
-  Finding look;            ///< the last
+  bool looked = false;           ///< whether there is a look
+  Finding look;                  ///< the last
   std::deque<LiveEvent> events;  ///< the latest last
-  int picture = 0;      ///< another one has another number; 0: there is none
+  int picture = 0;               ///< another one has another number; 0: there is none
 };
 
 /// What a fault is, in words, and what it is when nothing is wrong.

@@ -64,15 +64,16 @@ class LiveWatch::Work final : public OrderedSink {
       : options_(options),
         layout_(LayoutOf(machine.setup())),
         history_(HistoryQuantities(prepared.design)),
-        judge_(machine, prepared, options.judge, [this](const Finding& look) { See(look); }),
+        judge_(machine, prepared, options.judge,
+               [this](const Finding& look) { See(look); }),
         order_(options.order, *this),
         clock_(layout_.sample_time, IsLive(options.source)),
-        queue_(layout_.channels.size(),
-               static_cast<std::size_t>(
-                   std::lround(options.queue / layout_.sample_time)),
-               IsLive(options.source) ? TickQueue::WhenFull::kLose
-                                      : TickQueue::WhenFull::kWait,
-               counts_),
+        queue_(
+            layout_.channels.size(),
+            static_cast<std::size_t>(std::lround(options.queue / layout_.sample_time)),
+            IsLive(options.source) ? TickQueue::WhenFull::kLose
+                                   : TickQueue::WhenFull::kWait,
+            counts_),
         events_(options) {
     state_.setup = machine.setup().name;
     state_.started = state_.source.since = WallClock();
@@ -165,8 +166,9 @@ class LiveWatch::Work final : public OrderedSink {
       options_.on_note(std::string(error.what()) + "; put aside as " + aside.string());
       return;
     }
-    throw OtherHistory(file.string(), "it is of '" + kept.at("setup").get<std::string>() + "'",
-                     "the history of '" + state_.setup + "', or another --out");
+    throw OtherHistory(file.string(),
+                       "it is of '" + kept.at("setup").get<std::string>() + "'",
+                       "the history of '" + state_.setup + "', or another --out");
   }
 
   LiveAnswers Answers() {
@@ -338,7 +340,7 @@ class LiveWatch::Work final : public OrderedSink {
   TickQueue queue_;
   EventLog events_;
   double last_tick_ = 0.0;
-  double heard_ = 0.0;   // when anything was taken
+  double heard_ = 0.0;  // when anything was taken
   bool look_is_early_ = true;
   double judged_ = 0.0;  // when there was a verdict, or the source began to run
   double told_ = 0.0;

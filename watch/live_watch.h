@@ -30,8 +30,8 @@ struct WatchOptions {
   OrderOptions order;
   /// Folder of watch.history and events.jsonl; empty: nothing is kept.
   std::filesystem::path folder;
-  double save_every = 120.0;  ///< [s]
-  double queue = 8.0;         ///< [s] of ticks that may wait
+  double save_every = 120.0;         ///< [s]
+  double queue = 8.0;                ///< [s] of ticks that may wait
   std::vector<FaultMeaning> faults;  ///< in the order of the design
   /// Draws the machine with the parts of these faults marked, as PNG; from a thread of its
   /// own. None: no pictures.

@@ -84,8 +84,7 @@ void AddSource(const SourceReport& source, MetricText& metrics) {
   count("nonsense_total", "Packets and lines that are no ticks.", source.nonsense);
   count("ticks_no_room_total", "Ticks lost because the diagnosis was behind.",
         source.no_room);
-  count("datagrams_dropped_total", "Datagrams that the system dropped.",
-        source.kernel);
+  count("datagrams_dropped_total", "Datagrams that the system dropped.", source.kernel);
   count("sender_runs_total", "Times that the sender began.", source.order.runs);
   count("diagnosis_runs_total", "Times that the diagnosis began.", source.runs);
   metrics.One("clock_rate", "gauge",

@@ -27,8 +27,8 @@ TEST(AddressTest, ReadsWhatIsDocumented) {
 TEST(AddressTest, RefusesAnythingElseInOneLine) {
   for (const char* text : {"", "tcp:1", "udp:", "udp:host", "udp:host:x", "udp:1:70000",
                            "udp:0", "mqtt:host", "mqtt:/topic", "udp:[::1"}) {
-    const std::string message = test::MessageOf<InputError>(
-        [&] { ParseStreamAddress(text, "--source"); });
+    const std::string message =
+        test::MessageOf<InputError>([&] { ParseStreamAddress(text, "--source"); });
     EXPECT_THAT(message, HasSubstr("--source")) << text;
     EXPECT_THAT(message, HasSubstr("; expected ")) << text;
   }

@@ -36,7 +36,8 @@ TEST(StreamClockTest, HasNothingToSayOfClocksThatAgree) {
 TEST(StreamClockTest, NoticesTicksOfAnotherRateByTheClockOfTheSender) {
   const StreamClock clock = Ticked(2.0, 2.0);
   EXPECT_TRUE(clock.wrong_rate());
-  EXPECT_THAT(clock.Notes(), Contains(HasSubstr("every 2.00 ms, the setup says every 1.00 ms")));
+  EXPECT_THAT(clock.Notes(),
+              Contains(HasSubstr("every 2.00 ms, the setup says every 1.00 ms")));
 }
 
 TEST(StreamClockTest, NoticesTicksOfAnotherRateWithoutAClockOfTheSender) {
@@ -50,7 +51,8 @@ TEST(StreamClockTest, SaysThatClocksDrift) {
 }
 
 TEST(StreamClockTest, SaysThatDatesDiffer) {
-  EXPECT_THAT(Ticked(1.0, 1.0, -3600.0).Notes(), Contains(HasSubstr("behind this one")));
+  EXPECT_THAT(Ticked(1.0, 1.0, -3600.0).Notes(),
+              Contains(HasSubstr("behind this one")));
 }
 
 TEST(StreamClockTest, AClockThatIsSetIsNoGapAndNoOtherRate) {

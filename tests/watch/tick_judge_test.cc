@@ -20,7 +20,7 @@ class TickJudgeTest : public testing::Test, public TickObserver {
     RunOptions run;
     run.repeat = true;
     run.observer = this;
-    running_ = StartLinear(machine_, DefaultMotion(machine_.setup()), run);
+    running_ = StartLinear(*machine, DefaultMotion(machine->setup()), run);
     judge_.OnNewRun();
   }
 
@@ -53,16 +53,21 @@ class TickJudgeTest : public testing::Test, public TickObserver {
 
   static constexpr double kTick = 1.25e-4;
 
-  static PreparedDiagnosis Prepare(const Machine& machine) {
+  static void SetUpTestSuite() {
+    machine = std::make_unique<Machine>(test::Bonder());
     DiagnosisSource source;
     source.nominal.linear = true;
-    return PrepareDiagnosis(machine, source);
+    prepared = std::make_unique<PreparedDiagnosis>(PrepareDiagnosis(*machine, source));
+  }
+  static void TearDownTestSuite() {
+    prepared.reset();
+    machine.reset();
   }
 
-  Machine machine_ = test::Bonder();
-  PreparedDiagnosis prepared_ = Prepare(machine_);
+  inline static std::unique_ptr<Machine> machine;
+  inline static std::unique_ptr<PreparedDiagnosis> prepared;
   std::vector<Finding> looks_;
-  TickJudge judge_{machine_, prepared_, JudgeOptions{},
+  TickJudge judge_{*machine, *prepared, JudgeOptions{},
                    [this](const Finding& look) { looks_.push_back(look); }};
   std::unique_ptr<RunningMachine> running_;
   std::vector<double> values_;
@@ -82,7 +87,7 @@ TEST_F(TickJudgeTest, LooksTenTimesASecondAndFindsNothingOnAHealthyMachine) {
 
 TEST_F(TickJudgeTest, NamesAFaultThatAppears) {
   Watch(10.0);
-  running_->Become(machine_.With({{{"zeta_x", 1.2}}, {}}));
+  running_->Become(machine->With({{{"zeta_x", 1.2}}, {}}));
   Watch(20.0);
   EXPECT_EQ(last().kind, VerdictKind::kFault) << last().words;
   EXPECT_TRUE(Fault("zeta_x").detected);
@@ -105,11 +110,20 @@ TEST_F(TickJudgeTest, BeginsAnewBehindAGapAndSaysNothingWrong) {
 }
 
 TEST_F(TickJudgeTest, FindsAFaultInARunThatBeginsInMotion) {
-  running_->Become(machine_.With({{{"zeta_x", 1.2}}, {}}));
+  running_->Become(machine->With({{{"zeta_x", 1.2}}, {}}));
   for (int k = 0; k < 1234; ++k) running_->Tick();
   Watch(20.0);
   EXPECT_EQ(last().kind, VerdictKind::kFault) << last().words;
   EXPECT_NEAR(Fault("zeta_x").value, 1.2, 5.0 * Fault("zeta_x").sd);
+}
+
+TEST_F(TickJudgeTest, WhatARunInMotionNamesWithoutAnAlarmASecondHasToNameToo) {
+  // From here on a twin takes what is left of its start for stiffer mounts.
+  for (int k = 0; k < 72778; ++k) running_->Tick();
+  Watch(8.0);
+  EXPECT_EQ(judge_.runs(), 2);
+  EXPECT_EQ(last().kind, VerdictKind::kHealthy) << last().words;
+  for (const Finding& look : looks_) EXPECT_NE(look.kind, VerdictKind::kFault);
 }
 
 TEST_F(TickJudgeTest, DoesWithoutReadingsThatAreMissing) {

@@ -40,15 +40,15 @@ struct Stretch {
 };
 
 struct Finding {
-  double time = 0.0;              ///< of its last tick, by our clock [s since 1970]
-  double run_time = 0.0;          ///< since the run of the diagnosis began [s]
-  std::int64_t missing = 0;       ///< ticks since the look before
-  Stretch residual;               ///< since the look before
-  double integral = 0.0;          ///< mean of |r| over the setup's window
-  bool residual_alarm = false;    ///< since the look before, at any tick
-  bool lasting_alarm = false;     ///< now
+  double time = 0.0;            ///< of its last tick, by our clock [s since 1970]
+  double run_time = 0.0;        ///< since the run of the diagnosis began [s]
+  std::int64_t missing = 0;     ///< ticks since the look before
+  Stretch residual;             ///< since the look before
+  double integral = 0.0;        ///< mean of |r| over the setup's window
+  bool residual_alarm = false;  ///< since the look before, at any tick
+  bool lasting_alarm = false;   ///< now
   VerdictKind kind = VerdictKind::kSettling;
-  std::string words;              ///< DiagnosisVerdict
+  std::string words;  ///< DiagnosisVerdict
   /// Faults, misfit, and the disturbance of the last stretch that was analysed, with the
   /// tones that were in the one before, too.
   DiagnosisResult result;

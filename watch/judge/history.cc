@@ -108,7 +108,8 @@ std::vector<HistoryRow> History::Rows(std::size_t level, double from) const {
   const Level& wanted = levels_.at(level);
   const auto first = std::ranges::lower_bound(wanted.rows, from, {}, &HistoryRow::time);
   std::vector<HistoryRow> rows(first, wanted.rows.end());
-  if (wanted.any && wanted.growing.row.time >= from) rows.push_back(RowOf(wanted.growing));
+  if (wanted.any && wanted.growing.row.time >= from)
+    rows.push_back(RowOf(wanted.growing));
   return rows;
 }
 
@@ -157,8 +158,7 @@ nlohmann::json History::Restore(std::string_view bytes, const std::string& what)
   }
   std::string_view body = all.substr(end + 1);
   const std::size_t row_bytes =
-      sizeof(double) + sizeof(std::uint32_t) +
-      3 * sizeof(float) * quantities_.size();
+      sizeof(double) + sizeof(std::uint32_t) + 3 * sizeof(float) * quantities_.size();
   const std::lock_guard lock(mutex_);
   levels_ = {};
   for (std::size_t i = 0; i < head["levels"].size(); ++i) {

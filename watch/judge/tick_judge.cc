@@ -17,6 +17,10 @@ constexpr double kFiltersSettle = 0.1;
 /// An alarm of the residual counts for so long [s].
 constexpr double kAlarmLasts = 1.0;
 constexpr Index kSegments = 4;
+/// A run that began in motion is fresh for so long [s].
+constexpr double kFresh = 10.0;
+/// Standard deviations within which a first reading is one at rest, as a monitor has it.
+constexpr double kAtRest = 6.0;
 /// Bins of a spectrum within which two tones are one.
 constexpr double kSameTone = 2.0;
 
@@ -51,9 +55,9 @@ TickJudge::TickJudge(const Machine& machine, const PreparedDiagnosis& prepared,
   };
   look_ticks_ = ticks(options.look);
   skipped_ticks_ = ticks(kFiltersSettle);
-  stretch_ticks_ = skipped_ticks_ +
-                   std::max(ticks(options.stretch),
-                            kSegments * design().limits.disturbance.segment);
+  stretch_ticks_ =
+      skipped_ticks_ +
+      std::max(ticks(options.stretch), kSegments * design().limits.disturbance.segment);
   const std::size_t outputs = design().outputs.size();
   measured_ = std::make_unique<bool[]>(outputs);
   last_.resize(outputs + design().inputs.size());
@@ -66,10 +70,16 @@ void TickJudge::OnMissing(std::int64_t ticks) {
   missing_ += ticks;
 }
 
-void TickJudge::Begin() {
+void TickJudge::Begin(std::span<const double> values) {
   recording_ = std::make_unique<DiagnosisRecording>(
       BeginDiagnosis(machine_, prepared_, stretch_ticks_));
   ++runs_;
+  confirmed_ = in_motion_ = false;
+  for (std::size_t i = 0; i < design().outputs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    in_motion_ = in_motion_ || std::abs(values[i] - design().offset[at]) >
+                                   kAtRest * design().sensor_noise[at];
+  }
   since_look_ = 0;
   residual_ = {};
   alarm_ = any_alarm_ = false;
@@ -85,7 +95,7 @@ void TickJudge::OnTick(const TickHead& head, std::span<const double> values) {
   // Without its command a tick is as good as not there; and a run begins with all readings.
   if (!std::ranges::all_of(values.subspan(outputs), is_finite)) return OnMissing(1);
   if (!begun && !std::ranges::all_of(values, is_finite)) return OnMissing(1);
-  if (!begun) Begin();
+  if (!begun) Begin(values);
   Feed(values);
   AfterTick(head.arrived);
 }
@@ -119,6 +129,7 @@ void TickJudge::AfterTick(double arrived) {
   residual_.Add(monitor.residuals()[0]);
   alarm_ = alarm_ || monitor.residual_alarm();
   if (++since_look_ >= look_ticks_) LookAt(arrived);
+  if (recording_ == nullptr) return;  // another opinion is wanted
   if (recording_->recorder.samples() >= stretch_ticks_) AnalyseStretchOfRun();
 }
 
@@ -170,8 +181,27 @@ void TickJudge::LookAt(double time) {
   if (look.run_time < options_.settle) {
     look.kind = VerdictKind::kSettling;
     look.words = "The diagnosis of this run has just begun.";
+  } else if (WantsAnotherOpinion(look)) {
+    look.kind = VerdictKind::kSettling;
+    look.words = "What the diagnosis of this run says is being looked at again.";
+    recording_.reset();
   }
   on_look_(look);
+}
+
+bool TickJudge::WantsAnotherOpinion(const Finding& look) {
+  if (look.kind != VerdictKind::kFault) {
+    suspects_.clear();
+    return false;
+  }
+  if (!in_motion_ || confirmed_ || any_alarm_ || look.run_time > kFresh) return false;
+  std::vector<std::string> names;
+  for (const FaultVerdict& fault : look.result.faults) {
+    if (fault.detected) names.push_back(fault.name);
+  }
+  confirmed_ = names == suspects_;
+  suspects_ = std::move(names);
+  return !confirmed_;
 }
 
 }  // namespace mjdiag

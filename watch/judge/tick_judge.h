@@ -11,6 +11,11 @@
 //                     monitor, twin and filters begin anew, in motion. What was said
 //                     stands till the new run has something to say
 //
+// A twin that begins in motion has to guess how the machine moved, and mistakes now and
+// then what is left of the guess for a small fault. What such a run names in its first
+// seconds while the residual is within its limits has to be named by another run, too,
+// which begins then.
+//
 // Tones and noise are looked for in stretches of the disturbance residual, one after the
 // other; a tone counts, and noise is raised, that two of them in a row show: one in
 // ten thousand stretches shows one by chance, and a day has tens of thousands. A stretch
@@ -52,12 +57,13 @@ class TickJudge final : public OrderedSink {
   std::int64_t runs() const { return runs_; }  ///< of the diagnosis
 
  private:
-  void Begin();
+  void Begin(std::span<const double> values);
   void Feed(std::span<const double> values);
   void AfterTick(double arrived);
   void BeginStretch();
   void AnalyseStretchOfRun();
   void LookAt(double time);
+  bool WantsAnotherOpinion(const Finding& look);
 
   const Machine& machine_;
   const PreparedDiagnosis& prepared_;
@@ -69,7 +75,7 @@ class TickJudge final : public OrderedSink {
   std::unique_ptr<DiagnosisRecording> recording_;
   std::vector<double> last_;  // values that were fed
   std::unique_ptr<bool[]> measured_;
-  std::int64_t missing_ = 0;     // ticks since the last look
+  std::int64_t missing_ = 0;  // ticks since the last look
   std::int64_t runs_ = 0;
   Eigen::Index since_look_ = 0;
   Stretch residual_;
@@ -77,7 +83,10 @@ class TickJudge final : public OrderedSink {
   std::optional<DisturbanceReport> stretch_before_;
   DisturbanceReport disturbance_;
   bool analysed_ = false;
-  double last_alarm_ = 0.0;  // since the run began [s]
+  bool in_motion_ = false;             // when the run began
+  bool confirmed_ = false;             // what it names, by the run before
+  std::vector<std::string> suspects_;  // that such a run has named
+  double last_alarm_ = 0.0;            // since the run began [s]
   bool any_alarm_ = false;
 };
 

@@ -18,7 +18,7 @@ struct Verdict {
   double since = 0.0;              ///< that it is said [s since 1970]
   /// That something is wrong, whatever it was said to be [s since 1970]; 0: nothing is.
   double wrong_since = 0.0;
-  double last = 0.0;  ///< look that said it [s since 1970]
+  double last = 0.0;                 ///< look that said it [s since 1970]
   std::vector<FaultVerdict> faults;  ///< those that are named, as of that look
 
   bool SameAs(const Verdict& other) const {

@@ -43,7 +43,8 @@ HostPort ParseHostPort(std::string_view text, int fallback, const std::string& w
   }
   const std::size_t colon = text.rfind(':');
   if (colon != text.npos) {
-    return {std::string(text.substr(0, colon)), ParsePort(text.substr(colon + 1), what)};
+    return {std::string(text.substr(0, colon)),
+            ParsePort(text.substr(colon + 1), what)};
   }
   const bool digits = !text.empty() && std::ranges::all_of(text, [](char c) {
     return c >= '0' && c <= '9';
@@ -77,9 +78,8 @@ StreamAddress ParseStreamAddress(std::string_view text, const std::string& what)
 
 std::string Describe(const StreamAddress& address) {
   const bool six = address.host.find(':') != std::string::npos;
-  const std::string place =
-      (six ? "[" + address.host + "]" : address.host) + ":" +
-      std::to_string(address.port);
+  const std::string place = (six ? "[" + address.host + "]" : address.host) + ":" +
+                            std::to_string(address.port);
   switch (address.kind) {
     case StreamAddress::Kind::kProcess:
       return "stdin";

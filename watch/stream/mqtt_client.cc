@@ -29,9 +29,9 @@ namespace {
 
 /// Messages that wait for a broker.
 constexpr std::size_t kMostWaiting = 1000;
-constexpr int kKeepAlive = 10;     // s
-constexpr int kLongestPause = 5;   // s between attempts
-constexpr int kAtLeastOnce = 1;    // quality of service
+constexpr int kKeepAlive = 10;    // s
+constexpr int kLongestPause = 5;  // s between attempts
+constexpr int kAtLeastOnce = 1;   // quality of service
 
 struct Library {
   Library() { mosquitto_lib_init(); }
@@ -99,7 +99,8 @@ class MosquittoClient final : public MqttClient {
                        "a file of certificates in PEM");
     }
     if (!topic_.empty() && mosquitto_sub_topic_check(topic_.c_str()) != 0) {
-      throw InputError(Describe(address), "no topic of MQTT", "for example plant/ticks");
+      throw InputError(Describe(address), "no topic of MQTT",
+                       "for example plant/ticks");
     }
     mosquitto_reconnect_delay_set(client_, 1, kLongestPause, true);
     mosquitto_connect_callback_set(client_, [](mosquitto*, void* self, int refusal) {

@@ -35,9 +35,9 @@ class DescriptorSource final : public Source {
  public:
   DescriptorSource(int descriptor, const TickLayout& layout, TickQueue& queue,
                    StreamCounts& counts)
-      : queue_(queue), decoder_(layout, queue, counts), thread_([this, descriptor] {
-          Read(descriptor);
-        }) {}
+      : queue_(queue),
+        decoder_(layout, queue, counts),
+        thread_([this, descriptor] { Read(descriptor); }) {}
   ~DescriptorSource() override {
     stop_ = true;
     queue_.Close();
@@ -115,9 +115,9 @@ class UdpSource final : public Source {
     }
     const std::string_view from(reinterpret_cast<const char*>(&sender),
                                 message.msg_namelen);
-    decoder_.TakeMessage({bytes.data(), static_cast<std::size_t>(count)},
-                         static_cast<std::uint32_t>(std::hash<std::string_view>()(from)),
-                         WallClock());
+    decoder_.TakeMessage(
+        {bytes.data(), static_cast<std::size_t>(count)},
+        static_cast<std::uint32_t>(std::hash<std::string_view>()(from)), WallClock());
   }
 
   std::string name_;
@@ -134,10 +134,9 @@ class MqttSource final : public Source {
              const MqttLogin& login, TickQueue& queue, StreamCounts& counts)
       : name_(Describe(address)),
         decoder_(layout, queue, counts),
-        client_(OpenMqtt(
-            address, login, [this](std::string_view message) {
-              decoder_.TakeMessage(message, 0, WallClock());
-            })) {}
+        client_(OpenMqtt(address, login, [this](std::string_view message) {
+          decoder_.TakeMessage(message, 0, WallClock());
+        })) {}
 
   std::string Name() const override { return name_; }
   std::string Trouble() const override { return client_->Trouble(); }

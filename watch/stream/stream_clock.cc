@@ -67,7 +67,8 @@ void StreamClock::Add(const TickHead& head) {
       sample_time_ * static_cast<double>(head.number - first_->number);
   if (counted < kShortest) return;
   report_.sent_rate = (head.sent - first_->sent) / counted - 1.0;
-  if (live_ && counted > kShortestArrival) report_.arrived_rate = (head.arrived - first_->arrived) / counted - 1.0;
+  if (live_ && counted > kShortestArrival)
+    report_.arrived_rate = (head.arrived - first_->arrived) / counted - 1.0;
   if (counted > kStretch) first_ = head;
 }
 
@@ -78,8 +79,8 @@ bool StreamClock::wrong_rate() const {
 
 std::vector<std::string> StreamClock::Notes() const {
   std::vector<std::string> notes;
-  const double rate = std::isnan(report_.sent_rate) ? report_.arrived_rate
-                                                    : report_.sent_rate;
+  const double rate =
+      std::isnan(report_.sent_rate) ? report_.arrived_rate : report_.sent_rate;
   if (wrong_rate()) {
     notes.push_back("Ticks come every " +
                     FormatQuantity(sample_time_ * (1.0 + rate), "s") +
@@ -96,8 +97,7 @@ std::vector<std::string> StreamClock::Notes() const {
                     " this one; times here are of this one.");
   }
   if (report_.steps > 0) {
-    notes.push_back("The clock of the sender was set " +
-                    std::to_string(report_.steps) +
+    notes.push_back("The clock of the sender was set " + std::to_string(report_.steps) +
                     (report_.steps == 1 ? " time." : " times."));
   }
   return notes;

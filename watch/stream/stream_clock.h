@@ -17,8 +17,8 @@ namespace mjdiag {
 struct ClockReport {
   double sent_rate = 0.0;     ///< time of the sender over that of the count, less 1
   double arrived_rate = 0.0;  ///< ours over that of the count, less 1
-  double offset = 0.0;        ///< clock of the sender less ours [s], if it shows the date
-  std::int64_t steps = 0;     ///< times that the clock of the sender was set
+  double offset = 0.0;     ///< clock of the sender less ours [s], if it shows the date
+  std::int64_t steps = 0;  ///< times that the clock of the sender was set
 };
 
 class StreamClock {

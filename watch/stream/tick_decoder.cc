@@ -35,8 +35,8 @@ std::size_t TickDecoder::TakePacket(std::string_view bytes, bool whole,
   if (bytes.size() < head.bytes()) {
     if (whole) {
       counts_.AddNonsense("packet: " + std::to_string(bytes.size()) +
-                          " bytes; expected " + std::to_string(head.bytes()) +
-                          " for " + std::to_string(head.ticks) + " ticks");
+                          " bytes; expected " + std::to_string(head.bytes()) + " for " +
+                          std::to_string(head.ticks) + " ticks");
     }
     return 0;
   }
@@ -50,10 +50,9 @@ std::size_t TickDecoder::TakePacket(std::string_view bytes, bool whole,
     if (head.sent != 0) {
       tick.sent = 1e-9 * static_cast<double>(head.sent) + k * layout_.sample_time;
     }
-    sink_.Add(tick,
-              std::span(values_).subspan(std::size_t{head.channels} *
-                                             static_cast<std::size_t>(k),
-                                         head.channels));
+    sink_.Add(tick, std::span(values_).subspan(
+                        std::size_t{head.channels} * static_cast<std::size_t>(k),
+                        head.channels));
   }
   return head.bytes();
 }

@@ -53,13 +53,13 @@ class TickLines {
   StreamCounts& counts_;
   char separator_ = ',';
   std::uint32_t stream_ = 0;
-  std::size_t width_ = 0;        // columns of a line
-  std::optional<Column> tick_;   // which counts
+  std::size_t width_ = 0;       // columns of a line
+  std::optional<Column> tick_;  // which counts
   std::optional<Column> time_;
   std::vector<Column> columns_;  // of the channels
   std::vector<double> cells_;
   std::vector<double> values_;
-  std::int64_t latest_ = 0;           // tick
+  std::int64_t latest_ = 0;            // tick
   std::optional<double> latest_time_;  // [s]
 };
 

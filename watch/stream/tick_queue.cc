@@ -8,10 +8,7 @@ namespace mjdiag {
 
 TickQueue::TickQueue(std::size_t channels, std::size_t capacity, WhenFull when_full,
                      StreamCounts& counts)
-    : channels_(channels),
-      capacity_(capacity),
-      when_full_(when_full),
-      counts_(counts) {
+    : channels_(channels), capacity_(capacity), when_full_(when_full), counts_(counts) {
   waiting_.heads.reserve(capacity);
   waiting_.values.reserve(capacity * channels);
 }

@@ -42,8 +42,8 @@ Transport TransportTo(const StreamAddress& address, const MqttLogin& login) {
     case StreamAddress::Kind::kProcess:
       return [](std::string_view bytes) { return WriteAll(STDOUT_FILENO, bytes); };
     case StreamAddress::Kind::kUdp: {
-      auto socket = std::make_shared<Descriptor>(
-          ConnectForDatagrams(address.host, address.port));
+      auto socket =
+          std::make_shared<Descriptor>(ConnectForDatagrams(address.host, address.port));
       return [socket](std::string_view bytes) {
         return send(socket->get(), bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
                static_cast<ssize_t>(bytes.size());
@@ -70,9 +70,8 @@ void AppendNumber(double value, std::string& text) {
 /// With as many digits as tell ticks apart.
 void AppendTime(double time, std::string& text) {
   std::array<char, 48> digits{};
-  const auto [end, error] =
-      std::to_chars(digits.data(), digits.data() + digits.size(), time,
-                    std::chars_format::fixed, 7);
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(),
+                                          time, std::chars_format::fixed, 7);
   text.append(digits.data(), end);
 }
 
@@ -94,8 +93,8 @@ class BatchSender final : public TickSender {
       throw InputError("ticks in a packet", std::to_string(batch_),
                        std::to_string(most) + " at most, which fill it");
     }
-    if (options.format == TickFormat::kLines && address.kind ==
-        StreamAddress::Kind::kProcess) {
+    if (options.format == TickFormat::kLines &&
+        address.kind == StreamAddress::Kind::kProcess) {
       AppendNames();
       transport_(bytes_);
     }
@@ -130,7 +129,8 @@ class BatchSender final : public TickSender {
 
  private:
   PacketHead Head(std::int64_t number, double time, std::size_t ticks) const {
-    return {stream_, number, std::llround(1e9 * time), static_cast<std::uint16_t>(ticks),
+    return {stream_, number, std::llround(1e9 * time),
+            static_cast<std::uint16_t>(ticks),
             static_cast<std::uint8_t>(layout_.channels.size())};
   }
 
@@ -138,11 +138,12 @@ class BatchSender final : public TickSender {
     const std::size_t width = layout_.channels.size();
     if (options_.twice && !before_.empty()) {
       const std::size_t ticks = before_.size() / width;
-      AppendPacket(Head(number_ - static_cast<std::int64_t>(ticks), before_time_, ticks),
-                   before_, bytes_);
+      AppendPacket(
+          Head(number_ - static_cast<std::int64_t>(ticks), before_time_, ticks),
+          before_, bytes_);
     }
-    AppendPacket(Head(number_, first_time_, static_cast<std::size_t>(waiting_)), values_,
-                 bytes_);
+    AppendPacket(Head(number_, first_time_, static_cast<std::size_t>(waiting_)),
+                 values_, bytes_);
     before_ = values_;
     before_time_ = first_time_;
   }
