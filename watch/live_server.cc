@@ -100,6 +100,7 @@ struct LiveServer::State {
   Board board;
   std::atomic<int> readers = 0;
   httplib::Server server;
+  std::atomic<bool> ended = false;
   std::thread thread;
 
   void Configure();
@@ -233,7 +234,10 @@ void LiveServer::State::Listen() {
   const bool six = options.host.find(':') != std::string::npos;
   url = "http://" + (six ? "[" + options.host + "]" : options.host) + ":" +
         std::to_string(port) + "/";
-  thread = std::thread([this] { server.listen_after_bind(); });
+  thread = std::thread([this] {
+    server.listen_after_bind();
+    ended = true;
+  });
 }
 
 LiveServer::LiveServer(const ServerOptions& options, const PageParts& parts,
@@ -249,7 +253,7 @@ LiveServer::LiveServer(const ServerOptions& options, const PageParts& parts,
 LiveServer::~LiveServer() {
   state_->board.Close();
   // It can only be stopped once it runs.
-  while (!state_->server.is_running()) {
+  while (!state_->server.is_running() && !state_->ended) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   state_->server.stop();

@@ -101,7 +101,7 @@ TEST_F(TickJudgeTest, BeginsAnewBehindAGapAndSaysNothingWrong) {
   Watch(4.0);
   Lose(1);
   Watch(4.0);
-  EXPECT_EQ(judge_.runs(), 3);
+  EXPECT_GE(judge_.runs(), 3);  // and where another opinion was wanted
   for (const Finding& look : looks_) {
     EXPECT_TRUE(look.kind == VerdictKind::kHealthy ||
                 look.kind == VerdictKind::kSettling)
