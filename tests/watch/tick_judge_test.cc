@@ -95,6 +95,14 @@ TEST_F(TickJudgeTest, NamesAFaultThatAppears) {
   EXPECT_FALSE(Fault("eta_x").detected);
 }
 
+TEST_F(TickJudgeTest, FindsAFaultAgainWhoseTwinHasLostTheMachine) {
+  Watch(4.0);
+  running_->Become(machine->With({{{"zeta_x", 1.2}}, {}}));
+  Watch(16.0);
+  EXPECT_EQ(last().kind, VerdictKind::kFault) << last().words;
+  EXPECT_TRUE(Fault("zeta_x").detected);
+}
+
 TEST_F(TickJudgeTest, BeginsAnewBehindAGapAndSaysNothingWrong) {
   Watch(5.0);
   Lose(777);

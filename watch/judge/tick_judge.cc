@@ -19,6 +19,9 @@ constexpr double kAlarmLasts = 1.0;
 constexpr Index kSegments = 4;
 /// A run that began in motion is fresh for so long [s].
 constexpr double kFresh = 10.0;
+/// A twin that has lost its machine (kLost) is given
+/// twice the time whenever to begin anew was in vain, up to this [s].
+constexpr double kLongestLost = 60.0;
 /// Standard deviations within which a first reading is one at rest, as a monitor has it.
 constexpr double kAtRest = 6.0;
 /// Bins of a spectrum within which two tones are one.
@@ -75,6 +78,7 @@ void TickJudge::Begin(std::span<const double> values) {
       BeginDiagnosis(machine_, prepared_, stretch_ticks_));
   ++runs_;
   confirmed_ = in_motion_ = false;
+  known_ = 0.0;
   for (std::size_t i = 0; i < design().outputs.size(); ++i) {
     const auto at = static_cast<Index>(i);
     in_motion_ = in_motion_ || std::abs(values[i] - design().offset[at]) >
@@ -185,8 +189,22 @@ void TickJudge::LookAt(double time) {
     look.kind = VerdictKind::kSettling;
     look.words = "What the diagnosis of this run says is being looked at again.";
     recording_.reset();
+  } else if (HasLostTheMachine(look.run_time)) {
+    recording_.reset();
   }
   on_look_(look);
+}
+
+bool TickJudge::HasLostTheMachine(double run_time) {
+  const TwinEstimator* twin = recording_->monitor.twin();
+  if (twin == nullptr || !twin->estimator().began() || twin->estimator().current()) {
+    if (run_time > options_.settle + kFresh) lost_patience_ = kLost;
+    known_ = run_time;
+    return false;
+  }
+  if (run_time - known_ < lost_patience_) return false;
+  lost_patience_ = std::min(2.0 * lost_patience_, kLongestLost);
+  return true;
 }
 
 bool TickJudge::WantsAnotherOpinion(const Finding& look) {

@@ -16,6 +16,9 @@
 // seconds while the residual is within its limits has to be named by another run, too,
 // which begins then.
 //
+// And now and then a twin does not find its machine again after a change: then another run
+// begins, too.
+//
 // Tones and noise are looked for in stretches of the disturbance residual, one after the
 // other; a tone counts, and noise is raised, that two of them in a row show: one in
 // ten thousand stretches shows one by chance, and a day has tens of thousands. A stretch
@@ -35,6 +38,9 @@
 #include "mjdiag/watch/stream/tick_order.h"
 
 namespace mjdiag {
+
+/// A twin that does not know its machine any more for so long begins anew [s].
+inline constexpr double kLost = 3.0;
 
 struct JudgeOptions {
   double look = 0.1;     ///< [s] between looks
@@ -63,6 +69,7 @@ class TickJudge final : public OrderedSink {
   void BeginStretch();
   void AnalyseStretchOfRun();
   void LookAt(double time);
+  bool HasLostTheMachine(double run_time);
   bool WantsAnotherOpinion(const Finding& look);
 
   const Machine& machine_;
@@ -86,7 +93,9 @@ class TickJudge final : public OrderedSink {
   bool in_motion_ = false;             // when the run began
   bool confirmed_ = false;             // what it names, by the run before
   std::vector<std::string> suspects_;  // that such a run has named
-  double last_alarm_ = 0.0;            // since the run began [s]
+  double known_ = 0.0;  // when the twin last knew its machine, since the run began [s]
+  double lost_patience_ = kLost;
+  double last_alarm_ = 0.0;  // since the run began [s]
   bool any_alarm_ = false;
 };
 
