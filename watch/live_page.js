@@ -19,7 +19,7 @@
 
   const finite = (value) => value !== null && Number.isFinite(value);
 
-  // As many digits as the interval says are there, and no more than six.
+  // Six digits, if nobody says otherwise.
   function number(value, digits) {
     if (!finite(value)) return '–';
     return value === 0 ? '0' : String(parseFloat(value.toPrecision(digits || 6)));
@@ -133,8 +133,8 @@
       row.append(
         element('td', fault.meaning ? fault.name + ', ' + fault.meaning : fault.name),
         element('td', known ? number(fault.value) : '–', 'number'),
-        element('td', known ? number(fault.ci95[0]) + ' … ' + number(fault.ci95[1]) :
-            'not told by the motion so far', 'number'));
+        element('td', known ? '± ' + number((fault.ci95[1] - fault.ci95[0]) / 2, 2) :
+            'not told so far', 'number'));
       const cell = element('td');
       if (known) cell.append(drawInterval(fault));
       row.append(cell);
@@ -169,7 +169,7 @@
     const stamp = state.events.length + ':' + (last ? last.time : 0);
     if (list.dataset.stamp === stamp) return;
     list.dataset.stamp = stamp;
-    list.replaceChildren(...state.events.slice().reverse().map((event) => {
+    list.replaceChildren(...state.events.slice().sort((a, b) => b.time - a.time).map((event) => {
       const item = element('li');
       item.append(element('time', moment(event.time)), event.words);
       return item;
