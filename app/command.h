@@ -15,6 +15,9 @@ void AddDiscover(CLI::App& app);
 void AddRender(CLI::App& app);
 void AddStudy(CLI::App& app);
 void AddReport(CLI::App& app);
+#ifdef MJDIAG_HAS_WATCH
+void AddWatch(CLI::App& app);
+#endif
 
 /// The command line as it was typed, for files that say how they were made.
 const std::string& CommandLine();

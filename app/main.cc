@@ -41,6 +41,10 @@ void RequireKnownCommand(const CLI::App& app, int argc, char** argv) {
     if (command->get_name() == argv[1]) return;
     known += (known.empty() ? "" : ", ") + command->get_name();
   }
+  if (std::string(argv[1]) == "watch") {
+    throw InputError("command line", "this mjdiag was built without 'watch'",
+                     "one that was built where libcpp-httplib-dev is installed");
+  }
   throw InputError("command line", std::string("no command '") + argv[1] + "'",
                    "one of " + known);
 }
@@ -73,6 +77,9 @@ int Main(int argc, char** argv) {
   AddRender(app);
   AddStudy(app);
   AddReport(app);
+#ifdef MJDIAG_HAS_WATCH
+  AddWatch(app);
+#endif
   try {
     RequireKnownCommand(app, argc, argv);
     app.parse(argc, argv);

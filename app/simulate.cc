@@ -9,6 +9,7 @@
 #include "app/diagnosis_output.h"
 #include "app/format.h"
 #include "app/output.h"
+#include "app/stream.h"
 #include "app/subject.h"
 #include "app/tolerance_output.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
@@ -29,6 +30,7 @@ struct SimulateOptions {
   bool diagnose = false;
   bool tolerate = false;
   DiagnosisSource source;
+  StreamOptions stream;
 };
 
 /// Largest |reference - reading| of every axis.
@@ -65,6 +67,9 @@ void Simulate(const SimulateOptions& options) {
   Subject subject = LoadSubject(options.machine);
   SetMotion(options.motion, subject.options);
   CheckMode(subject.setup().control, subject.options.mode);
+  if (options.stream.wanted()) {
+    return Stream(subject, options.motion, options.stream);
+  }
   subject.options.log_joints = options.log_joints;
   std::vector<std::string> notes;
   const Excitation excitation = MakeExcitation(subject.setup(), options.motion, notes);
@@ -156,6 +161,7 @@ void AddSimulate(CLI::App& app) {
   command->add_flag("--tolerate", options->tolerate,
                     "Let what it finds act on the controllers while the machine runs");
   AddDiagnosisOptions(*command, options->source);
+  AddStreamOptions(*command, options->stream);
   command->callback([options] { Simulate(*options); });
 }
 

@@ -36,7 +36,8 @@ if(TARGET mjdiag_precompiled)
 endif()
 
 # mjdiag_folder(<path> LINKS <targets...> [PRIVATE_LINKS <targets...>]
-#               [HEADERS_OF <targets...>] [WITH <folders...>] [PART <part>])
+#               [HEADERS_OF <targets...>] [WITH <folders...>] [PART <part>]
+#               [NOT_INSTALLED])
 #
 # Makes a library target from the .cc files directly in the folder <path>: for
 # plugin/plant mjdiag_plugin_plant (alias mjdiag::plugin_plant). Its headers are
@@ -48,9 +49,9 @@ endif()
 # the other way round. HEADERS_OF: libraries of headers only, which a program that links
 # the folder does not need. PART: of the installed package (Parts.cmake), by default the
 # first folder of the path. Which headers are installed, docs/api.md says
-# (InstallHeaders.cmake).
+# (InstallHeaders.cmake). NOT_INSTALLED: only the command has it.
 function(mjdiag_folder path)
-  cmake_parse_arguments(arg "" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF;WITH" ${ARGN})
+  cmake_parse_arguments(arg "NOT_INSTALLED" "PART" "LINKS;PRIVATE_LINKS;HEADERS_OF;WITH" ${ARGN})
   set(source ${PROJECT_SOURCE_DIR}/${path})
   set(folders ${source})
   foreach(inner IN LISTS arg_WITH)
@@ -84,6 +85,9 @@ function(mjdiag_folder path)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
   endforeach()
   mjdiag_precompile(${target} mjdiag_precompiled)
+  if(arg_NOT_INSTALLED)
+    return()
+  endif()
   if(NOT arg_PART)
     string(REGEX MATCH "^[^/]+" arg_PART ${path})
   endif()

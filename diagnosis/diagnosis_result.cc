@@ -125,6 +125,15 @@ std::vector<FaultVerdict> JudgeFaults(const DiagnosisMonitor& monitor) {
   return Judge(monitor.design(), ReadFaults(monitor, 1.0));
 }
 
+DisturbanceReport AnalyseStretch(const DiagnosisDesign& design, const MonitorLog& log,
+                                 const std::vector<FaultVerdict>& faults,
+                                 Index skipped) {
+  const Eigen::VectorXd left =
+      AnyDetected(faults) ? WithoutFaults(design, log, faults) : log.disturbance;
+  return AnalyseDisturbance(left.tail(left.size() - skipped), design.sample_time(),
+                            design.limits.disturbance, design.options.disturbance);
+}
+
 DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log) {
   const DiagnosisDesign& design = monitor.design();
   DiagnosisResult result;

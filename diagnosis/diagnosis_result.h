@@ -61,6 +61,14 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Eigen::Index fault,
 /// before the motion has told all of them apart.
 std::vector<FaultVerdict> JudgeFaults(const DiagnosisMonitor& monitor);
 
+/// What a stretch of a run says of disturbances, less what the faults that are detected put
+/// into it.
+/// @param skipped  samples at its begin, in which filters settle that began with it
+/// InputError as AnalyseDisturbance.
+DisturbanceReport AnalyseStretch(const DiagnosisDesign& design, const MonitorLog& log,
+                                 const std::vector<FaultVerdict>& faults,
+                                 Eigen::Index skipped);
+
 /// From a monitor at the end of its run, finished (DiagnosisMonitor::Finish).
 /// @param log  what a recorder kept of the whole run
 /// InputError names the faults that the motion does not tell apart.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace mjdiag {
@@ -15,6 +16,9 @@ struct Image {
 
   bool operator==(const Image&) const = default;
 };
+
+/// The bytes of a PNG file.
+std::string EncodePng(const Image& image);
 
 /// Writes a PNG under a temporary name that is renamed at the end. InputError if the
 /// folder is missing or not writable.
