@@ -63,10 +63,11 @@ XyPlot ForPage(const StudyPlot& study) {
 Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
                const RunDescription& run) {
   Page page("Study " + facts.preset + " of " + facts.setup);
-  page.AddFacts({{"Setup", facts.setup},
-                 {"Preset", facts.preset},
-                 {"Monte-Carlo runs", std::to_string(facts.runs)},
-                 {"Seed of the first run", std::to_string(facts.seed)}});
+  page.AddFacts(
+      {{"Setup", facts.setup},
+       {facts.is_plan ? "Plan" : "Preset", facts.preset},
+       {facts.is_plan ? "Runs" : "Monte-Carlo runs", std::to_string(facts.runs)},
+       {facts.is_plan ? "Seed" : "Seed of the first run", std::to_string(facts.seed)}});
   for (const StudyTable& table : tables) {
     page.AddHeading(table.title);
     page.AddTable(ForPage(table));
