@@ -146,7 +146,7 @@ Page PageOf(const StudyResultObject& result) {
                    {"study.run(folder)", "", {{"mjdiag", MJDIAG_VERSION}}});
 }
 
-py::object ToPandas(const StudyResultObject& result) {
+py::object RunFrame(const StudyResultObject& result) {
   py::object pandas;
   try {
     pandas = py::module_::import("pandas");
@@ -216,7 +216,7 @@ void BindResult(py::module_& module) {
                              axis in its SI unit, diverged, and of runs that were
                              diagnosed detected, first_detection [s], disturbed and
                              misfit.)")
-      .def("to_pandas", &ToPandas,
+      .def("to_pandas", &RunFrame,
            R"(
            The columns of runs -> pandas.DataFrame, a row for every run.)")
       .def_property_readonly(

@@ -54,8 +54,14 @@ XyPlot ForPage(const StudyPlot& study) {
     expected.x[i] = x;
     expected.y[i++] = y;
   }
-  return {study.caption, study.x_quantity,     "1", study.y_quantity, "1",
-          {measured},    {expected, intervals}};
+  XyPlot plot{study.caption, study.x_quantity, "1", study.y_quantity,
+              "1",           {measured},       {}};
+  const bool has_intervals = std::ranges::any_of(
+      study.points,
+      [](const StudyPlot::Point& point) { return point.low < point.high; });
+  if (!study.curve.empty()) plot.curves.push_back(expected);
+  if (has_intervals) plot.curves.push_back(intervals);
+  return plot;
 }
 
 }  // namespace
@@ -70,7 +76,7 @@ Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
        {facts.is_plan ? "Seed" : "Seed of the first run", std::to_string(facts.seed)}});
   for (const StudyTable& table : tables) {
     page.AddHeading(table.title);
-    page.AddTable(ForPage(table));
+    if (!table.columns.empty()) page.AddTable(ForPage(table));
     if (table.plot) page.AddPlot(ForPage(*table.plot));
     for (const std::string& note : table.notes) page.AddParagraph(note);
   }

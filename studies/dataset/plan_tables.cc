@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -216,24 +217,29 @@ struct Errors {
   }
 };
 
+/// Over the standard deviations that were claimed, of runs that have the fault, with the
+/// lines between which 95 of 100 lie.
 StudyPlot ErrorPlot(const std::string& fault, const Errors& of) {
   const double half = TwoSidedNormalQuantile(1.0 - kConfidence);
-  StudyPlot plot{"Error of the estimate of " + fault,
-                 "deviation from healthy",
-                 "estimate - truth",
-                 {},
-                 {}};
+  StudyPlot plot{
+      "Errors of the estimates of " + fault + "; 95 of 100 belong between the lines",
+      "log10 of the deviation from healthy",
+      "error over standard deviation",
+      {},
+      {}};
   const std::size_t every = of.errors.size() / kMostDrawn + 1;
-  double low = 0.0;
-  double high = 0.0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
   for (std::size_t i = 0; i < of.errors.size(); i += every) {
-    const double size = half * of.sds[i];
-    plot.points.push_back(
-        {of.deviations[i], of.errors[i], of.errors[i] - size, of.errors[i] + size});
-    low = std::min(low, of.deviations[i]);
-    high = std::max(high, of.deviations[i]);
+    if (of.deviations[i] == 0.0) continue;
+    const double size = std::log10(std::abs(of.deviations[i]));
+    const double error = of.errors[i] / of.sds[i];
+    plot.points.push_back({size, error, error, error});
+    low = std::min(low, size);
+    high = std::max(high, size);
   }
-  plot.curve = {{low, 0.0}, {high, 0.0}};
+  constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
+  plot.curve = {{low, half}, {high, half}, {high, kBreak}, {low, -half}, {high, -half}};
   return plot;
 }
 

@@ -112,7 +112,8 @@ ReadyRun RunMaker::Make(const PlannedRun& run) const {
       default:
         if (!drawn.present()) break;
         if (drawn.axis->appears) {
-          options.late_faults.push_back({{name, drawn.value}, drawn.time});
+          options.late_faults.push_back(
+              {{name, drawn.value}, drawn.time, drawn.axis->growth});
         } else if (drawn.axis->kind == AxisKind::kDisturbance) {
           options.disturbances[name] = drawn.value;
         } else {
