@@ -67,7 +67,8 @@ class Teller {
 };
 
 void Forget(const fs::path& folder) {
-  for (const char* file : {"runs.journal", "dataset.h5"}) fs::remove(folder / file);
+  RunJournal::Remove(folder / "runs.journal");
+  fs::remove(folder / "dataset.h5");
 }
 
 }  // namespace

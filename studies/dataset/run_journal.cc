@@ -149,6 +149,18 @@ void RunJournal::ReadEntries(std::uint64_t from, std::uint64_t size) {
   }
 }
 
+void RunJournal::Remove(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  const bool is_free = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  if (is_free) std::filesystem::remove(file);
+  close(descriptor);
+  if (!is_free) {
+    throw InputError(file.string(), "another process is at work on this study",
+                     "one at a time in a folder");
+  }
+}
+
 bool RunJournal::Has(std::int64_t index, bool with_series) const {
   const auto at = static_cast<std::size_t>(index);
   const Place& place = places_[at];

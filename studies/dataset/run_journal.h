@@ -31,6 +31,9 @@ class RunJournal {
   RunJournal(const RunJournal&) = delete;
   RunJournal& operator=(const RunJournal&) = delete;
 
+  /// Removes the file, if there is one. InputError if a process is at work in it.
+  static void Remove(const std::filesystem::path& file);
+
   /// Whether that run is in it; `with_series`: with its series.
   bool Has(std::int64_t index, bool with_series) const;
   /// Appends the result, from any thread. InputError if the disk is full.

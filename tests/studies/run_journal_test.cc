@@ -117,6 +117,14 @@ TEST_F(Journal, IsOfOneProcessAtATime) {
   EXPECT_THAT(
       test::MessageOf<InputError>([&] { RunJournal(file_, "identity", 4); }),
       HasSubstr("another process is at work"));
+  EXPECT_THAT(test::MessageOf<InputError>([&] { RunJournal::Remove(file_); }),
+              HasSubstr("another process is at work"));
+}
+
+TEST_F(Journal, IsForgottenWhereNobodyIsAtWork) {
+  RunJournal::Remove(file_);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  RunJournal::Remove(file_);  // there is none
 }
 
 TEST_F(Journal, GivesItsSeriesAway) {
