@@ -1,9 +1,11 @@
 #include "mjdiag/studies/dataset/dataset_layout.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/studies/features.h"
 
 namespace mjdiag {
 namespace {
@@ -29,6 +31,13 @@ void RequireLongEnough(const PlanKeep& keep, const std::vector<Excitation>& moti
 
 }  // namespace
 
+FeatureOptions FeatureOptionsOf(const PlanKeep& keep) {
+  FeatureOptions options;
+  options.segment = keep.segment;
+  options.bands = std::min(options.bands, static_cast<int>(std::log2(keep.segment)));
+  return options;
+}
+
 DatasetLayout LayoutOf(const LoadedPlan& loaded, const RunMaker& maker) {
   const PlanKeep& keep = loaded.plan.keep;
   if (keep.Series() && !PacksSeries()) {
@@ -52,9 +61,7 @@ DatasetLayout LayoutOf(const LoadedPlan& loaded, const RunMaker& maker) {
   }
   if (keep.Diagnoses()) layout.faults = MakeFaultFamily(loaded.machine).Names();
   if (!keep.features.empty()) {
-    FeatureOptions options;
-    options.segment = keep.segment;
-    layout.features = FeatureNames(record, keep.features, options);
+    layout.features = FeatureNames(record, keep.features, FeatureOptionsOf(keep));
     layout.feature_channels = keep.features;
   }
   return layout;

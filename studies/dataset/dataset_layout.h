@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mjdiag/studies/dataset/series.h"
+#include "mjdiag/studies/features.h"
 #include "mjdiag/studies/plan/run_machine.h"
 
 namespace mjdiag {
@@ -16,6 +17,9 @@ struct DatasetLayout {
   std::vector<std::string> features;
   std::vector<std::string> feature_channels;
 };
+
+/// Of what the plan keeps: as many octaves as its segments have, nine at most.
+FeatureOptions FeatureOptionsOf(const PlanKeep& keep);
 
 /// InputError if this build cannot keep series and the plan asks for them, or features
 /// ask for longer runs than they are.

@@ -123,7 +123,8 @@ void RunJournal::Open() {
   } else if (ftruncate(descriptor_, 0) != 0 || !WriteAll(descriptor_, wanted)) {
     Fail(std::strerror(errno), "a disk with room");
   }
-  if (ftruncate(descriptor_, static_cast<off_t>(end_)) != 0 ||
+  const bool is_torn = end_ < size;
+  if ((is_torn && ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) ||
       lseek(descriptor_, static_cast<off_t>(end_), SEEK_SET) < 0) {
     Fail(std::strerror(errno), "a file that can be written");
   }

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "mjdiag/signals/error.h"
-#include "mjdiag/studies/features.h"
 
 namespace mjdiag {
 
@@ -62,9 +61,8 @@ RunResult RunWork::Do(std::int64_t index) const {
                                    keep.every));
     }
     if (!keep.features.empty()) {
-      FeatureOptions options;
-      options.segment = keep.segment;
-      const Eigen::VectorXd features = Features(record, keep.features, options);
+      const Eigen::VectorXd features =
+          Features(record, keep.features, FeatureOptionsOf(keep));
       result.features.assign(features.begin(), features.end());
     }
   } catch (const NumericalError& error) {

@@ -52,9 +52,10 @@ TEST(StudyPlan, SaysLineKeyAndWhatWasExpected) {
   EXPECT_THAT(Complaint("[[axis]]\nfault = \"zeta_x\"\n"), HasSubstr("has no values"));
   EXPECT_THAT(Complaint("[[axis]]\nvalues = [1]\n"),
               AllOf(HasSubstr("plan:6: axis[0]"), HasSubstr("fault, effect, key")));
-  EXPECT_THAT(Complaint("[[axis]]\nfault = \"zeta_x\"\nfrom = 0.9\nto = 1.1\n"
-                        "scale = \"log\"\n"),
-              AllOf(HasSubstr("plan:10: axis[0].scale"), HasSubstr("healthy value, 1")));
+  EXPECT_THAT(
+      Complaint("[[axis]]\nfault = \"zeta_x\"\nfrom = 0.9\nto = 1.1\n"
+                "scale = \"log\"\n"),
+      AllOf(HasSubstr("plan:10: axis[0].scale"), HasSubstr("healthy value, 1")));
   EXPECT_THAT(Complaint("[[axis]]\neffect = \"coulomb_friction@X\"\n"
                         "parameter = \"force\"\nvalues = [1]\n"),
               AllOf(HasSubstr("plan:7"), HasSubstr("linear plant")));
@@ -65,7 +66,8 @@ TEST(StudyPlan, SaysLineKeyAndWhatWasExpected) {
               AllOf(HasSubstr("plan:10"), HasSubstr("at once")));
   EXPECT_THAT(Complaint("[[axis]]\nfault = \"zeta_x\"\nvalues = [2]\nappears = 9\n"),
               AllOf(HasSubstr("zeta_x"), HasSubstr("after the end")));
-  EXPECT_THAT(Complaint("method = \"random\"\n"), HasSubstr("plan:1: points: is missing"));
+  EXPECT_THAT(Complaint("method = \"random\"\n"),
+              HasSubstr("plan:1: points: is missing"));
   EXPECT_THAT(Complaint("", "[keep]\nrecords = [\"q\"]\n"),
               AllOf(HasSubstr("plan:7: keep.records"), HasSubstr("u_x")));
   EXPECT_THAT(Complaint("", "[keep]\n"), HasSubstr("nothing is kept"));
@@ -73,9 +75,9 @@ TEST(StudyPlan, SaysLineKeyAndWhatWasExpected) {
               AllOf(HasSubstr("machines.split"), HasSubstr("add up to 1")));
   EXPECT_THAT(Complaint("[machines]\ncount = 2\nsplit = { train = 0.9, test = 0.1 }\n"),
               HasSubstr("leaves no machine for test"));
-  EXPECT_THAT(Complaint("[machines]\nnumbers = [\"mass\"]\n"),
-              AllOf(HasSubstr("machines.numbers"), HasSubstr("exact"),
-                    HasSubstr("usual")));
+  EXPECT_THAT(
+      Complaint("[machines]\nnumbers = [\"mass\"]\n"),
+      AllOf(HasSubstr("machines.numbers"), HasSubstr("exact"), HasSubstr("usual")));
   EXPECT_THAT(Complaint("[[case]]\nname = \"a\"\nchoose = [1, 2]\n"),
               AllOf(HasSubstr("plan:8"), HasSubstr("0 axes")));
   EXPECT_THAT(Complaint("seed = \n"), HasSubstr("plan:6"));
@@ -140,8 +142,9 @@ TEST(StudyPlan, SplitsAreOfMachinesAndPointsOfTheirRuns) {
     EXPECT_EQ(masses[machine].size(), 1u);
     all_masses.insert(*masses[machine].begin());
   }
-  EXPECT_EQ(counts, (std::map<Split, int>{
-                        {Split::kTrain, 4}, {Split::kValidation, 2}, {Split::kTest, 2}}));
+  EXPECT_EQ(counts,
+            (std::map<Split, int>{
+                {Split::kTrain, 4}, {Split::kValidation, 2}, {Split::kTest, 2}}));
   EXPECT_EQ(all_masses.size(), 8u);
   EXPECT_EQ(values.size(), 24u);
   std::set<double> all_values;
@@ -203,7 +206,8 @@ to = 2
       u[k] = run.axes[k].value - 1.0;
       ++counts[k][static_cast<std::size_t>(8.0 * u[k])];
     }
-    ++squares[static_cast<std::size_t>(4.0 * u[0])][static_cast<std::size_t>(4.0 * u[1])];
+    ++squares[static_cast<std::size_t>(4.0 * u[0])]
+             [static_cast<std::size_t>(4.0 * u[1])];
   }
   // The sequence without its first point is off by one at most, shifted by one more; of 64
   // independent draws an eighth holds 8 +- 2.6.
@@ -308,8 +312,8 @@ TEST(StudyPlan, PutsEffectsKeysAndNoiseIntoTheRun) {
   head.replace(head.find("true"), 4, "false");
   const LoadedPlan plan = ParsePlan(head + R"(duration = 0.01
 [[axis]]
-effect = "stribeck_friction@X:velocity=0.02"
-parameter = "force"
+effect = "stribeck_friction@X:velocity=0.02,breakaway=2"
+parameter = "coulomb"
 values = [0, 1.5]
 [[axis]]
 key = "sensors.y.noise_power"
@@ -317,7 +321,8 @@ values = [5e-20, 5e-18]
 [[axis]]
 noise = "all"
 values = [3]
-)" + kKeep, MJDIAG_SOURCE_DIR);
+)" + kKeep,
+                                    MJDIAG_SOURCE_DIR);
   const RunPlanner planner(plan.plan);
   const RunMaker maker(plan);
   const ReadyRun none = maker.Make(planner.Run(0));
@@ -327,7 +332,7 @@ values = [3]
   EXPECT_EQ(run.Label(), "stribeck_friction@X");
   const ReadyRun ready = maker.Make(run);
   ASSERT_EQ(ready.machine.changes().effects.size(), 1u);
-  EXPECT_EQ(ready.machine.changes().effects[0].Value("force"), 1.5);
+  EXPECT_EQ(ready.machine.changes().effects[0].Value("coulomb"), 1.5);
   EXPECT_EQ(ready.machine.changes().effects[0].Value("velocity"), 0.02);
   EXPECT_EQ(ready.options.noise_scale, 3.0);
   EXPECT_NEAR(ready.machine.channels().Sensor("y").noise_sd, 2e-7, 1e-12);

@@ -100,8 +100,13 @@ TEST(LateFault, GrowsEvenlyWhileOthersAppearAndGrow) {
   const std::array faults{LateFault{{"eta_x", 0.6}, 40 * tick, 80 * tick},
                           LateFault{{"eta_y", 0.9}, 80 * tick},
                           LateFault{{"zeta_x", 2.0}, 100 * tick, 40 * tick}};
-  const int motor_x = mj_name2id(&bonder.plant(), mjOBJ_ACTUATOR, "x_motor");
-  const int motor_y = mj_name2id(&bonder.plant(), mjOBJ_ACTUATOR, "y_motor");
+  const auto gear_of = [&](const char* motor) {
+    int at = 6 * mj_name2id(&bonder.plant(), mjOBJ_ACTUATOR, motor);
+    while (bonder.plant().actuator_gear[at] == 0.0) ++at;
+    return at;
+  };
+  const int motor_x = gear_of("x_motor");
+  const int motor_y = gear_of("y_motor");
   const int guide =
       bonder.plant().jnt_dofadr[mj_name2id(&bonder.plant(), mjOBJ_JOINT, "X")];
   const ModelPtr now = CopyModel(bonder.plant());
@@ -122,10 +127,10 @@ TEST(LateFault, GrowsEvenlyWhileOthersAppearAndGrow) {
       return std::clamp(static_cast<double>(k - from) / static_cast<double>(ticks), 0.0,
                         1.0);
     };
-    EXPECT_NEAR(share(now->actuator_gear, bonder.plant().actuator_gear, 6 * motor_x),
+    EXPECT_NEAR(share(now->actuator_gear, bonder.plant().actuator_gear, motor_x),
                 1.0 - 0.4 * done(40, 80), 1e-12)
         << k;
-    EXPECT_NEAR(share(now->actuator_gear, bonder.plant().actuator_gear, 6 * motor_y),
+    EXPECT_NEAR(share(now->actuator_gear, bonder.plant().actuator_gear, motor_y),
                 k < 80 ? 1.0 : 0.9, 1e-12)
         << k;
     EXPECT_NEAR(share(now->dof_damping, bonder.plant().dof_damping, guide),
