@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/output.h"
 #include "app/study_log.h"
+#include "app/study_plan.h"
 #include "app/subject.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
@@ -30,6 +31,7 @@ namespace {
 constexpr double kLongestEndurance = 1e7;  // s
 
 struct StudyCommand {
+  PlanCommand plan;
   MachineOptions machine;
   OutputOptions output;
   std::string preset;
@@ -119,7 +121,33 @@ void CheckChoices(const StudyCommand& command, Choice choice) {
   }
 }
 
-void RunStudy(const StudyCommand& command) {
+/// A plan has all of that in it.
+void CheckAlone(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string& name = option->get_name();
+    const bool goes_with_a_plan = name == "--plan" || name == "--resume" ||
+                                  name == "--restart" || name == "--out" ||
+                                  name == "--json" || name == "--report";
+    if (option->count() == 0 || goes_with_a_plan) continue;
+    throw InputError(name, "given beside --plan", "a key of the plan");
+  }
+}
+
+void RunStudy(const CLI::App& app, const StudyCommand& command) {
+  if (!command.plan.file.empty()) {
+    CheckAlone(app);
+    if (command.output.folder.empty()) {
+      throw InputError("--out", "is missing", "a folder for the runs of the plan");
+    }
+    RunPlanFile(command.plan, command.output);
+    return;
+  }
+  if (command.preset.empty()) {
+    throw InputError("study", "neither --plan nor --preset", "one of them");
+  }
+  if (command.machine.setup.empty()) {
+    throw InputError("--setup", "is missing", "a folder with setup.toml and the plant");
+  }
   const Study& study = Studies().at(command.preset);
   CheckChoices(command, study.choice);
   const Machine machine = LoadSubject(command.machine).nominal;
@@ -157,8 +185,18 @@ void AddStudy(CLI::App& app) {
   AddReportOption(*command, options->output);
   std::vector<std::string> presets;
   for (const auto& [name, study] : Studies()) presets.push_back(name);
+  command->get_option("--setup")->required(false);
+  command->add_option(
+      "--plan", options->plan.file,
+      "A study of one's own: a file that says which machine, what varies "
+      "and what is kept (docs/datasets.md)");
+  command->add_flag("--restart", options->plan.restart,
+                    "Forget the runs of the plan that are in the folder");
+  command
+      ->add_flag("--resume", options->plan.resume,
+                 "Go on with them, as it does without --restart")
+      ->excludes("--restart");
   command->add_option("--preset", options->preset, "Which study")
-      ->required()
       ->check(CLI::IsMember(presets));
   command->add_option("--runs", options->runs, "Monte-Carlo runs")
       ->check(CLI::Range(2, 1000000));
@@ -172,7 +210,7 @@ void AddStudy(CLI::App& app) {
   command->add_option("--wear", options->wear,
                       "A fault parameter that grows by that an hour in its course, for "
                       "example zeta_x=0.01");
-  command->callback([options] { RunStudy(*options); });
+  command->callback([options, command] { RunStudy(*command, *options); });
 }
 
 }  // namespace mjdiag::app

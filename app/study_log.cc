@@ -105,6 +105,7 @@ std::string StudyLog::RestOf(const std::vector<StudyTable>& tables) {
   bar_.Wipe();
   std::string text = shown_.empty() || output_.json ? "" : "\n";
   for (const StudyTable& table : tables) {
+    if (table.columns.empty()) continue;  // a plot, for the page
     const bool shown =
         std::any_of(shown_.begin(), shown_.end(),
                     [&](const StudyTable& s) { return s.title == table.title; });

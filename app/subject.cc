@@ -36,7 +36,7 @@ LateFault ParseFault(const std::string& text) {
 }
 
 void AddLateFault(const LateFault& late, Subject& subject) {
-  const auto& [fault, time] = late;
+  const auto& [fault, time, growth] = late;
   if (!(time >= 0.0) || time > kLongestRun) {
     throw InputError("--fault " + fault.name, "appears at no time of a run",
                      "0 to " + Short(kLongestRun) + " s");
@@ -202,7 +202,7 @@ std::string Describe(const Subject& subject) {
   for (const auto& [name, magnitude] : subject.options.disturbances) {
     append(name + " = " + Short(magnitude));
   }
-  for (const auto& [fault, time] : subject.options.late_faults) {
+  for (const auto& [fault, time, growth] : subject.options.late_faults) {
     append(fault.name + " = " + Short(fault.value) + " from " +
            FormatQuantity(time, "s") + " on");
   }
@@ -220,7 +220,7 @@ nlohmann::json ToJson(const Subject& subject) {
   for (const auto& [name, magnitude] : subject.options.disturbances) {
     faults.push_back({{"name", name}, {"value", magnitude}});
   }
-  for (const auto& [fault, time] : subject.options.late_faults) {
+  for (const auto& [fault, time, growth] : subject.options.late_faults) {
     faults.push_back({{"name", fault.name}, {"value", fault.value}, {"since", time}});
   }
   nlohmann::json effects = nlohmann::json::array();

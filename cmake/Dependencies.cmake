@@ -53,6 +53,34 @@ if("studies" IN_LIST mjdiag_parts)
   mjdiag_library(mjdiag::opencv_ml_library BUILD_HEADER opencv2/ml.hpp SUFFIXES opencv4
                  LIBRARIES opencv_ml opencv_core)
 endif()
+# HDF5 writes data sets, where it is: mjdiag_has_hdf5 says so. A package that was built with
+# it asks for its libraries.
+if("studies" IN_LIST mjdiag_parts)
+  set(required)
+  if(mjdiag_building AND DEFINED MJDIAG_HDF5 AND NOT MJDIAG_HDF5 STREQUAL "AUTO")
+    set(required REQUIRED)
+  endif()
+  set(mjdiag_has_hdf5 FALSE)
+  if(NOT (mjdiag_building AND DEFINED MJDIAG_HDF5 AND NOT MJDIAG_HDF5))
+    find_path(mjdiag_hdf5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial ${required})
+    find_path(mjdiag_zlib_INCLUDE zlib.h ${required})
+    find_library(mjdiag_hdf5_LIBRARY NAMES hdf5_serial hdf5 ${required})
+    find_library(mjdiag_zlib_LIBRARY z ${required})
+    if(mjdiag_hdf5_LIBRARY AND mjdiag_zlib_LIBRARY AND
+       (NOT mjdiag_building OR (mjdiag_hdf5_INCLUDE AND mjdiag_zlib_INCLUDE)))
+      set(mjdiag_has_hdf5 TRUE)
+      if(NOT TARGET mjdiag::hdf5_library)
+        add_library(mjdiag::hdf5_library INTERFACE IMPORTED GLOBAL)
+        if(mjdiag_building)
+          target_include_directories(mjdiag::hdf5_library SYSTEM INTERFACE
+                                     ${mjdiag_hdf5_INCLUDE} ${mjdiag_zlib_INCLUDE})
+        endif()
+        target_link_libraries(mjdiag::hdf5_library
+                              INTERFACE ${mjdiag_hdf5_LIBRARY} ${mjdiag_zlib_LIBRARY})
+      endif()
+    endif()
+  endif()
+endif()
 if("render" IN_LIST mjdiag_parts)
   mjdiag_library(mjdiag::opencv_library BUILD_HEADER opencv2/core.hpp SUFFIXES opencv4
                  LIBRARIES opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio)

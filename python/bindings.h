@@ -13,5 +13,6 @@ void BindDiagnosis(pybind11::module_& module);  // Diagnosis, Fault
 void BindDiscovery(pybind11::module_& module);  // Discovery, Cause, Parameter
 void BindMachine(pybind11::module_& module);    // Machine
 void BindMonitor(pybind11::module_& module);    // Monitor
+void BindStudy(pybind11::module_& module);      // Study, StudyResult
 
 }  // namespace mjdiag::python

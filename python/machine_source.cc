@@ -30,9 +30,7 @@ TemporaryFolder::~TemporaryFolder() {
   fs::remove_all(path_, ignored);
 }
 
-namespace {
-
-/// A value in TOML; JSON has the same texts and escapes.
+// JSON has the same texts and escapes.
 std::string TomlText(const std::string& key, py::handle value) {
   if (py::isinstance<py::bool_>(value)) return py::cast<bool>(value) ? "true" : "false";
   if (py::isinstance<py::int_>(value)) return py::str(value);
@@ -57,9 +55,11 @@ std::string TomlText(const std::string& key, py::handle value) {
     }
     return "[" + text + "]";
   }
-  throw InputError("set: " + key, KindOf(value),
+  throw InputError(key, KindOf(value),
                    "a number, a text, a truth value, or a list or dict of such");
 }
+
+namespace {
 
 std::vector<std::string> OverridesOf(const py::object& set) {
   std::vector<std::string> overrides;
@@ -70,7 +70,7 @@ std::vector<std::string> OverridesOf(const py::object& set) {
   }
   for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(set)) {
     const std::string name = py::str(key);
-    overrides.push_back(name + "=" + TomlText(name, value));
+    overrides.push_back(name + "=" + TomlText("set: " + name, value));
   }
   return overrides;
 }

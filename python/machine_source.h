@@ -32,6 +32,9 @@ struct MachineSource {
   std::shared_ptr<const TemporaryFolder> texts{};
 };
 
+/// A value in TOML. InputError names the key of one that TOML does not have.
+std::string TomlText(const std::string& key, pybind11::handle value);
+
 /// @param machine  a folder with setup.toml, a setup file, an MJCF file (*.xml), or MJCF
 ///                 itself. An MJCF alone gets a setup with its scalar sensors and its
 ///                 actuators as channels, a tick of its time step, and no noise

@@ -68,4 +68,5 @@ PYBIND11_MODULE(_mjdiag, module) {
   mjdiag::python::BindDiscovery(module);
   mjdiag::python::BindMachine(module);
   mjdiag::python::BindMonitor(module);
+  mjdiag::python::BindStudy(module);
 }

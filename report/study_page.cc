@@ -54,8 +54,14 @@ XyPlot ForPage(const StudyPlot& study) {
     expected.x[i] = x;
     expected.y[i++] = y;
   }
-  return {study.caption, study.x_quantity,     "1", study.y_quantity, "1",
-          {measured},    {expected, intervals}};
+  XyPlot plot{study.caption, study.x_quantity, "1", study.y_quantity,
+              "1",           {measured},       {}};
+  const bool has_intervals = std::ranges::any_of(
+      study.points,
+      [](const StudyPlot::Point& point) { return point.low < point.high; });
+  if (!study.curve.empty()) plot.curves.push_back(expected);
+  if (has_intervals) plot.curves.push_back(intervals);
+  return plot;
 }
 
 }  // namespace
@@ -63,13 +69,14 @@ XyPlot ForPage(const StudyPlot& study) {
 Page StudyPage(const StudyFacts& facts, const std::vector<StudyTable>& tables,
                const RunDescription& run) {
   Page page("Study " + facts.preset + " of " + facts.setup);
-  page.AddFacts({{"Setup", facts.setup},
-                 {"Preset", facts.preset},
-                 {"Monte-Carlo runs", std::to_string(facts.runs)},
-                 {"Seed of the first run", std::to_string(facts.seed)}});
+  page.AddFacts(
+      {{"Setup", facts.setup},
+       {facts.is_plan ? "Plan" : "Preset", facts.preset},
+       {facts.is_plan ? "Runs" : "Monte-Carlo runs", std::to_string(facts.runs)},
+       {facts.is_plan ? "Seed" : "Seed of the first run", std::to_string(facts.seed)}});
   for (const StudyTable& table : tables) {
     page.AddHeading(table.title);
-    page.AddTable(ForPage(table));
+    if (!table.columns.empty()) page.AddTable(ForPage(table));
     if (table.plot) page.AddPlot(ForPage(*table.plot));
     for (const std::string& note : table.notes) page.AddParagraph(note);
   }

@@ -17,6 +17,7 @@ struct StudyFacts {
   std::string preset;
   int runs = 0;
   std::uint64_t seed = 0;
+  bool is_plan = false;  ///< one's own, by the name of its plan
 };
 
 /// The whole page. Columns that hold a number are aligned to the right.

@@ -38,7 +38,7 @@ struct StudyPlot {
 
 struct StudyTable {
   std::string title;
-  std::vector<std::string> columns;
+  std::vector<std::string> columns;  ///< none: there is only a plot
   std::vector<std::vector<Cell>> rows;
   std::vector<std::string> notes;  ///< one sentence each
   std::optional<StudyPlot> plot{};

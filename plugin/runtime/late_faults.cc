@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
+
+using Eigen::Index;
 
 double ValueOf(const Machine& machine, const std::string& fault) {
   double value = 1.0;
@@ -16,6 +21,64 @@ double ValueOf(const Machine& machine, const std::string& fault) {
   }
   return value;
 }
+
+/// One late fault, in ticks.
+struct Change {
+  Index tick = 0;
+  Index ticks = 0;  // in which it becomes that; 0: at once
+  double value = 1.0;
+};
+
+Change ChangeOf(const LateFault& late, const Machine& machine) {
+  const double sample_time = machine.rates().tick();
+  const Index tick = TickOf(late, sample_time);
+  if (!(late.growth >= 0.0) || !std::isfinite(late.growth)) {
+    throw InputError("fault " + late.fault.name, "grows in no time", "seconds >= 0");
+  }
+  const auto ticks = static_cast<Index>(std::llround(late.growth / sample_time));
+  if (ticks > 0 && IsDisturbance(machine.setup(), late.fault.name)) {
+    throw InputError("fault " + late.fault.name, "is a disturbance that grows",
+                     "one that appears at once");
+  }
+  // Complains of names and values that there are not.
+  if (!IsDisturbance(machine.setup(), late.fault.name))
+    machine.With({{late.fault}, {}});
+  return {tick, ticks, late.fault.value};
+}
+
+/// The values of a fault parameter over time, which may jump.
+class FaultCourse {
+ public:
+  /// @param changes  in the order of time
+  FaultCourse(const std::vector<Change>& changes, double at_start)
+      : changes_(changes), at_start_(at_start) {}
+
+  /// The value in which the time before a tick ends.
+  double Until(Index tick) const { return At(tick, tick - 1); }
+  /// That with which the time from the tick on begins.
+  double From(Index tick) const { return At(tick, tick); }
+
+ private:
+  /// Of the changes that have begun by then.
+  double At(Index tick, Index begun) const {
+    double value = at_start_;
+    for (std::size_t i = 0; i < changes_.size(); ++i) {
+      const Change& change = changes_[i];
+      if (change.tick > begun) break;
+      Index end = tick;
+      if (i + 1 < changes_.size()) end = std::min(end, changes_[i + 1].tick);
+      const Index passed = end - change.tick;
+      value = passed >= change.ticks
+                  ? change.value
+                  : value + (change.value - value) * static_cast<double>(passed) /
+                                static_cast<double>(change.ticks);
+    }
+    return value;
+  }
+
+  const std::vector<Change>& changes_;
+  double at_start_;
+};
 
 Machine WithValue(const Machine& machine, const Fault& fault) {
   const double now = ValueOf(machine, fault.name);
@@ -38,21 +101,38 @@ Eigen::Index TickOf(const LateFault& fault, double sample_time) {
 
 std::vector<MachineStage> StagesOf(const Machine& machine,
                                    std::span<const LateFault> faults) {
-  std::vector<std::pair<Eigen::Index, const Fault*>> order;
+  std::map<std::string, std::vector<Change>> changes;
+  std::set<Index> events;
   for (const LateFault& late : faults) {
+    const Change change = ChangeOf(late, machine);
     if (IsDisturbance(machine.setup(), late.fault.name)) continue;
-    order.emplace_back(TickOf(late, machine.rates().tick()), &late.fault);
+    changes[late.fault.name].push_back(change);
+    events.insert({change.tick, change.tick + change.ticks});
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [name, of_one] : changes) {
+    std::ranges::stable_sort(of_one, {}, &Change::tick);
+  }
   std::vector<MachineStage> stages;
-  for (const auto& [tick, fault] : order) {
+  const auto become = [&](Index tick, Index ticks, const auto& course_at) {
     const Machine& before = stages.empty() ? machine : stages.back().machine;
-    Machine now = WithValue(before, *fault);
-    if (stages.empty() || stages.back().tick != tick) {
-      stages.push_back({tick, std::move(now)});
-    } else {
-      stages.back().machine = std::move(now);
+    Machine now = before;
+    bool changed = false;
+    for (const auto& [name, of_one] : changes) {
+      const double value = course_at(FaultCourse(of_one, ValueOf(machine, name)));
+      if (value == ValueOf(now, name)) continue;
+      now = WithValue(now, {name, value});
+      changed = true;
+    }
+    if (changed || ticks == 0) stages.push_back({tick, std::move(now), ticks});
+  };
+  // Straight lines between the times at which something begins or ends.
+  for (auto event = events.begin(); event != events.end(); ++event) {
+    const Index tick = *event;
+    become(tick, 0, [=](const FaultCourse& course) { return course.From(tick); });
+    if (const auto next = std::next(event); next != events.end()) {
+      const Index end = *next;
+      become(tick, end - tick,
+             [=](const FaultCourse& course) { return course.Until(end); });
     }
   }
   return stages;

@@ -11,16 +11,19 @@
 
 namespace mjdiag {
 
-/// What the machine is from a tick on.
+/// What the machine becomes from a tick on.
 struct MachineStage {
   Eigen::Index tick = 0;
   Machine machine;
+  Eigen::Index ticks = 0;  ///< in so many of them, evenly; 0: at once
 };
 
 /// In the order of time, without that at the start; disturbances are left out. A value
-/// is that of the fault parameter, whatever it was before. InputError on an unknown
-/// name, on a time or value that is not finite and >= 0, and on a change from 0, which
-/// is no factor.
+/// is that of the fault parameter, whatever it was before. Faults may grow while others
+/// appear or grow. One that grows is left where it is by a later change of the same
+/// fault parameter, which begins there. InputError on an unknown name, on a time, growth
+/// or value that is not finite and >= 0, on a change from 0, which is no factor, and on a
+/// disturbance that grows.
 std::vector<MachineStage> StagesOf(const Machine& machine,
                                    std::span<const LateFault> faults);
 

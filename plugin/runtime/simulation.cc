@@ -18,7 +18,7 @@ Record RunThrough(RunningMachine& running, const std::vector<MachineStage>& stag
   auto stage = stages.begin();
   for (Eigen::Index tick = 0; tick < ticks; ++tick) {
     for (; stage != stages.end() && stage->tick <= tick; ++stage) {
-      running.Become(stage->machine);
+      running.Become(stage->machine, stage->ticks);
     }
     running.Tick();
     if (options.progress && tick % kTicksBetweenProgress == 0) {

@@ -70,6 +70,8 @@ class TickObserver {
 struct LateFault {
   Fault fault;
   double time = 0.0;  ///< [s] since the start of the run
+  /// Time in which it becomes that, evenly [s]; 0: at once, as a disturbance always does.
+  double growth = 0.0;
 };
 
 struct RunOptions {

@@ -93,6 +93,9 @@ TomlDocument::TomlDocument(const std::filesystem::path& file,
   }
 }
 
+TomlDocument::TomlDocument(const std::string& where, std::string_view text)
+    : file_(where), root_(ParseToml(text, where)) {}
+
 TomlTable TomlDocument::Root() const { return {*this, root_, "", ""}; }
 
 std::string TomlDocument::Location(const toml::node& node) const {
@@ -156,6 +159,13 @@ void TomlTable::Fail(std::string_view key, const std::string& what,
                      const std::string& expected) const {
   const toml::node* node = table_->get(key);
   FailAt(node ? *node : *table_, Join(path_, key), what, expected);
+}
+
+std::string TomlTable::Where(std::string_view key) const {
+  const toml::node* node = table_->get(key);
+  const std::string path = node ? Join(path_, key) : path_;
+  const std::string location = document_->Location(node ? *node : *table_);
+  return path.empty() ? location : location + ": " + path;
 }
 
 void TomlTable::Fail(const std::string& what, const std::string& expected) const {

@@ -39,6 +39,8 @@ class TomlDocument {
   /// other value is replaced. InputError with file and line on malformed TOML.
   TomlDocument(const std::filesystem::path& file,
                const std::vector<std::string>& overrides);
+  /// Of a text. @param where  what complaints call it in the place of a file
+  TomlDocument(const std::string& where, std::string_view text);
 
   /// The document must outlive its tables.
   TomlTable Root() const;
@@ -107,6 +109,8 @@ class TomlTable {
   /// Throws the InputError "<file>:<line>: <key path>: <what>; expected <expected>".
   [[noreturn]] void Fail(std::string_view key, const std::string& what,
                          const std::string& expected) const;
+  /// "<file>:<line>: <key path>", of the table itself without the key.
+  std::string Where(std::string_view key) const;
   /// The same for the table itself.
   [[noreturn]] void Fail(const std::string& what, const std::string& expected) const;
 

@@ -24,6 +24,8 @@ from ._mjdiag import (
     NumericalError,
     Parameter,
     Record,
+    Study,
+    StudyResult,
     __version__,
 )
 
@@ -110,6 +112,8 @@ __all__ = [
     "PlantNumber",
     "Record",
     "StateSpace",
+    "Study",
+    "StudyResult",
 ]
 
 for _name in __all__:

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 #include "support/bonder.h"
 #include "support/message_of.h"
@@ -90,6 +92,57 @@ TEST_P(LateFaults, GoAsTheyCame) {
   EXPECT_GT(off(120), 20.0 * off(440));
 }
 
+TEST(LateFault, GrowsEvenlyWhileOthersAppearAndGrow) {
+  const Machine bonder = test::Bonder();
+  const double tick = bonder.rates().tick();
+  // eta_x falls to 0.6 within 80 ticks from 40 on, eta_y is 0.9 from 80 on, zeta_x is
+  // doubled within 40 from 100 on.
+  const std::array faults{LateFault{{"eta_x", 0.6}, 40 * tick, 80 * tick},
+                          LateFault{{"eta_y", 0.9}, 80 * tick},
+                          LateFault{{"zeta_x", 2.0}, 100 * tick, 40 * tick}};
+  const auto gear_of = [&](const char* motor) {
+    int at = 6 * mj_name2id(&bonder.plant(), mjOBJ_ACTUATOR, motor);
+    while (bonder.plant().actuator_gear[at] == 0.0) ++at;
+    return at;
+  };
+  const int motor_x = gear_of("x_motor");
+  const int motor_y = gear_of("y_motor");
+  const int guide =
+      bonder.plant().jnt_dofadr[mj_name2id(&bonder.plant(), mjOBJ_JOINT, "X")];
+  const ModelPtr now = CopyModel(bonder.plant());
+  const auto share = [&](const mjtNum* of_now, const mjtNum* healthy, int i) {
+    return of_now[i] / healthy[i];
+  };
+  const std::vector<MachineStage> stages = StagesOf(bonder, faults);
+  auto stage = stages.begin();
+  Eigen::Index left = 0;
+  const MachineStage* growing = nullptr;
+  for (Eigen::Index k = 0; k < 160; ++k) {
+    for (; stage != stages.end() && stage->tick <= k; ++stage) {
+      if (stage->ticks == 0) CopyFaults(stage->machine.plant(), *now);
+      left = stage->ticks;
+      growing = &*stage;
+    }
+    const auto done = [&](Eigen::Index from, Eigen::Index ticks) {
+      return std::clamp(static_cast<double>(k - from) / static_cast<double>(ticks), 0.0,
+                        1.0);
+    };
+    EXPECT_NEAR(share(now->actuator_gear, bonder.plant().actuator_gear, motor_x),
+                1.0 - 0.4 * done(40, 80), 1e-12)
+        << k;
+    EXPECT_NEAR(share(now->actuator_gear, bonder.plant().actuator_gear, motor_y),
+                k < 80 ? 1.0 : 0.9, 1e-12)
+        << k;
+    EXPECT_NEAR(share(now->dof_damping, bonder.plant().dof_damping, guide),
+                1.0 + done(100, 40), 1e-12)
+        << k;
+    if (left > 0) {
+      ApproachFaults(growing->machine.plant(), 1.0 / static_cast<double>(left), *now);
+      --left;
+    }
+  }
+}
+
 TEST(LateFault, ThatMakesNoSenseIsRefused) {
   const Machine bonder = test::Bonder();
   const auto message = [&](const LateFault& fault) {
@@ -98,6 +151,8 @@ TEST(LateFault, ThatMakesNoSenseIsRefused) {
   EXPECT_THAT(message({{"eta_q", 1.0}, 0.0}), HasSubstr("eta_q"));
   EXPECT_THAT(message({{"eta_x", -1.0}, 0.0}), HasSubstr("out of range"));
   EXPECT_THAT(message({{"eta_x", 0.7}, -1.0}), HasSubstr("no time of the run"));
+  EXPECT_THAT(message({{"eta_x", 0.7}, 0.0, -1.0}), HasSubstr("grows in no time"));
+  EXPECT_THAT(message({{"gamma", 1.0}, 0.0, 1.0}), HasSubstr("appears at once"));
   const std::array dead{LateFault{{"eta_x", 0.0}, 0.0}, LateFault{{"eta_x", 1.0}, 1.0}};
   EXPECT_THAT(test::MessageOf<InputError>([&] { StagesOf(bonder, dead); }),
               HasSubstr("is 0 and cannot become anything else"));

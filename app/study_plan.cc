@@ -1,0 +1,69 @@
+#include "app/study_plan.h"
+
+#include <utility>
+
+#include "app/command.h"
+#include "app/interrupt.h"
+#include "app/plan_log.h"
+#include "app/study_log.h"
+#include "mjdiag/report/study_page.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/studies/dataset/plan_run.h"
+#include "mjdiag/studies/dataset/plan_tables.h"
+
+namespace mjdiag::app {
+namespace {
+
+NamedPage PlanPage(const StudyPlan& plan, const std::string& setup,
+                   const std::vector<StudyTable>& tables) {
+  StudyFacts facts{setup, plan.name, static_cast<int>(plan.Runs()), plan.seed};
+  facts.is_plan = true;
+  const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
+  return {"study", StudyPage(facts, tables, run)};
+}
+
+nlohmann::json DocumentOf(const LoadedPlan& loaded, const PlanOutcome& outcome) {
+  nlohmann::json document{
+      {"schema", "mjdiag.study/1"}, {"setup", loaded.machine.setup().name},
+      {"plan", loaded.plan.name},   {"runs", loaded.plan.Runs()},
+      {"seed", loaded.plan.seed},   {"linear", loaded.plan.linear},
+      {"command", CommandLine()},   {"dataset", nullptr}};
+  if (outcome.dataset) document["dataset"] = outcome.dataset->filename().string();
+  return document;
+}
+
+/// What became of the files.
+std::string FilesText(const PlanOutcome& outcome) {
+  std::string text = "\n" + ProgressText(outcome.progress);
+  if (outcome.progress.found > 0) {
+    text += ", " + std::to_string(outcome.progress.found) + " of which were there";
+  }
+  text += "\n";
+  if (outcome.dataset) return text + "data set: " + outcome.dataset->string() + "\n";
+  return text + "no data set: built without HDF5 (libhdf5-dev)\n";
+}
+
+}  // namespace
+
+void RunPlanFile(const PlanCommand& command, const OutputOptions& output) {
+  const LoadedPlan loaded = ReadPlan(command.file);
+  PrepareOutput(output);
+  const Interrupt interrupt;
+  PlanLog log(output.folder);
+  PlanRunOptions options;
+  options.folder = output.folder;
+  options.restart = command.restart;
+  options.progress = [&log](const PlanProgress& progress) {
+    log.Show(progress);
+    Interrupt::ThrowIfWished();
+  };
+  const PlanOutcome outcome = RunPlan(loaded, options);
+  log.End(outcome.progress);
+  const std::vector<StudyTable> tables = PlanTables(outcome);
+  StudyLog tables_log(output, DocumentOf(loaded, outcome), "study");
+  Publish(output, "study", tables_log.Document(tables, true),
+          tables_log.RestOf(tables) + FilesText(outcome),
+          [&] { return PlanPage(loaded.plan, loaded.machine.setup().name, tables); });
+}
+
+}  // namespace mjdiag::app
