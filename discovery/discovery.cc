@@ -197,7 +197,9 @@ void Discoverer::SearchAll() {
     }
     work_->NoteChange();
   }
-  if (TakeSets(options)) {
+  if (TakeForces(options)) {
+    // Fitted along the motion.
+  } else if (TakeSets(options)) {
     FitSets(options);
   } else {
     SearchBehindObservers(options);
@@ -207,7 +209,7 @@ void Discoverer::SearchAll() {
     search_.significant_rest = false;
   }
   work_->EndLaws();
-  LearnCurves(options);
+  if (!force_) LearnCurves(options);
   FitFree();
   work_->EndSearch();
   DropEmptyCauses();
