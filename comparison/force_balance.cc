@@ -131,6 +131,25 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
   return filtered;
 }
 
+VectorXd DriveFactors(const Machine& machine, const Machine& changed) {
+  const MatrixXd share = machine.linear().Gamma.cwiseAbs();
+  const std::vector<int>& motors = machine.actuator_addresses();
+  VectorXd factors(std::ssize(motors));
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    const auto row = [&](const Machine& of) {
+      return Eigen::Map<const VectorXd>(RowOf(of.plant().actuator_gear, 6, motors[i]), 6)
+          .norm();
+    };
+    factors[static_cast<Index>(i)] = row(changed) / row(machine);
+  }
+  VectorXd of_dof = VectorXd::Ones(share.rows());
+  for (Index dof = 0; dof < share.rows(); ++dof) {
+    const double sum = share.row(dof).sum();
+    if (sum > 0.0) of_dof[dof] = share.row(dof).dot(factors) / sum;
+  }
+  return of_dof;
+}
+
 VectorXd LowPassed(const FilteredRun& filtered, const VectorXd& signal) {
   return Filtered(filtered.run, filtered.bandwidth, signal);
 }
@@ -152,6 +171,10 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
   motion.own_acceleration.resize(nv, run.samples());
   motion.inputs = run.inputs;
   motion.outputs = run.outputs;
+  // What hardly drives leaves no force to compare with.
+  constexpr double kLeast = 1e-6;
+  const VectorXd less =
+      DriveFactors(machine, changed).cwiseMax(kLeast).cwiseInverse();
   MatrixXd M(nv, nv);
   FilteredInputs inputs(filtered);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
@@ -173,7 +196,8 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
           (VectorXd::Map(data.qvel, nv) - filtered.velocity.col(k)) / run.sample_time;
       mj_fullM(plant.model.get(), M.data(), data.qM);
       balance.missing.col(k) =
-          M * (filtered.acceleration.col(k) - motion.own_acceleration.col(k));
+          less.asDiagonal() * M *
+          (filtered.acceleration.col(k) - motion.own_acceleration.col(k));
     }
   }
   return balance;

@@ -3,7 +3,7 @@
 // the filtered readings say that the machine was, moving as fast, and driven by the
 // filtered inputs for one control tick. What it then lacks is a generalised force
 //
-//   F = M(q) (q'' - a),     a: the plant's own acceleration over the tick
+//   F = M(q) (q'' - a) / g,     a: the plant's own acceleration over the tick
 //
 // along all joints: friction that nobody wrote down, a mass that is another one. It is
 // inverse dynamics with MuJoCo's own steps, with every effect and every stuck joint in it.
@@ -41,6 +41,9 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run, double ban
 
 /// A signal of every sample through the same filter, record by record.
 Eigen::VectorXd LowPassed(const FilteredRun& filtered, const Eigen::VectorXd& signal);
+
+/// g of every degree of freedom, nv.
+Eigen::VectorXd DriveFactors(const Machine& machine, const Machine& changed);
 
 struct ForceBalance {
   ObservedMotion motion;    ///< own_acceleration is a

@@ -99,6 +99,7 @@ class Discoverer {
   std::vector<Alternative> AlternativesOf(const FittedCause& fitted,
                                           const std::vector<Hypothesis>& rivals) const;
   void NameNumbers(const Eigen::MatrixXd& covariance);
+  void NameMoments(const Eigen::MatrixXd& covariance);
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
   /// Whether a cause is no more than what the physics steps of the simulation are off by.

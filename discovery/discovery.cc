@@ -341,9 +341,16 @@ const RecordReplay* Discovery::Unseen() const {
   return first == records.end() ? nullptr : &*first;
 }
 
+// Data have to say more than what was known before, and something else.
+constexpr double kBeyondDoubt = 0.5;
+
+bool IsMoved(const CalibratedMoment& moment) {
+  const double known = 2.0 * TwoSidedNormalQuantile(0.05) * moment.doubt;
+  return moment.high - moment.low < kBeyondDoubt * known &&
+         (moment.low > moment.model || moment.high < moment.model);
+}
+
 bool IsOff(const CalibratedNumber& number) {
-  // Data have to say more than what was known before, and something else.
-  constexpr double kBeyondDoubt = 0.5;
   const double width = std::log(number.high / number.low);
   const double known = 2.0 * TwoSidedNormalQuantile(0.05) * number.doubt;
   return width < kBeyondDoubt * known && (number.low > 1.0 || number.high < 1.0);

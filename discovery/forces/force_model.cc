@@ -34,19 +34,77 @@ std::vector<Index> PlacesOf(const ForceRows& rows, Index first, Index last) {
   return places;
 }
 
-/// [numbers, columns of all groups]
-MatrixXd ColumnsOf(const ForceProblem& problem,
-                   const std::vector<const ForceGroup*>& groups) {
+/// All columns as they were measured, and by how much each scales a drive.
+struct Columns {
+  MatrixXd measured;  ///< [numbers, columns of all groups]
+  VectorXd scales;
+};
+
+Columns ColumnsOf(const ForceProblem& problem,
+                  const std::vector<const ForceGroup*>& groups) {
   Index count = problem.numbers.cols();
   for (const ForceGroup* group : groups) count += group->columns.cols();
-  MatrixXd all(problem.missing.size(), count);
-  all.leftCols(problem.numbers.cols()) = problem.numbers;
+  Columns all{MatrixXd(problem.missing.size(), count), VectorXd::Zero(count)};
   Index next = problem.numbers.cols();
+  all.measured.leftCols(next) = problem.numbers;
+  all.scales.head(next) = problem.drives;
   for (const ForceGroup* group : groups) {
-    all.middleCols(next, group->columns.cols()) = group->columns;
-    next += group->columns.cols();
+    const Index size = group->columns.cols();
+    all.measured.middleCols(next, size) = group->columns;
+    if (group->scales_drive) all.scales.segment(next, size).setOnes();
+    next += size;
   }
   return all;
+}
+
+/// The model about theta: what it leaves, and what each column takes away of it.
+struct About {
+  VectorXd left;
+  MatrixXd columns;
+  VectorXd drive;  ///< g of every joint
+};
+
+/// Of one column that scales a drive by so much.
+template <typename Column>
+void Linearise(const ForceRows& rows, const About& at, double scale, Column column) {
+  for (Index j = 0; j < std::ssize(rows.dofs); ++j) {
+    auto own = column.segment(j * rows.values(), rows.values());
+    if (own.isZero(0.0)) continue;
+    if (scale != 0.0) own += scale * at.left.segment(j * rows.values(), rows.values());
+    own /= at.drive[j];
+  }
+}
+
+About ModelAbout(const ForceProblem& problem, const Columns& columns,
+                 const VectorXd& theta) {
+  constexpr double kLeast = 0.05;
+  const ForceRows& rows = problem.rows;
+  About at;
+  at.drive = VectorXd::Ones(std::ssize(rows.dofs));
+  for (Index c = 0; c < theta.size(); ++c) {
+    if (columns.scales[c] == 0.0) continue;
+    for (Index j = 0; j < at.drive.size(); ++j) {
+      const auto own =
+          columns.measured.col(c).segment(j * rows.values(), rows.values());
+      if (!own.isZero(0.0)) at.drive[j] += columns.scales[c] * theta[c];
+    }
+  }
+  at.drive = at.drive.cwiseMax(kLeast);
+  at.left = problem.missing - columns.measured * theta;
+  for (Index j = 0; j < at.drive.size(); ++j) {
+    at.left.segment(j * rows.values(), rows.values()) /= at.drive[j];
+  }
+  at.columns = columns.measured;
+  for (Index c = 0; c < theta.size(); ++c) {
+    Linearise(rows, at, columns.scales[c], at.columns.col(c));
+  }
+  return at;
+}
+
+VectorXd ThetaOf(const ForceFit& fit) {
+  VectorXd theta(fit.z.size() + fit.amplitudes.size());
+  theta << fit.z, fit.amplitudes;
+  return theta;
 }
 
 /// Of normal equations with what is known of the numbers beside them.
@@ -79,13 +137,14 @@ bool IsWithin(const std::vector<const ForceGroup*>& groups,
 class Unseen {
  public:
   Unseen(const ForceProblem& problem, const std::vector<const ForceGroup*>& groups,
-         const ForceNoise& noise)
+         const ForceFit& fit)
       : numbers_(problem.numbers.cols()) {
     constexpr Index kParts = 5;
-    const MatrixXd columns = ColumnsOf(problem, groups);
-    MatrixXd both(columns.rows(), columns.cols() + 1);
-    both << columns, problem.missing;
-    const MatrixXd white = Whitened(problem.rows, noise, both);
+    const VectorXd theta = ThetaOf(fit);
+    const About at = ModelAbout(problem, ColumnsOf(problem, groups), theta);
+    MatrixXd both(at.columns.rows(), at.columns.cols() + 1);
+    both << at.columns, at.left + at.columns * theta;
+    const MatrixXd white = Whitened(problem.rows, fit.noise, both);
     sum_ = MatrixXd::Zero(both.cols(), both.cols());
     for (Index part = 0; part < kParts; ++part) {
       parts_.push_back(white(PlacesOf(problem.rows, problem.rows.train * part / kParts,
@@ -128,20 +187,22 @@ ForceFit FitForces(const ForceProblem& problem,
                    const ForceNoise& start) {
   constexpr int kIterations = 4;
   const Index numbers = problem.numbers.cols();
-  const MatrixXd columns = ColumnsOf(problem, groups);
   const std::vector<bool> seen = Seen(problem.rows);
   const std::vector<Index> places = PlacesOf(problem.rows, 0, problem.rows.train);
   ForceFit fit;
   fit.noise = start;
-  VectorXd theta;
-  MatrixXd both(columns.rows(), columns.cols() + 1);
-  both << columns, problem.missing;
+  const Columns columns = ColumnsOf(problem, groups);
+  VectorXd theta = VectorXd::Zero(columns.scales.size());
+  About at = ModelAbout(problem, columns, theta);
   for (int i = 0; i < kIterations; ++i) {
+    MatrixXd both(at.columns.rows(), at.columns.cols() + 1);
+    both << at.columns, at.left + at.columns * theta;
     const MatrixXd white =
         Whitened(problem.rows, fit.noise, both)(places, Eigen::all);
-    const auto A = white.leftCols(columns.cols());
+    const auto A = white.leftCols(theta.size());
     theta = SolveNormal(A.transpose() * A, A.transpose() * white.rightCols(1), numbers);
-    fit.left = problem.missing - columns * theta;
+    at = ModelAbout(problem, columns, theta);
+    fit.left = at.left;
     fit.noise = NoiseOf(problem.rows, fit.left, seen);
   }
   fit.z = theta.head(numbers);
@@ -154,10 +215,17 @@ ForceFit FitForces(const ForceProblem& problem,
   return fit;
 }
 
+MatrixXd NumbersBeside(const ForceProblem& problem,
+                       const std::vector<const ForceGroup*>& groups,
+                       const ForceFit& fit) {
+  return ModelAbout(problem, ColumnsOf(problem, groups), ThetaOf(fit))
+      .columns.leftCols(problem.numbers.cols());
+}
+
 VectorXd LossUnseen(const ForceProblem& problem,
                     const std::vector<const ForceGroup*>& groups,
-                    const ForceNoise& noise) {
-  const Unseen unseen(problem, groups, noise);
+                    const ForceFit& fit) {
+  const Unseen unseen(problem, groups, fit);
   std::vector<Index> all(static_cast<std::size_t>(unseen.columns()));
   std::iota(all.begin(), all.end(), 0);
   const double with = unseen.Squares(all);
@@ -175,8 +243,8 @@ VectorXd LossUnseen(const ForceProblem& problem,
 
 double LossUnseenOfAll(const ForceProblem& problem,
                        const std::vector<const ForceGroup*>& groups,
-                       const ForceNoise& noise) {
-  const Unseen unseen(problem, groups, noise);
+                       const ForceFit& fit) {
+  const Unseen unseen(problem, groups, fit);
   std::vector<Index> all(static_cast<std::size_t>(unseen.columns()));
   std::iota(all.begin(), all.end(), 0);
   const std::vector<Index> numbers(all.begin(), all.begin() + problem.numbers.cols());
@@ -192,10 +260,10 @@ VectorXd GainsBeside(const ForceProblem& problem,
   const auto rows = std::ssize(places);
   const double n = std::max(2.0, static_cast<double>(problem.rows.train));
   MatrixXd own = MatrixXd::Zero(rows + numbers, 0);
-  const MatrixXd columns = ColumnsOf(problem, set);
-  own.resize(rows + numbers, columns.cols());
+  const About at = ModelAbout(problem, ColumnsOf(problem, set), ThetaOf(fit));
+  own.resize(rows + numbers, at.columns.cols());
   own.topRows(rows) =
-      Whitened(problem.rows, fit.noise, columns)(places, Eigen::all);
+      Whitened(problem.rows, fit.noise, at.columns)(places, Eigen::all);
   own.bottomRows(numbers).setZero();
   own.bottomLeftCorner(numbers, numbers).setIdentity();
   const VectorXd scale = own.colwise().norm().cwiseMax(1e-300);
@@ -208,8 +276,11 @@ VectorXd GainsBeside(const ForceProblem& problem,
   ParallelFor(static_cast<int>(tried.size()), [&](int number) {
     const ForceGroup& group = *tried[static_cast<std::size_t>(number)];
     MatrixXd C = MatrixXd::Zero(rows + numbers, group.columns.cols());
-    C.topRows(rows) =
-        Whitened(problem.rows, fit.noise, group.columns)(places, Eigen::all);
+    MatrixXd here = group.columns;
+    for (Index c = 0; c < here.cols(); ++c) {
+      Linearise(problem.rows, at, group.scales_drive ? 1.0 : 0.0, here.col(c));
+    }
+    C.topRows(rows) = Whitened(problem.rows, fit.noise, here)(places, Eigen::all);
     const VectorXd size = C.colwise().squaredNorm();
     if (Q.cols() > 0) C -= Q * (Q.transpose() * C);
     double& gain = gains[number];

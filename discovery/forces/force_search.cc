@@ -27,6 +27,40 @@ using Eigen::VectorXd;
 // motion: odds of 20.
 constexpr double kLeastGain = 6.0;
 
+bool IsDrive(PlantNumberKind kind) {
+  return kind == PlantNumberKind::kGear || kind == PlantNumberKind::kGain;
+}
+
+/// Whether its one size multiplies what a drive does.
+bool ScalesDrive(const Candidate& candidate) {
+  const Effect& effect = *candidate.effect;
+  if (effect.site() != SiteKind::kActuator || candidate.parameters.size() != 1 ||
+      candidate.parameters.front().role != Role::kFactor) {
+    return false;
+  }
+  return true;
+}
+
+/// Whether the balance of forces can tell it. What a drive does along the stroke, or up to a
+/// limit, is in proportion to inputs that were measured with what no model explains, and a
+/// drive that does less leaves less; a shaking from outside that is as slow as the band is
+/// told from what a motion lacks by nothing but chance.
+bool IsTold(const Candidate& candidate) {
+  const Effect& effect = *candidate.effect;
+  if (effect.kind() == Kind::kVibration) return false;
+  if (effect.site() != SiteKind::kActuator) return true;
+  return std::ranges::all_of(candidate.parameters, [](const FitParameter& parameter) {
+    return parameter.role == Role::kFactor || parameter.role == Role::kTime;
+  });
+}
+
+/// Forces of masses are those of the measured acceleration: all masses and all drives twice
+/// as large, and what is left the same in units of the input.
+ObservedMotion AsMeasured(ObservedMotion motion) {
+  motion.own_acceleration = motion.acceleration;
+  return motion;
+}
+
 /// A trial of a candidate.
 struct Tried {
   std::size_t candidate = 0;
@@ -42,7 +76,7 @@ class Search {
       : problem_(problem),
         candidates_(candidates),
         filtered_(filtered),
-        balance_(balance),
+        motion_(AsMeasured(balance.motion)),
         options_(options) {
     forces_.rows = RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train());
     forces_.missing = RowsOf(forces_.rows, balance.missing);
@@ -90,7 +124,7 @@ class Search {
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const FilteredRun& filtered_;
-  const ForceBalance& balance_;
+  const ObservedMotion motion_;
   const ForceSearchOptions& options_;
   ForceProblem forces_;
   std::vector<ForceGroup> groups_;
@@ -123,23 +157,27 @@ void Search::AddNumbers() {
   const Machine& machine = problem_.machine();
   const auto& numbers = problem_.numbers();
   forces_.numbers.setZero(forces_.rows.rows(), std::ssize(numbers));
+  forces_.drives.setZero(std::ssize(numbers));
   const VectorXd still = problem_.StillSpeed();
   ParallelForAll(static_cast<int>(numbers.size()), [&](int number) {
     const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(number)];
     const MatrixXd force =
         doubted.spread *
         (doubted.is_lateness
-             ? LatenessForce(machine.plant(), machine.linear().Gamma, balance_.motion)
+             ? LatenessForce(machine.plant(), machine.linear().Gamma, motion_)
              : NumberForce(machine.plant(), machine.channels(), doubted.number,
-                           balance_.motion, still));
+                           motion_, still));
     forces_.numbers.col(number) = RowsOf(forces_.rows, force.transpose());
+    if (!doubted.is_lateness && IsDrive(doubted.number.kind)) {
+      forces_.drives[number] = doubted.spread;
+    }
   });
 }
 
 /// Those whose forces are within the band.
 std::vector<Trial> Search::TrialsOf(std::size_t candidate) const {
   const Candidate& one = candidates_[candidate];
-  if (const auto sweep = MakeSweep(problem_.machine(), one, balance_.motion,
+  if (const auto sweep = MakeSweep(problem_.machine(), one, motion_,
                                    problem_.FittedDuration())) {
     std::vector<Trial> trials;
     const VectorXd first = sweep->angle;
@@ -157,7 +195,7 @@ std::vector<Trial> Search::TrialsOf(std::size_t candidate) const {
     }
     return trials;
   }
-  return MakeTrials(problem_.machine(), one, balance_.motion);
+  return MakeTrials(problem_.machine(), one, motion_);
 }
 
 void Search::AddTrials() {
@@ -167,6 +205,7 @@ void Search::AddTrials() {
   std::vector<std::vector<Tried>> tried(candidates_.size());
   ParallelFor(static_cast<int>(candidates_.size()), [&](int number) {
     const auto c = static_cast<std::size_t>(number);
+    if (!IsTold(candidates_[c])) return;
     const std::vector<Trial> trials = TrialsOf(c);
     const double cost =
         2.0 * std::log(std::max<double>(1.0, static_cast<double>(trials.size()))) -
@@ -179,7 +218,8 @@ void Search::AddTrials() {
         continue;
       }
       tried[c].push_back({c, trial.values, PlaceOf(columns)});
-      groups[c].push_back({std::move(columns), trial.least, cost});
+      groups[c].push_back(
+          {std::move(columns), trial.least, ScalesDrive(candidates_[c]), cost});
     }
   });
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -220,7 +260,11 @@ double Search::ScoreOf(const std::vector<std::size_t>& set, const ForceFit& fit)
   const std::vector<FittedCause> causes = CausesOf(set, fit);
   if (causes.size() != set.size()) return std::numeric_limits<double>::infinity();
   double score = fit.score;
-  for (const FittedCause& cause : causes) score += SizePriorOf(candidates_, cause);
+  for (const FittedCause& cause : causes) {
+    // It asks for another law.
+    if (IsAtItsEnd(candidates_, cause)) return std::numeric_limits<double>::infinity();
+    score += SizePriorOf(candidates_, cause);
+  }
   return score;
 }
 
@@ -349,11 +393,15 @@ bool Search::Exchange() {
 }
 
 /// Whatever it explains of what was fitted, a law that does not help to predict is none.
+/// It was chosen among others on what is predicted, too: by no less than that costs.
 void Search::KeepWhatIsNeededUnseen() {
   while (!set_.empty()) {
-    const VectorXd loss = LossUnseen(forces_, GroupsOf(set_), fit_.noise);
+    VectorXd worth = LossUnseen(forces_, GroupsOf(set_), fit_);
+    for (std::size_t i = 0; i < set_.size(); ++i) {
+      worth[static_cast<Index>(i)] -= groups_[set_[i]].cost;
+    }
     Index least = 0;
-    if (loss.minCoeff(&least) > kLeastGain) return;
+    if (worth.minCoeff(&least) > 0.0) return;
     set_.erase(set_.begin() + least);
     fit_ = Fit(set_);
     score_ = ScoreOf(set_, fit_);
@@ -389,11 +437,11 @@ ForceSearchResult Search::Run() {
     result.model.numbers[i] = std::clamp(moved, doubted.Least(), doubted.Most());
   }
   result.rivals = rivals_;
-  result.loss = LossUnseen(forces_, GroupsOf(set_), fit_.noise);
-  result.loss_of_all = LossUnseenOfAll(forces_, GroupsOf(set_), fit_.noise);
+  result.loss = LossUnseen(forces_, GroupsOf(set_), fit_);
+  result.loss_of_all = LossUnseenOfAll(forces_, GroupsOf(set_), fit_);
   result.rows = forces_.rows;
   result.noise = fit_.noise;
-  result.numbers = forces_.numbers;
+  result.numbers = NumbersBeside(forces_, GroupsOf(set_), fit_);
   return result;
 }
 

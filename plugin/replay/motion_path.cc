@@ -27,7 +27,8 @@ constexpr Index kFewest = 3;
 
 /// Value, slope and curvature of every row of `samples` about column `at`, by least
 /// squares of first + side .. on both sides, fewer at the ends. rows x 3
-MatrixXd QuadraticAt(const MatrixXd& samples, Index at, Index side, double tick) {
+MatrixXd QuadraticAt(const Eigen::Ref<const MatrixXd>& samples, Index at, Index side,
+                     double tick) {
   const Index first = std::max<Index>(0, at - side);
   const Index last = std::min(samples.cols() - 1, at + side);
   const Index n = last - first + 1;
@@ -141,6 +142,9 @@ std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
   Configurations configurations(machine);
   std::vector<MotionPoint> points;
   std::size_t record = 0;
+  const auto of_record = [&](const MatrixXd& all) {
+    return all.middleCols(run.records[record].sample, run.SamplesOf(record));
+  };
   configurations.Begin();
   for (const Index sample : samples) {
     while (record + 1 < run.records.size() &&
@@ -149,9 +153,6 @@ std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
       configurations.Begin();
     }
     const Index first = run.records[record].sample;
-    const auto of_record = [&](const MatrixXd& all) -> MatrixXd {
-      return all.middleCols(first, run.SamplesOf(record));
-    };
     auto point = configurations.At(
         QuadraticAt(of_record(run.outputs), sample - first, side, run.sample_time));
     if (!point) return {};
