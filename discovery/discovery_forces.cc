@@ -129,16 +129,15 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
   };
   force_ = SearchForces(problem_, candidates_, filtered, nominal, options);
   const ForceErrors errors(problem_, filtered, *force_, nominal.missing);
-  const DiscoveryProblem balance = problem_.Simulating(errors);
+  const DiscoveryProblem balance =
+      problem_.Simulating(errors, NumbersFirst(problem_, errors, *force_));
   Report("fit along the motion", 0.5);
-  const MatrixXd first = NumbersFirst(balance, errors, *force_);
   CauseFit fit;
   try {
     fit = FitCauses(balance, candidates_, force_->model,
                     {.iterations = 6,
                      .tolerance = 1e-5,
                      .jacobian = false,
-                     .initial_jacobian = &first,
                      .secant = true,
                      .share = work_->Share(1)});
   } catch (const CutShort&) {

@@ -187,6 +187,14 @@ std::vector<bool> DiscoveryProblem::StoodFor(const Changes& changes) const {
 
 Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
                                                  const VectorXd& z) const {
+  if (free_numbers_) {
+    Eigen::MatrixXd J = *free_numbers_;
+    const std::vector<bool> stood_for = StoodFor(changes);
+    for (Index i = 0; i < J.cols(); ++i) {
+      if (stood_for[static_cast<std::size_t>(i)]) J.col(i).setZero();
+    }
+    return J;
+  }
   // Numbers that act alike together, as all that a machine is made of and the motors that
   // move it, must not seem to differ. Dry friction bends what they do even over small
   // steps, and rounding hides what smaller ones do: of 1 % of all numbers of a wire
@@ -355,9 +363,13 @@ DiscoveryProblem DiscoveryProblem::Doubting(std::vector<DoubtedNumber> numbers) 
 }
 
 DiscoveryProblem DiscoveryProblem::Simulating(
-    std::function<Eigen::MatrixXd(const Changes&)> errors) const {
+    std::function<Eigen::MatrixXd(const Changes&)> errors,
+    Eigen::MatrixXd numbers) const {
   DiscoveryProblem changed = *this;
   changed.free_errors_ = std::move(errors);
+  changed.free_numbers_ =
+      numbers.size() > 0 ? std::make_shared<const Eigen::MatrixXd>(std::move(numbers))
+                         : nullptr;
   changed.derived_ = std::make_shared<Derived>();
   return changed;
 }

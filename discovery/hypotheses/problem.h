@@ -123,9 +123,11 @@ class DiscoveryProblem {
   /// With doubts about those numbers.
   DiscoveryProblem Doubting(std::vector<DoubtedNumber> numbers) const;
   /// With what a free simulation is off in the place of innovations.
-  /// @param errors  measured less simulated beside changes, sensors x samples
-  DiscoveryProblem Simulating(
-      std::function<Eigen::MatrixXd(const Changes&)> errors) const;
+  /// @param errors   measured less simulated beside changes, sensors x samples
+  /// @param numbers  d residual / dz, where it is known and hardly changes; of no size: by
+  ///                 differences
+  DiscoveryProblem Simulating(std::function<Eigen::MatrixXd(const Changes&)> errors,
+                              Eigen::MatrixXd numbers = {}) const;
 
  private:
   friend DiscoveryProblem Beginning(const DiscoveryProblem& problem,
@@ -139,6 +141,7 @@ class DiscoveryProblem {
   Eigen::Index train_;
   std::vector<DoubtedNumber> numbers_;
   std::function<Eigen::MatrixXd(const Changes&)> free_errors_;
+  std::shared_ptr<const Eigen::MatrixXd> free_numbers_;  // none: by differences
   std::shared_ptr<const Eigen::VectorXd> shift_;      // none: 0
   std::shared_ptr<const Machine> in_steps_of_setup_;  // none: machine_ is
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
