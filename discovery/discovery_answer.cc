@@ -24,6 +24,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kLeastProbability = 0.01;
+constexpr double kMostOfIt = 0.5;
 
 }  // namespace
 
@@ -236,7 +237,7 @@ void Discoverer::Judge() {
   // Along the motion the causes were judged by the balance of forces, and by parts of it
   // that were predicted.
   if (force_ && named && discovery_.verdict == DiscoveryVerdict::kUnexplained &&
-      search_.fit().train < nominal_) {
+      force_->ExplainedUnseen() >= kMostOfIt) {
     discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
   }
   const bool all_named = std::ranges::all_of(discovery_.causes, &FoundCause::HasName);

@@ -109,7 +109,7 @@ MatrixXd NumbersFirst(const DiscoveryProblem& problem, const ForceErrors& errors
 }  // namespace
 
 bool Discoverer::TakeForces(const SearchOptions& search) {
-  if (options_.bandwidth != 0.0 || !problem_.observer().following ||
+  if (options_.bandwidth != 0.0 || !falls_ ||
       !work_->MayBegin("laws along the motion")) {
     return false;
   }

@@ -113,7 +113,7 @@ class Search {
   bool Add();
   bool LeaveOut();
   bool Exchange();
-  void KeepWhatIsNeededUnseen();
+  bool KeepWhatIsNeededUnseen();
   bool Take(std::vector<std::size_t> set, ForceFit fit, double score) {
     set_ = std::move(set);
     fit_ = std::move(fit);
@@ -133,6 +133,7 @@ class Search {
   ForceFit fit_;
   double score_ = 0.0;
   std::vector<std::vector<ForceRival>> rivals_;
+  std::set<std::size_t> forbidden_;  // candidates that unseen motion speaks against
 };
 
 /// The low-passed rows of forces that a trial makes.
@@ -159,6 +160,8 @@ void Search::AddNumbers() {
   forces_.numbers.setZero(forces_.rows.rows(), std::ssize(numbers));
   forces_.drives.setZero(std::ssize(numbers));
   const VectorXd still = problem_.StillSpeed();
+  problem_.work()->Add(problem_.RunWork() / problem_.machine().rates().substeps *
+                       static_cast<double>(numbers.size()));
   ParallelForAll(static_cast<int>(numbers.size()), [&](int number) {
     const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(number)];
     const MatrixXd force =
@@ -226,6 +229,12 @@ void Search::AddTrials() {
     std::ranges::move(groups[c], std::back_inserter(groups_));
     std::ranges::move(tried[c], std::back_inserter(tried_));
   }
+  constexpr double kFilter = 60.0;  // multiplications for every value
+  for (const ForceGroup& group : groups_) {
+    problem_.work()->Add(FilterWork(kFilter *
+                                    static_cast<double>(group.columns.cols()) *
+                                    static_cast<double>(motion_.samples())));
+  }
 }
 
 std::vector<const ForceGroup*> Search::GroupsOf(
@@ -287,6 +296,11 @@ std::vector<Search::Best> Search::BestBeside(const std::vector<std::size_t>& set
                                              std::size_t count,
                                              std::size_t place) const {
   const VectorXd gains = GainsBeside(forces_, GroupsOf(set), fit, GroupsOf(tried));
+  // Two products with what the set does, for every column.
+  problem_.work()->Add(
+      FilterWork(2.0 * static_cast<double>(forces_.rows.rows()) *
+                 static_cast<double>(tried.size()) *
+                 static_cast<double>(fit.z.size() + fit.amplitudes.size() + 4)));
   std::vector<std::size_t> order(tried.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) {
@@ -313,7 +327,7 @@ std::vector<Search::Best> Search::BestBeside(const std::vector<std::size_t>& set
 bool Search::Add() {
   constexpr std::size_t kBest = 6;
   std::vector<std::size_t> tried;
-  std::set<std::size_t> has;
+  std::set<std::size_t> has = forbidden_;
   std::map<Index, int> of_joint;
   for (const std::size_t g : set_) {
     has.insert(tried_[g].candidate);
@@ -366,7 +380,7 @@ bool Search::Exchange() {
   for (std::size_t i = 0; i < set_.size(); ++i) {
     std::vector<std::size_t> rest = set_;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-    std::set<std::size_t> has;
+    std::set<std::size_t> has = forbidden_;
     for (const std::size_t g : rest) has.insert(tried_[g].candidate);
     const std::set<Index>& place = tried_[set_[i]].joints;
     std::vector<std::size_t> tried;
@@ -392,24 +406,29 @@ bool Search::Exchange() {
   return changed;
 }
 
-/// Whatever it explains of what was fitted, a law that does not help to predict is none.
-/// It was chosen among others on what is predicted, too: by no less than that costs.
-void Search::KeepWhatIsNeededUnseen() {
+/// Whatever it explains of what was fitted, a law that does not help to predict is none, and
+/// is not looked at again. It was chosen among others on what is predicted, too: by no less
+/// than that costs. True if there was one.
+bool Search::KeepWhatIsNeededUnseen() {
+  bool changed = false;
   while (!set_.empty()) {
     VectorXd worth = LossUnseen(forces_, GroupsOf(set_), fit_);
     for (std::size_t i = 0; i < set_.size(); ++i) {
       worth[static_cast<Index>(i)] -= groups_[set_[i]].cost;
     }
     Index least = 0;
-    if (worth.minCoeff(&least) > 0.0) return;
+    if (worth.minCoeff(&least) > 0.0) break;
+    changed = true;
+    forbidden_.insert(tried_[set_[static_cast<std::size_t>(least)]].candidate);
     set_.erase(set_.begin() + least);
     fit_ = Fit(set_);
     score_ = ScoreOf(set_, fit_);
   }
+  return changed;
 }
 
 ForceSearchResult Search::Run() {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 6;
   fit_ = Fit({});
   score_ = ScoreOf({}, fit_);
   ForceSearchResult result;
@@ -419,7 +438,7 @@ ForceSearchResult Search::Run() {
     Report("other laws in their places", 0.6);
     bool changed = Exchange();
     while (LeaveOut()) changed = true;
-    if (!changed) break;
+    if (!changed && !KeepWhatIsNeededUnseen()) break;
   }
   KeepWhatIsNeededUnseen();
   Exchange();
@@ -446,6 +465,11 @@ ForceSearchResult Search::Run() {
 }
 
 }  // namespace
+
+double ForceSearchResult::ExplainedUnseen() const {
+  const auto left = static_cast<double>(rows.train * std::ssize(rows.dofs));
+  return loss_of_all / (loss_of_all + left);
+}
 
 ForceSearchResult SearchForces(const DiscoveryProblem& problem,
                                const std::vector<Candidate>& candidates,

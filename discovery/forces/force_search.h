@@ -38,6 +38,10 @@ struct ForceSearchResult {
   ForceRows rows;
   ForceNoise noise;         ///< that the set leaves
   Eigen::MatrixXd numbers;  ///< columns of the numbers, rows x numbers
+
+  /// Of the squares that unseen motion leaves without any law, in units of the noise that
+  /// the laws leave, the part that they take away.
+  double ExplainedUnseen() const;
 };
 
 struct ForceSearchOptions {

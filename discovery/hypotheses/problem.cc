@@ -46,6 +46,7 @@ struct DiscoveryProblem::Derived {
   Track nominal;
   std::shared_ptr<const LinearisedRun> linearised;
   std::optional<DiscoveryProblem> train_part;
+  Eigen::MatrixXd free_numbers;  ///< of Simulating; of no size: by differences
 };
 
 DiscoveryProblem::DiscoveryProblem(Machine machine, Observer observer, MeasuredRun run,
@@ -187,8 +188,8 @@ std::vector<bool> DiscoveryProblem::StoodFor(const Changes& changes) const {
 
 Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
                                                  const VectorXd& z) const {
-  if (free_numbers_) {
-    Eigen::MatrixXd J = *free_numbers_;
+  if (derived_->free_numbers.size() > 0) {
+    Eigen::MatrixXd J = derived_->free_numbers;
     const std::vector<bool> stood_for = StoodFor(changes);
     for (Index i = 0; i < J.cols(); ++i) {
       if (stood_for[static_cast<std::size_t>(i)]) J.col(i).setZero();
@@ -367,10 +368,8 @@ DiscoveryProblem DiscoveryProblem::Simulating(
     Eigen::MatrixXd numbers) const {
   DiscoveryProblem changed = *this;
   changed.free_errors_ = std::move(errors);
-  changed.free_numbers_ =
-      numbers.size() > 0 ? std::make_shared<const Eigen::MatrixXd>(std::move(numbers))
-                         : nullptr;
   changed.derived_ = std::make_shared<Derived>();
+  changed.derived_->free_numbers = std::move(numbers);
   return changed;
 }
 

@@ -141,7 +141,6 @@ class DiscoveryProblem {
   Eigen::Index train_;
   std::vector<DoubtedNumber> numbers_;
   std::function<Eigen::MatrixXd(const Changes&)> free_errors_;
-  std::shared_ptr<const Eigen::MatrixXd> free_numbers_;  // none: by differences
   std::shared_ptr<const Eigen::VectorXd> shift_;      // none: 0
   std::shared_ptr<const Machine> in_steps_of_setup_;  // none: machine_ is
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
