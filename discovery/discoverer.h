@@ -59,7 +59,9 @@ class Discoverer {
   bool TakeSets(const SearchOptions& search);
   /// Goes on in that many physics steps a tick.
   void TakeSubsteps(int substeps);
-  /// Of a machine that leaves its rest; true if there is nothing to add.
+  /// Whether it is a machine that falls, behind no observer that was asked for.
+  bool GoesAlongMotion() const { return falls_ && options_.bandwidth == 0.0; }
+  /// Laws along its motion; true if there is nothing to add.
   bool TakeForces(const SearchOptions& search);
   /// As closely as possible, behind the observer that they deserve.
   void FitSets(const SearchOptions& options);

@@ -191,7 +191,9 @@ void Discoverer::SearchAll() {
   if (options_.doubt && work_->MayBegin("numbers of the plant")) {
     Report("numbers of the plant", 0.0);
     problem_ = WithDoubts(problem_, KnownNumbers());
-    if (auto learned = LearnedNumbersOf(problem_, candidates_)) {
+    // Along the motion they are found with the laws.
+    if (auto learned = GoesAlongMotion() ? std::nullopt
+                                         : LearnedNumbersOf(problem_, candidates_)) {
       search_.numbers_alone = learned->numbers;
       search_.evidence = search_.evidence.Changed(std::move(*learned));
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "mjdiag/comparison/missing_force.h"
@@ -106,13 +107,60 @@ MatrixXd NumbersFirst(const DiscoveryProblem& problem, const ForceErrors& errors
   return J;
 }
 
+/// A law that the steps of the plant cannot follow gives way to the next one that could be
+/// in its place, or to none.
+void KeepWhatRuns(const DiscoveryProblem& balance,
+                  const std::vector<Candidate>& candidates, ForceSearchResult& found) {
+  const auto runs = [&](const FittedCause& cause) {
+    try {
+      balance.Residual(ChangesOf(balance, candidates,
+                                 FittedModel({cause}, found.model.numbers)));
+      return true;
+    } catch (const NumericalError&) {
+      return false;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  for (std::size_t i = found.model.causes.size(); i-- > 0;) {
+    FittedCause& cause = found.model.causes[i];
+    if (runs(cause)) continue;
+    const auto other =
+        std::ranges::find_if(found.rivals[i], [&](const ForceRival& rival) {
+          return rival.cause.candidate != cause.candidate && runs(rival.cause);
+        });
+    if (other != found.rivals[i].end()) {
+      cause = other->cause;
+      continue;
+    }
+    const auto place = static_cast<std::ptrdiff_t>(i);
+    found.model.causes.erase(found.model.causes.begin() + place);
+    found.rivals.erase(found.rivals.begin() + place);
+    VectorXd loss(found.loss.size() - 1);
+    loss << found.loss.head(place), found.loss.tail(found.loss.size() - place - 1);
+    found.loss = std::move(loss);
+  }
+}
+
+/// As closely as the steps of the plant allow; none where they cannot follow.
+std::optional<CauseFit> FitAlong(const DiscoveryProblem& balance,
+                                 const std::vector<Candidate>& candidates,
+                                 const FittedModel& start) {
+  auto fit = TryFit(balance, candidates, start,
+                    {.iterations = 6,
+                     .tolerance = 1e-5,
+                     .jacobian = false,
+                     .secant = true,
+                     .share = balance.work()->Share(1)});
+  if (fit) return fit;
+  return TryFit(balance, candidates, start,
+                {.iterations = 0, .jacobian = false, .closing = true});
+}
+
 }  // namespace
 
 bool Discoverer::TakeForces(const SearchOptions& search) {
-  if (options_.bandwidth != 0.0 || !falls_ ||
-      !work_->MayBegin("laws along the motion")) {
-    return false;
-  }
+  if (!GoesAlongMotion() || !work_->MayBegin("laws along the motion")) return false;
   const double bandwidth =
       std::min(FastestForce(problem_.run()), kFastest * machine_.rates().control);
   const FilteredRun filtered = FilterRun(machine_, problem_.run(), bandwidth);
@@ -132,32 +180,28 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
   const DiscoveryProblem balance =
       problem_.Simulating(errors, NumbersFirst(problem_, errors, *force_));
   Report("fit along the motion", 0.5);
-  CauseFit fit;
-  try {
-    fit = FitCauses(balance, candidates_, force_->model,
-                    {.iterations = 6,
-                     .tolerance = 1e-5,
-                     .jacobian = false,
-                     .secant = true,
-                     .share = work_->Share(1)});
-  } catch (const CutShort&) {
-    work_->CutShort();
-    fit = AsItIs(balance, candidates_, force_->model);
+  KeepWhatRuns(balance, candidates_, *force_);
+  std::optional<CauseFit> fit = FitAlong(balance, candidates_, force_->model);
+  auto behind = fit ? TryFit(problem_, candidates_, *fit,
+                             {.iterations = 0, .jacobian = false, .closing = true})
+                    : std::nullopt;
+  if (!behind) {
+    force_.reset();
+    return false;
   }
   search_.numbers_alone = force_->numbers_alone;
   search_.rivals = RivalsIn(*force_);
-  for (std::size_t count = 1; count <= fit.causes.size(); ++count) {
+  for (std::size_t count = 1; count <= fit->causes.size(); ++count) {
     search_.ladder.push_back(
-        {{fit.causes.begin(), fit.causes.begin() + static_cast<std::ptrdiff_t>(count)},
-         fit.numbers});
+        {{fit->causes.begin(), fit->causes.begin() + static_cast<std::ptrdiff_t>(count)},
+         fit->numbers});
   }
-  CauseFit behind = AsItIs(problem_, candidates_, fit);
-  VectorXd independent = IndependentShare(problem_, behind.residual);
-  search_.evidence = {DataOf(problem_, candidates_, search.unseen), std::move(behind),
+  VectorXd independent = IndependentShare(problem_, behind->residual);
+  search_.evidence = {DataOf(problem_, candidates_, search.unseen), std::move(*behind),
                       std::move(independent)};
   search_.significant_rest = true;
   search_.screened = true;
-  free_fit_.emplace(balance, std::move(fit));
+  free_fit_.emplace(balance, std::move(*fit));
   return true;
 }
 

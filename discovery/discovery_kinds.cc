@@ -132,6 +132,7 @@ void Discoverer::FindKindsAlongMotion() {
     for (const std::size_t i : places) {
       const auto found = std::ranges::find(
           force_->model.causes, fit.causes[i].candidate, &FittedCause::candidate);
+      if (found == force_->model.causes.end()) continue;
       loss += force_->loss[found - force_->model.causes.begin()];
     }
     const double share =
