@@ -48,9 +48,8 @@ VectorXd Filtered(const MeasuredRun& run, double bandwidth, const VectorXd& sign
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
     const Index count = run.SamplesOf(i);
-    filtered.segment(first, count) =
-        FilteredPart(sections, signal.segment(first, count),
-                     2 * PeriodIn(run, bandwidth));
+    filtered.segment(first, count) = FilteredPart(
+        sections, signal.segment(first, count), 2 * PeriodIn(run, bandwidth));
   }
   return filtered;
 }
@@ -80,8 +79,7 @@ class FilteredInputs final : public TickControl {
     }
   }
   bool IsOn(std::size_t actuator) const noexcept override {
-    return run_.on.size() == 0 ||
-           run_.on(static_cast<Index>(actuator), sample_) != 0.0;
+    return run_.on.size() == 0 || run_.on(static_cast<Index>(actuator), sample_) != 0.0;
   }
 
  private:
@@ -106,8 +104,7 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
   }
   std::vector<Index> all(static_cast<std::size_t>(run.samples()));
   std::iota(all.begin(), all.end(), 0);
-  const std::vector<MotionPoint> points =
-      MotionOfReadings(machine, filtered.run, all);
+  const std::vector<MotionPoint> points = MotionOfReadings(machine, filtered.run, all);
   if (points.empty()) {
     throw InputError("balance of forces", "readings that do not say where joints are",
                      "a position sensor for every joint that moves");
@@ -124,8 +121,7 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
     const Index first = run.records[i].sample + margin;
     const Index last = run.records[i].sample + run.SamplesOf(i) - margin;
     for (Index k = first; k < last; ++k) {
-      filtered.counts[k] =
-          run.Counted().size() == 0 || run.Counted().col(k).all();
+      filtered.counts[k] = run.Counted().size() == 0 || run.Counted().col(k).all();
     }
   }
   return filtered;
@@ -137,7 +133,8 @@ VectorXd DriveFactors(const Machine& machine, const Machine& changed) {
   VectorXd factors(std::ssize(motors));
   for (std::size_t i = 0; i < motors.size(); ++i) {
     const auto row = [&](const Machine& of) {
-      return Eigen::Map<const VectorXd>(RowOf(of.plant().actuator_gear, 6, motors[i]), 6)
+      return Eigen::Map<const VectorXd>(RowOf(of.plant().actuator_gear, 6, motors[i]),
+                                        6)
           .norm();
     };
     factors[static_cast<Index>(i)] = row(changed) / row(machine);
@@ -173,8 +170,7 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
   motion.outputs = run.outputs;
   // What hardly drives leaves no force to compare with.
   constexpr double kLeast = 1e-6;
-  const VectorXd less =
-      DriveFactors(machine, changed).cwiseMax(kLeast).cwiseInverse();
+  const VectorXd less = DriveFactors(machine, changed).cwiseMax(kLeast).cwiseInverse();
   MatrixXd M(nv, nv);
   FilteredInputs inputs(filtered);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
@@ -182,8 +178,8 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
     ChooseSolver(*plant.model);
     Stepper stepper(changed);
     mjData& data = *plant.data;
-    for (Index k = run.records[i].sample;
-         k < run.records[i].sample + run.SamplesOf(i); ++k) {
+    for (Index k = run.records[i].sample; k < run.records[i].sample + run.SamplesOf(i);
+         ++k) {
       inputs.Set(k);
       VectorXd::Map(data.qpos, nv) = filtered.position.col(k);
       VectorXd::Map(data.qvel, nv) = filtered.velocity.col(k);
@@ -207,7 +203,8 @@ VectorXd MissingRms(const FilteredRun& filtered, const ForceBalance& balance) {
   VectorXd rms(balance.missing.rows());
   for (Index row = 0; row < rms.size(); ++row) {
     const VectorXd kept = Kept(balance.missing.row(row), filtered.counts);
-    rms[row] = std::sqrt(kept.squaredNorm() / static_cast<double>(std::max<Index>(1, kept.size())));
+    rms[row] = std::sqrt(kept.squaredNorm() /
+                         static_cast<double>(std::max<Index>(1, kept.size())));
   }
   return rms;
 }

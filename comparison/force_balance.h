@@ -25,10 +25,10 @@ namespace mjdiag {
 
 /// A measured run as its joints moved, filtered. What does not depend on what is tried.
 struct FilteredRun {
-  MeasuredRun run;              ///< inputs and outputs filtered
-  Eigen::MatrixXd position;     ///< nq x samples
-  Eigen::MatrixXd velocity;     ///< nv x samples
-  Eigen::MatrixXd acceleration; ///< nv x samples
+  MeasuredRun run;               ///< inputs and outputs filtered
+  Eigen::MatrixXd position;      ///< nq x samples
+  Eigen::MatrixXd velocity;      ///< nv x samples
+  Eigen::MatrixXd acceleration;  ///< nv x samples
   /// Of every sample, whether it is measured and a period of the band away from the ends
   /// of its record, where filters and differences see only one side.
   SampleMask counts;

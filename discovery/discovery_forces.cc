@@ -113,8 +113,8 @@ void KeepWhatRuns(const DiscoveryProblem& balance,
                   const std::vector<Candidate>& candidates, ForceSearchResult& found) {
   const auto runs = [&](const FittedCause& cause) {
     try {
-      balance.Residual(ChangesOf(balance, candidates,
-                                 FittedModel({cause}, found.model.numbers)));
+      balance.Residual(
+          ChangesOf(balance, candidates, FittedModel({cause}, found.model.numbers)));
       return true;
     } catch (const NumericalError&) {
       return false;
@@ -193,7 +193,8 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
   search_.rivals = RivalsIn(*force_);
   for (std::size_t count = 1; count <= fit->causes.size(); ++count) {
     search_.ladder.push_back(
-        {{fit->causes.begin(), fit->causes.begin() + static_cast<std::ptrdiff_t>(count)},
+        {{fit->causes.begin(),
+          fit->causes.begin() + static_cast<std::ptrdiff_t>(count)},
          fit->numbers});
   }
   VectorXd independent = IndependentShare(problem_, behind->residual);

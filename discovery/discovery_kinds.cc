@@ -135,8 +135,9 @@ void Discoverer::FindKindsAlongMotion() {
       if (found == force_->model.causes.end()) continue;
       loss += force_->loss[found - force_->model.causes.begin()];
     }
-    const double share =
-        force_->loss_of_all > 0.0 ? std::clamp(loss / force_->loss_of_all, 0.0, 1.0) : 0.0;
+    const double share = force_->loss_of_all > 0.0
+                             ? std::clamp(loss / force_->loss_of_all, 0.0, 1.0)
+                             : 0.0;
     for (FoundKind& kind : KindsAt(places, Logistic(loss / 2.0), share)) {
       AddKind(std::move(kind));
     }

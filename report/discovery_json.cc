@@ -86,8 +86,8 @@ json CalibrationOf(const Discovery& discovery) {
         {{"name", number.name},
          {"value", value(number.factor)},
          {"ci95", {value(number.low), value(number.high)}},
-         {"prior_sd", Finite(number.shift > 0.0 ? number.shift * number.doubt
-                                                : number.doubt)},
+         {"prior_sd",
+          Finite(number.shift > 0.0 ? number.shift * number.doubt : number.doubt)},
          {"unit", number.shift > 0.0 ? "m" : "1"},
          {"off", IsOff(number)}});
   }

@@ -112,8 +112,7 @@ VectorXd SolveNormal(const MatrixXd& matrix, const VectorXd& right, Index number
   constexpr double kRidge = 1e-10;
   MatrixXd with = matrix;
   with.diagonal().head(numbers).array() += 1.0;
-  const VectorXd scale =
-      with.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const VectorXd scale = with.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   MatrixXd unit = scale.asDiagonal() * with * scale.asDiagonal();
   unit.diagonal().array() += kRidge;
   return scale.cwiseProduct(unit.ldlt().solve(scale.cwiseProduct(right)));
@@ -197,8 +196,7 @@ ForceFit FitForces(const ForceProblem& problem,
   for (int i = 0; i < kIterations; ++i) {
     MatrixXd both(at.columns.rows(), at.columns.cols() + 1);
     both << at.columns, at.left + at.columns * theta;
-    const MatrixXd white =
-        Whitened(problem.rows, fit.noise, both)(places, Eigen::all);
+    const MatrixXd white = Whitened(problem.rows, fit.noise, both)(places, Eigen::all);
     const auto A = white.leftCols(theta.size());
     theta = SolveNormal(A.transpose() * A, A.transpose() * white.rightCols(1), numbers);
     at = ModelAbout(problem, columns, theta);
@@ -223,8 +221,7 @@ MatrixXd NumbersBeside(const ForceProblem& problem,
 }
 
 VectorXd LossUnseen(const ForceProblem& problem,
-                    const std::vector<const ForceGroup*>& groups,
-                    const ForceFit& fit) {
+                    const std::vector<const ForceGroup*>& groups, const ForceFit& fit) {
   const Unseen unseen(problem, groups, fit);
   std::vector<Index> all(static_cast<std::size_t>(unseen.columns()));
   std::iota(all.begin(), all.end(), 0);
@@ -262,8 +259,7 @@ VectorXd GainsBeside(const ForceProblem& problem,
   MatrixXd own = MatrixXd::Zero(rows + numbers, 0);
   const About at = ModelAbout(problem, ColumnsOf(problem, set), ThetaOf(fit));
   own.resize(rows + numbers, at.columns.cols());
-  own.topRows(rows) =
-      Whitened(problem.rows, fit.noise, at.columns)(places, Eigen::all);
+  own.topRows(rows) = Whitened(problem.rows, fit.noise, at.columns)(places, Eigen::all);
   own.bottomRows(numbers).setZero();
   own.bottomLeftCorner(numbers, numbers).setIdentity();
   const VectorXd scale = own.colwise().norm().cwiseMax(1e-300);

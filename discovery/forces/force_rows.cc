@@ -99,8 +99,7 @@ MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
   return white;
 }
 
-double DevianceOf(const ForceNoise& noise,
-                  const std::vector<bool>& seen) {
+double DevianceOf(const ForceNoise& noise, const std::vector<bool>& seen) {
   const auto count = static_cast<double>(std::ranges::count(seen, true));
   return count * (2.0 * noise.sd.array().log() + 1.0).sum();
 }

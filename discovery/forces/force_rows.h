@@ -53,7 +53,6 @@ ForceNoise NoiseOf(const ForceRows& rows, const Eigen::VectorXd& left,
 Eigen::MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
                          const Eigen::MatrixXd& columns);
 /// -2 ln L without its constants.
-double DevianceOf(const ForceNoise& noise,
-                  const std::vector<bool>& seen);
+double DevianceOf(const ForceNoise& noise, const std::vector<bool>& seen);
 
 }  // namespace mjdiag

@@ -168,8 +168,8 @@ void Search::AddNumbers() {
         doubted.spread *
         (doubted.is_lateness
              ? LatenessForce(machine.plant(), machine.linear().Gamma, motion_)
-             : NumberForce(machine.plant(), machine.channels(), doubted.number,
-                           motion_, still));
+             : NumberForce(machine.plant(), machine.channels(), doubted.number, motion_,
+                           still));
     forces_.numbers.col(number) = RowsOf(forces_.rows, force.transpose());
     if (!doubted.is_lateness && IsDrive(doubted.number.kind)) {
       forces_.drives[number] = doubted.spread;
@@ -180,16 +180,15 @@ void Search::AddNumbers() {
 /// Those whose forces are within the band.
 std::vector<Trial> Search::TrialsOf(std::size_t candidate) const {
   const Candidate& one = candidates_[candidate];
-  if (const auto sweep = MakeSweep(problem_.machine(), one, motion_,
-                                   problem_.FittedDuration())) {
+  if (const auto sweep =
+          MakeSweep(problem_.machine(), one, motion_, problem_.FittedDuration())) {
     std::vector<Trial> trials;
     const VectorXd first = sweep->angle;
     for (std::size_t i = 0; i < sweep->values.size(); ++i) {
       const VectorXd angle = first + static_cast<double>(i) * sweep->increment;
       const Index n = angle.size();
-      const VectorXd turns =
-          (angle.tail(n - 1) - angle.head(n - 1)).cwiseAbs() /
-          (2.0 * std::numbers::pi * filtered_.run.sample_time);
+      const VectorXd turns = (angle.tail(n - 1) - angle.head(n - 1)).cwiseAbs() /
+                             (2.0 * std::numbers::pi * filtered_.run.sample_time);
       if (std::sqrt(turns.squaredNorm() / static_cast<double>(n)) >
           filtered_.bandwidth) {
         break;
@@ -231,9 +230,9 @@ void Search::AddTrials() {
   }
   constexpr double kFilter = 60.0;  // multiplications for every value
   for (const ForceGroup& group : groups_) {
-    problem_.work()->Add(FilterWork(kFilter *
-                                    static_cast<double>(group.columns.cols()) *
-                                    static_cast<double>(motion_.samples())));
+    problem_.work()->Add(
+        FilterWork(kFilter * static_cast<double>(group.columns.cols()) *
+                   static_cast<double>(motion_.samples())));
   }
 }
 
@@ -303,9 +302,8 @@ std::vector<Search::Best> Search::BestBeside(const std::vector<std::size_t>& set
                  static_cast<double>(fit.z.size() + fit.amplitudes.size() + 4)));
   std::vector<std::size_t> order(tried.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) {
-    return gains[static_cast<Index>(i)];
-  });
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t i) { return gains[static_cast<Index>(i)]; });
   std::vector<Best> best;
   std::set<std::size_t> known;
   for (const std::size_t i : order) {
@@ -385,7 +383,8 @@ bool Search::Exchange() {
     const std::set<Index>& place = tried_[set_[i]].joints;
     std::vector<std::size_t> tried;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (!has.contains(tried_[g].candidate) && tried_[g].joints == place) tried.push_back(g);
+      if (!has.contains(tried_[g].candidate) && tried_[g].joints == place)
+        tried.push_back(g);
     }
     const std::vector<Best> best = BestBeside(rest, Fit(rest), tried, kBest, i);
     rivals_[i].clear();

@@ -46,8 +46,8 @@ Gathered Gather(const mjModel& plant, int body) {
       own.moment = own.mass * anchor + axis * axis.dot(about);
     }
     all.mass += own.mass;
-    all.moment += TurnOf(plant, child) * own.moment +
-                  own.mass * VectorOf(plant.body_pos, child);
+    all.moment +=
+        TurnOf(plant, child) * own.moment + own.mass * VectorOf(plant.body_pos, child);
   }
   return all;
 }

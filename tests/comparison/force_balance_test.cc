@@ -1,8 +1,9 @@
 // What a plant lacks along a measured motion, as forces at its joints.
 
+#include "mjdiag/comparison/force_balance.h"
+
 #include <gtest/gtest.h>
 
-#include "mjdiag/comparison/force_balance.h"
 #include "support/arm.h"
 #include "support/changes.h"
 
@@ -16,9 +17,9 @@ struct Balanced {
   FilteredRun filtered;
 
   explicit Balanced(const std::vector<std::string>& effects = {})
-      : filtered(FilterRun(
-            arm.machine,
-            ToMeasuredRun(arm.setup(), test::Arm::Measure(effects, 1.0)), kBand)) {}
+      : filtered(FilterRun(arm.machine,
+                           ToMeasuredRun(arm.setup(), test::Arm::Measure(effects, 1.0)),
+                           kBand)) {}
   Eigen::VectorXd Rms(const Changes& changes) const {
     return MissingRms(filtered, BalanceForces(arm.machine, changes, filtered));
   }
@@ -44,10 +45,11 @@ TEST(ForceBalance, IsInUnitsOfWhatWasMeasured) {
   // Half of every drive and of every mass moves the same, and lacks as much.
   const Balanced balanced({"viscous_friction@elbow:coefficient=0.4"});
   Changes half;
-  for (const char* number : {"mass@upper", "mass@fore", "inertia@upper", "inertia@fore",
-                             "armature@shoulder", "armature@elbow", "gear@motor1",
-                             "gear@motor2"}) {
-    half.numbers.emplace_back(FindPlantNumber(balanced.arm.machine.plant(), number), 0.5);
+  for (const char* number :
+       {"mass@upper", "mass@fore", "inertia@upper", "inertia@fore", "armature@shoulder",
+        "armature@elbow", "gear@motor1", "gear@motor2"}) {
+    half.numbers.emplace_back(FindPlantNumber(balanced.arm.machine.plant(), number),
+                              0.5);
   }
   const Eigen::VectorXd whole = balanced.Rms({});
   const Eigen::VectorXd scaled = balanced.Rms(half);
@@ -59,7 +61,8 @@ TEST(ForceBalance, CountsNothingAtTheEndsOfARecord) {
   const Eigen::Index period = 25;  // of the band, in ticks
   EXPECT_FALSE(filtered.counts.head(period).any());
   EXPECT_FALSE(filtered.counts.tail(period).any());
-  EXPECT_TRUE(filtered.counts.segment(period, filtered.counts.size() - 2 * period).all());
+  EXPECT_TRUE(
+      filtered.counts.segment(period, filtered.counts.size() - 2 * period).all());
 }
 
 }  // namespace

@@ -35,16 +35,16 @@ std::string SensorOf(const std::string& channel, const std::string& element,
 
 std::string ActuatorOf(const std::string& channel, const std::string& element,
                        const std::string& unit) {
-  return "[actuators." + channel + "]\nelement = \"" + element + "\"\nunit = \"" + unit +
-         "\"\n";
+  return "[actuators." + channel + "]\nelement = \"" + element + "\"\nunit = \"" +
+         unit + "\"\n";
 }
 
 /// PD of a tick of a millisecond.
 std::string AxisOf(const std::string& sensor, const std::string& actuator, double kp,
                    double kd, const std::string& limits) {
   const double d = kd / 1e-3;
-  return "[axes." + sensor + "]\nsensor = \"" + sensor + "\"\nactuator = \"" + actuator +
-         "\"\nfeedback = { numerator = [" + std::to_string(kp + d) + ", " +
+  return "[axes." + sensor + "]\nsensor = \"" + sensor + "\"\nactuator = \"" +
+         actuator + "\"\nfeedback = { numerator = [" + std::to_string(kp + d) + ", " +
          std::to_string(-d) + "], denominator = [1.0, 0.0] }\nlimits = { " + limits +
          " }\n";
 }

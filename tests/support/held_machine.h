@@ -24,8 +24,7 @@ struct HeldMachine {
   /// @param machine  MJCF of what is measured, by default that of the model
   Record Measure(const std::vector<std::string>& effects,
                  const std::string& machine = "") const {
-    const Machine held =
-        Load(machine.empty() ? plant : machine, controller, substeps);
+    const Machine held = Load(machine.empty() ? plant : machine, controller, substeps);
     return Simulate(
         held.With(With(effects)),
         FollowTrajectory(held.setup(), held.setup().trajectories.Find("default")), {});
@@ -35,11 +34,12 @@ struct HeldMachine {
   Machine Load(const std::string& mjcf, const std::string& more, int steps) const {
     const TemporaryFolder folder;
     folder.Write("plant.xml", mjcf);
-    folder.Write("setup.toml", "schema = \"mjdiag.setup/1\"\nname = \"machine\"\n"
-                               "plant = \"plant.xml\"\n" +
-                                   channels + more);
-    const Setup setup = ReadSetup(folder.path().string(),
-                                  {"rates.substeps=" + std::to_string(steps)});
+    folder.Write("setup.toml",
+                 "schema = \"mjdiag.setup/1\"\nname = \"machine\"\n"
+                 "plant = \"plant.xml\"\n" +
+                     channels + more);
+    const Setup setup =
+        ReadSetup(folder.path().string(), {"rates.substeps=" + std::to_string(steps)});
     const ModelPtr loaded = LoadModel(setup.plant);
     loaded->opt.timestep = setup.rates.step();
     PreparePlant(setup.physics, *loaded);

@@ -1,11 +1,11 @@
 // One regression of what a plant lacks, with the noise of the model among its unknowns.
 
+#include "mjdiag/discovery/forces/force_model.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "mjdiag/discovery/forces/force_model.h"
 
 namespace mjdiag {
 namespace {

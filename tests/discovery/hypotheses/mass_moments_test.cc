@@ -1,8 +1,9 @@
 // What motion tells of masses and of where they are.
 
+#include "mjdiag/discovery/hypotheses/mass_moments.h"
+
 #include <gtest/gtest.h>
 
-#include "mjdiag/discovery/hypotheses/mass_moments.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "support/arm.h"
 
@@ -31,7 +32,8 @@ TEST(MassMoments, DoNotChangeWithWhatNoMotionTells) {
   double& centre = other->body_ipos[3 * upper + 2];
   centre = (mass * centre + moved * 0.4) / (mass - moved);
   other->body_mass[upper] -= moved;
-  other->body_ipos[3 * fore + 2] *= other->body_mass[fore] / (other->body_mass[fore] + moved);
+  other->body_ipos[3 * fore + 2] *=
+      other->body_mass[fore] / (other->body_mass[fore] + moved);
   other->body_mass[fore] += moved;
   const std::vector<MassMoment> before = MassMoments(arm.machine.plant());
   const std::vector<MassMoment> after = MassMoments(*other);
