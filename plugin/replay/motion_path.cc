@@ -57,6 +57,7 @@ class Configurations {
   explicit Configurations(const Machine& machine)
       : machine_(machine), model_(CopyModel(machine.plant())), weight_(model_->nv) {
     DropScenery(*model_);
+    data_ = MakeData(*model_);
     for (int dof = 0; dof < model_->nv; ++dof) {
       weight_[dof] = 1.0 / (1.0 + model_->jnt_stiffness[model_->dof_jntid[dof]]);
     }
@@ -88,8 +89,8 @@ class Configurations {
   }
 
  private:
-  VectorXd Read() const {
-    return SensorReadings(machine_.channels(), *model_, position_);
+  VectorXd Read() {
+    return SensorReadings(machine_.channels(), *model_, position_, *data_);
   }
   static double Largest(const VectorXd& error, const VectorXd& target) {
     return (error.array().abs() / (1e-9 + 1e-6 * target.array().abs())).maxCoeff();
@@ -104,6 +105,7 @@ class Configurations {
 
   const Machine& machine_;
   ModelPtr model_;
+  DataPtr data_;
   VectorXd weight_;
   VectorXd position_;
   MatrixXd step_;
