@@ -36,6 +36,7 @@ std::string Describe(const Discovery& discovery) {
          Section("Causes", CauseTable(discovery)) +
          Section("Explanations", ExplanationTable(discovery)) +
          Section("Numbers of the plant", CalibrationTable(discovery)) +
+         Section("Masses and where they are", MomentTable(discovery)) +
          Section("After each cause", LadderTable(discovery)) +
          Section("After each cause, on the validation record",
                  ValidationLadderTable(discovery)) +

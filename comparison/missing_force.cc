@@ -21,21 +21,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kPower = 3.0;
+constexpr double kFastest = 32.0;  // times the bandwidth of the motion
 // Of the state and of the forces before the first sample, in multiples of what they are
 // known to later: anything.
 constexpr double kFree = 1e3;
-
-/// Degrees of freedom with a force.
-std::vector<Index> ForcedDofs(const Machine& machine) {
-  const MechanicalModel& model = machine.linear();
-  const Index sensors = model.b.cols();
-  std::vector<Index> dofs;
-  for (Index dof = 0; dof < model.M.rows() && std::ssize(dofs) < sensors; ++dof) {
-    const bool driven = !model.Gamma.row(dof).isZero(0.0);
-    if (driven || sensors >= model.M.rows()) dofs.push_back(dof);
-  }
-  return dofs;
-}
 
 /// Tick models with forces at joints for states [xt; f] in units of the noise.
 class ForcedPath {
@@ -282,7 +271,6 @@ double MotionBandwidth(const MeasuredRun& run) {
 }
 
 VectorXd FindBandwidth(const ForcedPath& path, double motion) {
-  constexpr double kFastest = 32.0;
   const double fastest = std::min(1.0, kFastest * motion);
   const double slowest =
       std::min(fastest, 6.0 * std::numbers::pi / static_cast<double>(path.samples()));
@@ -354,6 +342,21 @@ Smoothed Smooth(const ForcedPath& path, const VectorXd& bandwidth) {
 }
 
 }  // namespace
+
+std::vector<Index> ForcedDofs(const Machine& machine) {
+  const MechanicalModel& model = machine.linear();
+  const Index sensors = model.b.cols();
+  std::vector<Index> dofs;
+  for (Index dof = 0; dof < model.M.rows() && std::ssize(dofs) < sensors; ++dof) {
+    const bool driven = !model.Gamma.row(dof).isZero(0.0);
+    if (driven || sensors >= model.M.rows()) dofs.push_back(dof);
+  }
+  return dofs;
+}
+
+double FastestForce(const MeasuredRun& run) {
+  return kFastest * MotionBandwidth(run) / (2.0 * std::numbers::pi * run.sample_time);
+}
 
 std::vector<MissingForce> MissingForces(const Machine& machine, const MeasuredRun& run,
                                         const Observer& observer,

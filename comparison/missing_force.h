@@ -47,6 +47,13 @@ struct MissingForce {
   double bandwidth = 0.0;  ///< b over 2 pi and the tick [Hz]
 };
 
+/// 32 times the bandwidth of the motion [Hz]: what is faster goes with no motion.
+double FastestForce(const MeasuredRun& run);
+
+/// Degrees of freedom with a force of their own: those that are driven, as many as there are
+/// sensors; all of them where that many sensors are there.
+std::vector<Eigen::Index> ForcedDofs(const Machine& machine);
+
 /// At the joints that are driven, as many as there are sensors; at all of them where that
 /// many sensors are there.
 /// @param observer     one that follows the run, else InputError

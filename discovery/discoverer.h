@@ -1,7 +1,7 @@
 #pragma once
 // The parts of a discovery (discovery.h) while it is under way: the search in
 // discovery.cc, the last fits in discovery_last_fit.cc, what has no name in
-// discovery_curves.cc, the answer in discovery_answer.cc, notes in discovery_notes.cc,
+// discovery_curves.cc, laws along the motion in discovery_forces.cc, the answer in discovery_answer.cc, notes in discovery_notes.cc,
 // figures in discovery_figures.cc.
 
 #include <map>
@@ -13,6 +13,7 @@
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fitting/cause_fit.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
+#include "mjdiag/discovery/forces/force_search.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
@@ -58,6 +59,10 @@ class Discoverer {
   bool TakeSets(const SearchOptions& search);
   /// Goes on in that many physics steps a tick.
   void TakeSubsteps(int substeps);
+  /// Whether it is a machine that falls, behind no observer that was asked for.
+  bool GoesAlongMotion() const { return falls_ && options_.bandwidth == 0.0; }
+  /// Laws along its motion; true if there is nothing to add.
+  bool TakeForces(const SearchOptions& search);
   /// As closely as possible, behind the observer that they deserve.
   void FitSets(const SearchOptions& options);
   std::vector<PlantNumber> KnownNumbers() const;
@@ -82,7 +87,10 @@ class Discoverer {
   Kind KindOfCause(const FittedCause& fitted) const;
   std::vector<FoundKind> KindsAt(const std::vector<std::size_t>& places, double needed,
                                  double share) const;
+  void AddKind(FoundKind kind);
   void FindKinds();
+  void FindKindsBehindObserver();
+  void FindKindsAlongMotion();
   void AddKindsOfNumbers();
   std::vector<CauseParameter> DescribeParameters(const FittedCause& fitted,
                                                  const Eigen::MatrixXd& covariance,
@@ -93,6 +101,7 @@ class Discoverer {
   std::vector<Alternative> AlternativesOf(const FittedCause& fitted,
                                           const std::vector<Hypothesis>& rivals) const;
   void NameNumbers(const Eigen::MatrixXd& covariance);
+  void NameMoments(const Eigen::MatrixXd& covariance);
   void AddNoiseCauses(const Eigen::MatrixXd& innovations);
   void Judge();
   /// Whether a cause is no more than what the physics steps of the simulation are off by.
@@ -135,7 +144,10 @@ class Discoverer {
   double most_seconds_ = 0.0;  // of this machine, that the budget takes; for people
   double nominal_ = 0.0;  // mean square of the plant as given, behind this observer
   SearchResult search_;
-  /// The last fit, where it is one of free simulation, with its problem.
+  /// Of a machine that leaves its rest.
+  std::optional<ForceSearchResult> force_;
+  /// The last fit, where it is one of free simulation or of forces along the motion, with
+  /// its problem.
   std::optional<std::pair<DiscoveryProblem, CauseFit>> free_fit_;
   /// Of causes that are needed though they may be nothing to first order, by candidate:
   /// squared innovations that there are more of without them.

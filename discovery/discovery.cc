@@ -191,13 +191,17 @@ void Discoverer::SearchAll() {
   if (options_.doubt && work_->MayBegin("numbers of the plant")) {
     Report("numbers of the plant", 0.0);
     problem_ = WithDoubts(problem_, KnownNumbers());
-    if (auto learned = LearnedNumbersOf(problem_, candidates_)) {
+    // Along the motion they are found with the laws.
+    if (auto learned = GoesAlongMotion() ? std::nullopt
+                                         : LearnedNumbersOf(problem_, candidates_)) {
       search_.numbers_alone = learned->numbers;
       search_.evidence = search_.evidence.Changed(std::move(*learned));
     }
     work_->NoteChange();
   }
-  if (TakeSets(options)) {
+  if (TakeForces(options)) {
+    // Fitted along the motion.
+  } else if (TakeSets(options)) {
     FitSets(options);
   } else {
     SearchBehindObservers(options);
@@ -207,7 +211,7 @@ void Discoverer::SearchAll() {
     search_.significant_rest = false;
   }
   work_->EndLaws();
-  LearnCurves(options);
+  if (!force_) LearnCurves(options);
   FitFree();
   work_->EndSearch();
   DropEmptyCauses();
@@ -339,9 +343,16 @@ const RecordReplay* Discovery::Unseen() const {
   return first == records.end() ? nullptr : &*first;
 }
 
+// Data have to say more than what was known before, and something else.
+constexpr double kBeyondDoubt = 0.5;
+
+bool IsMoved(const CalibratedMoment& moment) {
+  const double known = 2.0 * TwoSidedNormalQuantile(0.05) * moment.doubt;
+  return moment.high - moment.low < kBeyondDoubt * known &&
+         (moment.low > moment.model || moment.high < moment.model);
+}
+
 bool IsOff(const CalibratedNumber& number) {
-  // Data have to say more than what was known before, and something else.
-  constexpr double kBeyondDoubt = 0.5;
   const double width = std::log(number.high / number.low);
   const double known = 2.0 * TwoSidedNormalQuantile(0.05) * number.doubt;
   return width < kBeyondDoubt * known && (number.low > 1.0 || number.high < 1.0);

@@ -45,6 +45,20 @@ struct CalibratedNumber {
   double high = 1.0;
   /// Standard deviation of its logarithm as far as was known before the record.
   double doubt = 0.0;
+  /// Of a centre of mass, which is no factor: by how far it moves with ln factor [m];
+  /// else 0.
+  double shift = 0.0;
+};
+
+/// What motion tells of masses and of where they are, together (mass_moments.h) [kg m].
+struct CalibratedMoment {
+  std::string joint;
+  std::string axis;    ///< of the frame of the body that it turns
+  double model = 0.0;  ///< as the model has it
+  double value = 0.0;  ///< as the record has it
+  double low = 0.0;    ///< 95 % interval
+  double high = 0.0;
+  double doubt = 0.0;  ///< standard deviation as far as was known before the record
 };
 
 struct Alternative {
@@ -135,6 +149,8 @@ struct Discovery {
   double complete = 1.0;
   /// All numbers of the plant that were in doubt, as they are beside the causes.
   std::vector<CalibratedNumber> calibration;
+  /// Of machines with hinges, what the record tells of masses and their places together.
+  std::vector<CalibratedMoment> moments;
   std::optional<Signature> unexplained;  ///< of what is left, if anything is
   std::string unexplained_site;
   /// What cannot be judged, what cannot be told apart and which experiment would,
@@ -209,6 +225,7 @@ Discovery Discover(const Machine& machine, const Record& measured,
 
 /// Whether the record says of a number that it is another one than the model has.
 bool IsOff(const CalibratedNumber& number);
+bool IsMoved(const CalibratedMoment& moment);
 
 /// The causes and the numbers as changes to a plant, for Simulate and ExtendMjcf.
 Changes ChangesOf(const Discovery& discovery);

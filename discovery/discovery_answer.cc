@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fitting/parameter_covariance.h"
 #include "mjdiag/discovery/fitting/profile_interval.h"
+#include "mjdiag/discovery/hypotheses/mass_moments.h"
 #include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/discovery/unexplained/active_curve.h"
@@ -23,6 +24,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kLeastProbability = 0.01;
+constexpr double kMostOfIt = 0.5;
 
 }  // namespace
 
@@ -152,7 +154,48 @@ void Discoverer::NameNumbers(const MatrixXd& covariance) {
     discovery_.calibration.push_back(
         {PlantNumberName(machine_.plant(), doubted.number), doubted.number,
          std::exp(doubted.spread * z[i]), std::exp(doubted.spread * (z[i] - half)),
-         std::exp(doubted.spread * (z[i] + half)), doubted.spread});
+         std::exp(doubted.spread * (z[i] + half)), doubted.spread,
+         IsCentre(doubted.number.kind) ? CentreUnit(machine_.plant(), doubted.number)
+                                       : 0.0});
+  }
+  NameMoments(covariance);
+}
+
+/// What is known of masses and centres together, which single numbers share. Only where
+/// centres are in doubt: else the masses say it.
+void Discoverer::NameMoments(const MatrixXd& covariance) {
+  const auto& numbers = problem_.numbers();
+  if (std::ranges::none_of(numbers, [](const DoubtedNumber& doubted) {
+        return !doubted.is_lateness && IsCentre(doubted.number.kind);
+      })) {
+    return;
+  }
+  const VectorXd& z = search_.fit().numbers;
+  const auto moments_at = [&](const VectorXd& at) {
+    const Machine machine = machine_.With(problem_.WithNumbers({}, at));
+    return MassMoments(machine.plant());
+  };
+  const std::vector<MassMoment> model = MassMoments(machine_.plant());
+  const std::vector<MassMoment> found = moments_at(z);
+  constexpr double kStep = 1e-4;
+  MatrixXd slopes = MatrixXd::Zero(std::ssize(found), z.size());
+  for (Index i = 0; i < z.size(); ++i) {
+    if (numbers[static_cast<std::size_t>(i)].is_lateness) continue;
+    VectorXd moved = z;
+    moved[i] += kStep;
+    const std::vector<MassMoment> more = moments_at(moved);
+    for (std::size_t m = 0; m < found.size(); ++m) {
+      slopes(static_cast<Index>(m), i) = (more[m].value - found[m].value) / kStep;
+    }
+  }
+  const double normal = TwoSidedNormalQuantile(0.05);
+  for (std::size_t m = 0; m < found.size(); ++m) {
+    const VectorXd slope = slopes.row(static_cast<Index>(m));
+    const double half =
+        normal * std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
+    discovery_.moments.push_back({found[m].joint, found[m].axis, model[m].value,
+                                  found[m].value, found[m].value - half,
+                                  found[m].value + half, slope.norm()});
   }
 }
 
@@ -191,6 +234,12 @@ void Discoverer::Judge() {
       only_steps && !IsMoreLeft(search_)
           ? DiscoveryVerdict::kNoDiscrepancy
           : VerdictOf(search_, named, nominal_, IsComplete(discovery_.complete));
+  // Along the motion the causes were judged by the balance of forces, and by parts of it
+  // that were predicted.
+  if (force_ && named && discovery_.verdict == DiscoveryVerdict::kUnexplained &&
+      force_->ExplainedUnseen() >= kMostOfIt) {
+    discovery_.verdict = DiscoveryVerdict::kPartlyExplained;
+  }
   const bool all_named = std::ranges::all_of(discovery_.causes, &FoundCause::HasName);
   if (!all_named && discovery_.verdict == DiscoveryVerdict::kExplained) {
     discovery_.verdict = DiscoveryVerdict::kPartlyExplained;

@@ -118,7 +118,57 @@ std::vector<FoundKind> Discoverer::KindsAt(const std::vector<std::size_t>& place
   return kinds;
 }
 
+/// Where causes were found along the motion, the parts of it that were predicted from the
+/// others tell.
+void Discoverer::FindKindsAlongMotion() {
+  const CauseFit& fit = search_.fit();
+  std::map<std::pair<Kind, std::string>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < fit.causes.size(); ++i) {
+    groups[{KindOfCause(fit.causes[i]), candidates_[fit.causes[i].candidate].site}]
+        .push_back(i);
+  }
+  for (const auto& [of, places] : groups) {
+    double loss = 0.0;
+    for (const std::size_t i : places) {
+      const auto found = std::ranges::find(
+          force_->model.causes, fit.causes[i].candidate, &FittedCause::candidate);
+      if (found == force_->model.causes.end()) continue;
+      loss += force_->loss[found - force_->model.causes.begin()];
+    }
+    const double share = force_->loss_of_all > 0.0
+                             ? std::clamp(loss / force_->loss_of_all, 0.0, 1.0)
+                             : 0.0;
+    for (FoundKind& kind : KindsAt(places, Logistic(loss / 2.0), share)) {
+      AddKind(std::move(kind));
+    }
+  }
+}
+
+/// Of a kind at a place that is known, the more probable one.
+void Discoverer::AddKind(FoundKind kind) {
+  const auto known = std::ranges::find_if(discovery_.kinds, [&](const auto& other) {
+    return other.kind == kind.kind && other.site == kind.site;
+  });
+  if (known == discovery_.kinds.end()) {
+    discovery_.kinds.push_back(std::move(kind));
+  } else if (kind.probability > known->probability) {
+    *known = std::move(kind);
+  }
+}
+
 void Discoverer::FindKinds() {
+  if (force_) {
+    FindKindsAlongMotion();
+  } else {
+    FindKindsBehindObserver();
+  }
+  AddKindsOfNumbers();
+  std::erase_if(discovery_.kinds,
+                [](const FoundKind& kind) { return kind.probability < kLeast; });
+  std::ranges::stable_sort(discovery_.kinds, std::greater<>(), &FoundKind::probability);
+}
+
+void Discoverer::FindKindsBehindObserver() {
   constexpr int kIterations = 8;
   const CauseFit& fit = search_.fit();
   const auto deviance = [&](const Evidence& evidence) {
@@ -157,21 +207,8 @@ void Discoverer::FindKinds() {
     } catch (const NumericalError&) {
       // Without it the machine cannot be run.
     }
-    for (FoundKind& kind : KindsAt(places, needed, share)) {
-      const auto known = std::ranges::find_if(discovery_.kinds, [&](const auto& other) {
-        return other.kind == kind.kind && other.site == kind.site;
-      });
-      if (known == discovery_.kinds.end()) {
-        discovery_.kinds.push_back(std::move(kind));
-      } else if (kind.probability > known->probability) {
-        *known = std::move(kind);
-      }
-    }
+    for (FoundKind& kind : KindsAt(places, needed, share)) AddKind(std::move(kind));
   }
-  AddKindsOfNumbers();
-  std::erase_if(discovery_.kinds,
-                [](const FoundKind& kind) { return kind.probability < kLeast; });
-  std::ranges::stable_sort(discovery_.kinds, std::greater<>(), &FoundKind::probability);
 }
 
 /// Numbers of the plant that are others than the model says are a kind of physics, too. By

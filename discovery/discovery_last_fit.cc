@@ -20,7 +20,8 @@ using Eigen::Index;
 /// the last fit is one of free simulation, if that is better on records that no fit saw.
 void Discoverer::FitFree() {
   const CauseFit& found = search_.fit();
-  if (falls_ || measurements_.unseen.empty() || found.train <= kFarAboveNoise) return;
+  if (force_ || falls_ || measurements_.unseen.empty() || found.train <= kFarAboveNoise)
+    return;
   if (found.causes.empty() || !work_->MayBegin("fit of free simulation")) return;
   Report("fit of free simulation", 0.9, found);
   const DiscoveryProblem free = problem_.Simulating([this](const Changes& changes) {

@@ -79,13 +79,34 @@ json ExplanationList(const Discovery& discovery) {
 json CalibrationOf(const Discovery& discovery) {
   json numbers = json::array();
   for (const CalibratedNumber& number : discovery.calibration) {
-    numbers.push_back({{"name", number.name},
-                       {"value", Finite(number.factor)},
-                       {"ci95", {Finite(number.low), Finite(number.high)}},
-                       {"prior_sd", Finite(number.doubt)},
-                       {"off", IsOff(number)}});
+    const auto value = [&](double factor) {
+      return Finite(number.shift > 0.0 ? number.shift * std::log(factor) : factor);
+    };
+    numbers.push_back(
+        {{"name", number.name},
+         {"value", value(number.factor)},
+         {"ci95", {value(number.low), value(number.high)}},
+         {"prior_sd",
+          Finite(number.shift > 0.0 ? number.shift * number.doubt : number.doubt)},
+         {"unit", number.shift > 0.0 ? "m" : "1"},
+         {"off", IsOff(number)}});
   }
   return numbers;
+}
+
+json MomentsOf(const Discovery& discovery) {
+  json moments = json::array();
+  for (const CalibratedMoment& moment : discovery.moments) {
+    moments.push_back({{"joint", moment.joint},
+                       {"axis", moment.axis},
+                       {"unit", "kg m"},
+                       {"model", Finite(moment.model)},
+                       {"value", Finite(moment.value)},
+                       {"ci95", {Finite(moment.low), Finite(moment.high)}},
+                       {"prior_sd", Finite(moment.doubt)},
+                       {"off", IsMoved(moment)}});
+  }
+  return moments;
 }
 
 json FiguresOf(const Discovery::Figures& figures) {
@@ -196,6 +217,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"causes", CausesOf(discovery)},
           {"explanations", ExplanationList(discovery)},
           {"calibration", CalibrationOf(discovery)},
+          {"moments", MomentsOf(discovery)},
           {"mismatch",
            {{"before", FiguresOf(discovery.mismatch_before)},
             {"after", FiguresOf(discovery.mismatch_after)}}},

@@ -96,9 +96,11 @@ void AddCauses(Page& page, const Discovery& discovery) {
 
 void AddCalibration(Page& page, const Discovery& discovery) {
   const Table table = CalibrationTable(discovery);
-  if (table.rows.empty()) return;
+  const Table moments = MomentTable(discovery);
+  if (table.rows.empty() && moments.rows.empty()) return;
   page.AddHeading("Numbers of the plant");
-  page.AddTable(table);
+  if (!table.rows.empty()) page.AddTable(table);
+  if (!moments.rows.empty()) page.AddTable(moments);
   page.AddParagraph(
       "Fitted with the causes and written into the extended plant. Numbers that the "
       "record does not tell better than they were known, or that are as the model "

@@ -309,10 +309,39 @@ Table CalibrationTable(const Discovery& discovery) {
                    {"Known beforehand to", true}};
   for (const CalibratedNumber& number : discovery.calibration) {
     if (!IsOff(number)) continue;
+    if (number.shift > 0.0) {
+      const CauseParameter shift{"shift",
+                                 "m",
+                                 number.shift * std::log(number.factor),
+                                 0.0,
+                                 number.shift * std::log(number.low),
+                                 number.shift * std::log(number.high)};
+      table.rows.push_back({number.name, "moved by " + ValueText(shift),
+                            IntervalText(shift),
+                            FormatQuantity(number.shift * number.doubt, "m")});
+      continue;
+    }
     const CauseParameter factor{"factor", "1",        number.factor,
                                 0.0,      number.low, number.high};
     table.rows.push_back({number.name, ValueText(factor), IntervalText(factor),
                           Percent(100.0 * number.doubt)});
+  }
+  return table;
+}
+
+Table MomentTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"What a joint carries, first moment of mass about it"},
+                   {"Model", true},
+                   {"Record", true},
+                   {"95 % interval", true}};
+  for (const CalibratedMoment& moment : discovery.moments) {
+    if (!IsMoved(moment)) continue;
+    const CauseParameter found{"moment", "kg m",     moment.value,
+                               0.0,      moment.low, moment.high};
+    const CauseParameter model{"moment", "kg m", moment.model, 0.0, 0.0, 0.0};
+    table.rows.push_back({moment.joint + ", along " + moment.axis + " of its body",
+                          ValueText(model), ValueText(found), IntervalText(found)});
   }
   return table;
 }

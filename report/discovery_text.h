@@ -37,6 +37,8 @@ Table CandidateTable(const Discovery& discovery);
 Table ExplanationTable(const Discovery& discovery);
 /// The numbers of the plant that are others than the model says.
 Table CalibrationTable(const Discovery& discovery);
+/// Masses and their places together (CalibratedMoment), those that are off.
+Table MomentTable(const Discovery& discovery);
 /// Errors of the record after each cause that was added.
 Table LadderTable(const Discovery& discovery);
 /// The same of the validation record; no rows without one.

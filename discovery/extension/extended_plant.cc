@@ -205,6 +205,8 @@ void MjcfEditor::RequireOwnMasses(int body) const {
 
 void MjcfEditor::EditMass(int body) {
   Attributes changed;
+  AddIfChanged(changed, "pos", Row(before_.body_ipos, body, 3),
+               Row(after_.body_ipos, body, 3));
   AddIfChanged(changed, "mass", Row(before_.body_mass, body),
                Row(after_.body_mass, body));
   AddIfChanged(changed, "diaginertia", Row(before_.body_inertia, body, 3),

@@ -59,6 +59,10 @@ class JoinedParts {
         if (at == motors.end()) return std::nullopt;
         return First(machine.linear().Gamma.col(at - motors.begin()));
       }
+      case PlantNumberKind::kCentreX:
+      case PlantNumberKind::kCentreY:
+      case PlantNumberKind::kCentreZ:
+        return std::nullopt;  // where it is, no matter how heavy
       default:
         return Of(plant_.jnt_dofadr[number.element]);
     }

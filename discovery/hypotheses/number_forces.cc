@@ -77,6 +77,19 @@ MatrixXd MassForce(const mjModel& plant, const Channels& channels,
   return force;
 }
 
+/// A centre of mass enters squared: by a difference about it.
+MatrixXd CentreForce(const mjModel& plant, const Channels& channels,
+                     const PlantNumber& number, const ObservedMotion& motion) {
+  constexpr double kStep = 1e-4;
+  AlongMotion less(Scaled(plant, number, std::exp(-kStep)), channels, motion);
+  AlongMotion more(Scaled(plant, number, std::exp(kStep)), channels, motion);
+  MatrixXd force(motion.samples(), plant.nv);
+  for (Index k = 0; k < motion.samples(); ++k) {
+    force.row(k) = (less.Inertial(k) - more.Inertial(k)).transpose() / (2.0 * kStep);
+  }
+  return force;
+}
+
 MatrixXd MotorForces(const mjModel& plant, const Channels& channels,
                      const PlantNumber& number, const ObservedMotion& motion) {
   constexpr double kStep = 1e-4;
@@ -121,6 +134,10 @@ MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
     case PlantNumberKind::kMass:
     case PlantNumberKind::kInertia:
       return MassForce(plant, channels, number, motion);
+    case PlantNumberKind::kCentreX:
+    case PlantNumberKind::kCentreY:
+    case PlantNumberKind::kCentreZ:
+      return CentreForce(plant, channels, number, motion);
     case PlantNumberKind::kGear:
     case PlantNumberKind::kGain:
       return MotorForces(plant, channels, number, motion);

@@ -46,6 +46,7 @@ struct DiscoveryProblem::Derived {
   Track nominal;
   std::shared_ptr<const LinearisedRun> linearised;
   std::optional<DiscoveryProblem> train_part;
+  Eigen::MatrixXd free_numbers;  ///< of Simulating; of no size: by differences
 };
 
 DiscoveryProblem::DiscoveryProblem(Machine machine, Observer observer, MeasuredRun run,
@@ -187,6 +188,14 @@ std::vector<bool> DiscoveryProblem::StoodFor(const Changes& changes) const {
 
 Eigen::MatrixXd DiscoveryProblem::NumberJacobian(const Changes& changes,
                                                  const VectorXd& z) const {
+  if (derived_->free_numbers.size() > 0) {
+    Eigen::MatrixXd J = derived_->free_numbers;
+    const std::vector<bool> stood_for = StoodFor(changes);
+    for (Index i = 0; i < J.cols(); ++i) {
+      if (stood_for[static_cast<std::size_t>(i)]) J.col(i).setZero();
+    }
+    return J;
+  }
   // Numbers that act alike together, as all that a machine is made of and the motors that
   // move it, must not seem to differ. Dry friction bends what they do even over small
   // steps, and rounding hides what smaller ones do: of 1 % of all numbers of a wire
@@ -355,10 +364,12 @@ DiscoveryProblem DiscoveryProblem::Doubting(std::vector<DoubtedNumber> numbers) 
 }
 
 DiscoveryProblem DiscoveryProblem::Simulating(
-    std::function<Eigen::MatrixXd(const Changes&)> errors) const {
+    std::function<Eigen::MatrixXd(const Changes&)> errors,
+    Eigen::MatrixXd numbers) const {
   DiscoveryProblem changed = *this;
   changed.free_errors_ = std::move(errors);
   changed.derived_ = std::make_shared<Derived>();
+  changed.derived_->free_numbers = std::move(numbers);
   return changed;
 }
 

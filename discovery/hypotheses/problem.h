@@ -123,9 +123,11 @@ class DiscoveryProblem {
   /// With doubts about those numbers.
   DiscoveryProblem Doubting(std::vector<DoubtedNumber> numbers) const;
   /// With what a free simulation is off in the place of innovations.
-  /// @param errors  measured less simulated beside changes, sensors x samples
-  DiscoveryProblem Simulating(
-      std::function<Eigen::MatrixXd(const Changes&)> errors) const;
+  /// @param errors   measured less simulated beside changes, sensors x samples
+  /// @param numbers  d residual / dz, where it is known and hardly changes; of no size: by
+  ///                 differences
+  DiscoveryProblem Simulating(std::function<Eigen::MatrixXd(const Changes&)> errors,
+                              Eigen::MatrixXd numbers = {}) const;
 
  private:
   friend DiscoveryProblem Beginning(const DiscoveryProblem& problem,

@@ -55,6 +55,9 @@ Kind KindOf(PlantNumberKind number) {
     case PlantNumberKind::kMass:
     case PlantNumberKind::kInertia:
     case PlantNumberKind::kArmature:
+    case PlantNumberKind::kCentreX:
+    case PlantNumberKind::kCentreY:
+    case PlantNumberKind::kCentreZ:
       return Kind::kInertia;
     case PlantNumberKind::kStiffness:
       return Kind::kCompliance;

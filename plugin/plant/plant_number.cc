@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <span>
 #include <string_view>
@@ -25,7 +26,7 @@ struct KindOfNumber {
 constexpr double kFactorOfTwo = std::numbers::ln2;
 
 /// In the order of PlantNumberKind.
-constexpr std::array<KindOfNumber, 8> kKinds = {
+constexpr std::array<KindOfNumber, 11> kKinds = {
     {{"mass", mjOBJ_BODY, 0.01, 0.05},
      {"inertia", mjOBJ_BODY, 0.03, 0.1},
      {"stiffness", mjOBJ_JOINT, 0.05, 0.1},
@@ -33,7 +34,10 @@ constexpr std::array<KindOfNumber, 8> kKinds = {
      {"friction", mjOBJ_JOINT, 0.2, kFactorOfTwo},
      {"gear", mjOBJ_ACTUATOR, 0.01, 0.05},
      {"armature", mjOBJ_JOINT, 0.05, 0.1},
-     {"gain", mjOBJ_ACTUATOR, 0.03, 0.1}}};
+     {"gain", mjOBJ_ACTUATOR, 0.03, 0.1},
+     {"centre_x", mjOBJ_BODY, 0.03, 0.1},
+     {"centre_y", mjOBJ_BODY, 0.03, 0.1},
+     {"centre_z", mjOBJ_BODY, 0.03, 0.1}}};
 
 const KindOfNumber& Of(PlantNumberKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];
@@ -71,12 +75,24 @@ std::array<std::span<mjtNum>, 2> NumbersOf(const mjModel& model,
       if (model.actuator_biastype[element] != mjBIAS_AFFINE) return {};
       return {{{RowOf(model.actuator_gainprm, mjNGAIN, element), mjNGAIN},
                {RowOf(model.actuator_biasprm, mjNBIAS, element), mjNBIAS}}};
+    case PlantNumberKind::kCentreX:
+    case PlantNumberKind::kCentreY:
+    case PlantNumberKind::kCentreZ:
+      break;  // none that is multiplied
   }
   return {};
 }
 
 /// Bodies that hang on a joint, their own or one further up.
 bool Moves(const mjModel& model, int body) { return model.body_weldid[body] != 0; }
+
+int AxisOf(PlantNumberKind kind) {
+  return static_cast<int>(kind) - static_cast<int>(PlantNumberKind::kCentreX);
+}
+
+mjtNum& CentreOf(mjModel& model, const PlantNumber& number) {
+  return RowOf(model.body_ipos, 3, number.element)[AxisOf(number.kind)];
+}
 
 /// -1: not declared.
 double Declared(const mjModel& model, const std::string& name) {
@@ -152,8 +168,30 @@ std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
   return numbers;
 }
 
+bool IsCentre(PlantNumberKind kind) { return kind >= PlantNumberKind::kCentreX; }
+
+std::vector<PlantNumber> CentreNumbers(const mjModel& model) {
+  std::vector<PlantNumber> numbers;
+  for (int body = 0; body < model.nbody; ++body) {
+    if (!Moves(model, body) || model.body_mass[body] == 0.0) continue;
+    for (const auto kind : {PlantNumberKind::kCentreX, PlantNumberKind::kCentreY,
+                            PlantNumberKind::kCentreZ}) {
+      const PlantNumber number{kind, body};
+      if (CentreUnit(model, number) > 0.0) numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+
+double CentreUnit(const mjModel& model, const PlantNumber& number) {
+  const mjtNum* inertia = RowOf(model.body_inertia, 3, number.element);
+  const double trace = inertia[0] + inertia[1] + inertia[2];
+  return std::sqrt(trace / (2.0 * model.body_mass[number.element]));
+}
+
 std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string& text) {
   std::vector<PlantNumber> meant = PlantNumbers(model);
+  std::ranges::copy(CentreNumbers(model), std::back_inserter(meant));
   std::erase_if(meant, [&](const PlantNumber& number) {
     return text != "all" && text != Of(number.kind).name &&
            text != PlantNumberName(model, number);
@@ -186,6 +224,10 @@ bool IsExact(const mjModel& model) {
 }
 
 void Scale(mjModel& model, const PlantNumber& number, double factor) {
+  if (IsCentre(number.kind)) {
+    CentreOf(model, number) += std::log(factor) * CentreUnit(model, number);
+    return;
+  }
   for (const auto values : NumbersOf(model, number)) {
     for (mjtNum& value : values) value *= factor;
   }
@@ -199,6 +241,12 @@ void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
 
 void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
                double factor) {
+  if (IsCentre(number.kind)) {
+    CentreOf(model, number) =
+        RowOf(nominal.body_ipos, 3, number.element)[AxisOf(number.kind)];
+    Scale(model, number, factor);
+    return;
+  }
   const auto all = NumbersOf(nominal, number);
   const auto changed = NumbersOf(model, number);
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -33,13 +33,18 @@ Channels PositionSensors(const Channels& channels, const mjModel& model,
 Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
                                const Eigen::VectorXd& qpos) {
   const DataPtr data = MakeData(model);
-  Eigen::Map<Eigen::VectorXd>(data->qpos, model.nq) = qpos;
-  mj_fwdPosition(&model, data.get());
-  mj_sensorPos(&model, data.get());
+  return SensorReadings(channels, model, qpos, *data);
+}
+
+Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
+                               const Eigen::VectorXd& qpos, mjData& data) {
+  Eigen::Map<Eigen::VectorXd>(data.qpos, model.nq) = qpos;
+  mj_fwdPosition(&model, &data);
+  mj_sensorPos(&model, &data);
   const std::vector<int> addresses = SensorAddresses(channels, model);
   Eigen::VectorXd readings(static_cast<Eigen::Index>(addresses.size()));
   for (std::size_t i = 0; i < addresses.size(); ++i) {
-    readings[static_cast<Eigen::Index>(i)] = data->sensordata[addresses[i]];
+    readings[static_cast<Eigen::Index>(i)] = data.sensordata[addresses[i]];
   }
   return readings;
 }

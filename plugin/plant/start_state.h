@@ -14,6 +14,9 @@ namespace mjdiag {
 /// Readings of the setup's sensors with the machine at rest at `qpos`, nsensor.
 Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
                                const Eigen::VectorXd& qpos);
+/// The same with data of the model, for many positions: it is large to make.
+Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
+                               const Eigen::VectorXd& qpos, mjData& data);
 
 /// Joint positions at rest: the static equilibrium `rest`, moved so that the named
 /// sensors read `start`. Of all ways to move there the one that strains the springs least is

@@ -27,7 +27,8 @@ constexpr Index kFewest = 3;
 
 /// Value, slope and curvature of every row of `samples` about column `at`, by least
 /// squares of first + side .. on both sides, fewer at the ends. rows x 3
-MatrixXd QuadraticAt(const MatrixXd& samples, Index at, Index side, double tick) {
+MatrixXd QuadraticAt(const Eigen::Ref<const MatrixXd>& samples, Index at, Index side,
+                     double tick) {
   const Index first = std::max<Index>(0, at - side);
   const Index last = std::min(samples.cols() - 1, at + side);
   const Index n = last - first + 1;
@@ -56,6 +57,7 @@ class Configurations {
   explicit Configurations(const Machine& machine)
       : machine_(machine), model_(CopyModel(machine.plant())), weight_(model_->nv) {
     DropScenery(*model_);
+    data_ = MakeData(*model_);
     for (int dof = 0; dof < model_->nv; ++dof) {
       weight_[dof] = 1.0 / (1.0 + model_->jnt_stiffness[model_->dof_jntid[dof]]);
     }
@@ -87,8 +89,8 @@ class Configurations {
   }
 
  private:
-  VectorXd Read() const {
-    return SensorReadings(machine_.channels(), *model_, position_);
+  VectorXd Read() {
+    return SensorReadings(machine_.channels(), *model_, position_, *data_);
   }
   static double Largest(const VectorXd& error, const VectorXd& target) {
     return (error.array().abs() / (1e-9 + 1e-6 * target.array().abs())).maxCoeff();
@@ -103,6 +105,7 @@ class Configurations {
 
   const Machine& machine_;
   ModelPtr model_;
+  DataPtr data_;
   VectorXd weight_;
   VectorXd position_;
   MatrixXd step_;
@@ -141,6 +144,9 @@ std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
   Configurations configurations(machine);
   std::vector<MotionPoint> points;
   std::size_t record = 0;
+  const auto of_record = [&](const MatrixXd& all) {
+    return all.middleCols(run.records[record].sample, run.SamplesOf(record));
+  };
   configurations.Begin();
   for (const Index sample : samples) {
     while (record + 1 < run.records.size() &&
@@ -149,9 +155,6 @@ std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
       configurations.Begin();
     }
     const Index first = run.records[record].sample;
-    const auto of_record = [&](const MatrixXd& all) -> MatrixXd {
-      return all.middleCols(first, run.SamplesOf(record));
-    };
     auto point = configurations.At(
         QuadraticAt(of_record(run.outputs), sample - first, side, run.sample_time));
     if (!point) return {};

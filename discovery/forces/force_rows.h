@@ -1,0 +1,58 @@
+#pragma once
+// Forces along a motion as the rows of a regression: of every joint that has one, values
+// that are half a period of their band apart, one joint after the other. What is closer
+// tells nothing new.
+//
+// What a model lacks besides the laws that are fitted is noise of the model: a latent force
+// at every joint, of unknown size and time constant (maximum likelihood of a stochastic
+// grey-box model [Kristensen 2004]). In the rows of joint j
+//
+//   r[k] = phi_j r[k-1] + s_j e[k],   e white of variance 1,
+//
+// so that e = (r[k] - phi_j r[k-1]) / s_j are the independent values, and
+//
+//   -2 ln L = sum over joints of n_j (ln s_j^2 + 1),   s_j^2 = mean (r[k] - phi_j r[k-1])^2.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/comparison/force_balance.h"
+
+namespace mjdiag {
+
+/// Which values the rows are.
+struct ForceRows {
+  std::vector<Eigen::Index> dofs;
+  std::vector<Eigen::Index> samples;  ///< of every value of a joint
+  std::vector<bool> begins;           ///< whether a value does not follow the last one
+  Eigen::Index train = 0;             ///< values of a joint that a fit sees, the first
+
+  Eigen::Index values() const { return static_cast<Eigen::Index>(samples.size()); }
+  Eigen::Index rows() const {
+    return values() * static_cast<Eigen::Index>(dofs.size());
+  }
+};
+
+/// @param train  samples of the run that a fit sees
+ForceRows RowsAlong(const FilteredRun& filtered, std::vector<Eigen::Index> dofs,
+                    Eigen::Index train);
+
+/// The rows of forces that are within the band. @param forces  nv x samples
+Eigen::VectorXd RowsOf(const ForceRows& rows, const Eigen::MatrixXd& forces);
+
+/// The noise of the model.
+struct ForceNoise {
+  Eigen::VectorXd phi;
+  Eigen::VectorXd sd;  ///< s [N, N m]
+};
+
+/// Of what is left, in the values of `seen` (of every joint the same).
+ForceNoise NoiseOf(const ForceRows& rows, const Eigen::VectorXd& left,
+                   const std::vector<bool>& seen);
+/// Rows over the noise, each column.
+Eigen::MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
+                         const Eigen::MatrixXd& columns);
+/// -2 ln L without its constants.
+double DevianceOf(const ForceNoise& noise, const std::vector<bool>& seen);
+
+}  // namespace mjdiag

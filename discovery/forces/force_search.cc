@@ -1,0 +1,480 @@
+#include "mjdiag/discovery/forces/force_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "mjdiag/comparison/missing_force.h"
+#include "mjdiag/discovery/hypotheses/number_forces.h"
+#include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// A law has to make the record that much likelier, in -2 ln L beyond its cost; and unseen
+// motion: odds of 20.
+constexpr double kLeastGain = 6.0;
+
+bool IsDrive(PlantNumberKind kind) {
+  return kind == PlantNumberKind::kGear || kind == PlantNumberKind::kGain;
+}
+
+/// Whether its one size multiplies what a drive does.
+bool ScalesDrive(const Candidate& candidate) {
+  const Effect& effect = *candidate.effect;
+  if (effect.site() != SiteKind::kActuator || candidate.parameters.size() != 1 ||
+      candidate.parameters.front().role != Role::kFactor) {
+    return false;
+  }
+  return true;
+}
+
+/// Whether the balance of forces can tell it. What a drive does along the stroke, or up to a
+/// limit, is in proportion to inputs that were measured with what no model explains, and a
+/// drive that does less leaves less; a shaking from outside that is as slow as the band is
+/// told from what a motion lacks by nothing but chance.
+bool IsTold(const Candidate& candidate) {
+  const Effect& effect = *candidate.effect;
+  if (effect.kind() == Kind::kVibration) return false;
+  if (effect.site() != SiteKind::kActuator) return true;
+  return std::ranges::all_of(candidate.parameters, [](const FitParameter& parameter) {
+    return parameter.role == Role::kFactor || parameter.role == Role::kTime;
+  });
+}
+
+/// Forces of masses are those of the measured acceleration: all masses and all drives twice
+/// as large, and what is left the same in units of the input.
+ObservedMotion AsMeasured(ObservedMotion motion) {
+  motion.own_acceleration = motion.acceleration;
+  return motion;
+}
+
+/// A trial of a candidate.
+struct Tried {
+  std::size_t candidate = 0;
+  std::function<TrialValues(const Amplitudes&)> values;
+  std::set<Index> joints;  ///< on which its force acts
+};
+
+class Search {
+ public:
+  Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
+         const FilteredRun& filtered, const ForceBalance& balance,
+         const ForceSearchOptions& options)
+      : problem_(problem),
+        candidates_(candidates),
+        filtered_(filtered),
+        motion_(AsMeasured(balance.motion)),
+        options_(options) {
+    forces_.rows = RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train());
+    forces_.missing = RowsOf(forces_.rows, balance.missing);
+    Report("numbers of the plant", 0.0);
+    AddNumbers();
+    Report("laws along the motion", 0.1);
+    AddTrials();
+  }
+
+  ForceSearchResult Run();
+
+ private:
+  void Report(const std::string& what, double fraction) const {
+    if (options_.progress) options_.progress(what, fraction, CausesOf(set_, fit_));
+  }
+  void AddNumbers();
+  void AddTrials();
+  std::vector<Trial> TrialsOf(std::size_t candidate) const;
+  MatrixXd ColumnsOf(const Trial& trial) const;
+  std::vector<const ForceGroup*> GroupsOf(const std::vector<std::size_t>& set) const;
+  ForceFit Fit(const std::vector<std::size_t>& set) const;
+  double ScoreOf(const std::vector<std::size_t>& set, const ForceFit& fit) const;
+  std::vector<FittedCause> CausesOf(const std::vector<std::size_t>& set,
+                                    const ForceFit& fit) const;
+  std::set<Index> PlaceOf(const MatrixXd& columns) const;
+  struct Best {
+    std::size_t group = 0;
+    ForceFit fit;
+    double score = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Best> BestBeside(const std::vector<std::size_t>& set, const ForceFit& fit,
+                               const std::vector<std::size_t>& tried, std::size_t count,
+                               std::size_t place) const;
+  bool Add();
+  bool LeaveOut();
+  bool Exchange();
+  bool KeepWhatIsNeededUnseen();
+  bool Take(std::vector<std::size_t> set, ForceFit fit, double score) {
+    set_ = std::move(set);
+    fit_ = std::move(fit);
+    score_ = score;
+    return true;
+  }
+
+  const DiscoveryProblem& problem_;
+  const std::vector<Candidate>& candidates_;
+  const FilteredRun& filtered_;
+  const ObservedMotion motion_;
+  const ForceSearchOptions& options_;
+  ForceProblem forces_;
+  std::vector<ForceGroup> groups_;
+  std::vector<Tried> tried_;
+  std::vector<std::size_t> set_;
+  ForceFit fit_;
+  double score_ = 0.0;
+  std::vector<std::vector<ForceRival>> rivals_;
+  std::set<std::size_t> forbidden_;  // candidates that unseen motion speaks against
+};
+
+/// The low-passed rows of forces that a trial makes.
+MatrixXd Search::ColumnsOf(const Trial& trial) const {
+  const Index amplitudes = trial.signals.cols();
+  const ForceRows& rows = forces_.rows;
+  MatrixXd columns = MatrixXd::Zero(rows.rows(), amplitudes);
+  for (Index a = 0; a < amplitudes; ++a) {
+    const VectorXd signal = LowPassed(filtered_, trial.signals.col(a));
+    for (std::size_t j = 0; j < rows.dofs.size(); ++j) {
+      const double entry = trial.entry(rows.dofs[j], a);
+      if (entry == 0.0) continue;
+      columns.col(a).segment(static_cast<Index>(j) * rows.values(), rows.values()) =
+          entry * signal(rows.samples);
+    }
+  }
+  if (trial.summed) return columns.rowwise().sum();
+  return columns;
+}
+
+void Search::AddNumbers() {
+  const Machine& machine = problem_.machine();
+  const auto& numbers = problem_.numbers();
+  forces_.numbers.setZero(forces_.rows.rows(), std::ssize(numbers));
+  forces_.drives.setZero(std::ssize(numbers));
+  const VectorXd still = problem_.StillSpeed();
+  problem_.work()->Add(problem_.RunWork() / problem_.machine().rates().substeps *
+                       static_cast<double>(numbers.size()));
+  ParallelForAll(static_cast<int>(numbers.size()), [&](int number) {
+    const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(number)];
+    const MatrixXd force =
+        doubted.spread *
+        (doubted.is_lateness
+             ? LatenessForce(machine.plant(), machine.linear().Gamma, motion_)
+             : NumberForce(machine.plant(), machine.channels(), doubted.number, motion_,
+                           still));
+    forces_.numbers.col(number) = RowsOf(forces_.rows, force.transpose());
+    if (!doubted.is_lateness && IsDrive(doubted.number.kind)) {
+      forces_.drives[number] = doubted.spread;
+    }
+  });
+}
+
+/// Those whose forces are within the band.
+std::vector<Trial> Search::TrialsOf(std::size_t candidate) const {
+  const Candidate& one = candidates_[candidate];
+  if (const auto sweep =
+          MakeSweep(problem_.machine(), one, motion_, problem_.FittedDuration())) {
+    std::vector<Trial> trials;
+    const VectorXd first = sweep->angle;
+    for (std::size_t i = 0; i < sweep->values.size(); ++i) {
+      const VectorXd angle = first + static_cast<double>(i) * sweep->increment;
+      const Index n = angle.size();
+      const VectorXd turns = (angle.tail(n - 1) - angle.head(n - 1)).cwiseAbs() /
+                             (2.0 * std::numbers::pi * filtered_.run.sample_time);
+      if (std::sqrt(turns.squaredNorm() / static_cast<double>(n)) >
+          filtered_.bandwidth) {
+        break;
+      }
+      trials.push_back(sweep->make(sweep->values[i]));
+    }
+    return trials;
+  }
+  return MakeTrials(problem_.machine(), one, motion_);
+}
+
+void Search::AddTrials() {
+  constexpr double kNothing = 1e-9;  // of the largest force
+  const double largest = forces_.missing.cwiseAbs().maxCoeff();
+  std::vector<std::vector<ForceGroup>> groups(candidates_.size());
+  std::vector<std::vector<Tried>> tried(candidates_.size());
+  ParallelFor(static_cast<int>(candidates_.size()), [&](int number) {
+    const auto c = static_cast<std::size_t>(number);
+    if (!IsTold(candidates_[c])) return;
+    const std::vector<Trial> trials = TrialsOf(c);
+    const double cost =
+        2.0 * std::log(std::max<double>(1.0, static_cast<double>(trials.size()))) -
+        2.0 * std::log(kMissing * candidates_[c].effect->odds());
+    for (const Trial& trial : trials) {
+      if (trial.entry.size() == 0) continue;  // an error of a reading
+      MatrixXd columns = ColumnsOf(trial);
+      if (!columns.allFinite() ||
+          columns.colwise().norm().minCoeff() < kNothing * largest) {
+        continue;
+      }
+      tried[c].push_back({c, trial.values, PlaceOf(columns)});
+      groups[c].push_back(
+          {std::move(columns), trial.least, ScalesDrive(candidates_[c]), cost});
+    }
+  });
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    std::ranges::move(groups[c], std::back_inserter(groups_));
+    std::ranges::move(tried[c], std::back_inserter(tried_));
+  }
+  constexpr double kFilter = 60.0;  // multiplications for every value
+  for (const ForceGroup& group : groups_) {
+    problem_.work()->Add(
+        FilterWork(kFilter * static_cast<double>(group.columns.cols()) *
+                   static_cast<double>(motion_.samples())));
+  }
+}
+
+std::vector<const ForceGroup*> Search::GroupsOf(
+    const std::vector<std::size_t>& set) const {
+  std::vector<const ForceGroup*> groups;
+  for (const std::size_t g : set) groups.push_back(&groups_[g]);
+  return groups;
+}
+
+ForceFit Search::Fit(const std::vector<std::size_t>& set) const {
+  return FitForces(forces_, GroupsOf(set),
+                   fit_.noise.phi.size() > 0 ? fit_.noise : NoiseOfNothing(forces_));
+}
+
+std::vector<FittedCause> Search::CausesOf(const std::vector<std::size_t>& set,
+                                          const ForceFit& fit) const {
+  std::vector<FittedCause> causes;
+  Index next = 0;
+  for (const std::size_t g : set) {
+    const Index size = groups_[g].columns.cols();
+    const TrialValues values = tried_[g].values(fit.amplitudes.segment(next, size));
+    next += size;
+    if (!values) return {};
+    causes.push_back(Bounded(candidates_, {tried_[g].candidate, *values}));
+  }
+  return causes;
+}
+
+/// With what is known of the sizes.
+double Search::ScoreOf(const std::vector<std::size_t>& set, const ForceFit& fit) const {
+  if (!std::isfinite(fit.score)) return fit.score;
+  const std::vector<FittedCause> causes = CausesOf(set, fit);
+  if (causes.size() != set.size()) return std::numeric_limits<double>::infinity();
+  double score = fit.score;
+  for (const FittedCause& cause : causes) {
+    // It asks for another law.
+    if (IsAtItsEnd(candidates_, cause)) return std::numeric_limits<double>::infinity();
+    score += SizePriorOf(candidates_, cause);
+  }
+  return score;
+}
+
+/// Joints on which its force acts.
+std::set<Index> Search::PlaceOf(const MatrixXd& columns) const {
+  std::set<Index> joints;
+  const ForceRows& rows = forces_.rows;
+  for (Index j = 0; j < std::ssize(rows.dofs); ++j) {
+    if (!columns.middleRows(j * rows.values(), rows.values()).isZero(0.0)) {
+      joints.insert(j);
+    }
+  }
+  return joints;
+}
+
+/// The best of some groups beside a set, each candidate once, in order.
+std::vector<Search::Best> Search::BestBeside(const std::vector<std::size_t>& set,
+                                             const ForceFit& fit,
+                                             const std::vector<std::size_t>& tried,
+                                             std::size_t count,
+                                             std::size_t place) const {
+  const VectorXd gains = GainsBeside(forces_, GroupsOf(set), fit, GroupsOf(tried));
+  // Two products with what the set does, for every column.
+  problem_.work()->Add(
+      FilterWork(2.0 * static_cast<double>(forces_.rows.rows()) *
+                 static_cast<double>(tried.size()) *
+                 static_cast<double>(fit.z.size() + fit.amplitudes.size() + 4)));
+  std::vector<std::size_t> order(tried.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t i) { return gains[static_cast<Index>(i)]; });
+  std::vector<Best> best;
+  std::set<std::size_t> known;
+  for (const std::size_t i : order) {
+    if (best.size() == count || !std::isfinite(gains[static_cast<Index>(i)])) break;
+    if (!known.insert(tried_[tried[i]].candidate).second) continue;
+    best.push_back({tried[i], {}, 0.0});
+  }
+  ParallelFor(static_cast<int>(best.size()), [&](int number) {
+    Best& one = best[static_cast<std::size_t>(number)];
+    std::vector<std::size_t> more = set;
+    more.insert(more.begin() + static_cast<std::ptrdiff_t>(place), one.group);
+    one.fit = Fit(more);
+    one.score = ScoreOf(more, one.fit);
+  });
+  std::ranges::stable_sort(best, std::less<>(), &Best::score);
+  return best;
+}
+
+bool Search::Add() {
+  constexpr std::size_t kBest = 6;
+  std::vector<std::size_t> tried;
+  std::set<std::size_t> has = forbidden_;
+  std::map<Index, int> of_joint;
+  for (const std::size_t g : set_) {
+    has.insert(tried_[g].candidate);
+    for (const Index j : tried_[g].joints) ++of_joint[j];
+  }
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    if (has.contains(tried_[g].candidate)) continue;
+    const std::set<Index>& joints = tried_[g].joints;
+    if (std::ranges::any_of(joints, [&](Index j) {
+          return of_joint[j] >= options_.most_causes_a_joint;
+        })) {
+      continue;
+    }
+    tried.push_back(g);
+  }
+  const std::vector<Best> best = BestBeside(set_, fit_, tried, kBest, set_.size());
+  if (best.empty() || best.front().score > score_ - kLeastGain) return false;
+  std::vector<std::size_t> more = set_;
+  more.push_back(best.front().group);
+  return Take(std::move(more), best.front().fit, best.front().score);
+}
+
+/// The law that is needed least, if it is not.
+bool Search::LeaveOut() {
+  std::vector<ForceFit> fits(set_.size());
+  std::vector<double> scores(set_.size());
+  const auto without = [&](std::size_t i) {
+    std::vector<std::size_t> fewer = set_;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+    return fewer;
+  };
+  ParallelFor(static_cast<int>(set_.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    const std::vector<std::size_t> fewer = without(i);
+    fits[i] = Fit(fewer);
+    scores[i] = ScoreOf(fewer, fits[i]);
+  });
+  const auto best = std::ranges::min_element(scores);
+  if (best == scores.end() || *best > score_ + kLeastGain / 2.0) return false;
+  const auto i = static_cast<std::size_t>(best - scores.begin());
+  return Take(without(i), fits[i], scores[i]);
+}
+
+/// Another candidate, or another trial of the same, in the place of each; what could be
+/// there is kept.
+bool Search::Exchange() {
+  constexpr std::size_t kBest = 5;
+  bool changed = false;
+  rivals_.assign(set_.size(), {});
+  for (std::size_t i = 0; i < set_.size(); ++i) {
+    std::vector<std::size_t> rest = set_;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+    std::set<std::size_t> has = forbidden_;
+    for (const std::size_t g : rest) has.insert(tried_[g].candidate);
+    const std::set<Index>& place = tried_[set_[i]].joints;
+    std::vector<std::size_t> tried;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (!has.contains(tried_[g].candidate) && tried_[g].joints == place)
+        tried.push_back(g);
+    }
+    const std::vector<Best> best = BestBeside(rest, Fit(rest), tried, kBest, i);
+    rivals_[i].clear();
+    for (const Best& one : best) {
+      if (!std::isfinite(one.score)) continue;
+      std::vector<std::size_t> other = set_;
+      other[i] = one.group;
+      rivals_[i].push_back({CausesOf(other, one.fit)[i], one.score});
+    }
+    if (best.empty() || best.front().group == set_[i] ||
+        best.front().score > score_ - 1.0) {
+      continue;
+    }
+    std::vector<std::size_t> other = set_;
+    other[i] = best.front().group;
+    changed = Take(std::move(other), best.front().fit, best.front().score);
+  }
+  return changed;
+}
+
+/// Whatever it explains of what was fitted, a law that does not help to predict is none, and
+/// is not looked at again. It was chosen among others on what is predicted, too: by no less
+/// than that costs. True if there was one.
+bool Search::KeepWhatIsNeededUnseen() {
+  bool changed = false;
+  while (!set_.empty()) {
+    VectorXd worth = LossUnseen(forces_, GroupsOf(set_), fit_);
+    for (std::size_t i = 0; i < set_.size(); ++i) {
+      worth[static_cast<Index>(i)] -= groups_[set_[i]].cost;
+    }
+    Index least = 0;
+    if (worth.minCoeff(&least) > 0.0) break;
+    changed = true;
+    forbidden_.insert(tried_[set_[static_cast<std::size_t>(least)]].candidate);
+    set_.erase(set_.begin() + least);
+    fit_ = Fit(set_);
+    score_ = ScoreOf(set_, fit_);
+  }
+  return changed;
+}
+
+ForceSearchResult Search::Run() {
+  constexpr int kRounds = 6;
+  fit_ = Fit({});
+  score_ = ScoreOf({}, fit_);
+  ForceSearchResult result;
+  result.numbers_alone = fit_.z;
+  for (int round = 0; round < kRounds; ++round) {
+    while (Add()) Report("laws along the motion", 0.2);
+    Report("other laws in their places", 0.6);
+    bool changed = Exchange();
+    while (LeaveOut()) changed = true;
+    if (!changed && !KeepWhatIsNeededUnseen()) break;
+  }
+  KeepWhatIsNeededUnseen();
+  Exchange();
+  result.model.causes = CausesOf(set_, fit_);
+  result.model.numbers = fit_.z;
+  for (Index i = 0; i < fit_.z.size(); ++i) {
+    const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
+    // Forces are linear in most numbers, and z is their logarithm.
+    constexpr double kLeastFactor = 0.1;
+    const double moved =
+        doubted.is_lateness || IsCentre(doubted.number.kind)
+            ? fit_.z[i]
+            : std::log(std::max(1.0 + doubted.spread * fit_.z[i], kLeastFactor)) /
+                  doubted.spread;
+    result.model.numbers[i] = std::clamp(moved, doubted.Least(), doubted.Most());
+  }
+  result.rivals = rivals_;
+  result.loss = LossUnseen(forces_, GroupsOf(set_), fit_);
+  result.loss_of_all = LossUnseenOfAll(forces_, GroupsOf(set_), fit_);
+  result.rows = forces_.rows;
+  result.noise = fit_.noise;
+  result.numbers = NumbersBeside(forces_, GroupsOf(set_), fit_);
+  return result;
+}
+
+}  // namespace
+
+double ForceSearchResult::ExplainedUnseen() const {
+  const auto left = static_cast<double>(rows.train * std::ssize(rows.dofs));
+  return loss_of_all / (loss_of_all + left);
+}
+
+ForceSearchResult SearchForces(const DiscoveryProblem& problem,
+                               const std::vector<Candidate>& candidates,
+                               const FilteredRun& filtered, const ForceBalance& balance,
+                               const ForceSearchOptions& options) {
+  return Search(problem, candidates, filtered, balance, options).Run();
+}
+
+}  // namespace mjdiag
