@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kOrder = 2;  // forwards and backwards: four
+constexpr int kFilterOrder = 2;  // forwards and backwards: four
 
 /// Continued by two periods of the band on either side, by point reflection: a record may
 /// begin and end in mid-motion.
@@ -43,7 +43,7 @@ Index PeriodIn(const MeasuredRun& run, double bandwidth) {
 
 VectorXd Filtered(const MeasuredRun& run, double bandwidth, const VectorXd& signal) {
   const SecondOrderSections sections =
-      DigitalButterworth(FilterKind::kLowPass, kOrder, bandwidth, run.sample_time);
+      DigitalButterworth(FilterKind::kLowPass, kFilterOrder, bandwidth, run.sample_time);
   VectorXd filtered = signal;
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;

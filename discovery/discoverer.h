@@ -1,8 +1,9 @@
 #pragma once
 // The parts of a discovery (discovery.h) while it is under way: the search in
-// discovery.cc, the last fits in discovery_last_fit.cc, what has no name in
-// discovery_curves.cc, laws along the motion in discovery_forces.cc, the answer in discovery_answer.cc, notes in discovery_notes.cc,
-// figures in discovery_figures.cc.
+// discovery.cc, sets of causes in discovery_sets.cc, laws along the motion in
+// discovery_forces.cc, the last fits in discovery_last_fit.cc, what has no name in
+// discovery_curves.cc, the answer in discovery_answer.cc and discovery_kinds.cc, notes in
+// discovery_notes.cc, figures in discovery_figures.cc.
 
 #include <map>
 #include <memory>
