@@ -10,7 +10,7 @@
 namespace mjdiag {
 namespace {
 
-constexpr double kBand = 40.0;  // Hz
+constexpr double kBand = 15.0;  // Hz
 
 struct Balanced {
   test::Arm arm;
@@ -58,7 +58,7 @@ TEST(ForceBalance, IsInUnitsOfWhatWasMeasured) {
 
 TEST(ForceBalance, CountsNothingAtTheEndsOfARecord) {
   const FilteredRun filtered = Balanced().filtered;
-  const Eigen::Index period = 25;  // of the band, in ticks
+  const Eigen::Index period = 67;  // of the band, in ticks
   EXPECT_FALSE(filtered.counts.head(period).any());
   EXPECT_FALSE(filtered.counts.tail(period).any());
   EXPECT_TRUE(
