@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "support/bonder.h"
+#include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
 namespace {
@@ -40,14 +40,14 @@ int RedPixels(const std::string& png) {
 }
 
 TEST(MarkedMachine, MarksWhatJointsCarryAndActuatorsPush) {
-  const Machine bonder = test::Bonder();
+  const Machine bonder(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
   EXPECT_EQ(BodyNames(bonder, "zeta_x"), BodyNames(bonder, "eta_x"));
   EXPECT_NE(BodyNames(bonder, "zeta_x"), BodyNames(bonder, "zeta_y"));
   EXPECT_FALSE(BodyNames(bonder, "beta_x").empty());
 }
 
 TEST(MarkedMachine, TheMarkIsSeenAndOnlyWhereItIsWanted) {
-  const Machine bonder = test::Bonder();
+  const Machine bonder(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
   SceneOptions scene;
   scene.width = 320;
   scene.height = 240;
