@@ -48,7 +48,7 @@ class PlanTest(Test):
         self.assertRefuses(lambda: mjdiag.Study(short_plan(method="gird")), "'gird'", "sobol")
         self.assertRefuses(lambda: mjdiag.Study(short_plan(keep={"records": ["q"]})),
                            "keep.records", "u_x")
-        self.assertRefuses(lambda: mjdiag.Study(3), "Study", "an int")
+        self.assertRefuses(lambda: mjdiag.Study(3), "Study", "int")
         self.assertRefuses(lambda: mjdiag.Study(short_plan(axis=[object()])), "axis")
         self.assertRefuses(lambda: mjdiag.Study(short_plan()).simulate(8), "index", "0 to 7")
         with self.assertRaises(mjdiag.InputError):
