@@ -121,9 +121,8 @@ TEST(PlanRun, RefusesAFolderWithAnotherPlan) {
   RunPlan(Plan(), {folder / "study"});
   const std::string bytes = Bytes(folder / "study/plan.toml");
   const LoadedPlan other = Plan(std::string(kPlan) + "# another\n");
-  EXPECT_THAT(
-      test::MessageOf<InputError>([&] { RunPlan(other, {folder / "study"}); }),
-      HasSubstr("another plan"));
+  EXPECT_THAT(test::MessageOf<InputError>([&] { RunPlan(other, {folder / "study"}); }),
+              HasSubstr("another plan"));
   EXPECT_EQ(Bytes(folder / "study/plan.toml"), bytes);
 }
 

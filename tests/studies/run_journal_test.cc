@@ -106,17 +106,16 @@ TEST_F(Journal, DoesNotBelieveABrokenEntry) {
 
 TEST_F(Journal, OfAnotherStudyIsRefusedAndLeftAsItIs) {
   const std::string whole = Bytes(file_);
-  const std::string message = test::MessageOf<InputError>(
-      [&] { RunJournal(file_, "Identity", 4); });
+  const std::string message =
+      test::MessageOf<InputError>([&] { RunJournal(file_, "Identity", 4); });
   EXPECT_THAT(message, HasSubstr("another plan, setup or version"));
   EXPECT_EQ(Bytes(file_), whole);
 }
 
 TEST_F(Journal, IsOfOneProcessAtATime) {
   const RunJournal journal(file_, "identity", 4);
-  EXPECT_THAT(
-      test::MessageOf<InputError>([&] { RunJournal(file_, "identity", 4); }),
-      HasSubstr("another process is at work"));
+  EXPECT_THAT(test::MessageOf<InputError>([&] { RunJournal(file_, "identity", 4); }),
+              HasSubstr("another process is at work"));
   EXPECT_THAT(test::MessageOf<InputError>([&] { RunJournal::Remove(file_); }),
               HasSubstr("another process is at work"));
 }
