@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -42,6 +43,7 @@ void KillWhileItRuns(const std::string& plan, const fs::path& folder,
                      std::uintmax_t bytes) {
   const fs::path journal = folder / "runs.journal";
   const std::uintmax_t before = fs::exists(journal) ? fs::file_size(journal) : 0;
+  std::fflush(stdout);  // or the child says it again
   const pid_t child = fork();
   if (child == 0) {
     if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
