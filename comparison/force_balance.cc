@@ -42,8 +42,8 @@ Index PeriodIn(const MeasuredRun& run, double bandwidth) {
 }
 
 VectorXd Filtered(const MeasuredRun& run, double bandwidth, const VectorXd& signal) {
-  const SecondOrderSections sections =
-      DigitalButterworth(FilterKind::kLowPass, kFilterOrder, bandwidth, run.sample_time);
+  const SecondOrderSections sections = DigitalButterworth(
+      FilterKind::kLowPass, kFilterOrder, bandwidth, run.sample_time);
   VectorXd filtered = signal;
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
