@@ -41,16 +41,16 @@ bool ScalesDrive(const Candidate& candidate) {
   return true;
 }
 
-/// Whether the balance of forces can tell it. What a drive does along the stroke, or up to a
-/// limit, is in proportion to inputs that were measured with what no model explains, and a
-/// drive that does less leaves less; a shaking from outside that is as slow as the band is
-/// told from what a motion lacks by nothing but chance.
+/// Whether the balance of forces can tell it. What a drive does along the stroke, late, or up
+/// to a limit, is made of inputs that were measured with what no model explains in them: a
+/// drive that does less, or later, leaves less. A shaking from outside that is as slow as the
+/// band is told from what a motion lacks by nothing but chance.
 bool IsTold(const Candidate& candidate) {
   const Effect& effect = *candidate.effect;
   if (effect.kind() == Kind::kVibration) return false;
   if (effect.site() != SiteKind::kActuator) return true;
   return std::ranges::all_of(candidate.parameters, [](const FitParameter& parameter) {
-    return parameter.role == Role::kFactor || parameter.role == Role::kTime;
+    return parameter.role == Role::kFactor;
   });
 }
 
@@ -77,7 +77,8 @@ class Search {
         candidates_(candidates),
         filtered_(filtered),
         motion_(AsMeasured(balance.motion)),
-        options_(options) {
+        options_(options),
+        missing_rms_(MissingRms(filtered, balance)) {
     forces_.rows = RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train());
     forces_.missing = RowsOf(forces_.rows, balance.missing);
     Report("numbers of the plant", 0.0);
@@ -102,6 +103,7 @@ class Search {
   std::vector<FittedCause> CausesOf(const std::vector<std::size_t>& set,
                                     const ForceFit& fit) const;
   std::set<Index> PlaceOf(const MatrixXd& columns) const;
+  bool IsToldBeside(const Candidate& candidate) const;
   struct Best {
     std::size_t group = 0;
     ForceFit fit;
@@ -126,6 +128,7 @@ class Search {
   const FilteredRun& filtered_;
   const ObservedMotion motion_;
   const ForceSearchOptions& options_;
+  const VectorXd missing_rms_;  // of every joint, without laws
   ForceProblem forces_;
   std::vector<ForceGroup> groups_;
   std::vector<Tried> tried_;
@@ -200,6 +203,21 @@ std::vector<Trial> Search::TrialsOf(std::size_t candidate) const {
   return MakeTrials(problem_.machine(), one, motion_);
 }
 
+/// A law that goes by the load takes it from the input that was measured, in which what is
+/// missing is, too: where that is much of it, what is missing explains itself. Up to a tenth
+/// of its power it bends the values by no more than that.
+bool Search::IsToldBeside(const Candidate& candidate) const {
+  constexpr double kMuch = 0.1;
+  if (candidate.effect->kind() != Kind::kLoadFriction) return true;
+  const SiteMotion at{problem_.machine().plant(),
+                      problem_.machine().linear(),
+                      motion_,
+                      {candidate.site, candidate.joint, candidate.channel}};
+  const VectorXd load = at.motor();
+  const double power = load.squaredNorm() / static_cast<double>(load.size());
+  return std::pow(missing_rms_[candidate.joint], 2) <= kMuch * power;
+}
+
 void Search::AddTrials() {
   constexpr double kNothing = 1e-9;  // of the largest force
   const double largest = forces_.missing.cwiseAbs().maxCoeff();
@@ -207,7 +225,7 @@ void Search::AddTrials() {
   std::vector<std::vector<Tried>> tried(candidates_.size());
   ParallelFor(static_cast<int>(candidates_.size()), [&](int number) {
     const auto c = static_cast<std::size_t>(number);
-    if (!IsTold(candidates_[c])) return;
+    if (!IsTold(candidates_[c]) || !IsToldBeside(candidates_[c])) return;
     const std::vector<Trial> trials = TrialsOf(c);
     const double cost =
         2.0 * std::log(std::max<double>(1.0, static_cast<double>(trials.size()))) -
