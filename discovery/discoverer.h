@@ -56,7 +56,7 @@ class Discoverer {
   void SearchBeginning(SearchOptions options);
   void SearchBehindObservers(SearchOptions options);
   /// True if sets of causes were found that nothing has to be added to; search_ goes on
-  /// from them, or from those that explain the larger part.
+  /// from them.
   bool TakeSets(const SearchOptions& search);
   /// Goes on in that many physics steps a tick.
   void TakeSubsteps(int substeps);

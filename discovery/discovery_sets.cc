@@ -67,28 +67,6 @@ bool Explains(const ObserverLadder& ladder, const std::vector<Candidate>& candid
   });
 }
 
-/// Whether the causes are the larger part of what the plant lacks: of what it leaves behind
-/// the observer of the problem, where people see it, they leave half at most, and no law is
-/// at its end. What a fast observer holds on the measured motion anyway tells little.
-bool Halves(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
-            const FittedModel& model, const FittedModel& given) {
-  constexpr double kLeft = 0.5;
-  const bool at_end = std::ranges::any_of(model.causes, [&](const FittedCause& cause) {
-    return IsAtItsEnd(candidates, cause);
-  });
-  if (model.causes.empty() || at_end) return false;
-  const DiscoveryProblem seen = problem.TrainPart();
-  const auto left = [&](const FittedModel& of) {
-    return MeanSquare(seen, seen.Residual(ChangesOf(seen, candidates, of)), seen.skip(),
-                      seen.train());
-  };
-  try {
-    return left(model) <= kLeft * left(given);
-  } catch (const NumericalError&) {
-    return false;
-  }
-}
-
 /// Whether records that no fit saw, if there are any, are less of a surprise with a model
 /// than with another.
 bool IsBetterUnseen(const EvidenceData& data, const FittedModel& model,
@@ -142,7 +120,7 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   SetSearchResult found = SearchSets(ladder, candidates_, start, options);
   const WeighedModel& best = found.best;
   TakeSubsteps(found.ladder[0].machine().rates().substeps);
-  const bool is_all = Explains(found.ladder, candidates_, found);
+  if (!Explains(found.ladder, candidates_, found)) return false;
   FittedModel model = best.fit;
   FittedModel given = found.given.fit;
   std::vector<DoubtedNumber> numbers = found.ladder[0].numbers();
@@ -154,13 +132,8 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   }
   const bool to_the_end = best.rung + 1 == found.ladder.size();
   DiscoveryProblem deserved =
-      (to_the_end || !is_all ? problem_ : Pose(found.ladder.bandwidth(best.rung)))
+      (to_the_end ? problem_ : Pose(found.ladder.bandwidth(best.rung)))
           .Doubting(std::move(numbers));
-  start.numbers.conservativeResize(model.numbers.size());
-  if (!is_all && !(Halves(deserved, candidates_, model, given) &&
-                   Halves(deserved, candidates_, model, start))) {
-    return false;
-  }
   if (!IsBetterUnseen(DataOf(deserved, candidates_, search.unseen), model, given)) {
     return false;
   }
@@ -177,7 +150,7 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   CauseFit fit;
   static_cast<FittedModel&>(fit) = std::move(model);
   search_.evidence = search_.evidence.Changed(std::move(fit));
-  return is_all && found.ended;
+  return found.ended;
 }
 
 void Discoverer::TakeSubsteps(int substeps) {

@@ -277,7 +277,11 @@ bool Search::TakeFinerSteps(WeighedModel& best) {
   const std::vector<DoubtedNumber>& numbers = ladder_[0].numbers();
   const auto late = std::ranges::find_if(numbers, &DoubtedNumber::is_lateness);
   const int substeps = ladder_[0].machine().rates().substeps;
-  if (late == numbers.end() || substeps >= kMost * given_substeps_) return false;
+  // Beside numbers in doubt a model that still lacks something seems to be late as well.
+  if (late == numbers.end() || numbers.size() > 1 ||
+      substeps >= kMost * given_substeps_) {
+    return false;
+  }
   const Index place = late - numbers.begin();
   if (best.fit.numbers.size() <= place || best.fit.numbers[place] < kLate ||
       !work().MayBegin("finer physics steps", RoundWork(ladder_[0]) / 4)) {
