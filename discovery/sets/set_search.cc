@@ -278,7 +278,8 @@ bool Search::TakeFinerSteps(WeighedModel& best) {
   const auto late = std::ranges::find_if(numbers, &DoubtedNumber::is_lateness);
   const int substeps = ladder_[0].machine().rates().substeps;
   // Beside numbers in doubt a model that still lacks something seems to be late as well.
-  if (late == numbers.end() || numbers.size() > 1 ||
+  // While it deserves the fastest observer it lacks more than steps.
+  if (late == numbers.end() || numbers.size() > 1 || best.rung == 0 ||
       substeps >= kMost * given_substeps_) {
     return false;
   }

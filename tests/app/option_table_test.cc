@@ -66,7 +66,16 @@ const Rows kReport{{"--report", Same("--report=false")}};
 const std::map<std::string, Rows>& Table() {
   static const std::map<std::string, Rows> table{
       {"simulate", kMachine + kMotion + kDiagnosis + kOutput + kReport +
-                       Rows{{"--format", Same("--format csv")},
+                       Rows{{"--stream", kNothing},
+                            {"--stream-for", kNothing},
+                            {"--stream-format", kNothing},
+                            {"--speed", kNothing},
+                            {"--batch", kNothing},
+                            {"--twice", kNothing},
+                            {"--play", kNothing},
+                            {"--mqtt-user", kNothing},
+                            {"--mqtt-ca", kNothing},
+                            {"--format", Same("--format csv")},
                             {"--log-joints", Same("--log-joints=false")},
                             {"--diagnose", Same("--diagnose=false")},
                             {"--tolerate", Same("--tolerate=false")}}},
@@ -129,7 +138,10 @@ const std::map<std::string, Rows>& Table() {
                          {"--linear", Same("--linear=false")},
                          {"--duration", Same("--duration 0")},
                          {"--every", Same("--every 60")},
-                         {"--wear", kNothing}}},
+                         {"--wear", kNothing},
+                         {"--plan", kNothing},
+                         {"--resume", kNothing},
+                         {"--restart", kNothing}}},
       {"report", {{"--json", kNothing}}}};
   return table;
 }
