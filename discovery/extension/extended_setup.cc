@@ -1,10 +1,10 @@
 // The setup of an extended plant: ExtendSetup of extended_plant.h.
 
-#include "mjdiag/discovery/extension/digits.h"
 #include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/discovery/extension/setup_text.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
 namespace {

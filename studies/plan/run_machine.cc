@@ -1,21 +1,13 @@
 #include "mjdiag/studies/plan/run_machine.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <utility>
 
 #include "mjdiag/plugin/setup/measured_file.h"
+#include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
 namespace {
-
-/// With all of its digits.
-std::string NumberText(double value) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), result.ptr};
-}
 
 /// Whether another value of that key makes another plant.
 bool MovesThePlant(const std::string& key) {
@@ -45,7 +37,7 @@ std::vector<PlacedEffect> PlacedIn(const PlannedRun& run) {
     if (found == texts.end()) found = texts.insert(texts.end(), {at, effect});
     std::string& text = found->second;
     text += text.find(':') == text.npos ? ":" : ",";
-    text += drawn.axis->parameter + "=" + NumberText(drawn.value);
+    text += drawn.axis->parameter + "=" + AllDigits(drawn.value);
   }
   std::vector<PlacedEffect> effects;
   for (const auto& [at, text] : texts) effects.push_back(ParseEffect(text));
@@ -59,7 +51,7 @@ Machine MachineWithKeys(const StudyPlan& plan, const Machine& machine,
   std::vector<std::string> overrides = plan.overrides;
   bool other_plant = false;
   for (const auto& [key, value] : keys) {
-    overrides.push_back(key + "=" + NumberText(value));
+    overrides.push_back(key + "=" + AllDigits(value));
     other_plant = other_plant || MovesThePlant(key);
   }
   Setup setup = ReadSetup(plan.setup, overrides);
