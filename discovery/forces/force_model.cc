@@ -220,32 +220,25 @@ MatrixXd NumbersBeside(const ForceProblem& problem,
       .columns.leftCols(problem.numbers.cols());
 }
 
-VectorXd LossUnseen(const ForceProblem& problem,
-                    const std::vector<const ForceGroup*>& groups, const ForceFit& fit) {
+UnseenLoss LossUnseen(const ForceProblem& problem,
+                      const std::vector<const ForceGroup*>& groups,
+                      const ForceFit& fit) {
   const Unseen unseen(problem, groups, fit);
   std::vector<Index> all(static_cast<std::size_t>(unseen.columns()));
   std::iota(all.begin(), all.end(), 0);
   const double with = unseen.Squares(all);
-  VectorXd loss(std::ssize(groups));
+  UnseenLoss loss{VectorXd(std::ssize(groups))};
   Index next = problem.numbers.cols();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Index size = groups[g]->columns.cols();
     std::vector<Index> kept = all;
     kept.erase(kept.begin() + next, kept.begin() + next + size);
     next += size;
-    loss[static_cast<Index>(g)] = unseen.Squares(kept) - with;
+    loss.each[static_cast<Index>(g)] = unseen.Squares(kept) - with;
   }
-  return loss;
-}
-
-double LossUnseenOfAll(const ForceProblem& problem,
-                       const std::vector<const ForceGroup*>& groups,
-                       const ForceFit& fit) {
-  const Unseen unseen(problem, groups, fit);
-  std::vector<Index> all(static_cast<std::size_t>(unseen.columns()));
-  std::iota(all.begin(), all.end(), 0);
   const std::vector<Index> numbers(all.begin(), all.begin() + problem.numbers.cols());
-  return unseen.Squares(numbers) - unseen.Squares(all);
+  loss.all = unseen.Squares(numbers) - with;
+  return loss;
 }
 
 VectorXd GainsBeside(const ForceProblem& problem,

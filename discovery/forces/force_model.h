@@ -65,14 +65,13 @@ Eigen::MatrixXd NumbersBeside(const ForceProblem& problem,
 /// By how much less likely the values become that a fit did not see, without each of the
 /// groups: what is seen is cut into five parts, each is predicted from the others. In -2 ln
 /// L, with the noise as it is.
-Eigen::VectorXd LossUnseen(const ForceProblem& problem,
-                           const std::vector<const ForceGroup*>& groups,
-                           const ForceFit& fit);
-
-/// The same without all of them together.
-double LossUnseenOfAll(const ForceProblem& problem,
-                       const std::vector<const ForceGroup*>& groups,
-                       const ForceFit& fit);
+struct UnseenLoss {
+  Eigen::VectorXd each;
+  double all = 0.0;  ///< without all of them together
+};
+UnseenLoss LossUnseen(const ForceProblem& problem,
+                      const std::vector<const ForceGroup*>& groups,
+                      const ForceFit& fit);
 
 /// What each of the groups would take away of what a fit leaves, beside all of the others,
 /// less its cost; minus infinity where a bound would be violated.

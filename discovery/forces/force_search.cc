@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
-#include <numbers>
-#include <optional>
 #include <set>
 #include <utility>
 
-#include "mjdiag/comparison/missing_force.h"
-#include "mjdiag/discovery/hypotheses/number_forces.h"
-#include "mjdiag/discovery/screening/trial.h"
-#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/discovery/forces/force_columns.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -27,64 +21,17 @@ using Eigen::VectorXd;
 // motion: odds of 20.
 constexpr double kLeastGain = 6.0;
 
-bool IsDrive(PlantNumberKind kind) {
-  return kind == PlantNumberKind::kGear || kind == PlantNumberKind::kGain;
-}
-
-/// Whether its one size multiplies what a drive does.
-bool ScalesDrive(const Candidate& candidate) {
-  const Effect& effect = *candidate.effect;
-  if (effect.site() != SiteKind::kActuator || candidate.parameters.size() != 1 ||
-      candidate.parameters.front().role != Role::kFactor) {
-    return false;
-  }
-  return true;
-}
-
-/// Whether the balance of forces can tell it. What a drive does along the stroke, late, or up
-/// to a limit, is made of inputs that were measured with what no model explains in them: a
-/// drive that does less, or later, leaves less. A shaking from outside that is as slow as the
-/// band is told from what a motion lacks by nothing but chance.
-bool IsTold(const Candidate& candidate) {
-  const Effect& effect = *candidate.effect;
-  if (effect.kind() == Kind::kVibration) return false;
-  if (effect.site() != SiteKind::kActuator) return true;
-  return std::ranges::all_of(candidate.parameters, [](const FitParameter& parameter) {
-    return parameter.role == Role::kFactor;
-  });
-}
-
-/// Forces of masses are those of the measured acceleration: all masses and all drives twice
-/// as large, and what is left the same in units of the input.
-ObservedMotion AsMeasured(ObservedMotion motion) {
-  motion.own_acceleration = motion.acceleration;
-  return motion;
-}
-
-/// A trial of a candidate.
-struct Tried {
-  std::size_t candidate = 0;
-  std::function<TrialValues(const Amplitudes&)> values;
-  std::set<Index> joints;  ///< on which its force acts
-};
-
 class Search {
  public:
   Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
          const FilteredRun& filtered, const ForceBalance& balance,
          const ForceSearchOptions& options)
-      : problem_(problem),
-        candidates_(candidates),
-        filtered_(filtered),
-        motion_(AsMeasured(balance.motion)),
-        options_(options),
-        missing_rms_(MissingRms(filtered, balance)) {
-    forces_.rows = RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train());
-    forces_.missing = RowsOf(forces_.rows, balance.missing);
+      : problem_(problem), candidates_(candidates), options_(options) {
     Report("numbers of the plant", 0.0);
-    AddNumbers();
+    const ForceColumns columns(problem, filtered, balance);
+    forces_ = columns.NumbersAlone();
     Report("laws along the motion", 0.1);
-    AddTrials();
+    tried_ = columns.TrialsOf(candidates);
   }
 
   ForceSearchResult Run();
@@ -93,17 +40,11 @@ class Search {
   void Report(const std::string& what, double fraction) const {
     if (options_.progress) options_.progress(what, fraction, CausesOf(set_, fit_));
   }
-  void AddNumbers();
-  void AddTrials();
-  std::vector<Trial> TrialsOf(std::size_t candidate) const;
-  MatrixXd ColumnsOf(const Trial& trial) const;
   std::vector<const ForceGroup*> GroupsOf(const std::vector<std::size_t>& set) const;
   ForceFit Fit(const std::vector<std::size_t>& set) const;
   double ScoreOf(const std::vector<std::size_t>& set, const ForceFit& fit) const;
   std::vector<FittedCause> CausesOf(const std::vector<std::size_t>& set,
                                     const ForceFit& fit) const;
-  std::set<Index> PlaceOf(const MatrixXd& columns) const;
-  bool IsToldBeside(const Candidate& candidate) const;
   struct Best {
     std::size_t group = 0;
     ForceFit fit;
@@ -125,13 +66,9 @@ class Search {
 
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
-  const FilteredRun& filtered_;
-  const ObservedMotion motion_;
   const ForceSearchOptions& options_;
-  const VectorXd missing_rms_;  // of every joint, without laws
   ForceProblem forces_;
-  std::vector<ForceGroup> groups_;
-  std::vector<Tried> tried_;
+  std::vector<ForceTrial> tried_;
   std::vector<std::size_t> set_;
   ForceFit fit_;
   double score_ = 0.0;
@@ -139,125 +76,10 @@ class Search {
   std::set<std::size_t> forbidden_;  // candidates that unseen motion speaks against
 };
 
-/// The low-passed rows of forces that a trial makes.
-MatrixXd Search::ColumnsOf(const Trial& trial) const {
-  const Index amplitudes = trial.signals.cols();
-  const ForceRows& rows = forces_.rows;
-  MatrixXd columns = MatrixXd::Zero(rows.rows(), amplitudes);
-  for (Index a = 0; a < amplitudes; ++a) {
-    const VectorXd signal = LowPassed(filtered_, trial.signals.col(a));
-    for (std::size_t j = 0; j < rows.dofs.size(); ++j) {
-      const double entry = trial.entry(rows.dofs[j], a);
-      if (entry == 0.0) continue;
-      columns.col(a).segment(static_cast<Index>(j) * rows.values(), rows.values()) =
-          entry * signal(rows.samples);
-    }
-  }
-  if (trial.summed) return columns.rowwise().sum();
-  return columns;
-}
-
-void Search::AddNumbers() {
-  const Machine& machine = problem_.machine();
-  const auto& numbers = problem_.numbers();
-  forces_.numbers.setZero(forces_.rows.rows(), std::ssize(numbers));
-  forces_.drives.setZero(std::ssize(numbers));
-  const VectorXd still = problem_.StillSpeed();
-  problem_.work()->Add(problem_.RunWork() / problem_.machine().rates().substeps *
-                       static_cast<double>(numbers.size()));
-  ParallelForAll(static_cast<int>(numbers.size()), [&](int number) {
-    const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(number)];
-    const MatrixXd force =
-        doubted.spread *
-        (doubted.is_lateness
-             ? LatenessForce(machine.plant(), machine.linear().Gamma, motion_)
-             : NumberForce(machine.plant(), machine.channels(), doubted.number, motion_,
-                           still));
-    forces_.numbers.col(number) = RowsOf(forces_.rows, force.transpose());
-    if (!doubted.is_lateness && IsDrive(doubted.number.kind)) {
-      forces_.drives[number] = doubted.spread;
-    }
-  });
-}
-
-/// Those whose forces are within the band.
-std::vector<Trial> Search::TrialsOf(std::size_t candidate) const {
-  const Candidate& one = candidates_[candidate];
-  if (const auto sweep =
-          MakeSweep(problem_.machine(), one, motion_, problem_.FittedDuration())) {
-    std::vector<Trial> trials;
-    const VectorXd first = sweep->angle;
-    for (std::size_t i = 0; i < sweep->values.size(); ++i) {
-      const VectorXd angle = first + static_cast<double>(i) * sweep->increment;
-      const Index n = angle.size();
-      const VectorXd turns = (angle.tail(n - 1) - angle.head(n - 1)).cwiseAbs() /
-                             (2.0 * std::numbers::pi * filtered_.run.sample_time);
-      if (std::sqrt(turns.squaredNorm() / static_cast<double>(n)) >
-          filtered_.bandwidth) {
-        break;
-      }
-      trials.push_back(sweep->make(sweep->values[i]));
-    }
-    return trials;
-  }
-  return MakeTrials(problem_.machine(), one, motion_);
-}
-
-/// A law that goes by the load takes it from the input that was measured, in which what is
-/// missing is, too: where that is much of it, what is missing explains itself. Up to a tenth
-/// of its power it bends the values by no more than that.
-bool Search::IsToldBeside(const Candidate& candidate) const {
-  constexpr double kMuch = 0.1;
-  if (candidate.effect->kind() != Kind::kLoadFriction) return true;
-  const SiteMotion at{problem_.machine().plant(),
-                      problem_.machine().linear(),
-                      motion_,
-                      {candidate.site, candidate.joint, candidate.channel}};
-  const VectorXd load = at.motor();
-  const double power = load.squaredNorm() / static_cast<double>(load.size());
-  return std::pow(missing_rms_[candidate.joint], 2) <= kMuch * power;
-}
-
-void Search::AddTrials() {
-  constexpr double kNothing = 1e-9;  // of the largest force
-  const double largest = forces_.missing.cwiseAbs().maxCoeff();
-  std::vector<std::vector<ForceGroup>> groups(candidates_.size());
-  std::vector<std::vector<Tried>> tried(candidates_.size());
-  ParallelFor(static_cast<int>(candidates_.size()), [&](int number) {
-    const auto c = static_cast<std::size_t>(number);
-    if (!IsTold(candidates_[c]) || !IsToldBeside(candidates_[c])) return;
-    const std::vector<Trial> trials = TrialsOf(c);
-    const double cost =
-        2.0 * std::log(std::max<double>(1.0, static_cast<double>(trials.size()))) -
-        2.0 * std::log(kMissing * candidates_[c].effect->odds());
-    for (const Trial& trial : trials) {
-      if (trial.entry.size() == 0) continue;  // an error of a reading
-      MatrixXd columns = ColumnsOf(trial);
-      if (!columns.allFinite() ||
-          columns.colwise().norm().minCoeff() < kNothing * largest) {
-        continue;
-      }
-      tried[c].push_back({c, trial.values, PlaceOf(columns)});
-      groups[c].push_back(
-          {std::move(columns), trial.least, ScalesDrive(candidates_[c]), cost});
-    }
-  });
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    std::ranges::move(groups[c], std::back_inserter(groups_));
-    std::ranges::move(tried[c], std::back_inserter(tried_));
-  }
-  constexpr double kFilter = 60.0;  // multiplications for every value
-  for (const ForceGroup& group : groups_) {
-    problem_.work()->Add(
-        FilterWork(kFilter * static_cast<double>(group.columns.cols()) *
-                   static_cast<double>(motion_.samples())));
-  }
-}
-
 std::vector<const ForceGroup*> Search::GroupsOf(
     const std::vector<std::size_t>& set) const {
   std::vector<const ForceGroup*> groups;
-  for (const std::size_t g : set) groups.push_back(&groups_[g]);
+  for (const std::size_t g : set) groups.push_back(&tried_[g].group);
   return groups;
 }
 
@@ -271,7 +93,7 @@ std::vector<FittedCause> Search::CausesOf(const std::vector<std::size_t>& set,
   std::vector<FittedCause> causes;
   Index next = 0;
   for (const std::size_t g : set) {
-    const Index size = groups_[g].columns.cols();
+    const Index size = tried_[g].group.columns.cols();
     const TrialValues values = tried_[g].values(fit.amplitudes.segment(next, size));
     next += size;
     if (!values) return {};
@@ -292,18 +114,6 @@ double Search::ScoreOf(const std::vector<std::size_t>& set, const ForceFit& fit)
     score += SizePriorOf(candidates_, cause);
   }
   return score;
-}
-
-/// Joints on which its force acts.
-std::set<Index> Search::PlaceOf(const MatrixXd& columns) const {
-  std::set<Index> joints;
-  const ForceRows& rows = forces_.rows;
-  for (Index j = 0; j < std::ssize(rows.dofs); ++j) {
-    if (!columns.middleRows(j * rows.values(), rows.values()).isZero(0.0)) {
-      joints.insert(j);
-    }
-  }
-  return joints;
 }
 
 /// The best of some groups beside a set, each candidate once, in order.
@@ -349,7 +159,7 @@ bool Search::Add() {
     has.insert(tried_[g].candidate);
     for (const Index j : tried_[g].joints) ++of_joint[j];
   }
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
+  for (std::size_t g = 0; g < tried_.size(); ++g) {
     if (has.contains(tried_[g].candidate)) continue;
     const std::set<Index>& joints = tried_[g].joints;
     if (std::ranges::any_of(joints, [&](Index j) {
@@ -400,7 +210,7 @@ bool Search::Exchange() {
     for (const std::size_t g : rest) has.insert(tried_[g].candidate);
     const std::set<Index>& place = tried_[set_[i]].joints;
     std::vector<std::size_t> tried;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (std::size_t g = 0; g < tried_.size(); ++g) {
       if (!has.contains(tried_[g].candidate) && tried_[g].joints == place)
         tried.push_back(g);
     }
@@ -429,9 +239,9 @@ bool Search::Exchange() {
 bool Search::KeepWhatIsNeededUnseen() {
   bool changed = false;
   while (!set_.empty()) {
-    VectorXd worth = LossUnseen(forces_, GroupsOf(set_), fit_);
+    VectorXd worth = LossUnseen(forces_, GroupsOf(set_), fit_).each;
     for (std::size_t i = 0; i < set_.size(); ++i) {
-      worth[static_cast<Index>(i)] -= groups_[set_[i]].cost;
+      worth[static_cast<Index>(i)] -= tried_[set_[i]].group.cost;
     }
     Index least = 0;
     if (worth.minCoeff(&least) > 0.0) break;
@@ -473,8 +283,9 @@ ForceSearchResult Search::Run() {
     result.model.numbers[i] = std::clamp(moved, doubted.Least(), doubted.Most());
   }
   result.rivals = rivals_;
-  result.loss = LossUnseen(forces_, GroupsOf(set_), fit_);
-  result.loss_of_all = LossUnseenOfAll(forces_, GroupsOf(set_), fit_);
+  UnseenLoss loss = LossUnseen(forces_, GroupsOf(set_), fit_);
+  result.loss = std::move(loss.each);
+  result.loss_of_all = loss.all;
   result.rows = forces_.rows;
   result.noise = fit_.noise;
   result.numbers = NumbersBeside(forces_, GroupsOf(set_), fit_);

@@ -87,7 +87,7 @@ TEST(ForceModel, PredictsUnseenPartsByALawThatIsThereOnly) {
   const ForceGroup there{Wave(40.0), {}, false, 0.0};
   const ForceGroup none{Wave(13.0), {}, false, 0.0};
   const ForceFit fit = FitForces(problem, {&there, &none}, NoiseOfNothing(problem));
-  const VectorXd loss = LossUnseen(problem, {&there, &none}, fit);
+  const VectorXd loss = LossUnseen(problem, {&there, &none}, fit).each;
   EXPECT_GT(loss[0], 20.0);
   EXPECT_LT(loss[1], 6.0);
 }
