@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"

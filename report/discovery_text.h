@@ -14,17 +14,6 @@ namespace mjdiag {
 /// nothing was fitted to.
 std::string DiscoveryAnswer(const Discovery& discovery);
 
-/// "coulomb_friction at load", or the name of a fault parameter.
-std::string CauseName(const Cause& cause);
-
-/// 1 - after / before in percent, to two digits of what is left: "99.975 %".
-std::string GainText(double gain);
-
-/// The value with its unit, to two digits of half the interval's width: "20.39 N".
-std::string ValueText(const CauseParameter& parameter);
-/// The 95 % interval in the same unit and digits: "20.21 to 20.58 N".
-std::string IntervalText(const CauseParameter& parameter);
-
 /// sqrt(mean (rms / floor)^2) of all channels with a floor above 0; none without them.
 std::optional<double> TimesFloor(const std::map<std::string, double>& rms,
                                  const std::map<std::string, double>& floor);

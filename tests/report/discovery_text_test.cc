@@ -1,3 +1,4 @@
+#include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/discovery_text.h"
 
 #include <gmock/gmock.h>
