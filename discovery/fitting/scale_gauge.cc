@@ -122,8 +122,7 @@ std::optional<std::pair<double, double>> LawOf(const mjModel& plant,
                                                const EffectParameter& parameter) {
   const Effect& effect = *candidate.effect;
   const int exponent = ForceExponent(parameter.unit);
-  const int element = mj_name2id(&plant, effect.element(), candidate.site.c_str());
-  const auto number = element < 0 ? std::nullopt : effect.Number(plant, element);
+  const auto number = NumberAt(effect, plant, candidate.site);
   if (!number) return std::pair(static_cast<double>(exponent), 0.0);
   if (parameter.role == Role::kFactor) return std::pair(1.0, 0.0);
   if (exponent == 0) return std::pair(0.0, 0.0);
@@ -229,10 +228,7 @@ FittedModel HandedOver(const DiscoveryProblem& problem,
     return without;
   }
   const mjModel& plant = problem.machine().plant();
-  const int element =
-      mj_name2id(&plant, candidate.effect->element(), candidate.site.c_str());
-  const auto number =
-      element < 0 ? std::nullopt : candidate.effect->Number(plant, element);
+  const auto number = NumberAt(*candidate.effect, plant, candidate.site);
   if (!number) return without;
   const EffectParameter& parameter = candidate.effect->parameters().front();
   const auto own = ValueOf(plant, *number);

@@ -52,14 +52,10 @@ ObserverLadder::ObserverLadder(const DiscoveryProblem& problem) {
 ObserverLadder ObserverLadder::WithSubsteps(int substeps) const {
   const DiscoveryProblem& slowest = problems_.back();
   const Machine machine = slowest.machine().WithSubsteps(substeps);
-  std::vector<DoubtedNumber> numbers = slowest.numbers();
-  for (DoubtedNumber& number : numbers) {
-    if (number.is_lateness) number = LatenessOf(machine);
-  }
   return ObserverLadder(DiscoveryProblem(machine, slowest.observer(), slowest.run(),
                                          slowest.skip(), slowest.train())
                             .Charging(slowest.work())
-                            .Doubting(std::move(numbers)));
+                            .Doubting(InStepsOf(machine, slowest.numbers())));
 }
 
 double ObserverLadder::Deviance(std::size_t rung, const VectorXd& residual, Index first,

@@ -206,6 +206,10 @@ class Effect {
 /// A pointer to an effect that is there for good.
 inline EffectPtr Lasting(const Effect& effect) { return {EffectPtr(), &effect}; }
 
+/// Effect::Number at the element of that name; none if there is no such element.
+std::optional<PlantNumber> NumberAt(const Effect& effect, const mjModel& plant,
+                                    const std::string& site);
+
 /// "effect <name>@<site>", where messages begin.
 std::string Where(const Effect& effect, const std::string& site);
 /// InputError: takes away more `what` than there is.
