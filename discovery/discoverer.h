@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/discovery/discovery.h"
@@ -30,10 +31,10 @@ namespace mjdiag {
 /// A discovery under way.
 class Discoverer {
  public:
-  Discoverer(const Machine& machine, const Measurements& measurements,
+  Discoverer(const Machine& machine, Measurements measurements,
              const DiscoverOptions& options)
       : machine_(machine),
-        measurements_(measurements),
+        measurements_(std::move(measurements)),
         options_(options),
         work_(std::make_shared<Work>(options.budget, options.stop)),
         candidates_(ChooseCandidates(machine, options.choice)),

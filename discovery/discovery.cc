@@ -247,12 +247,12 @@ Discovery Discoverer::Run() {
   discovery_.train_share = static_cast<double>(problem_.train()) /
                            static_cast<double>(problem_.run().samples());
   discovery_.sample_time = machine_.rates().tick();
-  discovery_.substeps = machine_.rates().substeps;
   falls_ = problem_.observer().following && AnyFalls(measurements_);
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();
   if (options_.progress) MeasureSpeed();
   SearchAll();
+  discovery_.substeps = machine_.rates().substeps;
   discovery_.complete = Completeness();
   NameCauses();
   FindKinds();
@@ -298,7 +298,7 @@ Discovery Discoverer::Run() {
 
 Discovery Discover(const Machine& machine, const Measurements& measurements,
                    const DiscoverOptions& options) {
-  const Measurements split = WithUnseen(measurements, options.train_share);
+  Measurements split = WithUnseen(measurements, options.train_share);
   std::vector<std::string> notes;
   const auto check = [&](const std::vector<MeasuredRecord>& records,
                          const std::string& role) {
@@ -313,7 +313,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   };
   check(split.fit, "");
   check(split.unseen, "validation record: ");
-  Discovery discovery = Discoverer(machine, split, options).Run();
+  Discovery discovery = Discoverer(machine, std::move(split), options).Run();
   discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
   return discovery;
 }

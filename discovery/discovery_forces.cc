@@ -191,12 +191,7 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
   }
   search_.numbers_alone = force_->numbers_alone;
   search_.rivals = RivalsIn(*force_);
-  for (std::size_t count = 1; count <= fit->causes.size(); ++count) {
-    search_.ladder.push_back(
-        {{fit->causes.begin(),
-          fit->causes.begin() + static_cast<std::ptrdiff_t>(count)},
-         fit->numbers});
-  }
+  search_.ladder = LadderOf(*fit);
   VectorXd independent = IndependentShare(problem_, behind->residual);
   search_.evidence = {DataOf(problem_, candidates_, search.unseen), std::move(*behind),
                       std::move(independent)};

@@ -141,12 +141,7 @@ bool Discoverer::TakeSets(const SearchOptions& search) {
   MeasureNominal();
   search_.numbers_alone = given.numbers;
   search_.rivals = RivalsIn(found);
-  for (std::size_t count = 1; count <= model.causes.size(); ++count) {
-    search_.ladder.push_back(
-        {{model.causes.begin(),
-          model.causes.begin() + static_cast<std::ptrdiff_t>(count)},
-         model.numbers});
-  }
+  search_.ladder = LadderOf(model);
   CauseFit fit;
   static_cast<FittedModel&>(fit) = std::move(model);
   search_.evidence = search_.evidence.Changed(std::move(fit));
@@ -162,13 +157,9 @@ void Discoverer::TakeSubsteps(int substeps) {
       one.machine = one.machine.WithSubsteps(substeps);
     }
   }
-  std::vector<DoubtedNumber> numbers = problem_.numbers();
-  for (DoubtedNumber& number : numbers) {
-    if (number.is_lateness) number = LatenessOf(machine_);
-  }
+  std::vector<DoubtedNumber> numbers = InStepsOf(machine_, problem_.numbers());
   problem_ = Pose(options_.bandwidth).Doubting(std::move(numbers));
   MeasureNominal();
-  discovery_.substeps = substeps;
   discovery_.notes.push_back("physics steps of " + FormatQuantity(step, "s") +
                              " are too long for what the record tells: all of this is "
                              "said of steps of " +

@@ -34,4 +34,13 @@ Changes ChangesOf(const DiscoveryProblem& problem,
   return problem.WithNumbers(ChangesOf(candidates, model.causes), model.numbers);
 }
 
+std::vector<FittedModel> LadderOf(const FittedModel& model) {
+  std::vector<FittedModel> ladder;
+  for (std::size_t count = 1; count <= model.causes.size(); ++count) {
+    const auto end = model.causes.begin() + static_cast<std::ptrdiff_t>(count);
+    ladder.push_back({{model.causes.begin(), end}, model.numbers});
+  }
+  return ladder;
+}
+
 }  // namespace mjdiag

@@ -41,4 +41,7 @@ double PriorOf(const std::vector<Candidate>& candidates, const FittedModel& mode
 Changes ChangesOf(const DiscoveryProblem& problem,
                   const std::vector<Candidate>& candidates, const FittedModel& model);
 
+/// The model with the first of its causes, with the first two, and so on to all.
+std::vector<FittedModel> LadderOf(const FittedModel& model);
+
 }  // namespace mjdiag

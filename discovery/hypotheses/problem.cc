@@ -171,11 +171,7 @@ Changes DiscoveryProblem::WithNumbers(Changes changes, const VectorXd& z) const 
 std::vector<bool> DiscoveryProblem::StoodFor(const Changes& changes) const {
   std::vector<bool> stood_for(numbers_.size(), false);
   for (const PlacedEffect& placed : changes.effects) {
-    const mjModel& plant = machine_.plant();
-    const int element =
-        mj_name2id(&plant, placed.effect->element(), placed.site.c_str());
-    if (element < 0) continue;  // of a sensor channel
-    const auto number = placed.effect->Number(plant, element);
+    const auto number = NumberAt(*placed.effect, machine_.plant(), placed.site);
     if (!number) continue;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       if (!numbers_[i].is_lateness && numbers_[i].number == *number) {
@@ -376,6 +372,14 @@ DiscoveryProblem DiscoveryProblem::Simulating(
 DoubtedNumber LatenessOf(const Machine& machine) {
   return {
       .number = {}, .spread = 0.5 * machine.plant().opt.timestep, .is_lateness = true};
+}
+
+std::vector<DoubtedNumber> InStepsOf(const Machine& machine,
+                                     std::vector<DoubtedNumber> numbers) {
+  for (DoubtedNumber& number : numbers) {
+    if (number.is_lateness) number = LatenessOf(machine);
+  }
+  return numbers;
 }
 
 std::vector<DoubtedNumber> DoubtsOf(const Machine& machine,

@@ -153,6 +153,10 @@ class DiscoveryProblem {
 /// h / 2.
 DoubtedNumber LatenessOf(const Machine& machine);
 
+/// The same doubts about a machine in other physics steps, which are off by another time.
+std::vector<DoubtedNumber> InStepsOf(const Machine& machine,
+                                     std::vector<DoubtedNumber> numbers);
+
 /// Doubts about all numbers of a plant but the known ones, and about how late inputs act;
 /// none if all are known.
 std::vector<DoubtedNumber> DoubtsOf(const Machine& machine,

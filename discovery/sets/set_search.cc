@@ -275,16 +275,12 @@ bool Search::TakeFinerSteps(WeighedModel& best) {
   constexpr int kMost = 4;        // times the steps of the setup
   constexpr int kIterations = 3;
   const std::vector<DoubtedNumber>& numbers = ladder_[0].numbers();
-  const auto late = std::ranges::find_if(numbers, &DoubtedNumber::is_lateness);
   const int substeps = ladder_[0].machine().rates().substeps;
   // Beside numbers in doubt a model that still lacks something seems to be late as well.
   // While it deserves the fastest observer it lacks more than steps.
-  if (late == numbers.end() || numbers.size() > 1 || best.rung == 0 ||
-      substeps >= kMost * given_substeps_) {
-    return false;
-  }
-  const Index place = late - numbers.begin();
-  if (best.fit.numbers.size() <= place || best.fit.numbers[place] < kLate ||
+  const bool tells =
+      numbers.size() == 1 && numbers.front().is_lateness && best.rung > 0;
+  if (!tells || substeps >= kMost * given_substeps_ || best.fit.numbers[0] < kLate ||
       !work().MayBegin("finer physics steps", RoundWork(ladder_[0]) / 4)) {
     return false;
   }
@@ -292,7 +288,7 @@ bool Search::TakeFinerSteps(WeighedModel& best) {
   ladder_ = coarse.WithSubsteps(2 * substeps);
   FittedModel model = best.fit;
   // A step of half the length is late by half as much already.
-  model.numbers[place] = std::max(0.0, 2.0 * model.numbers[place] - 1.0);
+  model.numbers[0] = std::max(0.0, 2.0 * model.numbers[0] - 1.0);
   auto finer = Fitted(best.rung, model, kIterations, work().Share(1));
   if (!finer || finer->score > best.score - kBetter) {
     ladder_ = coarse;
