@@ -30,8 +30,8 @@ double Work::used() const { return 1e-9 * static_cast<double>(nanoseconds_.load(
 double Work::Left() const { return std::max(part_ * limit_ - used(), 0.0); }
 
 bool Work::IsSettled() const {
-  constexpr double kPatience = 2.0;  // times the work that it took
-  constexpr double kLeast = 10.0;    // [s]
+  constexpr double kPatience = 1.0;  // times the work that it took
+  constexpr double kLeast = 5.0;     // [s]
   return among_laws_ && used() - changed_ > kLeast + kPatience * changed_;
 }
 

@@ -5,8 +5,9 @@
 //
 //   work = sum over runs of samples substeps (a + b nv + c nv^2) / 2,
 //
-// nv degrees of freedom, and what screenings filter. A search whose answer has not changed
-// for twice the work that it took to come to it is taken for settled, and ends before.
+// nv degrees of freedom, and what screenings filter. A search whose answer has not become
+// better for as much work again as it took to come to it is taken for settled, and ends
+// before.
 //
 // Work may be added from any thread. What is left is asked for only between moves and
 // stages, where no other thread adds any: there the sum is the same every time.
@@ -51,7 +52,7 @@ class Work {
   /// What each of `count` parts of a move may use, so that together they do not use
   /// more than is left.
   double Share(int count) const;
-  /// The search among laws has another answer than before.
+  /// The search among laws has a better answer than before.
   void NoteChange() { changed_ = used(); }
   /// Whether that search has gone on for much longer than it took to come to its answer:
   /// nothing of it is begun any more.

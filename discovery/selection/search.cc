@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/selection/search.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -73,9 +74,9 @@ class Search {
   void NoteChange() {
     result_.exchanged = false;
     result_.searched_without = false;
-    // A search without one of the causes is none of the answer yet.
-    if (options_.forbidden.empty()) work().NoteChange();
+    NoteAnswer();
   }
+  void NoteAnswer();
   std::vector<Start> ScreenWhatIsLeft(Chance& chance);
   bool AddCause();
   void AddCauses();
@@ -100,7 +101,19 @@ class Search {
   SearchResult confirmed_;
   double unsteadiness_ = 0.0;
   int rounds_ = 0;
+  double noted_ = std::numeric_limits<double>::infinity();
 };
+
+/// The answer is another where it leaves less than before: one law in the place of another
+/// that leaves as much, or takes away a little more, is no reason to search on.
+void Search::NoteAnswer() {
+  constexpr double kLess = 0.9;  // of the mean square beyond noise
+  const double left = result_.fit().train - 1.0;
+  // A search without one of the causes is none of the answer yet.
+  if (!options_.forbidden.empty() || (noted_ > 0.0 && left > kLess * noted_)) return;
+  noted_ = left;
+  work().NoteChange();
+}
 
 CauseFit Search::FitFoundBefore() const {
   try {
@@ -131,7 +144,7 @@ void Search::FitCausesFoundBefore() {
                              ? VectorXd::Ones(data_.problem.run().outputs.rows()).eval()
                              : IndependentShare(data_.problem, fit.residual);
   result_.evidence = {data_.evidence, std::move(fit), std::move(independent)};
-  if (options_.forbidden.empty()) work().NoteChange();
+  NoteAnswer();
 }
 
 /// Adds the first of the hypotheses that is accepted; else, ahead of what confirms it,
@@ -294,7 +307,7 @@ void Search::ExchangeCauses() {
   for (int i = 0; i < kExchanges && !result_.exchanged; ++i) {
     if (!result_.fit().causes.empty() && !work().MayBegin(kOthers)) break;
     if (TryExchange()) {
-      work().NoteChange();
+      NoteAnswer();
       Settle();
       AddCauses();
     } else {
@@ -335,7 +348,7 @@ bool Search::SearchWithout() {
     SearchResult other = SearchCauses(data_.problem, data_.candidates, options, &start);
     if (Judge(result_.evidence, other.evidence) != Judgement::kAccepted) continue;
     result_ = std::move(other);
-    work().NoteChange();
+    NoteAnswer();
     result_.served = true;
     result_.exchanged = false;
     found = true;

@@ -15,6 +15,7 @@ TEST(Work, EndsWhenItIsUsedUpAndKeepsWhatIsLeftOut) {
   work.Add(5.0);
   EXPECT_TRUE(work.MayBegin("a"));
   EXPECT_FALSE(work.MayBegin("b", 5.0));  // more than is left
+  work.NoteChange();
   work.Add(5.0);
   EXPECT_FALSE(work.MayBegin("c"));
   EXPECT_FALSE(work.MayBegin("c"));
@@ -34,11 +35,11 @@ TEST(Work, KeepsAPartForWhatComesAfterTheSearch) {
   EXPECT_NEAR(work.Share(2), 0.5, 1e-9);
 }
 
-TEST(Work, IsSettledWhenItsAnswerHasNotChangedForLong) {
+TEST(Work, IsSettledWhenItsAnswerHasNotBecomeBetterForLong) {
   Work work;
   work.Add(20.0);
   work.NoteChange();
-  work.Add(49.0);
+  work.Add(24.0);
   EXPECT_TRUE(work.MayBegin("other causes"));
   work.Add(2.0);
   EXPECT_TRUE(work.IsSettled());

@@ -31,13 +31,20 @@ class CalibrateTheBonder : public testing::Test {
     return SimulateLinear(real_, DefaultMotion(nominal_.setup()), options);
   }
 
+  /// From three healthy runs, once for all tests: it takes the longest.
+  const CalibrationReport& Learned() const {
+    static const CalibrationReport report =
+        Calibrate(nominal_, {Healthy(1), Healthy(2), Healthy(3)},
+                  {.linear = true, .progress = {}});
+    return report;
+  }
+
   const Machine nominal_ = test::Bonder();
   Machine real_ = nominal_;
 };
 
 TEST_F(CalibrateTheBonder, LearnsItsNumbersAndItsNoise) {
-  const CalibrationReport report =
-      Calibrate(nominal_, {Healthy(1), Healthy(2)}, {.linear = true, .progress = {}});
+  const CalibrationReport& report = Learned();
   const Calibration& learned = report.calibration;
   const std::map<std::string, double> truth = {
       {"damping@Y", 1.2}, {"mass@y_stage", 0.99}, {"stiffness@u4", 1.05}};
@@ -56,10 +63,8 @@ TEST_F(CalibrateTheBonder, LearnsItsNumbersAndItsNoise) {
 }
 
 TEST_F(CalibrateTheBonder, ThenNamesNothingThatIsHealthyAndEverythingThatIsNot) {
-  const CalibrationReport report = Calibrate(
-      nominal_, {Healthy(1), Healthy(2), Healthy(3)}, {.linear = true, .progress = {}});
   mjdiag::Setup setup = nominal_.setup();
-  setup.calibration = report.calibration;
+  setup.calibration = Learned().calibration;
   const Machine calibrated(setup);
   const auto reading = [&](const Machine& machine, std::uint64_t seed) {
     RunOptions options;
