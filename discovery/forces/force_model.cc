@@ -181,9 +181,12 @@ ForceNoise NoiseOfNothing(const ForceProblem& problem) {
   return NoiseOf(problem.rows, problem.missing, Seen(problem.rows));
 }
 
-ForceFit FitForces(const ForceProblem& problem,
-                   const std::vector<const ForceGroup*>& groups,
-                   const ForceNoise& start) {
+namespace {
+
+/// Generalised least squares and the noise of what that leaves, in turn.
+ForceFit FitFrom(const ForceProblem& problem,
+                 const std::vector<const ForceGroup*>& groups,
+                 const ForceNoise& start) {
   constexpr int kIterations = 4;
   const Index numbers = problem.numbers.cols();
   const std::vector<bool> seen = Seen(problem.rows);
@@ -211,6 +214,18 @@ ForceFit FitForces(const ForceProblem& problem,
   for (const ForceGroup* group : groups) fit.score += group->cost;
   if (!theta.allFinite() || !IsWithin(groups, fit.amplitudes)) fit.score = kNever;
   return fit;
+}
+
+}  // namespace
+
+// What lasts is the noise's or a law's, and either makes the other needless: the two ends
+// of that are begun from both.
+ForceFit FitForces(const ForceProblem& problem,
+                   const std::vector<const ForceGroup*>& groups,
+                   const ForceNoise& start) {
+  ForceFit lasting = FitFrom(problem, groups, start);
+  ForceFit white = FitFrom(problem, groups, WithoutMemory(start));
+  return white.score < lasting.score ? white : lasting;
 }
 
 MatrixXd NumbersBeside(const ForceProblem& problem,

@@ -82,6 +82,12 @@ ForceNoise NoiseOf(const ForceRows& rows, const VectorXd& left,
   return noise;
 }
 
+ForceNoise WithoutMemory(ForceNoise noise) {
+  noise.sd.array() /= (1.0 - noise.phi.array().square()).sqrt();
+  noise.phi.setZero();
+  return noise;
+}
+
 MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
                   const MatrixXd& columns) {
   MatrixXd white(columns.rows(), columns.cols());

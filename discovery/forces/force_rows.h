@@ -49,6 +49,8 @@ struct ForceNoise {
 /// Of what is left, in the values of `seen` (of every joint the same).
 ForceNoise NoiseOf(const ForceRows& rows, const Eigen::VectorXd& left,
                    const std::vector<bool>& seen);
+/// Of the same variance, each value independent of the last.
+ForceNoise WithoutMemory(ForceNoise noise);
 /// Rows over the noise, each column.
 Eigen::MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
                          const Eigen::MatrixXd& columns);

@@ -116,29 +116,38 @@ double Search::ScoreOf(const std::vector<std::size_t>& set, const ForceFit& fit)
   return score;
 }
 
-/// The best of some groups beside a set, each candidate once, in order.
+/// The best of some groups beside a set, each candidate once, in order. To what lasts as
+/// long as the noise of the present fit a law that lasts is worth little: the first ones by
+/// noise without a memory are fitted, too.
 std::vector<Search::Best> Search::BestBeside(const std::vector<std::size_t>& set,
                                              const ForceFit& fit,
                                              const std::vector<std::size_t>& tried,
                                              std::size_t count,
                                              std::size_t place) const {
-  const VectorXd gains = GainsBeside(forces_, GroupsOf(set), fit, GroupsOf(tried));
   // Two products with what the set does, for every column.
   problem_.work()->Add(
-      FilterWork(2.0 * static_cast<double>(forces_.rows.rows()) *
+      FilterWork(4.0 * static_cast<double>(forces_.rows.rows()) *
                  static_cast<double>(tried.size()) *
                  static_cast<double>(fit.z.size() + fit.amplitudes.size() + 4)));
-  std::vector<std::size_t> order(tried.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::stable_sort(order, std::greater<>(),
-                           [&](std::size_t i) { return gains[static_cast<Index>(i)]; });
   std::vector<Best> best;
   std::set<std::size_t> known;
-  for (const std::size_t i : order) {
-    if (best.size() == count || !std::isfinite(gains[static_cast<Index>(i)])) break;
-    if (!known.insert(tried_[tried[i]].candidate).second) continue;
-    best.push_back({tried[i], {}, 0.0});
-  }
+  const auto take = [&](const ForceFit& at, std::size_t most) {
+    const VectorXd gains = GainsBeside(forces_, GroupsOf(set), at, GroupsOf(tried));
+    std::vector<std::size_t> order(tried.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) {
+      return gains[static_cast<Index>(i)];
+    });
+    for (const std::size_t i : order) {
+      if (best.size() == most || !std::isfinite(gains[static_cast<Index>(i)])) break;
+      if (!known.insert(tried_[tried[i]].candidate).second) continue;
+      best.push_back({tried[i], {}, 0.0});
+    }
+  };
+  take(fit, count);
+  ForceFit forgetful = fit;
+  forgetful.noise = WithoutMemory(fit.noise);
+  take(forgetful, best.size() + count / 2);
   ParallelFor(static_cast<int>(best.size()), [&](int number) {
     Best& one = best[static_cast<std::size_t>(number)];
     std::vector<std::size_t> more = set;
