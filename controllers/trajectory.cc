@@ -1,7 +1,9 @@
 #include "mjdiag/controllers/trajectory.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "mjdiag/controllers/setpoint.h"
@@ -125,6 +127,97 @@ AxisReference SampleAxis(const Trajectory& trajectory, const std::string& axis,
   return reference;
 }
 
+/// A value and its first four derivatives.
+using Jet = std::array<double, 5>;
+
+/// The polynomial of degree 9 from 0 to 1 over 0 <= x <= 1 with four derivatives 0 at both
+/// ends: w(x) = x^5 (126 - 420 x + 540 x^2 - 315 x^3 + 70 x^4).
+Jet SmoothStep(double x) {
+  if (x <= 0.0) return {0.0, 0.0, 0.0, 0.0, 0.0};
+  if (x >= 1.0) return {1.0, 0.0, 0.0, 0.0, 0.0};
+  constexpr std::array<double, 5> kCoefficients{126.0, -420.0, 540.0, -315.0, 70.0};
+  Jet jet{};
+  for (std::size_t i = 0; i < kCoefficients.size(); ++i) {
+    double factor = kCoefficients[i];
+    double power = 5.0 + static_cast<double>(i);
+    for (double& value : jet) {
+      value += factor * std::pow(x, power);
+      factor *= power;
+      power -= 1.0;
+    }
+  }
+  return jet;
+}
+
+/// w of a trajectory at a time, and its derivatives by time. Of one that was cut short the
+/// ramps meet in the middle.
+Jet EnvelopeAt(double time, double duration, double ramp) {
+  ramp = std::min(ramp, 0.5 * duration);
+  const bool rises = time < 0.5 * duration;
+  Jet jet = SmoothStep((rises ? time : duration - time) / ramp);
+  double scale = 1.0;
+  for (double& value : jet) {
+    value *= scale;
+    scale *= (rises ? 1.0 : -1.0) / ramp;
+  }
+  return jet;
+}
+
+/// Derivatives of a product, by Leibniz.
+Jet Product(const Jet& a, const Jet& b) {
+  constexpr std::array<std::array<double, 5>, 5> kBinomials{{{1, 0, 0, 0, 0},
+                                                             {1, 1, 0, 0, 0},
+                                                             {1, 2, 1, 0, 0},
+                                                             {1, 3, 3, 1, 0},
+                                                             {1, 4, 6, 4, 1}}};
+  Jet product{};
+  for (std::size_t n = 0; n < product.size(); ++n) {
+    for (std::size_t k = 0; k <= n; ++k) {
+      product[n] += kBinomials[n][k] * a[k] * b[n - k];
+    }
+  }
+  return product;
+}
+
+void AddTones(const Trajectory& trajectory, double sample_time,
+              AxisReference& reference) {
+  for (const ReferenceTone& tone : trajectory.tones) {
+    if (tone.axis != reference.axis) continue;
+    const double omega = 2.0 * std::numbers::pi * tone.frequency;
+    for (Eigen::Index k = 0; k < reference.position.size(); ++k) {
+      const double time = static_cast<double>(k) * sample_time;
+      const double sine = tone.amplitude * std::sin(omega * time + tone.phase);
+      const double cosine = tone.amplitude * std::cos(omega * time + tone.phase);
+      const Jet wave{sine, omega * cosine, -std::pow(omega, 2) * sine,
+                     -std::pow(omega, 3) * cosine, std::pow(omega, 4) * sine};
+      const Jet motion =
+          Product(EnvelopeAt(time, trajectory.duration, trajectory.ramp), wave);
+      reference.position[k] += motion[0];
+      reference.velocity[k] += motion[1];
+      reference.acceleration[k] += motion[2];
+      reference.snap[k] += motion[4];
+    }
+  }
+}
+
+void CheckTones(const Trajectory& trajectory, const std::vector<std::string>& axes,
+                double sample_time) {
+  const std::string where = "trajectory '" + trajectory.name + "', tones";
+  for (const ReferenceTone& tone : trajectory.tones) {
+    if (std::find(axes.begin(), axes.end(), tone.axis) == axes.end()) {
+      throw InputError(where, "there is no axis '" + tone.axis + "'",
+                       "an axis of the setup");
+    }
+    if (!(tone.frequency > 0.0 && tone.frequency * sample_time < 0.5)) {
+      throw InputError(where, "a frequency that the control rate cannot follow",
+                       "more than 0 and less than half of it");
+    }
+  }
+  if (!trajectory.tones.empty() && !(trajectory.ramp > 0.0)) {
+    throw InputError(where, "have no ramp", "one of more than 0 s");
+  }
+}
+
 void CheckTrajectory(const Trajectory& trajectory, const std::vector<std::string>& axes,
                      double sample_time) {
   const std::string where = "trajectory '" + trajectory.name + "'";
@@ -145,6 +238,7 @@ void CheckTrajectory(const Trajectory& trajectory, const std::vector<std::string
       }
     }
   }
+  CheckTones(trajectory, axes, sample_time);
 }
 
 }  // namespace
@@ -155,6 +249,7 @@ Reference SampleTrajectory(const Trajectory& trajectory,
   Reference reference{sample_time, {}};
   for (const std::string& axis : axes) {
     reference.axes.push_back(SampleAxis(trajectory, axis, sample_time));
+    AddTones(trajectory, sample_time, reference.axes.back());
   }
   return reference;
 }

@@ -31,6 +31,7 @@ const Trajectory& UnseenTrajectory(const Setup& setup) {
   std::size_t most = 0;
   for (const Trajectory& trajectory : setup.trajectories.all) {
     if (trajectory.name == setup.trajectories.fallback) continue;
+    if (trajectory.moves.empty()) continue;  // tones alone
     if (trajectory.moves.front().by.size() <= most) continue;
     most = trajectory.moves.front().by.size();
     best = &trajectory;

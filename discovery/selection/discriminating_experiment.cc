@@ -19,6 +19,8 @@ constexpr double kLongest = 1.0;  // [s]
 Trajectory Slower(Trajectory trajectory, double factor) {
   trajectory.period *= factor;
   for (Move& move : trajectory.moves) move.at *= factor;
+  for (ReferenceTone& tone : trajectory.tones) tone.frequency /= factor;
+  trajectory.ramp *= factor;
   for (auto& [axis, limits] : trajectory.limits) {
     limits.velocity /= factor;
     limits.acceleration /= std::pow(factor, 2);

@@ -251,6 +251,15 @@ Move ReadMove(const TomlTable& table, const std::vector<std::string>& axes,
   return move;
 }
 
+ReferenceTone ReadTone(const TomlTable& table, const std::vector<std::string>& axes) {
+  ReferenceTone tone;
+  tone.axis = DeclaredName(table, "axis", "axis", axes);
+  tone.frequency = table.Number("frequency", kPositive);
+  tone.amplitude = table.Number("amplitude", kNonZero);
+  tone.phase = table.Number("phase", kAnyNumber, 0.0);
+  return tone;
+}
+
 Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
   const std::vector<std::string> axes = NamesOf(setup.control.axes, &AxisSetup::name);
   Trajectory trajectory;
@@ -270,7 +279,21 @@ Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
   for (const TomlTable& move : table.TableArray("moves")) {
     trajectory.moves.push_back(ReadMove(move, axes, trajectory));
   }
-  if (trajectory.moves.empty()) table.Fail("moves", "is empty", "a move at least");
+  for (const TomlTable& tone : table.TableArray("tones")) {
+    trajectory.tones.push_back(ReadTone(tone, axes));
+    if (trajectory.tones.back().frequency >= 0.5 * setup.rates.control) {
+      tone.Fail("frequency", "is not below half of the control rate", "a lower one");
+    }
+  }
+  if (!trajectory.tones.empty()) {
+    trajectory.ramp = table.Number("ramp", kPositive, 0.1 * trajectory.duration);
+    if (2.0 * trajectory.ramp > trajectory.duration) {
+      table.Fail("ramp", "is longer than half of the duration", "a shorter one");
+    }
+  }
+  if (trajectory.moves.empty() && trajectory.tones.empty()) {
+    table.Fail("moves", "is empty", "a move or a tone at least");
+  }
   return trajectory;
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -25,7 +26,9 @@ Trajectory ThereAndBack() {
           .moves = {{0.01, {{"x", 0.004}}},
                     {0.05, {{"x", 0.002}, {"y", -0.003}}},
                     {0.10, {{"x", -0.006}, {"y", 0.003}}}},
-          .limits = {{"x", kLimits}, {"y", kLimits}}};
+          .limits = {{"x", kLimits}, {"y", kLimits}},
+          .tones = {},
+          .ramp = 0.0};
 }
 
 Reference Sample(const Trajectory& trajectory) {
@@ -158,6 +161,65 @@ TEST(SampleTrajectory, SaysWhereAMoveCouldStart) {
     return text.str();
   };
   ExpectRefused(t, earliest());
+}
+
+Trajectory WithTone(double frequency) {
+  Trajectory t = ThereAndBack();
+  t.tones = {{"x", frequency, 1e-5, 0.7}};
+  t.ramp = 0.1;
+  return t;
+}
+
+TEST(SampleTrajectory, AddsTonesThatBeginAndEndAtRest) {
+  const Trajectory with = WithTone(40.0);
+  const Reference both = Sample(with);
+  const Reference moves = Sample(ThereAndBack());
+  const auto tone = [&](const Eigen::VectorXd AxisReference::*part, Eigen::Index k) {
+    return (both.axes[0].*part)[k] - (moves.axes[0].*part)[k];
+  };
+  // Flat in between: the sine as it is given.
+  const double omega = 2.0 * M_PI * 40.0;
+  const double time = 2000 * kTick;
+  EXPECT_NEAR(tone(&AxisReference::position, 2000), 1e-5 * std::sin(omega * time + 0.7),
+              1e-15);
+  EXPECT_NEAR(tone(&AxisReference::snap, 2000),
+              1e-5 * std::pow(omega, 4) * std::sin(omega * time + 0.7), 1e-6);
+  for (const auto part : {&AxisReference::position, &AxisReference::velocity,
+                          &AxisReference::acceleration, &AxisReference::snap}) {
+    EXPECT_EQ(tone(part, 0), 0.0);
+    // A tick before the end: of what it is in between.
+    EXPECT_LT(std::abs(tone(part, 3999)), 1e-3 * std::abs(tone(part, 2100)));
+  }
+  EXPECT_EQ(both.axes[1].position, moves.axes[1].position);
+}
+
+// Central differences, whose error is that of h^2 / 6 times a derivative two orders up.
+TEST(SampleTrajectory, TonesHaveTheDerivativesThatTheySay) {
+  Trajectory t = WithTone(40.0);
+  t.moves.clear();
+  const AxisReference x = Sample(t).axes[0];
+  const double omega = 2.0 * M_PI * 40.0;
+  for (const Eigen::Index k : {100, 400, 790, 2000, 3300, 3900}) {
+    const double bound = 1e-5 * std::pow(omega * kTick, 2);
+    EXPECT_NEAR((x.position[k + 1] - x.position[k - 1]) / (2.0 * kTick), x.velocity[k],
+                bound * omega);
+    EXPECT_NEAR((x.velocity[k + 1] - x.velocity[k - 1]) / (2.0 * kTick),
+                x.acceleration[k], bound * std::pow(omega, 2));
+    EXPECT_NEAR(
+        (x.acceleration[k + 1] - 2.0 * x.acceleration[k] + x.acceleration[k - 1]) /
+            std::pow(kTick, 2),
+        x.snap[k], bound * std::pow(omega, 4));
+  }
+}
+
+TEST(SampleTrajectory, RefusesTonesThatNobodyCanFollow) {
+  ExpectRefused(WithTone(4000.0), "a frequency that the control rate cannot follow");
+  Trajectory t = WithTone(40.0);
+  t.ramp = 0.0;
+  ExpectRefused(t, "tones: have no ramp");
+  t = WithTone(40.0);
+  t.tones[0].axis = "w";
+  ExpectRefused(t, "tones: there is no axis 'w'");
 }
 
 }  // namespace
