@@ -14,6 +14,7 @@ void AddCompare(CLI::App& app);
 void AddDiscover(CLI::App& app);
 void AddRender(CLI::App& app);
 void AddStudy(CLI::App& app);
+void AddExcite(CLI::App& app);
 void AddReport(CLI::App& app);
 #ifdef MJDIAG_HAS_WATCH
 void AddWatch(CLI::App& app);

@@ -76,6 +76,7 @@ int Main(int argc, char** argv) {
   AddDiscover(app);
   AddRender(app);
   AddStudy(app);
+  AddExcite(app);
   AddReport(app);
 #ifdef MJDIAG_HAS_WATCH
   AddWatch(app);

@@ -5,6 +5,7 @@
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/discovery/extension/calibrated_setup.h"
 #include "mjdiag/discovery/extension/extended_plant.h"
+#include "mjdiag/discovery/extension/setup_following.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -15,6 +16,28 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kCalibrationFile = "calibration.json";
+
+/// Of a setup whose text will go into another folder. InputError if that is its own.
+fs::path FileForOther(const fs::path& setup, const fs::path& folder) {
+  const fs::path file = fs::absolute(FindSetupFile(setup));
+  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
+    throw InputError(folder.string(), "is the folder of the setup itself",
+                     "another folder");
+  }
+  return file;
+}
+
+/// The setup's text, and what stands beside it.
+void WriteBeside(const fs::path& folder, const fs::path& file,
+                 const std::string& text) {
+  MakeOutputFolder(folder);
+  for (const auto& entry : fs::directory_iterator(file.parent_path())) {
+    const fs::path name = entry.path().filename();
+    if (!entry.is_regular_file() || name == file.filename()) continue;
+    fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
+  }
+  WriteTextFile(folder / "setup.toml", text);
+}
 
 }  // namespace
 
@@ -32,21 +55,16 @@ fs::path WriteExtendedSetup(const fs::path& folder, const fs::path& setup,
 void WriteCalibratedSetup(const fs::path& folder, const fs::path& setup,
                           const Calibration& calibration,
                           const DiagnosisDesign& filters) {
-  const fs::path file = fs::absolute(FindSetupFile(setup));
-  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
-    throw InputError(folder.string(), "is the folder of the setup itself",
-                     "another folder");
-  }
-  const std::string text = CalibratedSetup(file, kCalibrationFile);
-  MakeOutputFolder(folder);
-  for (const auto& entry : fs::directory_iterator(file.parent_path())) {
-    const fs::path name = entry.path().filename();
-    if (!entry.is_regular_file() || name == file.filename()) continue;
-    fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
-  }
-  WriteTextFile(folder / "setup.toml", text);
+  const fs::path file = FileForOther(setup, folder);
+  WriteBeside(folder, file, CalibratedSetup(file, kCalibrationFile));
   WriteCalibration(folder / kCalibrationFile, calibration);
   WriteFilters(folder / kCalibratedFilters, filters);
+}
+
+void WriteSetupFollowing(const fs::path& folder, const fs::path& setup,
+                         const Trajectory& trajectory) {
+  const fs::path file = FileForOther(setup, folder);
+  WriteBeside(folder, file, SetupFollowing(file, trajectory));
 }
 
 }  // namespace mjdiag

@@ -1,5 +1,6 @@
 #pragma once
-// Folders that are setups of their own: of an extended plant, and of a calibrated machine.
+// Folders that are setups of their own: of an extended plant, of a calibrated machine, and
+// of one that follows another trajectory.
 // Every command takes them, and the plants load in stock MuJoCo.
 
 #include <filesystem>
@@ -29,5 +30,13 @@ void WriteCalibratedSetup(const std::filesystem::path& folder,
                           const std::filesystem::path& setup,
                           const Calibration& calibration,
                           const DiagnosisDesign& filters);
+
+/// Makes a folder with everything that stands beside a setup, with the setup whose default
+/// trajectory that one is.
+/// @param setup  of the machine, a file or its folder. InputError if it is in `folder`, or
+///               has a trajectory of that name
+void WriteSetupFollowing(const std::filesystem::path& folder,
+                         const std::filesystem::path& setup,
+                         const Trajectory& trajectory);
 
 }  // namespace mjdiag

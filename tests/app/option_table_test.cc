@@ -142,6 +142,12 @@ const std::map<std::string, Rows>& Table() {
                          {"--plan", kNothing},
                          {"--resume", kNothing},
                          {"--restart", kNothing}}},
+      {"excite", kMachine + kOutput + kReport +
+                     Rows{{"--for", kNothing},
+                          {"--limit", kNothing},
+                          {"--max-frequency", Same("--max-frequency 0")},
+                          {"--name", Same("--name excite")},
+                          {"--budget", Same("--budget 60")}}},
       {"report", {{"--json", kNothing}}}};
   return table;
 }

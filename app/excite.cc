@@ -1,0 +1,211 @@
+// mjdiag excite: a motion within the limits of the axes that tells most.
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "app/command.h"
+#include "app/exit_status.h"
+#include "app/format.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/progress.h"
+#include "app/subject.h"
+#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/report/excitation_page.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
+#include "mjdiag/signals/quantity.h"
+#include "mjdiag/studies/excitation/motion_design.h"
+
+namespace mjdiag::app {
+namespace {
+
+struct ExciteCommand {
+  MachineOptions machine;
+  OutputOptions output;
+  std::vector<std::string> limits;
+  double budget = 60.0;
+  MotionDesignOptions design;
+};
+
+double* LimitNamed(AxisLimits& limits, std::string_view name) {
+  if (name == "position") return &limits.position;
+  if (name == "velocity") return &limits.velocity;
+  if (name == "acceleration") return &limits.acceleration;
+  if (name == "jerk") return &limits.jerk;
+  if (name == "snap") return &limits.snap;
+  if (name == "force") return &limits.force;
+  return nullptr;
+}
+
+/// "x:velocity=0.3,force=100"
+void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits) {
+  const auto fail = [&](const std::string& what) {
+    throw InputError("--limit " + std::string(text), what,
+                     "<axis>:<name>=<number>,... of position, velocity, acceleration, "
+                     "jerk, snap and force");
+  };
+  const std::size_t colon = text.find(':');
+  if (colon == text.npos || colon == 0) fail("no axis");
+  AxisLimits& own = limits[std::string(text.substr(0, colon))];
+  std::string_view rest = text.substr(colon + 1);
+  if (rest.empty()) fail("no limit");
+  while (!rest.empty()) {
+    const std::string_view item = rest.substr(0, rest.find(','));
+    const std::size_t equals = std::min(item.find('='), item.size());
+    double* value = LimitNamed(own, item.substr(0, equals));
+    if (value == nullptr)
+      fail("there is no '" + std::string(item.substr(0, equals)) + "'");
+    const auto number = equals < item.size() ? ParseNumber(item.substr(equals + 1))
+                                             : std::optional<double>();
+    if (!number || !std::isfinite(*number) || *number <= 0.0) {
+      fail("'" + std::string(item) + "' is no number above 0");
+    }
+    *value = *number;
+    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
+  }
+}
+
+nlohmann::json LimitsJson(const AxisLimits& limits) {
+  nlohmann::json document;
+  for (const auto& [name, value] : Named(limits)) document[name] = value;
+  return document;
+}
+
+nlohmann::json ExcitationJson(const Machine& machine, const MotionDesign& design) {
+  nlohmann::json document = {
+      {"schema", "mjdiag.excitation/1"},
+      {"command", CommandLine()},
+      {"setup", machine.setup().name},
+      {"trajectory", design.trajectory.name},
+      {"duration", design.trajectory.duration},
+      {"gain", design.Gain()},
+      {"stopped", design.stopped},
+      {"moves", {{"of", nullptr}, {"times", design.share_of_moves}}},
+      {"tones", nlohmann::json::array()},
+      {"unknowns", nlohmann::json::array()},
+      {"limits", nlohmann::json::object()},
+      {"peaks", nlohmann::json::object()}};
+  if (!design.moves_of.empty()) document["moves"]["of"] = design.moves_of;
+  for (const ReferenceTone& tone : design.trajectory.tones) {
+    document["tones"].push_back({{"axis", tone.axis},
+                                 {"frequency", tone.frequency},
+                                 {"amplitude", tone.amplitude},
+                                 {"phase", tone.phase}});
+  }
+  for (std::size_t i = 0; i < design.unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    document["unknowns"].push_back({{"name", design.unknowns[i]},
+                                    {"wanted", static_cast<bool>(design.wanted[i])},
+                                    {"sd_before", design.before[at]},
+                                    {"sd_after", design.after[at]}});
+  }
+  for (std::size_t i = 0; i < design.limits.size(); ++i) {
+    const std::string& axis = machine.setup().control.axes[i].name;
+    document["limits"][axis] = LimitsJson(design.limits[i]);
+    document["peaks"][axis] = LimitsJson(design.peaks[i]);
+  }
+  return document;
+}
+
+std::string ExcitationText(const MotionDesign& design) {
+  Table table({"unknown", "sd, default motion", "this motion", "times smaller", ""});
+  for (std::size_t i = 0; i < design.unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    table.Add({design.unknowns[i], Short(design.before[at]), Short(design.after[at]),
+               Short(design.before[at] / design.after[at]),
+               design.wanted[i] ? "wanted" : ""});
+  }
+  std::string text = GainText(design) + "\n\n" + table.ToString() + "\n";
+  if (!design.moves_of.empty()) {
+    text += "moves of trajectory " + design.moves_of + ", " +
+            Short(design.share_of_moves) + " times as far\n";
+  }
+  for (const ReferenceTone& tone : design.trajectory.tones) {
+    text += "tone on " + tone.axis + ": " + Short(tone.frequency) + " Hz, amplitude " +
+            Short(tone.amplitude) + "\n";
+  }
+  if (design.stopped) {
+    text += "ended before everything was tried: by a signal, or by --budget\n";
+  }
+  return text;
+}
+
+void Excite(ExciteCommand& command) {
+  if (!command.machine.overrides.empty() || !command.machine.faults.empty() ||
+      !command.machine.effects.empty()) {
+    throw InputError("--set, --fault, --effect",
+                     "the setup that is written would not have them",
+                     "the setup and its plant as they are");
+  }
+  for (const std::string& text : command.limits)
+    ReadLimits(text, command.design.limits);
+  const Machine machine = LoadSubject(command.machine).nominal;
+  PrepareOutput(command.output);
+  const Interrupt interrupt;
+  const auto begin = std::chrono::steady_clock::now();
+  MotionDesign design;
+  {
+    ProgressBar bar("motions");
+    ProgressLog log;
+    command.design.progress = [&](double fraction, double gain) {
+      if (bar.is_on_terminal()) {
+        bar.Show(fraction);
+      } else {
+        log.Show("motions, " + Short(std::round(100.0 * fraction)) + " %",
+                 gain > 1.0 ? "sd " + FormatNumber(gain, 3) + " times smaller"
+                            : "the default motion");
+      }
+    };
+    command.design.stop = [&] {
+      const std::chrono::duration<double> taken =
+          std::chrono::steady_clock::now() - begin;
+      return Interrupt::IsWished() || taken.count() > command.budget;
+    };
+    design = DesignMotion(machine, command.design);
+  }
+  std::string text = ExcitationText(design);
+  if (!command.output.folder.empty()) {
+    WriteSetupFollowing(command.output.folder, command.machine.setup,
+                        design.trajectory);
+    text += "setup: " + command.output.folder + "/setup.toml\n";
+  }
+  Publish(command.output, "excitation", ExcitationJson(machine, design), text, [&] {
+    return NamedPage{"excitation",
+                     ExcitationPage(machine, design,
+                                    {CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}})};
+  });
+  Interrupt::ThrowIfWished();
+}
+
+}  // namespace
+
+void AddExcite(CLI::App& app) {
+  auto options = std::make_shared<ExciteCommand>();
+  CLI::App* command = app.add_subcommand(
+      "excite", "Design a motion within the limits of the axes that tells most");
+  AddMachineOptions(*command, options->machine);
+  AddOutputOptions(*command, options->output, false);
+  AddReportOption(*command, options->output);
+  command->add_option("--for", options->design.wanted,
+                      "Fault parameter, or number of the plant (mass@x_stage), that is "
+                      "wanted; may be given more than once; all fault parameters "
+                      "without it");
+  command->add_option("--limit", options->limits,
+                      "Limits of an axis in the place of what the default motion does: "
+                      "x:velocity=0.3,force=100; also position, acceleration, jerk, "
+                      "snap; may be given more than once");
+  command
+      ->add_option("--max-frequency", options->design.highest_frequency,
+                   "Highest frequency of a tone [Hz]; 0: a quarter of the control rate")
+      ->check(Within(0.0, 1e6));
+  command->add_option("--name", options->design.name, "Name of the trajectory");
+  command
+      ->add_option("--budget", options->budget,
+                   "Seconds after which no further motion is tried")
+      ->check(Within(1e-3, 1e6));
+  command->callback([options] { Excite(*options); });
+}
+
+}  // namespace mjdiag::app

@@ -1,0 +1,49 @@
+#pragma once
+// How far, fast and hard the axes of a machine go.
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/runtime/simulation.h"
+
+namespace mjdiag {
+
+/// Largest magnitudes of one axis, in SI units of it (m or rad).
+struct AxisLimits {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  double position = kNone;  ///< of the reference and of the reading [m]
+  double velocity = kNone;  ///< of the reference, like those that follow [m/s]
+  double acceleration = kNone;
+  double jerk = kNone;   ///< between two samples
+  double snap = kNone;   ///< held from one sample to the next
+  double force = kNone;  ///< of the actuator, as it is commanded [N or N m]
+};
+
+/// Names and values, in this order.
+std::vector<std::pair<const char*, double>> Named(const AxisLimits& limits);
+
+/// What an axis does, sample by sample: a linear machine does the sum of what it does.
+struct AxisCourse {
+  Eigen::VectorXd position;
+  Eigen::VectorXd velocity;
+  Eigen::VectorXd acceleration;
+  Eigen::VectorXd snap;
+  Eigen::VectorXd reading;
+  Eigen::VectorXd force;
+
+  AxisCourse& AddTimes(double factor, const AxisCourse& other);
+};
+
+/// Of every axis of the setup, in a run of that motion.
+std::vector<AxisCourse> CoursesOf(const Machine& machine, const Excitation& motion,
+                                  const Record& run);
+AxisLimits PeaksOf(const AxisCourse& course, double tick);
+
+/// The largest of peak / limit; above 1: beyond a limit.
+double Utilisation(const AxisLimits& peaks, const AxisLimits& limits);
+
+}  // namespace mjdiag
