@@ -14,9 +14,10 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
 
-import command_help
-
 ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "app/manual"))
+
+import command_help  # noqa: E402
 
 
 def command_lines(text):

@@ -127,6 +127,9 @@ def tex(text):
 
 
 def block(lines):
-    """Lines of one formula, set below each other."""
+    """Lines of one formula, set below each other; a long one, where it has gaps."""
+    lines = [part for line in lines
+             for part in (re.split(r"\s{2,}", line.strip()) if len(line.strip()) > 70
+                          else [line])]
     body = " \\\\\n".join("& " + tex(line.strip()) for line in lines if line.strip())
     return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"

@@ -21,8 +21,10 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-import command_help
-import formula
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "app/manual"))
+
+import command_help  # noqa: E402
+import formula  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -124,10 +126,14 @@ def theory(site, text):
             out.append(line)
         before = line
     flush()
-    # Code that a line break cuts in two is joined first.
-    joined = re.sub(r"`([^`\n]+)\n([^`\n]+)`", lambda m: f"`{m[1]} {m[2]}`\n"
-                    if len(m[1]) + len(m[2]) < 200 else m[0], "\n".join(out))
-    return outside_fences(joined, lambda part: re.sub(r"`([^`\n]+)`", code, part)), count
+    def paragraph(match):
+        return re.sub(r"`([^`]+)`", lambda m: code(re.match(
+            "`([^`]+)`", m[0].replace("\n", " "))), match[0])
+
+    # Paragraph by paragraph: a line break may cut code in two.
+    text = outside_fences("\n".join(out), lambda part: re.sub(
+        r"(?:[^\n]+\n?)+", paragraph, part))
+    return text, count
 
 
 def commands(site, program):
