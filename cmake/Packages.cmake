@@ -1,0 +1,102 @@
+# Debian packages, by `cpack -G DEB` in the build folder; scripts/packages does all of it.
+# An installation has one component a package, of the same name.
+set(MJDIAG_MAINTAINER "Maintainers of mjdiag <maintainers@mjdiag.example>" CACHE STRING
+    "Whom the packages name as their maintainer")
+set(components mjdiag libmjdiag0 libmjdiag-dev mjdiag-data)
+if(TARGET mjdiag_python)
+  list(APPEND components python3-mjdiag)
+endif()
+
+# What every Debian package has to say of itself.
+set(documents ${PROJECT_BINARY_DIR}/packages)
+string(TIMESTAMP mjdiag_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/packages/changelog.in ${documents}/changelog @ONLY)
+install(CODE "execute_process(COMMAND gzip -9nkf ${documents}/changelog
+                              COMMAND_ERROR_IS_FATAL ANY)" ALL_COMPONENTS)
+foreach(component IN LISTS components)
+  install(FILES ${documents}/changelog.gz ${PROJECT_SOURCE_DIR}/cmake/packages/copyright
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${component} COMPONENT ${component}
+          EXCLUDE_FROM_ALL)
+endforeach()
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/cmake/packages/demo
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/mjdiag/examples COMPONENT mjdiag
+        EXCLUDE_FROM_ALL)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME mjdiag)
+set(CPACK_PACKAGE_CONTACT "${MJDIAG_MAINTAINER}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL ${components})
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
+
+# mjdiag_package(<component> SECTION <section> SUMMARY <words> TEXT <words>
+#                [DEPENDS <packages...>] [RECOMMENDS <packages...>] [CONTROL <files...>]
+#                [BINARY | ALL])
+# BINARY: the libraries that it is linked to are found out. ALL: the same on every machine.
+function(mjdiag_package component)
+  cmake_parse_arguments(arg "BINARY;ALL" "SECTION;SUMMARY;TEXT" "DEPENDS;RECOMMENDS;CONTROL"
+                        ${ARGN})
+  string(TOUPPER ${component} id)
+  list(JOIN arg_DEPENDS ", " depends)
+  list(JOIN arg_RECOMMENDS ", " recommends)
+  set(CPACK_DEBIAN_${id}_PACKAGE_NAME ${component} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${id}_PACKAGE_SECTION ${arg_SECTION} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${id}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${id}_PACKAGE_RECOMMENDS "${recommends}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${id}_PACKAGE_CONTROL_EXTRA "${arg_CONTROL}" PARENT_SCOPE)
+  set(CPACK_COMPONENT_${id}_DESCRIPTION "${arg_SUMMARY}\n${arg_TEXT}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${id}_DESCRIPTION "${arg_SUMMARY}\n${arg_TEXT}" PARENT_SCOPE)
+  if(arg_BINARY)
+    set(CPACK_DEBIAN_${id}_PACKAGE_SHLIBDEPS ON PARENT_SCOPE)
+  endif()
+  if(arg_ALL)
+    set(CPACK_DEBIAN_${id}_PACKAGE_ARCHITECTURE all PARENT_SCOPE)
+  endif()
+endfunction()
+
+set(same "(= ${PROJECT_VERSION})")
+set(about "mjdiag finds what has worn in a machine that moves while it runs, and what a MuJoCo model of it gets wrong on measured data.")
+mjdiag_package(mjdiag SECTION science BINARY RECOMMENDS "mjdiag-data ${same}"
+  SUMMARY "The command:"
+  TEXT "${about} This package has the command, its manual pages and its completion.")
+mjdiag_package(mjdiag-data SECTION science ALL
+  SUMMARY "machines for mjdiag to diagnose"
+  TEXT "${about} This package has MuJoCo models and setups of a wire bonder, a motion stage, a voice coil, a servo and an arm, as examples and as a beginning of one's own.")
+mjdiag_package(libmjdiag0 SECTION libs BINARY
+  CONTROL ${PROJECT_SOURCE_DIR}/cmake/packages/libmjdiag0/triggers
+          ${documents}/shlibs
+  SUMMARY "control and diagnosis in any MuJoCo program - library"
+  TEXT "${about} This package has the shared library with its interface in C.")
+file(WRITE ${documents}/shlibs
+     "libmjdiag ${PROJECT_VERSION_MAJOR} libmjdiag0 (>= ${PROJECT_VERSION})\n")
+mjdiag_package(libmjdiag-dev SECTION libdevel
+  DEPENDS "libmjdiag0 ${same}" libmujoco-dev libeigen3-dev
+  # For programs that link the libraries in C++: what Dependencies.cmake asks for.
+  RECOMMENDS libmatio-dev coinor-libclp-dev libtbb-dev libceres-dev libopencv-core-dev
+             libopencv-ml-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
+             libopencv-videoio-dev libosmesa6-dev libhdf5-dev zlib1g-dev
+  SUMMARY "control and diagnosis in any MuJoCo program - development"
+  TEXT "${about} This package has the headers, the libraries in C++ and what CMake needs to find them.")
+if(TARGET mjdiag_python)
+  # Built for one version of the interpreter.
+  set(next ${Python_VERSION_MINOR})
+  get_directory_property(minor DIRECTORY ${PROJECT_SOURCE_DIR}/python DEFINITION Python_VERSION_MINOR)
+  math(EXPR next "${minor} + 1")
+  mjdiag_package(python3-mjdiag SECTION python BINARY
+    DEPENDS "python3 (>= 3.${minor})" "python3 (<< 3.${next})" python3-numpy
+    RECOMMENDS "mjdiag-data ${same}" python3-pandas python3-matplotlib
+    CONTROL ${PROJECT_SOURCE_DIR}/cmake/packages/python3-mjdiag/postinst
+            ${PROJECT_SOURCE_DIR}/cmake/packages/python3-mjdiag/prerm
+    SUMMARY "fault diagnosis and model discovery for machines - Python 3"
+    TEXT "${about} This package has the Python module.")
+endif()
+include(CPack)

@@ -1,0 +1,145 @@
+"""Checks the documentation. Says every fault in a line; status 1 if there is one.
+
+    check.py commands <mjdiag>   every command in README.md and docs/ names a subcommand,
+                                 options and scripts that exist
+    check.py links <folder>      every link of the built site that stays inside leads
+                                 somewhere, anchors included, and nothing is loaded from
+                                 elsewhere
+"""
+
+import re
+import shlex
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "app/manual"))
+
+import command_help  # noqa: E402
+
+
+def command_lines(text):
+    """Commands in blocks of code, indented or fenced, with lines that go on joined."""
+    fenced, joined = None, ""
+    for line in text.splitlines():
+        fence = re.match(r"\s*(`{3,})\s*(\w*)", line)
+        if fence:
+            fenced = None if fenced is not None else fence[2]
+            continue
+        code = line if fenced in ("sh", "bash", "console", "") else (
+            line if fenced is None and line.startswith("    ") else "")
+        joined += code.strip().removesuffix("\\")
+        if code.rstrip().endswith("\\"):
+            continue
+        if joined:
+            yield joined
+        joined = ""
+
+
+def check_commands(program):
+    whole, known = command_help.commands(program)
+    faults, count = [], 0
+    texts = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")),
+             ROOT / "docs/site/index.md", ROOT / "docs/site/gallery.toml"]
+    for path in texts:
+        text = path.read_text(encoding="utf-8")
+        if path.suffix == ".toml":
+            import tomllib
+            lines = [line for example in tomllib.loads(text)["example"]
+                     for line in command_lines("```sh\n" + example["command"] + "\n```")]
+        else:
+            lines = command_lines(text)
+        for line in lines:
+            try:
+                words = shlex.split(line, comments=True)
+            except ValueError:  # no command: prose, a formula, half a program
+                continue
+            for k, word in enumerate(words):
+                where = f"{path.relative_to(ROOT)}: {line[:60]}"
+                if re.fullmatch(r"scripts/[\w-]+", word) and k == 0:
+                    count += 1
+                    if not (ROOT / word).exists():
+                        faults.append(f"{where}: no {word}")
+                if Path(word).name != "mjdiag" or k + 1 >= len(words):
+                    continue
+                if k > 0 and words[k - 1] not in ("&&", "|", ";", "sudo", "time"):
+                    continue
+                name = words[k + 1]
+                if name.startswith("-"):
+                    faults += [f"{where}: no option {name}"] * (name not in whole.names())
+                    continue
+                if not re.fullmatch(r"[a-z]+", name):
+                    continue  # <command>, or prose
+                count += 1
+                if name not in known:
+                    faults.append(f"{where}: no command {name}")
+                    continue
+                for option in words[k + 2:]:
+                    if option in ("&&", "|", ";", "&"):
+                        break
+                    option = option.split("=")[0]
+                    if re.fullmatch(r"--?[a-z][a-z-]*", option) and (
+                            option not in known[name].names()):
+                        faults.append(f"{where}: mjdiag {name} has no {option}")
+    if count < 20:
+        faults.append(f"only {count} commands found: they are not read any more")
+    print(f"{count} commands")
+    return faults
+
+
+class Page(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.loads, self.anchors = [], [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        self.anchors |= {attrs[key] for key in ("id", "name") if attrs.get(key)}
+        if tag == "a" and attrs.get("href"):
+            self.links.append(attrs["href"])
+        if tag in ("img", "script", "source", "video", "iframe") and attrs.get("src"):
+            self.loads.append(attrs["src"])
+        if tag == "link" and attrs.get("href"):
+            self.loads.append(attrs["href"])
+
+
+def check_links(folder):
+    pages = {path: Page(path.read_text(encoding="utf-8", errors="replace"))
+             for path in folder.rglob("*.html")}
+    faults, count = [], 0
+    for path, page in pages.items():
+        where = path.relative_to(folder)
+        for link in page.links + page.loads:
+            if re.match(r"[a-z]+:|//", link):
+                if link in page.loads and not link.startswith("data:"):
+                    faults.append(f"{where}: loads {link}")
+                continue
+            count += 1
+            file, _, anchor = link.partition("#")
+            file = unquote(file.split("?")[0])
+            target = (path.parent / file).resolve() if file else path
+            if not target.exists():
+                faults.append(f"{where}: no {link}")
+            elif anchor and target in pages and unquote(anchor) not in pages[target].anchors:
+                faults.append(f"{where}: no anchor {link}")
+    if count < 100:
+        faults.append(f"only {count} links found in {folder}")
+    print(f"{count} links on {len(pages)} pages")
+    return faults
+
+
+def main():
+    if len(sys.argv) != 3 or sys.argv[1] not in ("commands", "links"):
+        sys.exit(__doc__)
+    path = Path(sys.argv[2]).resolve()
+    faults = check_commands(path) if sys.argv[1] == "commands" else check_links(path)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
