@@ -30,7 +30,8 @@ struct ExciteCommand {
 };
 
 double* LimitNamed(AxisLimits& limits, std::string_view name) {
-  if (name == "position") return &limits.position;
+  if (name == "lowest") return &limits.lowest;
+  if (name == "highest") return &limits.highest;
   if (name == "velocity") return &limits.velocity;
   if (name == "acceleration") return &limits.acceleration;
   if (name == "jerk") return &limits.jerk;
@@ -42,9 +43,10 @@ double* LimitNamed(AxisLimits& limits, std::string_view name) {
 /// "x:velocity=0.3,force=100"
 void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits) {
   const auto fail = [&](const std::string& what) {
-    throw InputError("--limit " + std::string(text), what,
-                     "<axis>:<name>=<number>,... of position, velocity, acceleration, "
-                     "jerk, snap and force");
+    throw InputError(
+        "--limit " + std::string(text), what,
+        "<axis>:<name>=<number>,... of lowest, highest, velocity, acceleration, "
+        "jerk, snap and force");
   };
   const std::size_t colon = text.find(':');
   if (colon == text.npos || colon == 0) fail("no axis");
@@ -59,8 +61,8 @@ void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits
       fail("there is no '" + std::string(item.substr(0, equals)) + "'");
     const auto number = equals < item.size() ? ParseNumber(item.substr(equals + 1))
                                              : std::optional<double>();
-    if (!number || !std::isfinite(*number) || *number <= 0.0) {
-      fail("'" + std::string(item) + "' is no number above 0");
+    if (!number || !std::isfinite(*number)) {
+      fail("'" + std::string(item) + "' is no number");
     }
     *value = *number;
     rest.remove_prefix(std::min(rest.size(), item.size() + 1));
@@ -194,8 +196,8 @@ void AddExcite(CLI::App& app) {
                       "without it");
   command->add_option("--limit", options->limits,
                       "Limits of an axis in the place of what the default motion does: "
-                      "x:velocity=0.3,force=100; also position, acceleration, jerk, "
-                      "snap; may be given more than once");
+                      "x:velocity=0.3,force=100; also lowest, highest (positions), "
+                      "acceleration, jerk, snap; may be given more than once");
   command
       ->add_option("--max-frequency", options->design.highest_frequency,
                    "Highest frequency of a tone [Hz]; 0: a quarter of the control rate")

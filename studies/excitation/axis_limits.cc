@@ -1,6 +1,7 @@
 #include "mjdiag/studies/excitation/axis_limits.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mjdiag {
 namespace {
@@ -12,11 +13,9 @@ double Peak(const Eigen::VectorXd& values) {
 }  // namespace
 
 std::vector<std::pair<const char*, double>> Named(const AxisLimits& limits) {
-  return {{"position", limits.position},
-          {"velocity", limits.velocity},
-          {"acceleration", limits.acceleration},
-          {"jerk", limits.jerk},
-          {"snap", limits.snap},
+  return {{"lowest", limits.lowest},     {"highest", limits.highest},
+          {"velocity", limits.velocity}, {"acceleration", limits.acceleration},
+          {"jerk", limits.jerk},         {"snap", limits.snap},
           {"force", limits.force}};
 }
 
@@ -47,7 +46,8 @@ AxisLimits PeaksOf(const AxisCourse& course, double tick) {
   const Eigen::Index steps = std::max<Eigen::Index>(course.acceleration.size() - 1, 0);
   const Eigen::VectorXd jerk =
       (course.acceleration.tail(steps) - course.acceleration.head(steps)) / tick;
-  return {.position = std::max(Peak(course.position), Peak(course.reading)),
+  return {.lowest = std::min(course.position.minCoeff(), course.reading.minCoeff()),
+          .highest = std::max(course.position.maxCoeff(), course.reading.maxCoeff()),
           .velocity = Peak(course.velocity),
           .acceleration = Peak(course.acceleration),
           .jerk = Peak(jerk),
@@ -56,13 +56,20 @@ AxisLimits PeaksOf(const AxisCourse& course, double tick) {
 }
 
 double Utilisation(const AxisLimits& peaks, const AxisLimits& limits) {
-  const auto values = Named(peaks);
-  const auto bounds = Named(limits);
   double most = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i].second > 0.0)
-      most = std::max(most, values[i].second / bounds[i].second);
+  const auto use = [&](double peak, double limit) {
+    if (peak > 0.0) most = std::max(most, peak / limit);
+  };
+  if (std::isfinite(limits.lowest) && std::isfinite(limits.highest)) {
+    const double middle = 0.5 * (limits.lowest + limits.highest);
+    use(std::max(peaks.highest - middle, middle - peaks.lowest),
+        0.5 * (limits.highest - limits.lowest));
   }
+  use(peaks.velocity, limits.velocity);
+  use(peaks.acceleration, limits.acceleration);
+  use(peaks.jerk, limits.jerk);
+  use(peaks.snap, limits.snap);
+  use(peaks.force, limits.force);
   return most;
 }
 

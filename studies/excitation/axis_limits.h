@@ -11,11 +11,12 @@
 
 namespace mjdiag {
 
-/// Largest magnitudes of one axis, in SI units of it (m or rad).
+/// Where one axis is, and its largest magnitudes, in SI units of it (m or rad).
 struct AxisLimits {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-  double position = kNone;  ///< of the reference and of the reading [m]
+  double lowest = -kNone;  ///< position, of the reference and of the reading [m]
+  double highest = kNone;
   double velocity = kNone;  ///< of the reference, like those that follow [m/s]
   double acceleration = kNone;
   double jerk = kNone;   ///< between two samples
@@ -43,7 +44,8 @@ std::vector<AxisCourse> CoursesOf(const Machine& machine, const Excitation& moti
                                   const Record& run);
 AxisLimits PeaksOf(const AxisCourse& course, double tick);
 
-/// The largest of peak / limit; above 1: beyond a limit.
+/// The largest of peak / limit, of positions from the middle of their range; above 1:
+/// beyond a limit.
 double Utilisation(const AxisLimits& peaks, const AxisLimits& limits);
 
 }  // namespace mjdiag

@@ -6,7 +6,9 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <string_view>
 
+#include "mjdiag/controllers/setpoint.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/studies/excitation/motion_information.h"
@@ -73,6 +75,7 @@ class Designer {
   void FindWanted();
   void FindLimits();
   std::vector<double> Frequencies() const;
+  void GoToTheMiddle(Trajectory& trajectory) const;
   void TryTones();
   void TryTone(ToneChoice& choice) const;
   std::vector<Plan> Plans() const;
@@ -160,10 +163,10 @@ void Designer::FindLimits() {
     if (given == options_.limits.end()) continue;
     AxisLimits& own = design_.limits[i];
     for (const auto member :
-         {&AxisLimits::position, &AxisLimits::velocity, &AxisLimits::acceleration,
-          &AxisLimits::jerk, &AxisLimits::snap, &AxisLimits::force}) {
-      if (given->second.*member < AxisLimits::kNone)
-        own.*member = given->second.*member;
+         {&AxisLimits::lowest, &AxisLimits::highest, &AxisLimits::velocity,
+          &AxisLimits::acceleration, &AxisLimits::jerk, &AxisLimits::snap,
+          &AxisLimits::force}) {
+      if (std::isfinite(given->second.*member)) own.*member = given->second.*member;
     }
   }
 }
@@ -215,10 +218,14 @@ void Designer::TryTone(ToneChoice& choice) const {
   double most = 0.0;
   const std::vector<AxisCourse> courses = CoursesOf(machine_, motion, run);
   for (std::size_t i = 0; i < courses.size(); ++i) {
-    // Of other axes only what it asks of their motors.
     AxisLimits peaks = PeaksOf(courses[i], tick);
-    if (i != choice.axis) peaks = {0.0, 0.0, 0.0, 0.0, 0.0, peaks.force};
-    most = std::max(most, Utilisation(peaks, design_.limits[i]));
+    AxisLimits limits = design_.limits[i];
+    const double half = 0.5 * (limits.highest - limits.lowest);
+    limits.lowest = -half;
+    limits.highest = half;
+    // Of other axes only what it asks of their motors.
+    if (i != choice.axis) peaks = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, peaks.force};
+    most = std::max(most, Utilisation(peaks, limits));
   }
   choice.amplitude = kSmall / most;
   const double whole = (1.0 - 2.0 * kRamp) * default_.duration / tick;
@@ -261,7 +268,8 @@ std::vector<Designer::Plan> Designer::Plans() const {
     moves.duration = default_.duration;
     const Excitation motion = Follow(moves);
     const Record run = LinearRun(motion);
-    const std::vector<double> used = UtilisationOf(CoursesOf(machine_, motion, run));
+    const std::vector<AxisCourse> courses = CoursesOf(machine_, motion, run);
+    const std::vector<double> used = UtilisationOf(courses);
     const double most = *std::ranges::max_element(used);
     const MatrixXd information = information_.Of(run, 0, ticks);
     std::optional<Plan> best;
@@ -269,7 +277,13 @@ std::vector<Designer::Plan> Designer::Plans() const {
       const double share = part / std::max(1.0, most);
       VectorXd budget(axes);
       for (Index i = 0; i < axes; ++i) {
-        budget[i] = std::max(0.0, 1.0 - share * used[static_cast<std::size_t>(i)]);
+        // Where moves rest at an end of the range there is no room for a tone.
+        AxisCourse moved = courses[static_cast<std::size_t>(i)];
+        moved.AddTimes(share - 1.0, courses[static_cast<std::size_t>(i)]);
+        const double share_used =
+            Utilisation(PeaksOf(moved, machine_.rates().tick()),
+                        design_.limits[static_cast<std::size_t>(i)]);
+        budget[i] = share > 0.0 ? std::max(0.0, 1.0 - share_used) : 1.0;
         if (budget[i] < 1e-6) budget[i] = 0.0;
       }
       Plan plan{&trajectory, share,
@@ -284,6 +298,32 @@ std::vector<Designer::Plan> Designer::Plans() const {
   return plans;
 }
 
+/// A motion of tones alone is about the middle of the range, where a gentle move goes
+/// before they are large, and back when they are small again.
+void Designer::GoToTheMiddle(Trajectory& trajectory) const {
+  constexpr double kGentle = 0.5;  // of the limits
+  const std::vector<AxisSetup>& axes = machine_.setup().control.axes;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const AxisLimits& limits = design_.limits[i];
+    const auto own = default_.limits.find(axes[i].name);
+    const double middle = 0.5 * (limits.lowest + limits.highest);
+    if (own == default_.limits.end() || !std::isfinite(middle) ||
+        std::abs(middle) < 0.01 * (limits.highest - limits.lowest)) {
+      continue;
+    }
+    const MoveLimits gentle{kGentle * own->second.velocity,
+                            kGentle * own->second.acceleration,
+                            kGentle * own->second.jerk, kGentle * own->second.snap};
+    trajectory.limits[axes[i].name] = gentle;
+    const double tick = machine_.rates().tick();
+    const double time =
+        static_cast<double>(Setpoint(middle, gentle, tick).ticks() + 1) * tick;
+    trajectory.moves.push_back({0.0, {{axes[i].name, middle}}});
+    trajectory.moves.push_back(
+        {std::max(0.0, trajectory.duration - time), {{axes[i].name, -middle}}});
+  }
+}
+
 /// Phases of Schroeder: the tones of an axis do not meet in one peak.
 Trajectory Designer::TrajectoryOf(const Plan& plan) const {
   Trajectory trajectory = *plan.base;
@@ -291,7 +331,10 @@ Trajectory Designer::TrajectoryOf(const Plan& plan) const {
   trajectory = Shrunk(std::move(trajectory), plan.moves);
   trajectory.name = options_.name;
   trajectory.duration = default_.duration;
-  if (trajectory.moves.empty()) trajectory.period = 0.0;
+  if (trajectory.moves.empty()) {
+    trajectory.period = 0.0;
+    GoToTheMiddle(trajectory);
+  }
   trajectory.ramp = kRamp * default_.duration;
   const std::vector<AxisSetup>& axes = machine_.setup().control.axes;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
@@ -352,11 +395,16 @@ void Designer::MeetLimits(Trajectory& trajectory) const {
       for (std::size_t i = 0; i < axes.size(); ++i) {
         if (i != axis) others.AddTimes(factors[static_cast<Index>(i)], tones[i][axis]);
       }
+      const auto use = [&](const AxisCourse& course) {
+        return Utilisation(PeaksOf(course, machine_.rates().tick()),
+                           design_.limits[axis]);
+      };
+      // Where it begins may be the end of its range.
+      const double allowed = std::max(kMargin, use(others));
       const auto fits = [&](double factor) {
         AxisCourse all = others;
         all.AddTimes(factor, tones[axis][axis]);
-        return Utilisation(PeaksOf(all, machine_.rates().tick()),
-                           design_.limits[axis]) <= kMargin;
+        return use(all) <= allowed;
       };
       double low = 0.0;
       double high = kMost;
@@ -521,7 +569,10 @@ MotionDesign DesignMotion(const Machine& machine, const MotionDesignOptions& opt
   }
   for (const auto& [axis, limits] : options.limits) {
     for (const auto& [name, value] : Named(limits)) {
-      if (value > 0.0) continue;
+      if (value > 0.0 || std::string_view(name) == "lowest" ||
+          std::string_view(name) == "highest") {
+        continue;
+      }
       throw InputError("limits of '" + axis + "'",
                        std::string(name) + " is not above 0", "a number > 0");
     }

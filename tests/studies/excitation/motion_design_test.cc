@@ -29,8 +29,10 @@ class ExcitedBonder : public ::testing::Test {
   const Machine bonder_ = test::Bonder({"trajectories.multi.duration=0.5"});
 };
 
-TEST_F(ExcitedBonder, TellsItsGuideThreeTimesBetterThanTheDefaultMotion) {
-  EXPECT_GT(Design().Gain(), 3.0);
+// In a fifth of the time of the default motion, of which its ramps are a part; in all of it
+// more than four times.
+TEST_F(ExcitedBonder, TellsItsGuideTwiceAsWellAsTheDefaultMotion) {
+  EXPECT_GT(Design().Gain(), 2.0);
 }
 
 // By another way, that of the study of the bounds.
