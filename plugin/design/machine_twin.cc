@@ -17,9 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Ticks of a block at 8 kHz; what varies faster than it is seen by its mean.
-constexpr Index kBlock = 8;
-
 /// Noise and the steps of a coarse reading.
 VectorXd ReadingNoise(const Channels& channels) {
   VectorXd sd(static_cast<Index>(channels.sensors.size()));
@@ -103,10 +100,10 @@ MachineTwin MakeTwin(const Machine& machine, bool linear, UncertaintyOptions opt
   if (!linear) uncertain.start = RootOf(gains.back().P);
   if (linear) {
     twin.twin = std::make_unique<LinearTwin>(MakeUncertainModel(machine, uncertain),
-                                             std::move(gains), kBlock);
+                                             std::move(gains), kTwinBlock);
   } else {
     twin.twin =
-        std::make_unique<PlantTwin>(machine, uncertain, std::move(gains), kBlock);
+        std::make_unique<PlantTwin>(machine, uncertain, std::move(gains), kTwinBlock);
   }
   if (calibration && !options.doubt) {
     const KnownTogether known = AsCalibrated(machine, uncertain);

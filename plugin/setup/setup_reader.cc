@@ -292,7 +292,7 @@ Trajectory ReadTrajectory(const TomlTable& table, const Setup& setup) {
     }
   }
   if (trajectory.moves.empty() && trajectory.tones.empty()) {
-    table.Fail("moves", "is empty", "a move or a tone at least");
+    table.Fail("moves", "is empty", "a move at least");
   }
   return trajectory;
 }

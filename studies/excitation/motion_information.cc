@@ -1,10 +1,12 @@
 #include "mjdiag/studies/excitation/motion_information.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "mjdiag/diagnosis/residuals/cramer_rao.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/error.h"
 
@@ -29,6 +31,18 @@ MatrixXd Waveform(const Multisine& source, double frequency, double phase, doubl
           Eigen::ArrayXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) +
       phase;
   return source.amplitude * angle.sin().matrix().transpose();
+}
+
+/// Means over the blocks of a twin, times the root of their ticks: the noise of a mean is
+/// that of a tick over it.
+MatrixXd OfBlocks(const MatrixXd& sensitivity) {
+  const Index blocks = sensitivity.cols() / kTwinBlock;
+  MatrixXd means(sensitivity.rows(), blocks);
+  for (Index i = 0; i < blocks; ++i) {
+    means.col(i) = sensitivity.middleCols(i * kTwinBlock, kTwinBlock).rowwise().sum() /
+                   std::sqrt(static_cast<double>(kTwinBlock));
+  }
+  return means;
 }
 
 }  // namespace
@@ -68,11 +82,11 @@ std::vector<MatrixXd> MotionInformation::Sensitivities(const Record& run) const 
 MatrixXd MotionInformation::Of(const Record& run, Index from, Index count) const {
   const std::vector<MatrixXd> sensitivities = Sensitivities(run);
   const auto unknowns = static_cast<Index>(sensitivities.size());
-  MatrixXd stacked(noise_.size() * count, unknowns);
+  MatrixXd stacked(noise_.size() * (count / kTwinBlock), unknowns);
   for (Index i = 0; i < unknowns; ++i) {
     const MatrixXd scaled =
         noise_.cwiseInverse().asDiagonal() *
-        sensitivities[static_cast<std::size_t>(i)].middleCols(from, count);
+        OfBlocks(sensitivities[static_cast<std::size_t>(i)].middleCols(from, count));
     stacked.col(i) = scaled.reshaped();
   }
   return stacked.transpose() * stacked;
@@ -90,6 +104,7 @@ VectorXd MotionInformation::SdOf(const Record& run) const {
       }
     }
   }
+  for (MatrixXd& sensitivity : sensitivities) sensitivity = OfBlocks(sensitivity);
   return CramerRaoBound(sensitivities, noise_).together.head(unknowns);
 }
 
