@@ -111,12 +111,7 @@ nlohmann::json CalibrationDocument(const CalibrateCommand& command,
 }
 
 void RunCalibration(CalibrateCommand& command) {
-  if (!command.machine.overrides.empty() || !command.machine.faults.empty() ||
-      !command.machine.effects.empty()) {
-    throw InputError("--set, --fault, --effect",
-                     "the calibrated setup would not have them",
-                     "the setup and its plant as they are");
-  }
+  RequireAsItIs(command.machine, "the calibrated setup");
   const fs::path setup_file = fs::absolute(FindSetupFile(command.machine.setup));
   const fs::path folder = command.output.folder;
   Setup setup = ReadSetup(command.machine.setup);

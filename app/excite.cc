@@ -1,5 +1,6 @@
 // mjdiag excite: a motion within the limits of the axes that tells most.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -29,17 +30,6 @@ struct ExciteCommand {
   MotionDesignOptions design;
 };
 
-double* LimitNamed(AxisLimits& limits, std::string_view name) {
-  if (name == "lowest") return &limits.lowest;
-  if (name == "highest") return &limits.highest;
-  if (name == "velocity") return &limits.velocity;
-  if (name == "acceleration") return &limits.acceleration;
-  if (name == "jerk") return &limits.jerk;
-  if (name == "snap") return &limits.snap;
-  if (name == "force") return &limits.force;
-  return nullptr;
-}
-
 /// "x:velocity=0.3,force=100"
 void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits) {
   const auto fail = [&](const std::string& what) {
@@ -51,27 +41,20 @@ void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits
   const std::size_t colon = text.find(':');
   if (colon == text.npos || colon == 0) fail("no axis");
   AxisLimits& own = limits[std::string(text.substr(0, colon))];
-  std::string_view rest = text.substr(colon + 1);
-  if (rest.empty()) fail("no limit");
-  while (!rest.empty()) {
-    const std::string_view item = rest.substr(0, rest.find(','));
-    const std::size_t equals = std::min(item.find('='), item.size());
-    double* value = LimitNamed(own, item.substr(0, equals));
-    if (value == nullptr)
-      fail("there is no '" + std::string(item.substr(0, equals)) + "'");
-    const auto number = equals < item.size() ? ParseNumber(item.substr(equals + 1))
-                                             : std::optional<double>();
-    if (!number || !std::isfinite(*number)) {
-      fail("'" + std::string(item) + "' is no number");
-    }
-    *value = *number;
-    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
+  const auto given = ParseAssignments(text.substr(colon + 1), fail);
+  if (given.empty()) fail("no limit");
+  for (const auto& [name, number] : given) {
+    const auto limit = std::ranges::find(
+        kAxisLimits, name, [](const auto& one) { return std::string(one.first); });
+    if (limit == kAxisLimits.end()) fail("there is no '" + name + "'");
+    if (!std::isfinite(number)) fail("'" + name + "' is not finite");
+    own.*(limit->second) = number;
   }
 }
 
 nlohmann::json LimitsJson(const AxisLimits& limits) {
   nlohmann::json document;
-  for (const auto& [name, value] : Named(limits)) document[name] = value;
+  for (const auto& [name, limit] : kAxisLimits) document[name] = limits.*limit;
   return document;
 }
 
@@ -135,12 +118,7 @@ std::string ExcitationText(const MotionDesign& design) {
 }
 
 void Excite(ExciteCommand& command) {
-  if (!command.machine.overrides.empty() || !command.machine.faults.empty() ||
-      !command.machine.effects.empty()) {
-    throw InputError("--set, --fault, --effect",
-                     "the setup that is written would not have them",
-                     "the setup and its plant as they are");
-  }
+  RequireAsItIs(command.machine, "the setup that is written");
   for (const std::string& text : command.limits)
     ReadLimits(text, command.design.limits);
   const Machine machine = LoadSubject(command.machine).nominal;

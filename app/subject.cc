@@ -126,6 +126,14 @@ void AddMotionOptions(CLI::App& command, MotionOptions& options) {
                    "Run the linearised plant instead of the nonlinear one");
 }
 
+void RequireAsItIs(const MachineOptions& options, const std::string& written) {
+  if (options.overrides.empty() && options.faults.empty() && options.effects.empty()) {
+    return;
+  }
+  throw InputError("--set, --fault, --effect", written + " would not have them",
+                   "the setup and its plant as they are");
+}
+
 Subject LoadSubject(const MachineOptions& options) {
   Setup setup = ReadSetup(options.setup, options.overrides);
   if (options.no_friction) setup.physics.static_friction = false;

@@ -49,6 +49,10 @@ CLI::Validator Within(double least, double most);
 void AddMachineOptions(CLI::App& command, MachineOptions& options);
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 
+/// For commands that write a setup from the one that is given. InputError where options
+/// change that. @param written  what they would not be in, "the calibrated setup"
+void RequireAsItIs(const MachineOptions& options, const std::string& written);
+
 /// InputError on a fault or effect that the machine does not have.
 Subject LoadSubject(const MachineOptions& options);
 

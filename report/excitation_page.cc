@@ -26,12 +26,10 @@ Table Limits(const Machine& machine, const MotionDesign& design) {
   Table table{{{"axis", false}, {"", false}, {"limit", true}, {"this motion", true}},
               {}};
   for (std::size_t i = 0; i < design.limits.size(); ++i) {
-    const auto limits = Named(design.limits[i]);
-    const auto peaks = Named(design.peaks[i]);
-    for (std::size_t j = 0; j < limits.size(); ++j) {
-      table.rows.push_back({machine.setup().control.axes[i].name, limits[j].first,
-                            FormatNumber(limits[j].second, 4),
-                            FormatNumber(peaks[j].second, 4)});
+    for (const auto& [name, limit] : kAxisLimits) {
+      table.rows.push_back({machine.setup().control.axes[i].name, name,
+                            FormatNumber(design.limits[i].*limit, 4),
+                            FormatNumber(design.peaks[i].*limit, 4)});
     }
   }
   return table;

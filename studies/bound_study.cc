@@ -79,11 +79,8 @@ class Responses {
 
  private:
   MatrixXd Tone(const Multisine& source, double frequency, Wave wave) const {
-    const auto last = static_cast<double>(inputs_.cols() - 1);
-    const Eigen::ArrayXd angle = 2.0 * std::numbers::pi * frequency * tick_ *
-                                 Eigen::ArrayXd::LinSpaced(inputs_.cols(), 0.0, last);
     const double lead = wave == Wave::kSine ? 0.0 : 0.5 * std::numbers::pi;
-    return source.amplitude * (angle + lead).sin().matrix().transpose();
+    return ToneOf(source, frequency, lead, tick_, inputs_.cols());
   }
 
   FaultFamily family_;

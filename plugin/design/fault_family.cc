@@ -1,6 +1,7 @@
 #include "mjdiag/plugin/design/fault_family.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "mjdiag/signals/error.h"
 
@@ -113,6 +114,14 @@ std::vector<PerturbedModels> FaultFamily::PerturbedAbout(
                          model_at(minus), model_at(plus)});
   }
   return perturbed;
+}
+
+Eigen::MatrixXd ToneOf(const Multisine& source, double frequency, double phase,
+                       double tick, Eigen::Index samples) {
+  const auto last = static_cast<double>(samples - 1);
+  const Eigen::ArrayXd angle = 2.0 * std::numbers::pi * frequency * tick *
+                               Eigen::ArrayXd::LinSpaced(samples, 0.0, last);
+  return source.amplitude * (angle + phase).sin().matrix().transpose();
 }
 
 FaultFamily MakeFaultFamily(const Machine& machine) {

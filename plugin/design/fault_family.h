@@ -36,6 +36,11 @@ struct FaultFamily {
   std::vector<PerturbedModels> PerturbedAbout(const Eigen::VectorXd& values) const;
 };
 
+/// A sin(2 pi f t + phase) on the commands, nu x samples: one tone of a disturbance of
+/// magnitude 1. @param frequency  f [Hz]  @param tick  of samples [s]
+Eigen::MatrixXd ToneOf(const Multisine& source, double frequency, double phase,
+                       double tick, Eigen::Index samples);
+
 /// InputError if the setup gives a magnitude for a parameter that the plant does not
 /// declare.
 FaultFamily MakeFaultFamily(const Machine& machine);

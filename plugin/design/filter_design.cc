@@ -269,10 +269,14 @@ MatrixXd Signals(const DiagnosisDesign& design, const Record& record) {
 }
 
 Record LinearRun(const Machine& machine) {
+  return LinearRun(machine, DefaultExcitation(machine.setup()));
+}
+
+Record LinearRun(const Machine& machine, const Excitation& motion) {
   RunOptions options;
   options.noise_scale = 0.0;
   options.linear_part = true;
-  return SimulateLinear(machine, DefaultExcitation(machine.setup()), options);
+  return SimulateLinear(machine, motion, options);
 }
 
 DiagnosisDesign DesignFilters(const Machine& machine,

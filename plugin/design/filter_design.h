@@ -24,6 +24,8 @@ Eigen::MatrixXd Signals(const DiagnosisDesign& design, const Record& record);
 /// A healthy run of the plant's linear part without noise: the default trajectory, or
 /// random inputs where the setup has no controllers.
 Record LinearRun(const Machine& machine);
+/// The same with another motion.
+Record LinearRun(const Machine& machine, const Excitation& motion);
 
 /// Of which order the residuals are, and how many there are.
 struct ResidualSettings {

@@ -25,12 +25,6 @@ constexpr std::string_view kPrefix = "effect.";
                    "<effect>@<site>:<name>=<value>,...");
 }
 
-double ParseValue(std::string_view text, std::string_view value) {
-  const auto number = ParseNumber(value);
-  if (!number) FailToParse(text, "'" + std::string(value) + "' is not a number");
-  return *number;
-}
-
 std::string Names(const std::vector<EffectParameter>& parameters) {
   std::string names;
   for (const EffectParameter& parameter : parameters) {
@@ -125,20 +119,10 @@ PlacedEffect ParseEffect(std::string_view text) {
   const std::size_t colon = text.find(':', at);
   const std::string_view site =
       text.substr(at + 1, colon == text.npos ? text.npos : colon - at - 1);
-  std::string_view rest = colon == text.npos ? "" : text.substr(colon + 1);
-  std::map<std::string, double> values;
-  while (!rest.empty()) {
-    const std::string_view item = rest.substr(0, rest.find(','));
-    const std::size_t equals = item.find('=');
-    if (equals == item.npos)
-      FailToParse(text, "'" + std::string(item) + "' has no value");
-    const std::string name(item.substr(0, equals));
-    if (!values.emplace(name, ParseValue(text, item.substr(equals + 1))).second) {
-      FailToParse(text, "'" + name + "' is given twice");
-    }
-    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
-  }
-  return Place(text.substr(0, at), std::string(site), values);
+  const auto values =
+      ParseAssignments(colon == text.npos ? "" : text.substr(colon + 1),
+                       [&](const std::string& what) { FailToParse(text, what); });
+  return Place(text.substr(0, at), std::string(site), {values.begin(), values.end()});
 }
 
 std::string FormatEffect(const PlacedEffect& effect) {

@@ -2,17 +2,12 @@
 #include <optional>
 
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/plugin/setup/declared_names.h"
 #include "mjdiag/plugin/setup/measured_channel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
-
-std::vector<std::string> AxisNames(const Setup& setup) {
-  std::vector<std::string> names;
-  for (const AxisSetup& axis : setup.control.axes) names.push_back(axis.name);
-  return names;
-}
 
 AxisReference MeasuredReference(const Record& measured, const std::string& axis,
                                 const std::string& unit) {
@@ -47,7 +42,10 @@ void CheckSampleTime(const Setup& setup, const Record& measured) {
 }  // namespace
 
 Excitation FollowTrajectory(const Setup& setup, const Trajectory& trajectory) {
-  return {SampleTrajectory(trajectory, AxisNames(setup), setup.rates.tick()), {}, {}};
+  return {SampleTrajectory(trajectory, NamesOf(setup.control.axes, &AxisSetup::name),
+                           setup.rates.tick()),
+          {},
+          {}};
 }
 
 Excitation DefaultMotion(const Setup& setup) {

@@ -12,13 +12,6 @@ double Peak(const Eigen::VectorXd& values) {
 
 }  // namespace
 
-std::vector<std::pair<const char*, double>> Named(const AxisLimits& limits) {
-  return {{"lowest", limits.lowest},     {"highest", limits.highest},
-          {"velocity", limits.velocity}, {"acceleration", limits.acceleration},
-          {"jerk", limits.jerk},         {"snap", limits.snap},
-          {"force", limits.force}};
-}
-
 AxisCourse& AxisCourse::AddTimes(double factor, const AxisCourse& other) {
   position += factor * other.position;
   velocity += factor * other.velocity;
@@ -71,6 +64,15 @@ double Utilisation(const AxisLimits& peaks, const AxisLimits& limits) {
   use(peaks.snap, limits.snap);
   use(peaks.force, limits.force);
   return most;
+}
+
+std::vector<double> Utilisations(const std::vector<AxisCourse>& courses,
+                                 const std::vector<AxisLimits>& limits, double tick) {
+  std::vector<double> used;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    used.push_back(Utilisation(PeaksOf(courses[i], tick), limits[i]));
+  }
+  return used;
 }
 
 }  // namespace mjdiag

@@ -1,8 +1,8 @@
 #pragma once
 // How far, fast and hard the axes of a machine go.
 
+#include <array>
 #include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,8 +24,15 @@ struct AxisLimits {
   double force = kNone;  ///< of the actuator, as it is commanded [N or N m]
 };
 
-/// Names and values, in this order.
-std::vector<std::pair<const char*, double>> Named(const AxisLimits& limits);
+/// All of them, by name.
+inline constexpr std::array<std::pair<const char*, double AxisLimits::*>, 7>
+    kAxisLimits{{{"lowest", &AxisLimits::lowest},
+                 {"highest", &AxisLimits::highest},
+                 {"velocity", &AxisLimits::velocity},
+                 {"acceleration", &AxisLimits::acceleration},
+                 {"jerk", &AxisLimits::jerk},
+                 {"snap", &AxisLimits::snap},
+                 {"force", &AxisLimits::force}}};
 
 /// What an axis does, sample by sample: a linear machine does the sum of what it does.
 struct AxisCourse {
@@ -47,5 +54,9 @@ AxisLimits PeaksOf(const AxisCourse& course, double tick);
 /// The largest of peak / limit, of positions from the middle of their range; above 1:
 /// beyond a limit.
 double Utilisation(const AxisLimits& peaks, const AxisLimits& limits);
+
+/// That of every axis.
+std::vector<double> Utilisations(const std::vector<AxisCourse>& courses,
+                                 const std::vector<AxisLimits>& limits, double tick);
 
 }  // namespace mjdiag

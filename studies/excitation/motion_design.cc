@@ -6,13 +6,15 @@
 #include <numbers>
 #include <optional>
 #include <set>
-#include <string_view>
+#include <utility>
 
 #include "mjdiag/controllers/setpoint.h"
-#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/setup/declared_names.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/studies/excitation/motion_information.h"
-#include "mjdiag/studies/excitation/tone_shares.h"
+#include "mjdiag/studies/excitation/tone_trials.h"
+#include "mjdiag/studies/excitation/tones_within_limits.h"
 
 namespace mjdiag {
 namespace {
@@ -21,28 +23,24 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRamp = 0.05;  // of the duration
-
-std::vector<std::string> AxisNames(const Setup& setup) {
-  std::vector<std::string> names;
-  for (const AxisSetup& axis : setup.control.axes) names.push_back(axis.name);
-  return names;
+MoveLimits Times(double factor, const MoveLimits& limits) {
+  return {factor * limits.velocity, factor * limits.acceleration, factor * limits.jerk,
+          factor * limits.snap};
 }
 
-/// The moves of a trajectory, that many times as far: the same course times that, for the
-/// phases of a move depend on how its distance compares with its limits.
-Trajectory Shrunk(Trajectory trajectory, double share) {
-  if (share == 0.0) trajectory.moves.clear();
+/// The same course that many times as far: the phases of a move depend on how its distance
+/// compares with its limits.
+Trajectory Times(double factor, Trajectory trajectory) {
   for (Move& move : trajectory.moves) {
-    for (auto& [axis, by] : move.by) by *= share;
+    for (auto& [axis, by] : move.by) by *= factor;
   }
-  for (auto& [axis, limits] : trajectory.limits) {
-    limits.velocity *= share;
-    limits.acceleration *= share;
-    limits.jerk *= share;
-    limits.snap *= share;
-  }
-  if (trajectory.moves.empty()) trajectory.limits.clear();
+  for (auto& [axis, limits] : trajectory.limits) limits = Times(factor, limits);
+  for (ReferenceTone& tone : trajectory.tones) tone.amplitude *= factor;
+  return trajectory;
+}
+
+Trajectory WithoutTones(Trajectory trajectory) {
+  trajectory.tones.clear();
   return trajectory;
 }
 
@@ -52,6 +50,12 @@ std::ptrdiff_t OnItsAxis(const Trajectory& trajectory, std::size_t k) {
                             &ReferenceTone::axis);
 }
 
+Record QuietRun(const Machine& machine, const Excitation& motion) {
+  RunOptions quiet;
+  quiet.noise_scale = 0.0;
+  return Simulate(machine, motion, quiet);
+}
+
 class Designer {
  public:
   Designer(const Machine& machine, const MotionDesignOptions& options)
@@ -59,46 +63,40 @@ class Designer {
         options_(options),
         default_(
             machine.setup().trajectories.Find(machine.setup().trajectories.fallback)),
-        information_(machine, NumbersWanted()) {}
+        motion_(Follow(default_)),
+        run_(LinearRun(machine, motion_)),
+        information_(machine, NumbersWanted(), run_.samples()) {}
 
   MotionDesign Run();
 
  private:
-  /// Moves of a trajectory, and the tones beside them.
+  /// The moves of a trajectory a share as far, none without one, and tones beside them.
   struct Plan {
-    const Trajectory* base = nullptr;
-    double moves = 0.0;
+    const Trajectory* moves_of = nullptr;
+    double share = 0.0;
     ToneShares tones;
   };
 
   std::vector<std::string> NumbersWanted() const;
   void FindWanted();
   void FindLimits();
-  std::vector<double> Frequencies() const;
-  void GoToTheMiddle(Trajectory& trajectory) const;
-  void TryTones();
-  void TryTone(ToneChoice& choice) const;
+  void FindTones();
+  Plan TonesAlone(const MatrixXd& little) const;
+  Plan TonesBeside(const Trajectory& trajectory, const MatrixXd& little) const;
   std::vector<Plan> Plans() const;
-  Trajectory TrajectoryOf(const Plan& plan) const;
-  void MeetLimits(Trajectory& trajectory) const;
+  Trajectory MovesOf(const Plan& plan) const;
+  std::vector<ReferenceTone> TonesOf(const Plan& plan) const;
   double LargestSd(const Trajectory& trajectory) const;
-  void Refine(Trajectory& trajectory, double& best);
-  void MeetLimitsNonlinear(Trajectory& trajectory);
-  std::vector<double> UtilisationOf(const std::vector<AxisCourse>& courses) const;
+  void Refine(const TonesWithinLimits& within, Trajectory& trajectory, double& best);
+  void KeepToLimits();
 
   Excitation Follow(const Trajectory& trajectory) const {
     return FollowTrajectory(machine_.setup(), trajectory);
   }
-  Record LinearRun(const Excitation& motion) const {
-    RunOptions quiet;
-    quiet.noise_scale = 0.0;
-    quiet.linear_part = true;
-    return SimulateLinear(machine_, motion, quiet);
-  }
-  Record Run(const Excitation& motion) const {
-    RunOptions quiet;
-    quiet.noise_scale = 0.0;
-    return Simulate(machine_, motion, quiet);
+  double tick() const { return machine_.rates().tick(); }
+  double HighestFrequency() const {
+    return options_.highest_frequency > 0.0 ? options_.highest_frequency
+                                            : 0.25 * machine_.rates().control;
   }
   bool IsStopped() const { return options_.stop && options_.stop(); }
   void Report(double fraction) const {
@@ -108,6 +106,8 @@ class Designer {
   const Machine& machine_;
   const MotionDesignOptions& options_;
   const Trajectory& default_;
+  Excitation motion_;  // the default one,
+  Record run_;         // and the linear machine in it
   MotionInformation information_;
   std::vector<Index> wanted_;
   std::vector<ToneChoice> choices_;
@@ -147,161 +147,97 @@ void Designer::FindWanted() {
 
 /// What the default motion does, or what is given in its place.
 void Designer::FindLimits() {
-  const std::vector<std::string> axes = AxisNames(machine_.setup());
+  const std::vector<std::string> axes =
+      NamesOf(machine_.setup().control.axes, &AxisSetup::name);
   for (const auto& [name, limits] : options_.limits) {
     if (std::ranges::find(axes, name) == axes.end()) {
       throw InputError("limits", "there is no axis '" + name + "'",
                        "an axis of the setup");
     }
   }
-  for (const AxisCourse& course :
-       CoursesOf(machine_, Follow(default_), design_.run_before)) {
-    design_.limits.push_back(PeaksOf(course, machine_.rates().tick()));
+  for (const AxisCourse& course : CoursesOf(machine_, motion_, design_.run_before)) {
+    design_.limits.push_back(PeaksOf(course, tick()));
   }
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto given = options_.limits.find(axes[i]);
     if (given == options_.limits.end()) continue;
-    AxisLimits& own = design_.limits[i];
-    for (const auto member :
-         {&AxisLimits::lowest, &AxisLimits::highest, &AxisLimits::velocity,
-          &AxisLimits::acceleration, &AxisLimits::jerk, &AxisLimits::snap,
-          &AxisLimits::force}) {
-      if (std::isfinite(given->second.*member)) own.*member = given->second.*member;
+    for (const auto& [name, member] : kAxisLimits) {
+      const double limit = given->second.*member;
+      if (std::isfinite(limit)) design_.limits[i].*member = limit;
     }
   }
 }
 
-/// Evenly in their logarithms, and about the resonances of the plant, where a spring
-/// shows most.
-std::vector<double> Designer::Frequencies() const {
-  constexpr int kCount = 36;
-  constexpr double kPeriods = 4.0;  // at least, between the ramps
-  constexpr double kWeaklyDamped = 0.3;
-  const double lowest = kPeriods / default_.duration;
-  const double highest = options_.highest_frequency > 0.0
-                             ? options_.highest_frequency
-                             : 0.25 * machine_.rates().control;
-  std::set<double> frequencies;
-  for (int i = 0; i < kCount && lowest < highest; ++i) {
-    frequencies.insert(lowest * std::pow(highest / lowest, i / (kCount - 1.0)));
-  }
-  for (const Mode& mode : Modes(machine_.linear())) {
-    if (!(mode.damping_ratio < kWeaklyDamped)) continue;
-    for (const double widths : {-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0}) {
-      const double frequency = mode.frequency * (1.0 + widths * mode.damping_ratio);
-      if (frequency > lowest && frequency <= highest) frequencies.insert(frequency);
-    }
-  }
-  return {frequencies.begin(), frequencies.end()};
+void Designer::FindTones() {
+  choices_ =
+      TryTones(machine_, information_, design_.limits,
+               {.duration = default_.duration,
+                .highest_frequency = HighestFrequency(),
+                .stop = options_.stop,
+                .progress = [this](double fraction) { Report(0.1 + 0.6 * fraction); }});
 }
 
-/// Amplitude and information at the limits of its axis, from a run that is long enough to
-/// settle.
-void Designer::TryTone(ToneChoice& choice) const {
-  constexpr double kPeriods = 12.0;
-  constexpr double kTicks = 2048.0;
-  const double tick = machine_.rates().tick();
-  const AxisSetup& axis = machine_.setup().control.axes[choice.axis];
-  Trajectory trial;
-  trial.name = "tone";
-  trial.duration =
-      std::min(default_.duration, std::max(kPeriods / choice.frequency, kTicks * tick));
-  trial.ramp = 0.25 * trial.duration;
-  // Small, and then as large as it may be: all is linear.
-  constexpr double kSmall = 1e-6;
-  trial.tones = {{axis.name, choice.frequency, kSmall, 0.0}};
-  const Excitation motion = Follow(trial);
-  const Record run = LinearRun(motion);
-  const Index samples = run.samples();
-  const Index from = samples / 4;
-  const Index count = samples / 2;
-  double most = 0.0;
+Designer::Plan Designer::TonesAlone(const MatrixXd& little) const {
+  const auto axes = static_cast<Index>(design_.limits.size());
+  return {nullptr, 0.0,
+          ShareTones(choices_, little, VectorXd::Ones(axes), wanted_, options_.stop)};
+}
+
+/// The best of several shares. Where moves rest at an end of the range there is no room for
+/// a tone.
+Designer::Plan Designer::TonesBeside(const Trajectory& trajectory,
+                                     const MatrixXd& little) const {
+  constexpr double kNoRoom = 1e-6;
+  Trajectory moves = WithoutTones(trajectory);
+  moves.duration = default_.duration;
+  const Excitation motion = Follow(moves);
+  const Record run = LinearRun(machine_, motion);
   const std::vector<AxisCourse> courses = CoursesOf(machine_, motion, run);
-  for (std::size_t i = 0; i < courses.size(); ++i) {
-    AxisLimits peaks = PeaksOf(courses[i], tick);
-    AxisLimits limits = design_.limits[i];
-    const double half = 0.5 * (limits.highest - limits.lowest);
-    limits.lowest = -half;
-    limits.highest = half;
-    // Of other axes only what it asks of their motors.
-    if (i != choice.axis) peaks = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, peaks.force};
-    most = std::max(most, Utilisation(peaks, limits));
-  }
-  choice.amplitude = kSmall / most;
-  const double whole = (1.0 - 2.0 * kRamp) * default_.duration / tick;
-  choice.information = information_.Of(run, from, count) *
-                       (whole / static_cast<double>(count) / (most * most));
-}
-
-void Designer::TryTones() {
-  const std::vector<double> frequencies = Frequencies();
-  for (std::size_t axis = 0; axis < machine_.setup().control.axes.size(); ++axis) {
-    for (const double frequency : frequencies)
-      choices_.push_back({axis, frequency, 0.0, {}});
-  }
-  ParallelFor(
-      static_cast<int>(choices_.size()),
-      [this](int i) {
-        if (!IsStopped()) TryTone(choices_[static_cast<std::size_t>(i)]);
-      },
-      [this](double fraction) { Report(0.1 + 0.6 * fraction); });
-  // What was stopped before it was tried tells nothing.
-  std::erase_if(choices_, [](const ToneChoice& choice) {
-    return choice.information.size() == 0 || !choice.information.allFinite();
-  });
-}
-
-/// The moves of every trajectory of the setup, or none, in several sizes: the best of each,
-/// those that promise most first.
-std::vector<Designer::Plan> Designer::Plans() const {
-  constexpr double kLeast =
-      1e-9;  // of the default motion's information: keeps it regular
-  const auto axes = static_cast<Index>(machine_.setup().control.axes.size());
-  const Index ticks = design_.run_before.samples();
-  const MatrixXd given = information_.Of(LinearRun(Follow(default_)), 0, ticks);
-  std::vector<Plan> plans;
-  for (const Trajectory& trajectory : machine_.setup().trajectories.all) {
-    if (IsStopped() && !plans.empty()) break;
-    if (trajectory.moves.empty()) continue;
-    Trajectory moves = trajectory;
-    moves.tones.clear();
-    moves.duration = default_.duration;
-    const Excitation motion = Follow(moves);
-    const Record run = LinearRun(motion);
-    const std::vector<AxisCourse> courses = CoursesOf(machine_, motion, run);
-    const std::vector<double> used = UtilisationOf(courses);
-    const double most = *std::ranges::max_element(used);
-    const MatrixXd information = information_.Of(run, 0, ticks);
-    std::optional<Plan> best;
-    for (const double part : {0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
-      const double share = part / std::max(1.0, most);
-      VectorXd budget(axes);
-      for (Index i = 0; i < axes; ++i) {
-        // Where moves rest at an end of the range there is no room for a tone.
-        AxisCourse moved = courses[static_cast<std::size_t>(i)];
-        moved.AddTimes(share - 1.0, courses[static_cast<std::size_t>(i)]);
-        const double share_used =
-            Utilisation(PeaksOf(moved, machine_.rates().tick()),
-                        design_.limits[static_cast<std::size_t>(i)]);
-        budget[i] = share > 0.0 ? std::max(0.0, 1.0 - share_used) : 1.0;
-        if (budget[i] < 1e-6) budget[i] = 0.0;
-      }
-      Plan plan{&trajectory, share,
-                ShareTones(choices_, share * share * information + kLeast * given,
-                           budget, wanted_, options_.stop)};
-      if (!best || plan.tones.log_sd < best->tones.log_sd) best = std::move(plan);
+  const double most = std::ranges::max(Utilisations(courses, design_.limits, tick()));
+  const MatrixXd information = information_.Of(run, 0, run.samples());
+  std::optional<Plan> best;
+  for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
+    const double share = part / std::max(1.0, most);
+    std::vector<AxisCourse> moved = courses;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      moved[i].AddTimes(share - 1.0, courses[i]);
     }
-    plans.push_back(std::move(*best));
+    const std::vector<double> used = Utilisations(moved, design_.limits, tick());
+    const VectorXd left = 1.0 - VectorXd::Map(used.data(), std::ssize(used)).array();
+    const VectorXd budget = (left.array() > kNoRoom).select(left, 0.0);
+    Plan plan{&trajectory, share,
+              ShareTones(choices_, share * share * information + little, budget,
+                         wanted_, options_.stop)};
+    if (!best || plan.tones.log_sd < best->tones.log_sd) best = std::move(plan);
+  }
+  return *std::move(best);
+}
+
+/// Tones alone, and beside the moves of every trajectory of the setup: those that promise
+/// most first.
+std::vector<Designer::Plan> Designer::Plans() const {
+  constexpr double kLeast = 1e-9;  // of the default motion's: keeps information regular
+  const MatrixXd little = kLeast * information_.Of(run_, 0, run_.samples());
+  std::vector<Plan> plans = {TonesAlone(little)};
+  for (const Trajectory& trajectory : machine_.setup().trajectories.all) {
+    if (IsStopped() && plans.size() > 1) break;
+    if (!trajectory.moves.empty()) plans.push_back(TonesBeside(trajectory, little));
   }
   std::ranges::stable_sort(plans, {},
                            [](const Plan& plan) { return plan.tones.log_sd; });
   return plans;
 }
 
-/// A motion of tones alone is about the middle of the range, where a gentle move goes
-/// before they are large, and back when they are small again.
-void Designer::GoToTheMiddle(Trajectory& trajectory) const {
+/// Tones alone are about the middle of the range, where gentle moves go before they are
+/// large, and back when they are small again.
+Trajectory Designer::MovesOf(const Plan& plan) const {
   constexpr double kGentle = 0.5;  // of the limits
+  Trajectory moves;
+  if (plan.moves_of != nullptr) moves = WithoutTones(Times(plan.share, *plan.moves_of));
+  moves.name = options_.name;
+  moves.duration = default_.duration;
+  moves.ramp = kToneRamp * default_.duration;
+  if (plan.moves_of != nullptr) return moves;
   const std::vector<AxisSetup>& axes = machine_.setup().control.axes;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const AxisLimits& limits = design_.limits[i];
@@ -311,138 +247,54 @@ void Designer::GoToTheMiddle(Trajectory& trajectory) const {
         std::abs(middle) < 0.01 * (limits.highest - limits.lowest)) {
       continue;
     }
-    const MoveLimits gentle{kGentle * own->second.velocity,
-                            kGentle * own->second.acceleration,
-                            kGentle * own->second.jerk, kGentle * own->second.snap};
-    trajectory.limits[axes[i].name] = gentle;
-    const double tick = machine_.rates().tick();
+    const MoveLimits gentle = Times(kGentle, own->second);
     const double time =
-        static_cast<double>(Setpoint(middle, gentle, tick).ticks() + 1) * tick;
-    trajectory.moves.push_back({0.0, {{axes[i].name, middle}}});
-    trajectory.moves.push_back(
-        {std::max(0.0, trajectory.duration - time), {{axes[i].name, -middle}}});
+        static_cast<double>(Setpoint(middle, gentle, tick()).ticks() + 1) * tick();
+    moves.limits[axes[i].name] = gentle;
+    moves.moves.push_back({0.0, {{axes[i].name, middle}}});
+    moves.moves.push_back(
+        {std::max(0.0, moves.duration - time), {{axes[i].name, -middle}}});
   }
+  return moves;
 }
 
 /// Phases of Schroeder: the tones of an axis do not meet in one peak.
-Trajectory Designer::TrajectoryOf(const Plan& plan) const {
-  Trajectory trajectory = *plan.base;
-  trajectory.tones.clear();
-  trajectory = Shrunk(std::move(trajectory), plan.moves);
-  trajectory.name = options_.name;
-  trajectory.duration = default_.duration;
-  if (trajectory.moves.empty()) {
-    trajectory.period = 0.0;
-    GoToTheMiddle(trajectory);
-  }
-  trajectory.ramp = kRamp * default_.duration;
+std::vector<ReferenceTone> Designer::TonesOf(const Plan& plan) const {
+  std::vector<ReferenceTone> tones;
   const std::vector<AxisSetup>& axes = machine_.setup().control.axes;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    std::vector<ReferenceTone> own;
+    const std::size_t first = tones.size();
     for (std::size_t k = 0; k < choices_.size(); ++k) {
       const double share = plan.tones.shares[static_cast<Index>(k)];
       if (choices_[k].axis != axis || share <= 0.0) continue;
-      own.push_back(
+      tones.push_back(
           {axes[axis].name, choices_[k].frequency, share * choices_[k].amplitude, 0.0});
     }
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const auto i = static_cast<double>(k);
-      own[k].phase =
-          -std::numbers::pi * i * (i - 1.0) / static_cast<double>(own.size());
-      trajectory.tones.push_back(own[k]);
+    const auto own = static_cast<double>(tones.size() - first);
+    for (std::size_t k = first; k < tones.size(); ++k) {
+      const auto i = static_cast<double>(k - first);
+      tones[k].phase = -std::numbers::pi * i * (i - 1.0) / own;
     }
   }
-  return trajectory;
-}
-
-std::vector<double> Designer::UtilisationOf(
-    const std::vector<AxisCourse>& courses) const {
-  std::vector<double> used;
-  for (std::size_t i = 0; i < courses.size(); ++i) {
-    used.push_back(
-        Utilisation(PeaksOf(courses[i], machine_.rates().tick()), design_.limits[i]));
-  }
-  return used;
-}
-
-/// Peaks of several tones are less than their sum: as large as the limits allow, axis by
-/// axis.
-void Designer::MeetLimits(Trajectory& trajectory) const {
-  constexpr int kRounds = 3;  // the motors of other axes answer a little
-  constexpr int kHalvings = 20;
-  constexpr double kMost = 8.0;
-  constexpr double kMargin =
-      0.998;  // the nonlinear machine is not quite the linear one
-  const std::vector<AxisSetup>& axes = machine_.setup().control.axes;
-  Trajectory moves = trajectory;
-  moves.tones.clear();
-  const Excitation still = Follow(moves);
-  const std::vector<AxisCourse> base = CoursesOf(machine_, still, LinearRun(still));
-  std::vector<std::vector<AxisCourse>> tones;
-  for (const AxisSetup& axis : axes) {
-    Trajectory own = moves;
-    own.moves.clear();
-    for (const ReferenceTone& tone : trajectory.tones) {
-      if (tone.axis == axis.name) own.tones.push_back(tone);
-    }
-    const Excitation motion = Follow(own);
-    tones.push_back(CoursesOf(machine_, motion, LinearRun(motion)));
-  }
-  VectorXd factors = VectorXd::Ones(static_cast<Index>(axes.size()));
-  for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      AxisCourse others = base[axis];
-      for (std::size_t i = 0; i < axes.size(); ++i) {
-        if (i != axis) others.AddTimes(factors[static_cast<Index>(i)], tones[i][axis]);
-      }
-      const auto use = [&](const AxisCourse& course) {
-        return Utilisation(PeaksOf(course, machine_.rates().tick()),
-                           design_.limits[axis]);
-      };
-      // Where it begins may be the end of its range.
-      const double allowed = std::max(kMargin, use(others));
-      const auto fits = [&](double factor) {
-        AxisCourse all = others;
-        all.AddTimes(factor, tones[axis][axis]);
-        return use(all) <= allowed;
-      };
-      double low = 0.0;
-      double high = kMost;
-      for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (low + high);
-        (fits(middle) ? low : high) = middle;
-      }
-      factors[static_cast<Index>(axis)] = low;
-    }
-  }
-  for (ReferenceTone& tone : trajectory.tones) {
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      if (tone.axis == axes[axis].name)
-        tone.amplitude *= factors[static_cast<Index>(axis)];
-    }
-  }
-  std::erase_if(trajectory.tones,
-                [](const ReferenceTone& tone) { return tone.amplitude == 0.0; });
+  return tones;
 }
 
 /// Of those wanted, along the whole motion.
 double Designer::LargestSd(const Trajectory& trajectory) const {
-  const VectorXd sd = information_.SdOf(LinearRun(Follow(trajectory)));
-  double largest = 0.0;
-  for (const Index at : wanted_) largest = std::max(largest, sd[at]);
-  return largest;
+  return information_.SdOf(LinearRun(machine_, Follow(trajectory)))(wanted_).maxCoeff();
 }
 
 /// Between the frequencies that were tried, and with harmonics, whose peaks are not the sum
 /// of their peaks: as long as one change of one tone makes the whole motion better.
-void Designer::Refine(Trajectory& trajectory, double& best) {
+void Designer::Refine(const TonesWithinLimits& within, Trajectory& trajectory,
+                      double& best) {
   constexpr std::array kSteps = {0.12, 0.04};
   constexpr double kBetter = 0.998;
   constexpr double kHarmonic = 0.05;  // of a tone, three times as fast
-  const double highest = Frequencies().back();
-  const auto improve = [&](Trajectory other) {
+  const double highest = HighestFrequency();
+  const auto improve = [&](const std::vector<ReferenceTone>& tones) {
     if (IsStopped()) return false;
-    MeetLimits(other);
+    Trajectory other = within.With(tones);
     const double sd = LargestSd(other);
     if (!(sd < kBetter * best)) return false;
     best = sd;
@@ -454,14 +306,14 @@ void Designer::Refine(Trajectory& trajectory, double& best) {
   const std::size_t given = trajectory.tones.size();
   for (std::size_t k = 0; k < given; ++k) {
     for (const double sign : {1.0, -1.0}) {
-      Trajectory other = trajectory;
-      ReferenceTone tone = other.tones[k];
+      std::vector<ReferenceTone> tones = trajectory.tones;
+      ReferenceTone tone = tones[k];
       tone.frequency *= 3.0;
       tone.phase *= 3.0;
       tone.amplitude *= sign * kHarmonic;
       if (tone.frequency > highest) continue;
-      other.tones.push_back(tone);
-      improve(std::move(other));
+      tones.push_back(tone);
+      improve(tones);
     }
   }
   for (const double step : kSteps) {
@@ -472,14 +324,14 @@ void Designer::Refine(Trajectory& trajectory, double& best) {
         if (settled.contains(k)) continue;
         bool better = false;
         for (const double factor : {1.0 + step, 1.0 / (1.0 + step)}) {
-          Trajectory other = trajectory;
-          other.tones[k].frequency *= factor;
-          if (other.tones[k].frequency <= highest) better |= improve(std::move(other));
+          std::vector<ReferenceTone> tones = trajectory.tones;
+          tones[k].frequency *= factor;
+          if (tones[k].frequency <= highest) better |= improve(tones);
           // All of an axis become as large as its limits allow: one alone has no size.
           if (OnItsAxis(trajectory, k) == 1) continue;
-          other = trajectory;
-          other.tones[k].amplitude *= std::pow(factor, 3);
-          better |= improve(std::move(other));
+          tones = trajectory.tones;
+          tones[k].amplitude *= std::pow(factor, 3);
+          better |= improve(tones);
         }
         if (!better) settled.insert(k);
       }
@@ -487,61 +339,58 @@ void Designer::Refine(Trajectory& trajectory, double& best) {
   }
 }
 
-/// Smaller, until the machine itself keeps to its limits.
-void Designer::MeetLimitsNonlinear(Trajectory& trajectory) {
+/// Smaller, until the nonlinear machine itself keeps to its limits.
+void Designer::KeepToLimits() {
   constexpr int kMost = 8;
   constexpr double kRounding = 1e-9;
   for (int i = 0;; ++i) {
-    const Excitation motion = Follow(trajectory);
-    design_.run_after = Run(motion);
-    design_.peaks.clear();
+    const Excitation motion = Follow(design_.trajectory);
+    design_.run_after = QuietRun(machine_, motion);
     const std::vector<AxisCourse> courses =
         CoursesOf(machine_, motion, design_.run_after);
+    design_.peaks.clear();
     for (const AxisCourse& course : courses) {
-      design_.peaks.push_back(PeaksOf(course, machine_.rates().tick()));
+      design_.peaks.push_back(PeaksOf(course, tick()));
     }
-    const std::vector<double> used = UtilisationOf(courses);
-    const double most = *std::ranges::max_element(used);
+    const double most = std::ranges::max(Utilisations(courses, design_.limits, tick()));
     if (most <= 1.0 + kRounding || i == kMost) return;
     const double less = 0.995 / most;
     design_.share_of_moves *= less;
-    std::vector<ReferenceTone> tones = trajectory.tones;
-    trajectory = Shrunk(std::move(trajectory), less);
-    trajectory.tones = std::move(tones);
-    for (ReferenceTone& tone : trajectory.tones) tone.amplitude *= less;
+    design_.trajectory = Times(less, std::move(design_.trajectory));
   }
 }
 
 MotionDesign Designer::Run() {
+  constexpr std::size_t kTried = 3;  // of plans whose first order promises most
   FindWanted();
-  const Excitation motion = Follow(default_);
-  design_.run_before = Run(motion);
-  design_.before = information_.SdOf(LinearRun(motion));
-  for (const Index at : wanted_) before_ = std::max(before_, design_.before[at]);
+  design_.run_before = QuietRun(machine_, motion_);
+  design_.before = information_.SdOf(run_);
+  before_ = design_.before(wanted_).maxCoeff();
   FindLimits();
   Report(0.1);
-  TryTones();
-  constexpr std::size_t kTried = 3;  // of plans whose first order promises most
-  double best = std::numeric_limits<double>::infinity();
+  FindTones();
   std::vector<Plan> plans = Plans();
   plans.resize(std::min(plans.size(), kTried));
+  double best = std::numeric_limits<double>::infinity();
+  std::optional<TonesWithinLimits> within;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     Report(0.8 + 0.1 * static_cast<double>(i) / static_cast<double>(kTried));
-    Trajectory trajectory = TrajectoryOf(plans[i]);
+    TonesWithinLimits own(machine_, design_.limits, MovesOf(plans[i]));
+    Trajectory trajectory = own.With(TonesOf(plans[i]));
     if (trajectory.moves.empty() && trajectory.tones.empty()) continue;
-    MeetLimits(trajectory);
     const double largest = LargestSd(trajectory);
     if (largest >= best) continue;
     best = largest;
     gain_ = before_ / best;
+    within.emplace(std::move(own));
     design_.trajectory = std::move(trajectory);
-    design_.share_of_moves = plans[i].moves;
-    design_.moves_of = plans[i].moves > 0.0 ? plans[i].base->name : "";
+    design_.share_of_moves = plans[i].share;
+    design_.moves_of = plans[i].moves_of != nullptr ? plans[i].moves_of->name : "";
   }
   Report(0.9);
-  Refine(design_.trajectory, best);
-  MeetLimitsNonlinear(design_.trajectory);
-  design_.after = information_.SdOf(LinearRun(Follow(design_.trajectory)));
+  if (within) Refine(*within, design_.trajectory, best);
+  KeepToLimits();
+  design_.after = information_.SdOf(LinearRun(machine_, Follow(design_.trajectory)));
   design_.stopped = IsStopped();
   Report(1.0);
   return std::move(design_);
@@ -550,14 +399,14 @@ MotionDesign Designer::Run() {
 }  // namespace
 
 double MotionDesign::Gain() const {
-  double largest_before = 0.0;
-  double largest_after = 0.0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (!wanted[i]) continue;
-    largest_before = std::max(largest_before, before[static_cast<Index>(i)]);
-    largest_after = std::max(largest_after, after[static_cast<Index>(i)]);
-  }
-  return largest_before / largest_after;
+  const auto largest = [this](const VectorXd& sd) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i]) most = std::max(most, sd[static_cast<Index>(i)]);
+    }
+    return most;
+  };
+  return largest(before) / largest(after);
 }
 
 MotionDesign DesignMotion(const Machine& machine, const MotionDesignOptions& options) {
@@ -568,11 +417,10 @@ MotionDesign DesignMotion(const Machine& machine, const MotionDesignOptions& opt
                      "[axes] and [trajectories]");
   }
   for (const auto& [axis, limits] : options.limits) {
-    for (const auto& [name, value] : Named(limits)) {
-      if (value > 0.0 || std::string_view(name) == "lowest" ||
-          std::string_view(name) == "highest") {
-        continue;
-      }
+    for (const auto& [name, member] : kAxisLimits) {
+      const bool is_place =
+          member == &AxisLimits::lowest || member == &AxisLimits::highest;
+      if (is_place || limits.*member > 0.0) continue;
       throw InputError("limits of '" + axis + "'",
                        std::string(name) + " is not above 0", "a number > 0");
     }

@@ -19,20 +19,6 @@ using Eigen::VectorXd;
 
 constexpr double kNumberStep = 1e-3;  // of a number of the plant
 
-MatrixXd Commands(const Machine& machine, const Record& run) {
-  return SamplesOf(run, ChannelsOf(machine.channels().actuators));
-}
-
-/// A tone of a disturbance on the commands, nu x samples.
-MatrixXd Waveform(const Multisine& source, double frequency, double phase, double tick,
-                  Index samples) {
-  const Eigen::ArrayXd angle =
-      2.0 * std::numbers::pi * frequency * tick *
-          Eigen::ArrayXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) +
-      phase;
-  return source.amplitude * angle.sin().matrix().transpose();
-}
-
 /// Means over the blocks of a twin, times the root of their ticks: the noise of a mean is
 /// that of a tick over it.
 MatrixXd OfBlocks(const MatrixXd& sensitivity) {
@@ -48,19 +34,13 @@ MatrixXd OfBlocks(const MatrixXd& sensitivity) {
 }  // namespace
 
 MotionInformation::MotionInformation(const Machine& machine,
-                                     const std::vector<std::string>& numbers)
-    : machine_(machine), timing_(SynthesisOf(machine).timing) {
-  noise_ = VectorXd(static_cast<Index>(machine.channels().sensors.size()));
-  Index at = 0;
-  for (const SensorSetup& sensor : machine.channels().sensors) {
-    if (!(sensor.noise_sd > 0.0)) {
-      throw InputError("sensor '" + sensor.channel + "'",
-                       "has no noise, and whatever moves tells everything",
-                       "its noise");
-    }
-    noise_[at++] = sensor.noise_sd;
-  }
-  models_ = MakeFaultFamily(machine).Perturbed();
+                                     const std::vector<std::string>& numbers,
+                                     Index ticks)
+    : inputs_(ChannelsOf(machine.channels().actuators)),
+      timing_(SynthesisOf(machine).timing),
+      noise_(SynthesisOf(machine).sensor_noise) {
+  const FaultFamily family = MakeFaultFamily(machine);
+  models_ = family.Perturbed();
   for (const std::string& name : numbers) {
     const PlantNumber number = FindPlantNumber(machine.plant(), name);
     models_.push_back({name, kNumberStep,
@@ -73,38 +53,42 @@ MotionInformation::MotionInformation(const Machine& machine,
                      "its plant declares no fault parameter",
                      "numbers of the plant that are wanted");
   }
+  for (const Multisine& source : family.disturbances) {
+    for (const double frequency : source.frequencies) {
+      for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
+        const MatrixXd tone =
+            ToneOf(source, frequency, phase, machine.rates().tick(), ticks);
+        disturbances_.push_back(
+            OfBlocks(OutputResponse(machine.linear(), timing_, tone)));
+      }
+    }
+  }
 }
 
-std::vector<MatrixXd> MotionInformation::Sensitivities(const Record& run) const {
-  return OutputSensitivities(models_, timing_, Commands(machine_, run));
+std::vector<MatrixXd> MotionInformation::Sensitivities(const Record& run, Index from,
+                                                       Index count) const {
+  std::vector<MatrixXd> sensitivities =
+      OutputSensitivities(models_, timing_, SamplesOf(run, inputs_));
+  for (MatrixXd& one : sensitivities) one = OfBlocks(one.middleCols(from, count));
+  return sensitivities;
 }
 
 MatrixXd MotionInformation::Of(const Record& run, Index from, Index count) const {
-  const std::vector<MatrixXd> sensitivities = Sensitivities(run);
+  const std::vector<MatrixXd> sensitivities = Sensitivities(run, from, count);
   const auto unknowns = static_cast<Index>(sensitivities.size());
-  MatrixXd stacked(noise_.size() * (count / kTwinBlock), unknowns);
+  MatrixXd stacked(sensitivities.front().size(), unknowns);
   for (Index i = 0; i < unknowns; ++i) {
     const MatrixXd scaled =
-        noise_.cwiseInverse().asDiagonal() *
-        OfBlocks(sensitivities[static_cast<std::size_t>(i)].middleCols(from, count));
+        noise_.cwiseInverse().asDiagonal() * sensitivities[static_cast<std::size_t>(i)];
     stacked.col(i) = scaled.reshaped();
   }
   return stacked.transpose() * stacked;
 }
 
 VectorXd MotionInformation::SdOf(const Record& run) const {
-  std::vector<MatrixXd> sensitivities = Sensitivities(run);
+  std::vector<MatrixXd> sensitivities = Sensitivities(run, 0, run.samples());
   const auto unknowns = static_cast<Index>(sensitivities.size());
-  for (const Multisine& source : MakeFaultFamily(machine_).disturbances) {
-    for (const double frequency : source.frequencies) {
-      for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
-        sensitivities.push_back(OutputResponse(
-            machine_.linear(), timing_,
-            Waveform(source, frequency, phase, run.sample_time(), run.samples())));
-      }
-    }
-  }
-  for (MatrixXd& sensitivity : sensitivities) sensitivity = OfBlocks(sensitivity);
+  sensitivities.insert(sensitivities.end(), disturbances_.begin(), disturbances_.end());
   return CramerRaoBound(sensitivities, noise_).together.head(unknowns);
 }
 

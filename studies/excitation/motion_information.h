@@ -2,7 +2,7 @@
 // What a motion tells of the numbers of a machine: the information of Cramer and Rao of
 // its linear model, along the commands of a run,
 //
-//   I = sum_t psi_t^T R^-1 psi_t,   psi_t = d y_t / d theta,   Cov theta^ >= I^-1.
+//   I = sum_t psi_t^T R^-1 psi_t,   psi_t = d y_t / d theta,   Cov theta^ >= I^-1,
 //
 // y the means over the blocks of ticks that a twin of the machine looks at.
 //
@@ -23,9 +23,10 @@ namespace mjdiag {
 class MotionInformation {
  public:
   /// Of all fault parameters of the plant and of numbers of it ("mass@x_stage"), all
-  /// unknown together. InputError on a number that the plant does not have, a sensor
-  /// without noise, or where there is neither.
-  MotionInformation(const Machine& machine, const std::vector<std::string>& numbers);
+  /// unknown together, in motions of so many ticks. InputError on a number that the plant
+  /// does not have, or where there is neither.
+  MotionInformation(const Machine& machine, const std::vector<std::string>& numbers,
+                    Eigen::Index ticks);
 
   /// Fault parameters in the order of the plant, then the numbers.
   const std::vector<std::string>& unknowns() const { return names_; }
@@ -33,19 +34,23 @@ class MotionInformation {
   /// I of those samples of a run, square of the unknowns.
   Eigen::MatrixXd Of(const Record& run, Eigen::Index from, Eigen::Index count) const;
 
-  /// Standard deviations from the whole run, where nobody knows the disturbances of the
-  /// setup either: of each of their tones a sine and a cosine. NumericalError if the run
-  /// does not tell the unknowns apart.
+  /// Standard deviations from the whole of a run of that many ticks, where nobody knows
+  /// the disturbances of the setup either: of each of their tones a sine and a cosine.
+  /// InputError on a sensor without noise, NumericalError if the run does not tell the
+  /// unknowns apart.
   Eigen::VectorXd SdOf(const Record& run) const;
 
  private:
-  std::vector<Eigen::MatrixXd> Sensitivities(const Record& run) const;
+  /// By each of the unknowns, of every block.
+  std::vector<Eigen::MatrixXd> Sensitivities(const Record& run, Eigen::Index from,
+                                             Eigen::Index count) const;
 
-  Machine machine_;
+  std::vector<std::string> inputs_;  // actuator channels
   std::vector<std::string> names_;
   std::vector<PerturbedModels> models_;
   TickTiming timing_;
   Eigen::VectorXd noise_;
+  std::vector<Eigen::MatrixXd> disturbances_;  // of every block
 };
 
 }  // namespace mjdiag

@@ -27,11 +27,9 @@ class ExcitedBonder : public ::testing::Test {
     return design;
   }
 
-  const Machine bonder_ = test::Bonder({"trajectories.multi.duration=0.5"});
+  const Machine bonder_ = test::Bonder();
 };
 
-// In a fifth of the time of the default motion, of which its ramps are a part; in all of it
-// more than four times.
 TEST_F(ExcitedBonder, TellsItsGuideTwiceAsWellAsTheDefaultMotion) {
   EXPECT_GT(Design().Gain(), 2.0);
 }
