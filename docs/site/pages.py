@@ -28,8 +28,7 @@ import formula  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-TEXTS = ["effects", "setup", "own-machine", "python", "api", "datasets", "watch", "studies",
-         "theory", "comparison", "reporting"]
+TEXTS = sorted(text.stem for text in (ROOT / "docs").glob("*.md"))
 FENCE = re.compile(r"^(```+).*?^\1\s*$", re.MULTILINE | re.DOTALL)
 
 
