@@ -199,10 +199,33 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
   return balance;
 }
 
-VectorXd MissingRms(const FilteredRun& filtered, const ForceBalance& balance) {
-  VectorXd rms(balance.missing.rows());
+MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filtered,
+                                const ForceBalance& balance) {
+  Changes frictionless;
+  for (const PlantNumber& number : PlantNumbers(machine.plant())) {
+    if (number.kind == PlantNumberKind::kFriction) {
+      frictionless.numbers.emplace_back(number, 0.0);
+    }
+  }
+  if (frictionless.numbers.empty()) return balance.missing;
+  return BalanceForces(machine, frictionless, filtered).missing;
+}
+
+MatrixXd MissingSmoothed(const FilteredRun& filtered, const ForceBalance& balance,
+                         MatrixXd without_friction) {
+  MatrixXd missing = std::move(without_friction);
+  for (Index dof = 0; dof < missing.rows(); ++dof) {
+    const VectorXd friction = missing.row(dof) - balance.missing.row(dof);
+    if (friction.isZero(0.0)) continue;
+    missing.row(dof) -= LowPassed(filtered, friction).transpose();
+  }
+  return missing;
+}
+
+VectorXd MissingRms(const FilteredRun& filtered, const MatrixXd& missing) {
+  VectorXd rms(missing.rows());
   for (Index row = 0; row < rms.size(); ++row) {
-    const VectorXd kept = Kept(balance.missing.row(row), filtered.counts);
+    const VectorXd kept = Kept(missing.row(row), filtered.counts);
     rms[row] = std::sqrt(kept.squaredNorm() /
                          static_cast<double>(std::max<Index>(1, kept.size())));
   }

@@ -54,7 +54,17 @@ struct ForceBalance {
 ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
                            const FilteredRun& filtered);
 
+/// F without the dry friction of the plant, which MuJoCo has as `frictionloss`.
+Eigen::MatrixXd MissingWithoutFriction(const Machine& machine,
+                                       const FilteredRun& filtered,
+                                       const ForceBalance& balance);
+/// F with that friction as smooth as what was measured: it jumps where a joint turns round,
+/// and filtered readings do not.
+Eigen::MatrixXd MissingSmoothed(const FilteredRun& filtered,
+                                const ForceBalance& balance,
+                                Eigen::MatrixXd without_friction);
+
 /// Root mean square of every row of F over the samples that count, nv.
-Eigen::VectorXd MissingRms(const FilteredRun& filtered, const ForceBalance& balance);
+Eigen::VectorXd MissingRms(const FilteredRun& filtered, const Eigen::MatrixXd& missing);
 
 }  // namespace mjdiag

@@ -52,20 +52,23 @@ std::vector<std::vector<Hypothesis>> RivalsIn(const ForceSearchResult& found) {
 /// joint in the row of a sensor, at the samples that count.
 class ForceErrors {
  public:
+  /// @param nominal  of the plant as it is given
   ForceErrors(const DiscoveryProblem& problem, FilteredRun filtered,
-              const ForceSearchResult& found, MatrixXd nominal)
+              const ForceSearchResult& found, const ForceBalance& nominal)
       : machine_(problem.machine()),
         filtered_(std::move(filtered)),
         rows_(found.rows),
         noise_(found.noise),
-        nominal_(std::move(nominal)),
+        nominal_(nominal.missing),
+        smoothed_(MissingSmoothed(
+            filtered_, nominal, MissingWithoutFriction(machine_, filtered_, nominal))),
         sd_(problem.observer().innovation_sd) {}
 
   /// Forces that jump are as smooth as what was measured.
   MatrixXd operator()(const Changes& changes) const {
     const MatrixXd added =
         nominal_ - BalanceForces(machine_, changes, filtered_).missing;
-    MatrixXd left = nominal_;
+    MatrixXd left = smoothed_;
     for (const Index dof : rows_.dofs) {
       left.row(dof) -= LowPassed(filtered_, added.row(dof)).transpose();
     }
@@ -89,6 +92,7 @@ class ForceErrors {
   ForceRows rows_;
   ForceNoise noise_;
   MatrixXd nominal_;
+  MatrixXd smoothed_;
   VectorXd sd_;
 };
 
@@ -157,6 +161,48 @@ std::optional<CauseFit> FitAlong(const DiscoveryProblem& balance,
                 {.iterations = 0, .jacobian = false, .closing = true});
 }
 
+/// Physics steps in a control tick with which the plant, its numbers as they are found,
+/// moves as it does with twice as many: the record would not tell them apart.
+int StepsEnough(const DiscoveryProblem& problem, const FilteredRun& filtered,
+                const ForceSearchResult& found) {
+  constexpr int kMost = 16;      // times those that are given
+  constexpr double kTold = 6.0;  // in -2 ln L: odds of 20
+  const Machine& machine = problem.machine();
+  const int given = machine.rates().substeps;
+  const Changes changes = ChangesOf(problem, {}, FittedModel({}, found.model.numbers));
+  const auto missing = [&](int substeps) {
+    problem.work()->Add(problem.RunWork() * substeps / given);
+    return BalanceForces(machine.WithSubsteps(substeps), changes, filtered).missing;
+  };
+  int substeps = given;
+  try {
+    MatrixXd coarse = missing(substeps);
+    while (2 * substeps <= kMost * given &&
+           problem.work()->MayBegin("finer physics steps",
+                                    problem.RunWork() * 2 * substeps / given)) {
+      MatrixXd fine = missing(2 * substeps);
+      MatrixXd change = fine - coarse;
+      for (const Index dof : found.rows.dofs) {
+        change.row(dof) = LowPassed(filtered, change.row(dof)).transpose();
+      }
+      const MatrixXd white =
+          Whitened(found.rows, found.noise, RowsOf(found.rows, change));
+      double told = 0.0;
+      for (Index j = 0; j < std::ssize(found.rows.dofs); ++j) {
+        told += white.col(0)
+                    .segment(j * found.rows.values(), found.rows.train)
+                    .squaredNorm();
+      }
+      if (told < kTold) break;
+      substeps *= 2;
+      coarse = std::move(fine);
+    }
+  } catch (const NumericalError&) {
+    // The plant as it was found cannot follow: it is taken as far as it can.
+  }
+  return substeps;
+}
+
 }  // namespace
 
 bool Discoverer::TakeForces(const SearchOptions& search) {
@@ -164,7 +210,7 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
   const double bandwidth =
       std::min(FastestForce(problem_.run()), kFastest * machine_.rates().control);
   const FilteredRun filtered = FilterRun(machine_, problem_.run(), bandwidth);
-  const ForceBalance nominal = BalanceForces(machine_, {}, filtered);
+  ForceBalance nominal = BalanceForces(machine_, {}, filtered);
   problem_ = WithCentres(problem_, KnownNumbers());
   ForceSearchOptions options;
   options.most_causes_a_joint = options_.most_causes;
@@ -175,8 +221,15 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
     told.train = nominal_;
     Report(what, fraction, told);
   };
+  // Laws are looked for with steps that are short enough, which numbers alone tell.
+  const int substeps = StepsEnough(
+      problem_, filtered, SearchForces(problem_, {}, filtered, nominal, options));
+  if (substeps != machine_.rates().substeps) {
+    TakeSubsteps(substeps);
+    nominal = BalanceForces(machine_, {}, filtered);
+  }
   force_ = SearchForces(problem_, candidates_, filtered, nominal, options);
-  const ForceErrors errors(problem_, filtered, *force_, nominal.missing);
+  const ForceErrors errors(problem_, filtered, *force_, nominal);
   const DiscoveryProblem balance =
       problem_.Simulating(errors, NumbersFirst(problem_, errors, *force_));
   Report("fit along the motion", 0.5);

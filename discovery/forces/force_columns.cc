@@ -44,9 +44,32 @@ ForceColumns::ForceColumns(const DiscoveryProblem& problem, const FilteredRun& f
     : problem_(problem),
       filtered_(filtered),
       motion_(AsMeasured(balance.motion)),
-      missing_rms_(MissingRms(filtered, balance)),
+      without_friction_(MissingWithoutFriction(problem.machine(), filtered, balance)),
+      missing_rms_(MissingRms(filtered, without_friction_)),
       rows_(RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train())),
-      missing_(RowsOf(rows_, balance.missing)) {}
+      jumping_(balance.missing),
+      missing_(RowsOf(rows_, MissingSmoothed(filtered, balance, without_friction_))) {}
+
+/// By a factor, samples x nv.
+MatrixXd ForceColumns::ForceOf(const DoubtedNumber& doubted) const {
+  const Machine& machine = problem_.machine();
+  if (doubted.is_lateness) {
+    return LatenessForce(machine.plant(), machine.linear().Gamma, motion_);
+  }
+  const PlantNumber& number = doubted.number;
+  if (number.kind == PlantNumberKind::kFriction) {
+    // MuJoCo's dry friction is soft: up to its bound it goes by the speed and by what the
+    // joint carries. What twice the bound does is what a machine that has worn lacks.
+    const Eigen::Index dof = machine.plant().jnt_dofadr[number.element];
+    const MatrixXd more =
+        BalanceForces(machine, {{}, {}, {{number, 2.0}}}, filtered_).missing;
+    MatrixXd force = MatrixXd::Zero(motion_.samples(), more.rows());
+    force.col(dof) = LowPassed(filtered_, (jumping_ - more).row(dof));
+    return force;
+  }
+  return NumberForce(machine.plant(), machine.channels(), number, motion_,
+                     problem_.StillSpeed());
+}
 
 ForceProblem ForceColumns::NumbersAlone() const {
   const Machine& machine = problem_.machine();
@@ -54,18 +77,12 @@ ForceProblem ForceColumns::NumbersAlone() const {
   ForceProblem forces{rows_, missing_,
                       MatrixXd::Zero(rows_.rows(), std::ssize(numbers)),
                       VectorXd::Zero(std::ssize(numbers))};
-  const VectorXd still = problem_.StillSpeed();
   problem_.work()->Add(problem_.RunWork() / machine.rates().substeps *
                        static_cast<double>(numbers.size()));
   ParallelForAll(static_cast<int>(numbers.size()), [&](int number) {
     const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(number)];
-    const MatrixXd force =
-        doubted.spread *
-        (doubted.is_lateness
-             ? LatenessForce(machine.plant(), machine.linear().Gamma, motion_)
-             : NumberForce(machine.plant(), machine.channels(), doubted.number, motion_,
-                           still));
-    forces.numbers.col(number) = RowsOf(rows_, force.transpose());
+    forces.numbers.col(number) =
+        doubted.spread * RowsOf(rows_, ForceOf(doubted).transpose());
     if (!doubted.is_lateness && IsDrive(doubted.number.kind)) {
       forces.drives[number] = doubted.spread;
     }
@@ -75,9 +92,9 @@ ForceProblem ForceColumns::NumbersAlone() const {
 
 /// What a drive does along the stroke, late, or up to a limit, is made of inputs that were
 /// measured with what no model explains in them: a drive that does less, or later, leaves
-/// less. A law that goes by the load takes it from that input, too: where what is missing is
-/// much of it, it explains itself; up to a tenth of its power it bends the values by no more
-/// than that. A shaking from outside that is as slow as the band is told from what a motion
+/// less. A law that goes by the load takes it from that input, too: where what is missing,
+/// and friction that the plant has already, is much of it, it explains itself; up to a tenth
+/// of its power it bends the values by no more than that. A shaking from outside that is as slow as the band is told from what a motion
 /// lacks by nothing but chance.
 bool ForceColumns::IsTold(const Candidate& candidate) const {
   constexpr double kMuch = 0.1;

@@ -38,6 +38,7 @@ class ForceColumns {
   std::vector<ForceTrial> TrialsOf(const std::vector<Candidate>& candidates) const;
 
  private:
+  Eigen::MatrixXd ForceOf(const DoubtedNumber& doubted) const;
   bool IsTold(const Candidate& candidate) const;
   std::vector<Trial> Within(const Candidate& candidate) const;
   Eigen::MatrixXd Of(const Trial& trial) const;
@@ -46,9 +47,11 @@ class ForceColumns {
   const DiscoveryProblem& problem_;
   const FilteredRun& filtered_;
   const ObservedMotion motion_;
-  const Eigen::VectorXd missing_rms_;  // of every joint, without laws
+  const Eigen::MatrixXd without_friction_;  // what is missing then
+  const Eigen::VectorXd missing_rms_;       // of that, of every joint
   const ForceRows rows_;
-  const Eigen::VectorXd missing_;  // in rows
+  const Eigen::MatrixXd jumping_;  // what is missing, as BalanceForces has it
+  const Eigen::VectorXd missing_;  // in rows, as MissingSmoothed has it
 };
 
 }  // namespace mjdiag

@@ -249,10 +249,18 @@ TEST_F(OptionTable, AbsenceIsWhatItSays) {
     const bool any = std::ranges::any_of(
         rows, [](const auto& row) { return row.second.kind == Absence::Kind::kSame; });
     if (!any) continue;
-    const json absent = Document(Base(command, command));
+    const std::string base = Base(command, command);
+    const json absent = Document(base);
+    std::string all;
+    for (const auto& [option, absence] : rows) {
+      if (absence.kind == Absence::Kind::kSame) all += " " + absence.text;
+    }
+    if (Document(base + all) == absent) continue;
+    // One by one, to say which.
+    ADD_FAILURE() << base << all;
     for (const auto& [option, absence] : rows) {
       if (absence.kind != Absence::Kind::kSame) continue;
-      EXPECT_EQ(Document(Base(command, command) + " " + absence.text), absent)
+      EXPECT_EQ(Document(base + " " + absence.text), absent)
           << command << " " << absence.text;
     }
   }

@@ -10,7 +10,6 @@
 #include <regex>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/command_line.h"
@@ -71,6 +70,8 @@ TEST(Readme, CommandsDoWhatTheySay) {
     if (!emps && command.find("DATA_EMPS") != std::string::npos) continue;
     if (!servo && command.find("mjcf/servo") != std::string::npos) continue;
     if (!panda && command.find("mjcf/panda") != std::string::npos) continue;
+    // The walk of docs/own-machine.md types it with the same records.
+    if (command.rfind("mjdiag discover --setup mjcf/servo", 0) == 0) continue;
     // Other tests wait for the answers of a minute.
     command = std::regex_replace(command, std::regex("--budget [0-9]+"), "--budget 10");
     // FOLDER is where the reader has the records of the servo.
@@ -92,12 +93,10 @@ TEST(Readme, CommandsDoWhatTheySay) {
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
   }
   // Nobody knows the numbers of a measured machine exactly.
-  for (const auto& [there, found] : {std::pair(emps.has_value(), "out/found"),
-                                     std::pair(servo.has_value(), "out/servo")}) {
-    if (!there) continue;
+  if (emps) {
     const auto document = nlohmann::json::parse(
-        ReadAll(folder.path() / found / "discovery.json"), nullptr, false);
-    EXPECT_FALSE(document["calibration"].empty()) << found;
+        ReadAll(folder.path() / "out/found/discovery.json"), nullptr, false);
+    EXPECT_FALSE(document["calibration"].empty());
   }
 }
 

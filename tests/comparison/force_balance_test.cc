@@ -21,7 +21,7 @@ struct Balanced {
                            ToMeasuredRun(arm.setup(), test::Arm::Measure(effects, 1.0)),
                            kBand)) {}
   Eigen::VectorXd Rms(const Changes& changes) const {
-    return MissingRms(filtered, BalanceForces(arm.machine, changes, filtered));
+    return MissingRms(filtered, BalanceForces(arm.machine, changes, filtered).missing);
   }
 };
 

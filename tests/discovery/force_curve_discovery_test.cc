@@ -44,6 +44,7 @@ Discovery DiscoverOutside(const OutsideLaw& law, const test::StageUnderTest& sta
       Simulate(stage.machine.With(changes), stage.Motion(), options);
   DiscoverOptions discover;
   discover.choice = choice;
+  discover.budget = 30.0;
   return Discover(stage.machine, measured, nullptr, discover);
 }
 
