@@ -160,7 +160,7 @@ void AddDiscover(CLI::App& app) {
           "the best answer so far is given, if it has not settled before: the same on "
           "every machine")
       ->check(Within(kLeastBudget, kMostBudget));
-  command->add_option("--seed", options->search.seed, "Seed of the noise floor");
+  AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);
   command->callback([options] { Discover(*options); });
