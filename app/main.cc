@@ -8,6 +8,7 @@
 
 #include "app/command.h"
 #include "app/exit_status.h"
+#include "app/output.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
@@ -50,6 +51,7 @@ void RequireKnownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Fail(ExitStatus status, const std::string& message) {
+  RemoveEmptyOutput();
   std::string line = message;
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fprintf(stderr, "mjdiag: %s\n", line.c_str());

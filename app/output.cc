@@ -26,9 +26,30 @@ void AddReportOption(CLI::App& command, OutputOptions& options) {
       ->needs("--out");
 }
 
+namespace {
+
+/// What PrepareOutput made, the outermost folder first.
+std::vector<std::filesystem::path> made_folders;
+
+}  // namespace
+
 void PrepareOutput(const OutputOptions& options) {
   if (options.report) LoadPlotLibrary();
-  if (!options.folder.empty()) MakeOutputFolder(options.folder);
+  if (options.folder.empty()) return;
+  std::filesystem::path path;
+  for (const std::filesystem::path& part : std::filesystem::path(options.folder)) {
+    path /= part;
+    if (!std::filesystem::exists(path)) made_folders.push_back(path);
+  }
+  MakeOutputFolder(options.folder);
+}
+
+void RemoveEmptyOutput() {
+  // Fails on a folder that has something in it, as it should.
+  std::error_code ignored;
+  for (; !made_folders.empty(); made_folders.pop_back()) {
+    std::filesystem::remove(made_folders.back(), ignored);
+  }
 }
 
 namespace {

@@ -35,6 +35,10 @@ void AddReportOption(CLI::App& command, OutputOptions& options);
 /// cannot be written to, or a report is wanted and the plot library is not installed.
 void PrepareOutput(const OutputOptions& options);
 
+/// Removes the folder that PrepareOutput made, and those above it that it made, as far
+/// as nothing is in them: of a command that failed nothing is left.
+void RemoveEmptyOutput();
+
 /// Writes `<folder>/<name>.json` and the page, if there is a folder, then the report if
 /// one is wanted, and prints either the document or the text. The results are on disk
 /// before the report is made, which other files of the folder may spoil.
