@@ -91,6 +91,7 @@ void Discover(const DiscoverCommand& command) {
   const Interrupt interrupt;
   Discovery discovery = RunDiscovery(machine, command, measurements);
 
+  HoldFiles();
   const std::string record = Names(measurements.fit);
   const std::string validation = Names(measurements.unseen);
   const DiscoveryRun run{{CommandLine(), record, {{"mjdiag", MJDIAG_VERSION}}},

@@ -51,7 +51,7 @@ void RequireKnownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Fail(ExitStatus status, const std::string& message) {
-  RemoveEmptyOutput();
+  DiscardOutput();
   std::string line = message;
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fprintf(stderr, "mjdiag: %s\n", line.c_str());

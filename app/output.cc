@@ -1,11 +1,13 @@
 #include "app/output.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "mjdiag/report/page/page_file.h"
 #include "mjdiag/report/page/plot_library.h"
 #include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/folder_update.h"
 #include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
@@ -31,6 +33,8 @@ namespace {
 /// What PrepareOutput made, the outermost folder first.
 std::vector<std::filesystem::path> made_folders;
 
+std::optional<FolderUpdate> held_files;
+
 }  // namespace
 
 void PrepareOutput(const OutputOptions& options) {
@@ -44,7 +48,10 @@ void PrepareOutput(const OutputOptions& options) {
   MakeOutputFolder(options.folder);
 }
 
-void RemoveEmptyOutput() {
+void HoldFiles() { held_files.emplace(); }
+
+void DiscardOutput() {
+  held_files.reset();
   // Fails on a folder that has something in it, as it should.
   std::error_code ignored;
   for (; !made_folders.empty(); made_folders.pop_back()) {
@@ -54,9 +61,8 @@ void RemoveEmptyOutput() {
 
 namespace {
 
-/// Page and report of the folder, and what to say about them.
-std::string WritePageAndReport(const OutputOptions& options, const NamedPage& page) {
-  WritePage(options.folder, page.name, page.page);
+/// The report of the folder, and what to say about it.
+std::string MakeReport(const OutputOptions& options) {
   if (options.report) return "\nreport: " + WriteReport(options.folder).string() + "\n";
   return "\n`mjdiag report " + options.folder + "` makes a page of it\n";
 }
@@ -70,8 +76,15 @@ void Publish(const OutputOptions& options, const std::string& name,
       document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   std::string made;
   if (!options.folder.empty()) {
+    if (!held_files) HoldFiles();
     WriteTextFile(std::filesystem::path(options.folder) / (name + ".json"), dump);
-    if (page) made = WritePageAndReport(options, page());
+    if (page) {
+      const NamedPage named = page();
+      WritePage(options.folder, named.name, named.page);
+    }
+    held_files->Commit();
+    held_files.reset();
+    if (page) made = MakeReport(options);
   }
   if (std::fputs(options.json ? dump.c_str() : (text + made).c_str(), stdout) < 0 ||
       std::fflush(stdout) != 0) {
