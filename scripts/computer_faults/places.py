@@ -63,11 +63,9 @@ def small_disk(bench):
 def fill(place, room):
     """Leaves so many bytes."""
     filler = os.path.join(place, "filler")
-    with open(filler, "wb") as stream:
-        with contextlib.suppress(OSError):
-            while True:
-                stream.write(b"\0" * 4096)
-                stream.flush()
+    with contextlib.suppress(OSError), open(filler, "wb", buffering=0) as stream:
+        while stream.write(b"\0" * 4096):
+            pass
     with contextlib.suppress(OSError):
         os.truncate(filler, os.path.getsize(filler) - room)
 

@@ -5,7 +5,7 @@ import resource
 import shutil
 import subprocess
 
-from computer_faults.bench import Skipped, complaint, files_of, halves, leftovers
+from computer_faults.bench import UNLIKE, Skipped, complaint, files_of, halves, leftovers
 
 MEGABYTE = 1 << 20
 LIMITS = (60, 120, 240, 280, 320, 340, 360, 400, 440, 480, 520, 560, 600, 700, 900, 1200)
@@ -85,7 +85,8 @@ def decimal_commas(bench):
         answers = []
         for environment in ({**os.environ, "LC_ALL": "C"}, german):
             out = bench.fresh("some locale")
-            printed = bench.done(bench.command(name, "new", out), env=environment)
+            printed = UNLIKE.sub(b"", bench.done(bench.command(name, "new", out),
+                                                 env=environment))
             files = files_of(out)
             files.pop("study.log", None)  # says how long it took
             if name == "study --plan":
