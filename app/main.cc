@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 
 #include "app/command.h"
@@ -97,6 +98,8 @@ int Main(int argc, char** argv) {
     return Fail(ExitStatus::kBadInput, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     return Fail(ExitStatus::kBadInput, error.what());
+  } catch (const std::bad_alloc&) {
+    return Fail(ExitStatus::kNumericalFailure, "out of memory; expected more of it");
   } catch (const std::exception& error) {
     return Fail(ExitStatus::kNumericalFailure, error.what());
   }
