@@ -186,8 +186,8 @@ void RequireShapes(const std::string& file, const DiagnosisDesign& design) {
       prefilters.D.rows() == static_cast<Index>(design.bank.faults.size()) &&
       prefilters.B.rows() == prefilters.D.rows() * prefilters.order() &&
       prefilters.B.cols() == prefilters.D.cols() &&
-      (!design.limits.known ||
-       design.limits.estimates.size() == design.bank.faults.size()) &&
+      (design.limits.estimates.empty() ||
+       std::ssize(design.limits.estimates) == design.faults()) &&
       design.decimation > 0 && bank.sample_time > 0.0;
   if (!fits) {
     throw InputError(file, "shapes of filters, channels and faults do not fit",

@@ -115,8 +115,10 @@ def files_of(folder):
         for name in names:
             file = os.path.join(place, name)
             with open(file, "rb") as stream:
-                data = UNLIKE.sub(b"", stream.read())
-            if name.endswith(".mat"):
+                data = stream.read()
+            if name.endswith(".json"):
+                data = UNLIKE.sub(b"", data)
+            elif name.endswith(".mat"):
                 data = data[MAT_TEXT:]
             found[os.path.relpath(file, folder)] = hashlib.sha256(data).hexdigest()
     return {name: sum_ for name, sum_ in found.items() if not is_temporary(name)}
