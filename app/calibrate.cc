@@ -139,6 +139,7 @@ void RunCalibration(CalibrateCommand& command) {
     command.runs.progress = [&bar](double part) { bar.Show(part); };
     design = CalibratedFilters(calibrated, records, command.runs);
   }
+  HoldFiles();
   WriteCalibratedSetup(folder, setup_file, report.calibration, design);
   nlohmann::json document = CalibrationDocument(command, report);
   std::string text = CalibrationText(command, report);

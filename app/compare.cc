@@ -120,7 +120,7 @@ void AddCompare(CLI::App& app) {
       "--open-loop", options->open_loop,
       "Drive the actuators with the measured signals, whatever controllers "
       "the setup has");
-  command->add_option("--seed", options->seed, "Seed of the noise floor's simulation");
+  AddSeedOption(*command, options->seed, "Seed of the noise floor's simulation");
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);
   command->callback([options] { Compare(*options); });

@@ -91,6 +91,7 @@ void Discover(const DiscoverCommand& command) {
   const Interrupt interrupt;
   Discovery discovery = RunDiscovery(machine, command, measurements);
 
+  HoldFiles();
   const std::string record = Names(measurements.fit);
   const std::string validation = Names(measurements.unseen);
   const DiscoveryRun run{{CommandLine(), record, {{"mjdiag", MJDIAG_VERSION}}},
@@ -160,7 +161,7 @@ void AddDiscover(CLI::App& app) {
           "the best answer so far is given, if it has not settled before: the same on "
           "every machine")
       ->check(Within(kLeastBudget, kMostBudget));
-  command->add_option("--seed", options->search.seed, "Seed of the noise floor");
+  AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);
   command->callback([options] { Discover(*options); });

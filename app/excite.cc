@@ -147,6 +147,7 @@ void Excite(ExciteCommand& command) {
   }
   std::string text = ExcitationText(design);
   if (!command.output.folder.empty()) {
+    HoldFiles();
     WriteSetupFollowing(command.output.folder, command.machine.setup,
                         design.trajectory);
     text += "setup: " + command.output.folder + "/setup.toml\n";

@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 
 #include "app/command.h"
 #include "app/exit_status.h"
+#include "app/output.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
@@ -50,6 +52,7 @@ void RequireKnownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Fail(ExitStatus status, const std::string& message) {
+  DiscardOutput();
   std::string line = message;
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fprintf(stderr, "mjdiag: %s\n", line.c_str());
@@ -95,6 +98,8 @@ int Main(int argc, char** argv) {
     return Fail(ExitStatus::kBadInput, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     return Fail(ExitStatus::kBadInput, error.what());
+  } catch (const std::bad_alloc&) {
+    return Fail(ExitStatus::kNumericalFailure, "out of memory; expected more of it");
   } catch (const std::exception& error) {
     return Fail(ExitStatus::kNumericalFailure, error.what());
   }

@@ -1,11 +1,13 @@
 #include "app/output.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "mjdiag/report/page/page_file.h"
 #include "mjdiag/report/page/plot_library.h"
 #include "mjdiag/report/report.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/folder_update.h"
 #include "mjdiag/signals/text_file.h"
 
 namespace mjdiag::app {
@@ -26,16 +28,41 @@ void AddReportOption(CLI::App& command, OutputOptions& options) {
       ->needs("--out");
 }
 
+namespace {
+
+/// What PrepareOutput made, the outermost folder first.
+std::vector<std::filesystem::path> made_folders;
+
+std::optional<FolderUpdate> held_files;
+
+}  // namespace
+
 void PrepareOutput(const OutputOptions& options) {
   if (options.report) LoadPlotLibrary();
-  if (!options.folder.empty()) MakeOutputFolder(options.folder);
+  if (options.folder.empty()) return;
+  std::filesystem::path path;
+  for (const std::filesystem::path& part : std::filesystem::path(options.folder)) {
+    path /= part;
+    if (!std::filesystem::exists(path)) made_folders.push_back(path);
+  }
+  MakeOutputFolder(options.folder);
+}
+
+void HoldFiles() { held_files.emplace(); }
+
+void DiscardOutput() {
+  held_files.reset();
+  // Fails on a folder that has something in it, as it should.
+  std::error_code ignored;
+  for (; !made_folders.empty(); made_folders.pop_back()) {
+    std::filesystem::remove(made_folders.back(), ignored);
+  }
 }
 
 namespace {
 
-/// Page and report of the folder, and what to say about them.
-std::string WritePageAndReport(const OutputOptions& options, const NamedPage& page) {
-  WritePage(options.folder, page.name, page.page);
+/// The report of the folder, and what to say about it.
+std::string MakeReport(const OutputOptions& options) {
   if (options.report) return "\nreport: " + WriteReport(options.folder).string() + "\n";
   return "\n`mjdiag report " + options.folder + "` makes a page of it\n";
 }
@@ -49,8 +76,15 @@ void Publish(const OutputOptions& options, const std::string& name,
       document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   std::string made;
   if (!options.folder.empty()) {
+    if (!held_files) HoldFiles();
     WriteTextFile(std::filesystem::path(options.folder) / (name + ".json"), dump);
-    if (page) made = WritePageAndReport(options, page());
+    if (page) {
+      const NamedPage named = page();
+      WritePage(options.folder, named.name, named.page);
+    }
+    held_files->Commit();
+    held_files.reset();
+    if (page) made = MakeReport(options);
   }
   if (std::fputs(options.json ? dump.c_str() : (text + made).c_str(), stdout) < 0 ||
       std::fflush(stdout) != 0) {

@@ -35,6 +35,15 @@ void AddReportOption(CLI::App& command, OutputOptions& options);
 /// cannot be written to, or a report is wanted and the plot library is not installed.
 void PrepareOutput(const OutputOptions& options);
 
+/// From here to Publish, files wait beside their places: the folder is the old one till
+/// Publish makes it the new one.
+void HoldFiles();
+
+/// What a command that failed leaves behind is nothing: removes files that wait, then the
+/// folder that PrepareOutput made, and those above it that it made, as far as they are
+/// empty.
+void DiscardOutput();
+
 /// Writes `<folder>/<name>.json` and the page, if there is a folder, then the report if
 /// one is wanted, and prints either the document or the text. The results are on disk
 /// before the report is made, which other files of the folder may spoil.

@@ -227,6 +227,8 @@ void Render(RenderOptions options) {
     document["first_detection"] = detection ? nlohmann::json(*detection) : nullptr;
   }
   std::string text;
+  // Frames come into their folder by themselves.
+  if (!options.frames) HoldFiles();
   if (options.still) {
     document["amplification"] = RenderStill(machine.plant(), runs, options.clip.picture,
                                             *options.still, folder / "still.png");

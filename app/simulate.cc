@@ -112,6 +112,7 @@ void Simulate(const SimulateOptions& options) {
   document["real_time_factor"] = record.duration() / elapsed.count();
   std::string text = RunSummary(subject.setup(), subject, record, document);
   if (!options.output.folder.empty()) {
+    HoldFiles();
     const RecordFormat format = ParseRecordFormat(options.format);
     const auto file =
         std::filesystem::path(options.output.folder) / ("record" + Extension(format));

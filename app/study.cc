@@ -200,7 +200,7 @@ void AddStudy(CLI::App& app) {
       ->check(CLI::IsMember(presets));
   command->add_option("--runs", options->runs, "Monte-Carlo runs")
       ->check(CLI::Range(2, 1000000));
-  command->add_option("--seed", options->seed, "Seed of the first run");
+  AddSeedOption(*command, options->seed, "Seed of the first run");
   command->add_flag("--linear", options->linear,
                     "The linear plant, where a study has either");
   command->add_option("--duration", options->duration, "Of a long run, simulated [s]")

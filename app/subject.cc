@@ -121,9 +121,17 @@ void AddMotionOptions(CLI::App& command, MotionOptions& options) {
   command
       .add_option("--noise", options.noise_scale, "Factor on all sensor noise; 0: none")
       ->check(Within(0.0, kMostNoise));
-  command.add_option("--seed", options.seed, "Seed of the noise");
+  AddSeedOption(command, options.seed, "Seed of the noise");
   command.add_flag("--linear", options.linear,
                    "Run the linearised plant instead of the nonlinear one");
+}
+
+void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& words) {
+  command.add_option("--seed", seed, words)
+      ->check([](const std::string& text) -> std::string {
+        if (text.find('-') == text.npos) return "";
+        return "'" + text + "' is negative; expected a whole number from 0 on";
+      });
 }
 
 void RequireAsItIs(const MachineOptions& options, const std::string& written) {

@@ -48,6 +48,8 @@ CLI::Validator Within(double least, double most);
 
 void AddMachineOptions(CLI::App& command, MachineOptions& options);
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
+/// `--seed`, a whole number from 0 on; CLI11 itself would take -1 for 2^64 - 1.
+void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& words);
 
 /// For commands that write a setup from the one that is given. InputError where options
 /// change that. @param written  what they would not be in, "the calibrated setup"

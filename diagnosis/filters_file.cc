@@ -176,18 +176,29 @@ void RequireShapes(const std::string& file, const DiagnosisDesign& design) {
   const Index m =
       design.bank.residuals * (1 + static_cast<Index>(design.bank.faults.size()));
   const FilterBank& other = design.disturbance.filter;
-  const bool fits = design.bank.residuals > 0 && bank.D.rows() == m &&
-                    bank.D.cols() == nz && bank.B.rows() == m * bank.order() &&
-                    bank.B.cols() == nz && design.offset.size() == ny &&
-                    design.sensor_noise.size() == ny && other.D.cols() == nz &&
-                    other.B.rows() == other.D.rows() * other.order() &&
-                    other.D.rows() == 1 &&
-                    design.disturbance.prefilters.D.rows() ==
-                        static_cast<Index>(design.bank.faults.size()) &&
-                    design.decimation > 0 && bank.sample_time > 0.0;
+  const FilterBank& prefilters = design.disturbance.prefilters;
+  const bool fits =
+      design.bank.residuals > 0 && bank.D.rows() == m && bank.D.cols() == nz &&
+      bank.B.rows() == m * bank.order() && bank.B.cols() == nz &&
+      design.offset.size() == ny && design.sensor_noise.size() == ny &&
+      other.D.cols() == nz && other.B.rows() == other.D.rows() * other.order() &&
+      other.D.rows() == 1 &&
+      prefilters.D.rows() == static_cast<Index>(design.bank.faults.size()) &&
+      prefilters.B.rows() == prefilters.D.rows() * prefilters.order() &&
+      prefilters.B.cols() == prefilters.D.cols() &&
+      (design.limits.estimates.empty() ||
+       std::ssize(design.limits.estimates) == design.faults()) &&
+      design.decimation > 0 && bank.sample_time > 0.0;
   if (!fits) {
     throw InputError(file, "shapes of filters, channels and faults do not fit",
                      "a file that `mjdiag design` wrote");
+  }
+  // Work that grows with it is done before the first sample.
+  constexpr double kLongestStride = 100.0;  // s
+  if (design.decimation * bank.sample_time > kLongestStride) {
+    throw InputError(file,
+                     "stride of " + std::to_string(design.decimation) + " samples",
+                     "at most 100 s");
   }
 }
 

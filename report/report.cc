@@ -10,6 +10,7 @@
 #include "mjdiag/report/page/plot_library.h"
 #include "mjdiag/report/report_document.h"
 #include "mjdiag/report/run_folder.h"
+#include "mjdiag/signals/file_replacement.h"
 #include "mjdiag/signals/text_file.h"
 
 namespace mjdiag {
@@ -160,6 +161,7 @@ std::string ReportHtml(const Page& page) {
 std::filesystem::path WriteReport(const std::filesystem::path& folder) {
   const std::string html = ReportHtml(ReadRunFolder(folder));
   std::filesystem::path file = folder / "report.html";
+  RemoveAbandonedFiles(folder);
   WriteTextFile(file, html);
   return file;
 }

@@ -4,12 +4,17 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/folder_update.h"
 
 namespace mjdiag {
 namespace {
@@ -37,6 +42,15 @@ void RequireReplaceable(const fs::path& target) {
   }
 }
 
+void Rename(const fs::path& temporary, const fs::path& target) {
+  std::error_code error;
+  fs::rename(temporary, target, error);
+  if (error) {
+    throw InputError(target.string(), "cannot be replaced (" + error.message() + ")",
+                     "a writable file");
+  }
+}
+
 }  // namespace
 
 FileReplacement::FileReplacement(fs::path target)
@@ -56,13 +70,50 @@ FileReplacement::~FileReplacement() {
 }
 
 void FileReplacement::Commit() {
-  std::error_code error;
-  fs::rename(temporary_, target_, error);
-  if (error) {
-    throw InputError(target_.string(), "cannot be replaced (" + error.message() + ")",
-                     "a writable file");
+  if (FolderUpdate* update = FolderUpdate::Current()) {
+    update->waiting_.emplace_back(temporary_, target_);
+  } else {
+    Rename(temporary_, target_);
   }
   temporary_.clear();
+}
+
+void RemoveAbandonedFiles(const fs::path& folder) {
+  // As TemporaryName makes them.
+  static const std::regex pattern(R"(\..*\.(\d{1,9})-\d+\.part(\.[^.]*)?)");
+  std::error_code ignored;
+  std::vector<fs::path> abandoned;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    std::smatch match;
+    if (!std::regex_match(name, match, pattern)) continue;
+    const bool is_gone = kill(std::stoi(match[1]), 0) != 0 && errno == ESRCH;
+    const auto age = fs::file_time_type::clock::now() - entry.last_write_time(ignored);
+    if (is_gone && age > std::chrono::minutes(1)) abandoned.push_back(entry.path());
+  }
+  for (const fs::path& file : abandoned) fs::remove(file, ignored);
+}
+
+FolderUpdate*& FolderUpdate::Current() {
+  thread_local FolderUpdate* current = nullptr;
+  return current;
+}
+
+FolderUpdate::FolderUpdate() : outer_(Current()) { Current() = this; }
+
+FolderUpdate::~FolderUpdate() {
+  Current() = outer_;
+  std::error_code ignored;
+  for (const auto& [temporary, target] : waiting_) fs::remove(temporary, ignored);
+}
+
+void FolderUpdate::Commit() {
+  if (outer_ != nullptr) {
+    outer_->waiting_.insert(outer_->waiting_.end(), waiting_.begin(), waiting_.end());
+  } else {
+    for (const auto& [temporary, target] : waiting_) Rename(temporary, target);
+  }
+  waiting_.clear();
 }
 
 }  // namespace mjdiag

@@ -19,12 +19,17 @@ class FileReplacement {
 
   /// Where to write: in the target's folder, with the target's extension.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Renames the closed temporary file to the target. InputError if that fails.
+  /// Renames the closed temporary file to the target, at once or with the other files of
+  /// a FolderUpdate. InputError if that fails.
   void Commit();
 
  private:
   std::filesystem::path target_;
   std::filesystem::path temporary_;
 };
+
+/// Removes temporary files whose writer was killed from a folder: of a process that is
+/// gone, and untouched for a minute, as the process may run on another computer.
+void RemoveAbandonedFiles(const std::filesystem::path& folder);
 
 }  // namespace mjdiag

@@ -1,12 +1,16 @@
 #include "mjdiag/signals/mat_file.h"
 
+#include <fcntl.h>
 #include <matio.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <string_view>
@@ -316,6 +320,25 @@ bool WriteVariables(mat_t* file, const Record& record) {
   return good;
 }
 
+/// HDF5 crashes where matio closes a file that the disk had no room for. What is asked
+/// for here is given back when matio makes the file anew, and is there for it.
+void RequireRoom(const std::filesystem::path& file, const std::string& temporary,
+                 const Record& record) {
+  constexpr off_t kHeads = 1 << 17;      // of the file, units and names
+  constexpr off_t kOfChannel = 1 << 14;  // besides its samples
+  const auto channels = static_cast<off_t>(record.channels().size()) + 1;
+  const off_t bytes =
+      kHeads + channels * (kOfChannel + static_cast<off_t>(sizeof(double)) *
+                                            static_cast<off_t>(record.samples()));
+  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
+  const int error = descriptor < 0 ? errno : posix_fallocate(descriptor, 0, bytes);
+  if (descriptor >= 0) close(descriptor);
+  if (error == 0) return;
+  throw InputError(file.string(),
+                   std::string("cannot be written (") + std::strerror(error) + ")",
+                   "space for " + std::to_string(bytes) + " bytes");
+}
+
 }  // namespace
 
 std::unique_ptr<RecordSource> OpenMat(const std::filesystem::path& file) {
@@ -330,6 +353,7 @@ void WriteMat(const std::filesystem::path& file, const Record& record,
   FileReplacement replacement(file);
   const std::string temporary = replacement.temporary().string();
   const bool version5 = format == RecordFormat::kMat5;
+  if (!version5) RequireRoom(file, temporary, record);
   FilePtr mat(
       Mat_CreateVer(temporary.c_str(), nullptr, version5 ? MAT_FT_MAT5 : MAT_FT_MAT73));
   bool good = mat && WriteVariables(mat.get(), record);

@@ -61,6 +61,7 @@ void MakeOutputFolder(const fs::path& folder) {
                      "a writable folder");
   }
   const FileReplacement probe(folder / "probe");
+  RemoveAbandonedFiles(folder);
 }
 
 }  // namespace mjdiag

@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/extension/setup_following.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/folder_update.h"
 #include "mjdiag/signals/text_file.h"
 
 namespace mjdiag {
@@ -34,7 +35,7 @@ void WriteBeside(const fs::path& folder, const fs::path& file,
   for (const auto& entry : fs::directory_iterator(file.parent_path())) {
     const fs::path name = entry.path().filename();
     if (!entry.is_regular_file() || name == file.filename()) continue;
-    fs::copy_file(entry.path(), folder / name, fs::copy_options::overwrite_existing);
+    WriteTextFile(folder / name, ReadTextFile(entry.path()));
   }
   WriteTextFile(folder / "setup.toml", text);
 }
@@ -44,11 +45,13 @@ void WriteBeside(const fs::path& folder, const fs::path& file,
 fs::path WriteExtendedSetup(const fs::path& folder, const fs::path& setup,
                             const Machine& machine, const Changes& changes) {
   MakeOutputFolder(folder);
+  FolderUpdate update;
   const std::string plant =
       ExtendMjcf(machine.setup().plant, machine.plant(), changes, folder);
   const std::string text = ExtendSetup(setup, machine.setup(), changes.effects, folder);
   WriteTextFile(folder / "plant.xml", plant);
   WriteTextFile(folder / "setup.toml", text);
+  update.Commit();
   return folder / "plant.xml";
 }
 
@@ -56,15 +59,19 @@ void WriteCalibratedSetup(const fs::path& folder, const fs::path& setup,
                           const Calibration& calibration,
                           const DiagnosisDesign& filters) {
   const fs::path file = FileForOther(setup, folder);
+  FolderUpdate update;
   WriteBeside(folder, file, CalibratedSetup(file, kCalibrationFile));
   WriteCalibration(folder / kCalibrationFile, calibration);
   WriteFilters(folder / kCalibratedFilters, filters);
+  update.Commit();
 }
 
 void WriteSetupFollowing(const fs::path& folder, const fs::path& setup,
                          const Trajectory& trajectory) {
   const fs::path file = FileForOther(setup, folder);
+  FolderUpdate update;
   WriteBeside(folder, file, SetupFollowing(file, trajectory));
+  update.Commit();
 }
 
 }  // namespace mjdiag

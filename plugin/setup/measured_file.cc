@@ -1,5 +1,7 @@
 #include "mjdiag/plugin/setup/measured_file.h"
 
+#include "mjdiag/signals/error.h"
+
 namespace mjdiag {
 namespace {
 
@@ -13,6 +15,17 @@ Course CourseOf(Hold hold) {
       return Course::kSmooth;
   }
   return Course::kHeld;
+}
+
+/// Named by its file, as one of several records; what a command wants of it besides, it
+/// sees later. A column without a unit may be one that the command does not want.
+void RequireUnit(const std::filesystem::path& file, const Record& record,
+                 const std::string& name, const std::string& unit) {
+  const Channel* channel = record.Find(name);
+  if (channel == nullptr || channel->unit == unit || channel->unit == "1") return;
+  throw InputError(file.string(),
+                   "channel '" + name + "' is in '" + channel->unit + "'",
+                   unit + "; a column under [record.channels] may give the unit");
 }
 
 }  // namespace
@@ -38,7 +51,14 @@ MeasuredFile ReadMeasured(const Setup& setup, const std::filesystem::path& file)
     resampling.courses[name] = Course::kSwitched;
   }
   resampling.readings = ReadingsOf(setup);
-  return ReadMeasuredFile(file, setup.record, resampling);
+  MeasuredFile measured = ReadMeasuredFile(file, setup.record, resampling);
+  for (const SensorSetup& sensor : setup.channels.sensors) {
+    RequireUnit(file, measured.record, sensor.channel, sensor.unit);
+  }
+  for (const ActuatorSetup& actuator : setup.channels.actuators) {
+    RequireUnit(file, measured.record, actuator.channel, actuator.unit);
+  }
+  return measured;
 }
 
 }  // namespace mjdiag

@@ -424,6 +424,9 @@ MotionDesign DesignMotion(const Machine& machine, const MotionDesignOptions& opt
       throw InputError("limits of '" + axis + "'",
                        std::string(name) + " is not above 0", "a number > 0");
     }
+    if (limits.lowest < limits.highest) continue;
+    throw InputError("limits of '" + axis + "'", "lowest is not below highest",
+                     "room to move in");
   }
   return Designer(machine, options).Run();
 }
