@@ -106,14 +106,19 @@ def still(x):
     return x
 
 
-def condition_of(compute, exact, scale=None, draws=DRAWS):
+def condition_of(compute, exact, scale=None):
     """In roundings, the largest change of `compute(shaker)` over some draws."""
+    return spread_of([compute(Shaker(seed)) for seed in range(DRAWS)], exact, scale)
+
+
+def spread_of(shaken, exact, scale=None):
+    """The same of results that are there."""
     exact = flat(exact)
     scales = flat(scale) if scale is not None else [abs(x) for x in exact]
     if len(scales) == 1:
         scales = scales * len(exact)
-    return max(relative(a, b, s) for seed in range(draws)
-               for a, b, s in zip(flat(compute(Shaker(seed))), exact, scales)) / ROUNDING
+    return max(relative(a, b, s) for one in shaken
+               for a, b, s in zip(flat(one), exact, scales)) / ROUNDING
 
 
 SHAKEN = "moving every number on the way by a rounding"

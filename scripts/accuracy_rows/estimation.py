@@ -209,32 +209,40 @@ def information_bound(design, u, shake=still):
             [mpmath.sqrt(inverse[i, i]) / mpf_long(s) for i, s in enumerate(size)]]
 
 
+def twin_tick(theta, shake):
+    """Map of a control tick of the voice coil: of position, velocity, and what they change
+    by with the logarithms of damper, spring and coil, and of the current."""
+    m, d, k, c = shake(np.array([LONG("0.12"), 4, 900, 12]))
+    d, k, c = np.exp(np.array([long_of(x) for x in theta])) * np.array([d, k, c])
+    h = LONG("0.0001")
+    columns = []
+    for start in np.eye(9, dtype=LONG):  # the last one a unit of current
+        q, v, dq, dv, i = start[0], start[1], start[2:5], start[5:8], start[8]
+        for _ in range(2):
+            a = (c * i - d * v - k * q) / (m + h * d)
+            force = np.array([-d * v - h * d * a, -k * q, c * i])
+            da = (force - d * dv - k * dq) / (m + h * d)
+            v, dv = v + h * a, dv + h * da
+            q, dq = q + h * v, dq + h * dv
+        columns.append(np.concatenate([[q, v], dq, dv]))
+    return shake(np.array(columns).T)
+
+
 def twin_sums(reading, current, theta=(0, 0, 0), shake=still):
     """One pass of a twin of the voice coil about `theta`, logarithms of what damper, spring
     and coil are over what they were: estimate, and information H, from means over blocks of
     8 ticks (docs/theory.md, Estimation by a twin)."""
-    theta = np.array([long_of(x) for x in theta])
-    m, d, k, c = shake(np.array([LONG("0.12"), 4, 900, 12]))
-    d, k, c = np.exp(theta) * np.array([d, k, c])
-    h, sd, block = LONG("0.0001"), LONG(5e-8), 8
-    mass = m + h * d
-    # Position, velocity, and what they change by with the logarithms of d, k and c.
-    q, v = LONG(0), LONG(0)
-    dq, dv = np.zeros(3, LONG), np.zeros(3, LONG)
-    e, psi = [], []
+    tick, sd, block = twin_tick(theta, shake), LONG(5e-8), 8
+    x, e, psi = np.zeros(8, LONG), [], []
     for y, i in zip(reading, current):
-        e.append(LONG(y) - q)
-        psi.append(dq)
-        for _ in range(2):
-            a = (c * LONG(i) - d * v - k * q) / mass
-            force = np.array([-d * v - h * d * a, -k * q, c * LONG(i)])
-            da = (force - d * dv - k * dq) / mass
-            v, dv = v + h * a, shake(dv + h * da)
-            q, dq = q + h * v, shake(dq + h * dv)
+        e.append(LONG(y) - x[0])
+        psi.append(x[2:5])
+        x = shake(tick[:, :8] @ x + tick[:, 8] * LONG(i))
     n = len(e) // block * block
     e = shake(np.array(e[:n]).reshape(-1, block).mean(axis=1))
     psi = np.array(psi[:n]).reshape(-1, block, 3).mean(axis=1)
     weight, prior = block / sd ** 2, LONG(100)  # a standard deviation of 0.1
+    theta = np.array([long_of(t) for t in theta])
     H = mp_of(shake(psi.T @ psi * weight + np.eye(3, dtype=LONG) * prior))
     g = mp_of(shake((psi.T @ e * weight - prior * theta)[:, None]))
     return matrix_list(mpmath.lu_solve(H, g), theta), H
@@ -265,7 +273,7 @@ def twin():
     noise it is where passes end, one about what the one before has said."""
     import mjdiag
     machine = mjdiag.Machine(str(MJCF / "voice_coil"))
-    current = 0.2 * wave(4000, 5000)
+    current = 0.2 * wave(5000, 5000)
     push = mjdiag.Record({"i": current}, {"i": "A"}, 1 / 5000)
     source = "`Machine.diagnose(record, linear=True)`"
     rows = []

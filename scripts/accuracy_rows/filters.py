@@ -211,15 +211,31 @@ def bank_of(numerators, order, cutoff):
     return bank
 
 
-def noise_covariance(bank, noise, shake=still, outputs=None):
-    """Of outputs under white noise of the sensors: sums over impulse responses."""
-    total = LONG(0)
-    outputs = outputs or list(range(bank.outputs))
+def noise_covariance(bank, noise):
+    """Of all outputs under white noise of the sensors: sums over impulse responses."""
+    total, outputs = LONG(0), list(range(bank.outputs))
     for i, sd in enumerate(noise):
         impulse = np.zeros((bank.B.shape[1], 6000), LONG)
         impulse[i, 0] = sd
-        h = bank.chain(outputs, impulse, shake)
+        h = bank.chain(outputs, impulse)
         total = total + h @ h.T
+    return total
+
+
+def residual_variance(bank, noise, shake=still):
+    """Of the residual: its impulse response by powers of the stages' matrix."""
+    order, g = bank.order, long_of(bank.gain)
+    A = np.eye(order, dtype=LONG) + np.diag(np.full(order - 1, g), -1)
+    A[:, -1] -= g * np.array([long_of(x) for x in bank.feedback])
+    A = shake(A)
+    B = shake(bank.B.astype(LONG).reshape(order, bank.outputs, -1)[:, 0, :3])
+    sd = np.array(noise, LONG)
+    total = np.sum((bank.D[0, :3] * sd) ** 2)
+    answer = np.zeros(order, LONG)
+    answer[-1] = 1
+    for _ in range(6000):
+        total += np.sum((answer @ B * sd) ** 2)
+        answer = answer @ A
     return total
 
 
@@ -262,14 +278,12 @@ def nulling():
     covariance = noise_covariance(bank_of(basis, 7, 50), [2e-8] * 3)
     spread = np.linalg.eigvalsh(covariance.astype(float))
     condition = float(np.sqrt(spread[-1] / spread[0]))
-    filters, noise = Bank(design["filters"]), design["sensor_noise"]
-
-    def variance(shake=still):
-        return noise_covariance(filters, noise, shake, [0])[0, 0]
-
+    filters = Bank(design["filters"])
+    variance = residual_variance(filters, design["sensor_noise"])
     rows = [Row(PART, "variance of the residual's noise: 1", "`design`: `filters`",
-                "sum over impulse responses in long double", 1.0, variance(),
-                condition_of(variance, variance()), SHAKEN)]
+                "sum over the impulse response in long double", 1.0, variance,
+                condition_of(lambda shake: residual_variance(
+                    filters, design["sensor_noise"], shake), variance), SHAKEN)]
     return [*rows, Row(PART, "the residual is blind to the healthy machine", "`design`: `rows`",
                 "sum N_y,i C A^i = 0 and the rows of u, in 50 digits", ours,
                 [0] * len(ours), condition, "root of that of the noise of all relations",
