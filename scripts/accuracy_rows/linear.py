@@ -2,6 +2,7 @@
 
 import mpmath
 import numpy as np
+import scipy.linalg
 
 from .common import (MJCF, SHAKEN, ROUNDING, Row, ask, condition_of, flat, matrix, mpf,
                      setup_of, still)
@@ -142,4 +143,54 @@ def tick():
     return rows
 
 
-ROWS = [bonder_matrices, modes, tick]
+def closed_loop():
+    """Largest eigenvalue of the loop of the printed matrices and the setup's feedback."""
+    said = ask("linearize", "--setup", MJCF / "ab383")
+    setup = setup_of("ab383")
+    M, D, K, Gamma = model_of(said)
+    A, B = tick_map(M, D, K, Gamma, mpf(1) / 32000, 4)
+    C = matrix(said["b"]).T
+    n = M.rows
+    orders = [len(axis["feedback"]["denominator"]) - 1 for axis in setup["axes"].values()]
+    closed = mpmath.zeros(2 * n + sum(orders))
+    closed[:2 * n, :2 * n] = A
+    first = 2 * n
+    for j, (axis, order) in enumerate(zip(setup["axes"].values(), orders)):
+        a = [mpf(x) for x in axis["feedback"]["denominator"]]
+        b = [mpf(x) for x in axis["feedback"]["numerator"]]
+        gain = mpf(axis["drive_gain"])
+        # States of a chain of delays, observable form: the error drives all of them.
+        drive = [b[i + 1] - a[i + 1] * b[0] for i in range(order)]
+        for i in range(2 * n):
+            for k in range(n):
+                closed[i, k] -= gain * B[i, j] * b[0] * C[j, k]
+            closed[i, first] += gain * B[i, j]
+        for i in range(order):
+            for k in range(n):
+                closed[first + i, k] -= drive[i] * C[j, k]
+            closed[first + i, first] -= a[i + 1]
+            if i + 1 < order:
+                closed[first + i, first + i + 1] += 1
+        first += order
+    with mpmath.workdps(34):
+        values, left, right = mpmath.eig(closed, left=True, right=True)
+    i = max(range(len(values)), key=lambda k: abs(values[k]))
+    y, x = left[i, :], right[:, i]
+    # In units of its own, as balancing finds them.
+    _, (units, _) = scipy.linalg.matrix_balance(
+        np.array(closed.tolist(), float), permute=False, separate=True)
+    units = [mpf(u) for u in units]
+    norm = mpmath.norm([units[c] / units[r] * closed[r, c] for r in range(closed.rows)
+                        for c in range(closed.cols)])
+    condition = norm * mpmath.norm([y[r] * units[r] for r in range(len(units))]) \
+        * mpmath.norm([x[r] / units[r] for r in range(len(units))]) \
+        / (abs((y * x)[0]) * abs(values[i]))
+    return [Row(PART, "largest eigenvalue of the closed loop",
+                "`linearize`: `closed_loop.largest_eigenvalue`",
+                "mpmath.eig of an own loop", said["closed_loop"]["largest_eigenvalue"],
+                abs(values[i]), condition,
+                "norm of the loop's matrix, balanced, over the eigenvalue, times those of "
+                "the eigenvectors")]
+
+
+ROWS = [bonder_matrices, modes, tick, closed_loop]
