@@ -10,7 +10,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = pathlib.Path(os.environ.get("MJDIAG_BUILD") or ROOT / "build" / "release")
-PROGRAM = BUILD / "app" / "mjdiag"
+PROGRAM = os.environ.get("MJDIAG_COMMAND") or BUILD / "app" / "mjdiag"
 MJCF = ROOT / "mjcf"
 ROUNDING = 2.0 ** -53  # the largest of one operation
 LONG = np.longdouble

@@ -140,7 +140,36 @@ def tick():
                         "power of the step's matrix in 50 digits",
                         scaled(matrix(said.A), matrix(said.B)), theirs, condition, SHAKEN,
                         scale=scale))
+        rows.append(continuous(linear, name, arguments))
     return rows
+
+
+def continuous(linear, name, arguments):
+    """The same without ticks."""
+    M, D, K, Gamma = arguments
+    n = M.rows
+    inverse = mpmath.inverse(M)
+    root = [mpmath.sqrt(M[i, i]) for i in range(n)]
+
+    def scaled(parts):
+        return [[root[i] * part[i, j] / (root[j] if part.cols == n else 1)
+                 for i in range(n) for j in range(part.cols)] for part in parts]
+
+    said = linear.state_space(continuous=True)
+    A, B = matrix(said.A), matrix(said.B)
+    theirs = scaled([-inverse * K, -inverse * D, inverse * Gamma])
+    scale = [[max(map(abs, part))] * len(part) for part in theirs]
+    # Of the masses, over those of the joints alone.
+    even = mpmath.matrix(n, n)
+    for i in range(n):
+        for j in range(n):
+            even[i, j] = M[i, j] / root[i] / root[j]
+    condition = mpmath.mnorm(even, "f") * mpmath.mnorm(mpmath.inverse(even), "f")
+    return Row(PART, f"continuous state space, {name}",
+               "`Machine.linearize().state_space(continuous=True)`",
+               "inverse of M in 50 digits",
+               scaled([A[n:, :n], A[n:, n:], B[n:, :]]), theirs, condition,
+               "of M, its norm times that of its inverse", scale=scale)
 
 
 def closed_loop():

@@ -141,17 +141,19 @@ def linear_runs():
 
 
 def integrated(snap, number, shake=still):
-    """Position, velocity and acceleration of a snap that is held over ticks of 1/8000 s."""
-    tick, state, out = number(1) / 8000, [number(0)] * 4, []
-    for s in snap:
+    """Position, velocity and acceleration of a snap that is held over ticks of 1/8000 s;
+    shaken where it changes, for a phase is a polynomial of its own."""
+    tick, state, out, before = number(1) / 8000, [number(0)] * 4, [], 0.0
+    for held in snap:
+        if shake is not still and held != before:
+            state = list(shake(np.array(state)))
+        before = held
         out.append(state[:3])
         p, v, a, j = state
-        s = number(float(s))
+        s = number(float(held))
         state = [p + tick * (v + tick / 2 * (a + tick / 3 * (j + tick / 4 * s))),
                  v + tick * (a + tick / 2 * (j + tick / 3 * s)),
                  a + tick * (j + tick / 2 * s), j + tick * s]
-        if shake is not still:
-            state = list(shake(np.array(state)))
     return out
 
 

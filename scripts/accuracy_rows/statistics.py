@@ -151,18 +151,16 @@ def mismatch():
     keys = ("rms", "mae", "peak", "fit_percent", "relative_error_percent")
 
     def figures(shake=still):
-        return [figures_of(np.asarray(shake(y.astype(LONG))),
-                           shake(y.astype(LONG)) - shake(clean.astype(LONG)))
-                for y in records]
+        return [figures_of(y.astype(LONG), shake(y.astype(LONG) - clean)) for y in records]
 
     def probabilities(shake=still):
         draws = [np.asarray(shake(y.astype(LONG)) - shake(clean.astype(LONG)), float)
                  for y in noisy]
         return [noise_probability(float(row[0]), channel["noise_floor"], draws)
-                for row, channel in zip(figures(shake), channels)]
+                for row, channel in zip(figures(), channels)]
 
     return [Row(PART, "mismatch: rms, mean, peak, fit, relative error",
-                "`compare`: `channels`", "numpy, of an own difference",
+                "`compare`: `channels`", "numpy, of the same simulation",
                 [[channel[key] for key in keys] for channel in channels], figures(),
                 condition_of(figures, figures()), SHAKEN),
             Row(PART, "probabilities that a mismatch is noise: F and t",
