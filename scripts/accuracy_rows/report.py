@@ -8,7 +8,7 @@ from .common import BUILD
 
 # Modules in the order of the document.
 PARTS = ("linear", "runs", "filters", "spectra", "tones", "estimation", "statistics",
-         "files")
+         "features", "files")
 
 # Sections of docs/theory.md, or other pages, that have the formula of an entry.
 SECTIONS = {
@@ -32,6 +32,7 @@ SECTIONS = {
     "intervals": "datasets.md",
     "usual_estimates": "Estimation from residuals",
     "mismatch": "Comparing with a measurement",
+    "table": "The data-driven method",
     "round_trips": "python.md, Records",
     "sobol": "datasets.md, The plan",
     "grids": "datasets.md, The plan",
