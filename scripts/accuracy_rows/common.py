@@ -133,6 +133,14 @@ def ask(*words, status=(0,)):
     return json.loads(done.stdout)
 
 
+def diagnosed(design, record, *options):
+    """What the command says of a record of the bonder with filters that are there."""
+    filters = pathlib.Path(record).parent / "filters.json"
+    filters.write_text(json.dumps(design), encoding="utf-8")
+    return ask("diagnose", "--setup", MJCF / "ab383", "--linear", *options, "--filters",
+               filters, "--record", record, status=(0, 1))
+
+
 def read_csv(file):
     """Channels of a record, by Python's own reading of numbers."""
     with open(file, encoding="utf-8") as lines:

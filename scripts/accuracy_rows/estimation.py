@@ -3,16 +3,16 @@
 import functools
 import pathlib
 import tempfile
+import xml.etree.ElementTree
 
 import mpmath
 import numpy as np
 
-from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, long_of, matrix, mpf,
-                     read_csv, still)
+from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, diagnosed, long_of,
+                     matrix, mpf, read_csv, still)
 from .filters import Bank, signals_of
 from .linear import model_of
 from .mechanics import tick_map
-from .runs import wave
 
 PART = "Estimation"
 SHORT = ("--set", 'default_trajectory="xyz"', "--set", "trajectories.xyz.duration=0.3")
@@ -104,11 +104,7 @@ def from_residuals():
         ask("simulate", "--setup", BONDER, "--linear", *quiet, "--fault", "zeta_x=1.02",
             "eta_y=0.99", "gamma=0.01", "--out", folder)
         record = read_csv(file := pathlib.Path(folder) / "record.csv")
-        filters = pathlib.Path(folder) / "filters.json"
-        import json
-        filters.write_text(json.dumps(design), encoding="utf-8")
-        said = ask("diagnose", "--setup", BONDER, "--linear", *quiet, "--filters", filters,
-                   "--record", file, status=(0, 1))
+        said = diagnosed(design, file, *quiet)
     ours = [fault["deviation"] for fault in said["faults"]]
 
     def estimate(shake=still):
@@ -151,39 +147,44 @@ def bound():
     return rows
 
 
+def faults_of_plant(D, Gamma):
+    """Of every fault parameter its kind, and what it is a factor of: of the dampers, of the
+    springs, of the motors' forces."""
+    root = xml.etree.ElementTree.parse(BONDER / "plant.xml").getroot()
+    joints = [joint for joint in root.iter("joint") if joint.get("name")]
+    names = [joint.get("name") for joint in joints]
+    motors = [motor.get("name") for motor in root.find("actuator")]
+    faults = []
+    for text in root.find("custom").findall("text"):
+        kind, *of = text.get("data").split()
+        d, k, gamma = (mpmath.zeros(*size) for size in (
+            (D.rows, D.rows), (D.rows, D.rows), (D.rows, Gamma.cols)))
+        for name in of:
+            if kind == "gear":
+                j = motors.index(name)
+                gamma[:, j] = Gamma[:, j]
+                continue
+            j = names.index(name)
+            d[j, j] = D[j, j] if kind == "damping" else 0
+            k[j, j] = mpf(joints[j].get("stiffness", "0")) if kind == "stiffness" else 0
+        faults.append((kind, d, k, gamma))
+    return faults
+
+
 @functools.lru_cache(maxsize=None)
 def worn_maps():
     """Maps of a tick of the bonder with each fault parameter changed by -c and +c."""
-    import xml.etree.ElementTree
-    root = xml.etree.ElementTree.parse(BONDER / "plant.xml").getroot()
     said = ask("linearize", "--setup", BONDER)
     M, D, K, Gamma = model_of(said)
-    joints = [joint.get("name") for joint in root.iter("joint") if joint.get("name")]
-    stiffness = {joint.get("name"): mpf(joint.get("stiffness", "0"))
-                 for joint in root.iter("joint")}
-    motors = [motor.get("name") for motor in root.find("actuator")]
     step = mpf(1) / 32000
-    b = long_of(matrix(said["b"]).T)
     maps = []
-    for text in root.find("custom").findall("text"):
-        kind, *names = text.get("data").split()
-        c = mpf(0.01 if "beta" in text.get("name") else 1e-3)
-        pair = []
-        for change in (-c, c):
-            d, k, gamma = D.copy(), K.copy(), Gamma.copy()
-            for name in names:
-                if kind == "damping":
-                    d[joints.index(name), joints.index(name)] *= 1 + change
-                elif kind == "stiffness":
-                    k[joints.index(name), joints.index(name)] += change * stiffness[name]
-                else:
-                    j = motors.index(name)
-                    for i in range(gamma.rows):
-                        gamma[i, j] *= 1 + change
-            pair.append([long_of(x) for x in tick_map(M, d, k, gamma, step, 4)])
-        maps.append((c, pair))
+    for kind, d, k, gamma in faults_of_plant(D, Gamma):
+        c = mpf(0.01 if kind == "stiffness" else 1e-3)  # setup.toml, magnitudes
+        maps.append((c, [[long_of(x) for x in tick_map(
+            M, D + change * d, K + change * k, Gamma + change * gamma, step, 4)]
+            for change in (-c, c)]))
     healthy = [long_of(x) for x in tick_map(M, D, K, Gamma, step, 4)]
-    return maps, healthy, b
+    return maps, healthy, long_of(matrix(said["b"]).T)
 
 
 def readings(tick, b, u, shake=still):
@@ -209,101 +210,4 @@ def information_bound(design, u, shake=still):
             [mpmath.sqrt(inverse[i, i]) / mpf_long(s) for i, s in enumerate(size)]]
 
 
-def twin_tick(theta, shake):
-    """Map of a control tick of the voice coil: of position, velocity, and what they change
-    by with the logarithms of damper, spring and coil, and of the current."""
-    m, d, k, c = shake(np.array([LONG("0.12"), 4, 900, 12]))
-    d, k, c = np.exp(np.array([long_of(x) for x in theta])) * np.array([d, k, c])
-    h = LONG("0.0001")
-    columns = []
-    for start in np.eye(9, dtype=LONG):  # the last one a unit of current
-        q, v, dq, dv, i = start[0], start[1], start[2:5], start[5:8], start[8]
-        for _ in range(2):
-            a = (c * i - d * v - k * q) / (m + h * d)
-            force = np.array([-d * v - h * d * a, -k * q, c * i])
-            da = (force - d * dv - k * dq) / (m + h * d)
-            v, dv = v + h * a, dv + h * da
-            q, dq = q + h * v, dq + h * dv
-        columns.append(np.concatenate([[q, v], dq, dv]))
-    return shake(np.array(columns).T)
-
-
-def twin_sums(reading, current, theta=(0, 0, 0), shake=still):
-    """One pass of a twin of the voice coil about `theta`, logarithms of what damper, spring
-    and coil are over what they were: estimate, and information H, from means over blocks of
-    8 ticks (docs/theory.md, Estimation by a twin)."""
-    tick, sd, block = twin_tick(theta, shake), LONG(5e-8), 8
-    x, e, psi = np.zeros(8, LONG), [], []
-    for y, i in zip(reading, current):
-        e.append(LONG(y) - x[0])
-        psi.append(x[2:5])
-        x = shake(tick[:, :8] @ x + tick[:, 8] * LONG(i))
-    n = len(e) // block * block
-    e = shake(np.array(e[:n]).reshape(-1, block).mean(axis=1))
-    psi = np.array(psi[:n]).reshape(-1, block, 3).mean(axis=1)
-    weight, prior = block / sd ** 2, LONG(100)  # a standard deviation of 0.1
-    theta = np.array([long_of(t) for t in theta])
-    H = mp_of(shake(psi.T @ psi * weight + np.eye(3, dtype=LONG) * prior))
-    g = mp_of(shake((psi.T @ e * weight - prior * theta)[:, None]))
-    return matrix_list(mpmath.lu_solve(H, g), theta), H
-
-
-def matrix_list(change, theta):
-    return [mpf_long(t) + c for t, c in zip(theta, change)]
-
-
-def deviations(theta):
-    return [mpmath.expm1(t) for t in theta]
-
-
-def spreads(H):
-    covariance = mpmath.inverse(H)
-    return [mpmath.sqrt(covariance[i, i]) for i in range(H.rows)]
-
-
-def seen_sizes(H):
-    """A fault is named from here on: 1e-4 over all faults, beside others that are healthy
-    (docs/theory.md, Names)."""
-    sigmas = mpmath.sqrt(2) * mpmath.erfinv(1 - mpf(1e-4) / H.rows)
-    return [mpmath.expm1(sigmas / mpmath.sqrt(H[i, i])) for i in range(H.rows)]
-
-
-def twin():
-    """Without noise the estimate is healthy, and the last pass was about just that; with
-    noise it is where passes end, one about what the one before has said."""
-    import mjdiag
-    machine = mjdiag.Machine(str(MJCF / "voice_coil"))
-    current = 0.2 * wave(5000, 5000)
-    push = mjdiag.Record({"i": current}, {"i": "A"}, 1 / 5000)
-    source = "`Machine.diagnose(record, linear=True)`"
-    rows = []
-
-    def diagnosed(noise):
-        record = machine.simulate(seed=3, replay=push, noise=noise)
-        said = machine.diagnose(record, linear=True).to_dict()["faults"]
-        return record["x"], {key: [fault[key] for fault in said]
-                             for key in ("deviation", "sd", "alarm")}
-
-    reading, said = diagnosed(0.0)
-    for what, key, of in (("standard deviations", "sd", spreads),
-                          ("sizes that are seen", "alarm", seen_sizes)):
-        exact = of(twin_sums(reading, current)[1])
-        rows.append(Row(PART, f"twin of the voice coil: {what}", f"{source}: `{key}`",
-                        "own sums over blocks, in long double", said[key], exact,
-                        condition_of(lambda shake, of=of: of(
-                            twin_sums(reading, current, shake=shake)[1]), exact), SHAKEN))
-    reading, said = diagnosed(1.0)
-    theta = (0, 0, 0)
-    for _ in range(2):
-        theta, H = twin_sums(reading, current, theta)
-    scale = spreads(H)
-    rows.append(Row(PART, "twin of the voice coil: estimates, in their standard deviations",
-                    f"{source}: `deviation`", "Gauss and Newton, in long double",
-                    said["deviation"], deviations(theta), condition_of(
-                        lambda shake: deviations(twin_sums(
-                            reading, current, theta, shake)[0]), deviations(theta), scale),
-                    SHAKEN, scale=scale))
-    return rows
-
-
-ROWS = [from_residuals, bound, twin]
+ROWS = [from_residuals, bound]

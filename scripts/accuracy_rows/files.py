@@ -1,7 +1,6 @@
 """Records in files, and plans of studies."""
 
 import os
-import pathlib
 import tempfile
 
 import mpmath
@@ -9,7 +8,7 @@ import numpy as np
 import scipy.io
 import scipy.stats.qmc
 
-from .common import MJCF, ROOT, Row, mpf, read_csv
+from .common import MJCF, Row, mpf, read_csv
 
 FILES = "Files"
 PLANS = "Plans"

@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 import scipy.signal
 
-from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, long_of, matrix,
-                     mpf, read_csv, still)
+from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, diagnosed, long_of,
+                     matrix, mpf, read_csv, still)
 from .linear import model_of
 from .mechanics import blocks, tick_map
 
@@ -97,21 +97,18 @@ def applied():
         ask("simulate", "--setup", MJCF / "ab383", "--linear", "--trajectory", "xyz",
             "--fault", "zeta_x=1.01", "--duration", 0.3, "--out", folder)
         file = pathlib.Path(folder) / "record.csv"
-        filters = pathlib.Path(folder) / "filters.json"
-        import json
-        filters.write_text(json.dumps(design), encoding="utf-8")
-        result = mjdiag.Machine(str(MJCF / "ab383")).diagnose(
-            str(file), linear=True, filters=str(filters))
+        said = diagnosed(design, file)["residual"]
+        residual = mjdiag.Machine(str(MJCF / "ab383")).diagnose(
+            str(file), linear=True, filters=str(file.parent / "filters.json")).residual
         record = read_csv(file)
     bank = Bank(design["filters"])
     z = signals_of(design, record)
     theirs = list(bank.run(0, z))
     largest = max(map(abs, theirs))
     condition = condition_of(lambda shake: bank.chain([0], z, shake), theirs, largest)
-    said = result.to_dict()["residual"]
     return [Row(PART, "residual of a record", "`Machine.diagnose(record).residual`",
-                "scipy.signal.lfilter in 60 digits", result.residual, theirs, condition,
-                SHAKEN, scale=largest),
+                "scipy.signal.lfilter in 60 digits", residual, theirs, condition, SHAKEN,
+                scale=largest),
             Row(PART, "its extremes", "`diagnose`: `residual.min`, `residual.max`",
                 "the same", [said["min"], said["max"]], [min(theirs), max(theirs)],
                 condition, SHAKEN, scale=largest)]
@@ -284,10 +281,11 @@ def nulling():
                 "sum over the impulse response in long double", 1.0, variance,
                 condition_of(lambda shake: residual_variance(
                     filters, design["sensor_noise"], shake), variance), SHAKEN)]
-    return [*rows, Row(PART, "the residual is blind to the healthy machine", "`design`: `rows`",
-                "sum N_y,i C A^i = 0 and the rows of u, in 50 digits", ours,
-                [0] * len(ours), condition, "root of that of the noise of all relations",
-                scale=scale)]
+    return [*rows, Row(PART, "the residual is blind to the healthy machine",
+                       "`design`: `rows`",
+                       "sum N_y,i C A^i = 0 and the rows of u, in 50 digits", ours,
+                       [0] * len(ours), condition,
+                       "root of that of the noise of all relations", scale=scale)]
 
 
 ROWS = [applied, denominators, nulling]

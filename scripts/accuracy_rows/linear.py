@@ -4,8 +4,7 @@ import mpmath
 import numpy as np
 import scipy.linalg
 
-from .common import (MJCF, SHAKEN, ROUNDING, Row, ask, condition_of, flat, matrix, mpf,
-                     setup_of, still)
+from .common import MJCF, SHAKEN, Row, ask, condition_of, matrix, mpf, setup_of
 from .mechanics import Mechanics, tick_map
 
 PART = "Linear model"

@@ -161,7 +161,8 @@ class Mechanics:
         axis = placed[base][1] * matrix(gear[:3])
         force = matrix(len(self.joints), 1)
         for sign, at, (origin, turned, path), other in (
-                (1, at, placed[body], placed[base]), (-1, base_at, placed[base], placed[body])):
+                (1, at, placed[body], placed[base]),
+                (-1, base_at, placed[base], placed[body])):
             shared = {step[0] for step in other[2]}
             for step in path:
                 if step[0] not in shared:
@@ -213,10 +214,6 @@ def blocks(rows):
     """A matrix of matrices."""
     return matrix([[part[i, j] for part in row for j in range(part.cols)]
                    for row in rows for i in range(row[0].rows)])
-
-
-def solve(A, B):
-    return mpmath.inverse(A) * B
 
 
 def tick_map(M, D, K, Gamma, step, substeps, shake=still):

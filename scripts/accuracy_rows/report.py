@@ -7,7 +7,7 @@ import time
 from .common import BUILD
 
 # Modules in the order of the document.
-PARTS = ("linear", "runs", "filters", "spectra", "tones", "estimation", "statistics",
+PARTS = ("linear", "runs", "filters", "spectra", "tones", "estimation", "twins", "statistics",
          "features", "files")
 
 # Sections of docs/theory.md, or other pages, that have the formula of an entry.
@@ -27,7 +27,8 @@ SECTIONS = {
     "tones": "Disturbances",
     "from_residuals": "Estimation from residuals",
     "bound": "Estimation from residuals; The information bound",
-    "twin": "Estimation by a twin",
+    "voice_coil_twin": "Estimation by a twin",
+    "bonder_twin": "Estimation by a twin",
     "false_alarms": "Detection",
     "intervals": "datasets.md",
     "usual_estimates": "Estimation from residuals",

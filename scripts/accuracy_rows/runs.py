@@ -7,9 +7,8 @@ import tempfile
 import numpy as np
 import scipy.signal
 
-from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, long_of, matrix, mpf,
-                     read_csv, setup_of, still)
-from .mechanics import tick_map
+from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, mpf, read_csv, setup_of,
+                     still)
 
 PART = "Runs"
 PENDULUM = """<mujoco model="double_pendulum">

@@ -1,22 +1,16 @@
 """Thresholds from healthy runs, and the disturbance analysis of a record."""
 
 import functools
-import json
-import pathlib
-import tempfile
 
-import mpmath
 import numpy as np
-import scipy.optimize
 import scipy.signal
 import scipy.stats
 
-from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, long_of, mpf, read_csv,
-                     still)
-from .estimation import mp_of, simulated
+from .common import LONG, MJCF, SHAKEN, Row, ask, condition_of, still
+from .estimation import simulated
 from .filters import Bank, signals_of
 
-LIMITS, TONES = "Thresholds", "Disturbances"
+PART = "Thresholds"
 BONDER = MJCF / "ab383"
 RATE, SEGMENT = 8000, 2048
 SHORT = ("--set", "trajectories.multi.duration=0.4", "--set",
@@ -64,11 +58,11 @@ def limits():
     # The extremes are on the edges.
     inside = np.clip(inside.astype(float), edges[0], edges[-1])
     counts, _ = np.histogram(inside, bins=edges)
-    return [Row(LIMITS, "limits of the residual, mean, sd, limit of its mean size",
+    return [Row(PART, "limits of the residual, mean, sd, limit of its mean size",
                 "`design`: `limits`", "own residuals of the same healthy runs", ours, exact,
                 condition_of(lambda shake: residual_limits(design, signals, shake), exact,
                              scale), SHAKEN, scale=scale),
-            Row(LIMITS, "histogram of the residual", "`design`: `limits.histogram`",
+            Row(PART, "histogram of the residual", "`design`: `limits.histogram`",
                 "numpy.histogram", said["histogram"]["count"], counts.tolist(), 1.0,
                 "counts", scale=1)]
 
@@ -175,14 +169,14 @@ def spectra():
     for what, key in (("mean density of healthy runs, 1025 bins", "nominal"),
                       ("highest density of healthy runs, 1025 bins", "highest")):
         scale = spectrum_scale(exact[key])
-        rows.append(Row(LIMITS, what, f"`design`: `limits.disturbance.{key}`",
+        rows.append(Row(PART, what, f"`design`: `limits.disturbance.{key}`",
                         "scipy.signal.welch of own residuals", said[key], exact[key],
                         condition_of(lambda shake, key=key: spectral_limits(
                             design, signals, shake)[key], exact[key], scale), SHAKEN,
                         scale=scale))
     ours = [said[key] for key in ("nominal_dof", "peak", "total", "noise_ratio",
                                   "broadband")]
-    rows.append(Row(LIMITS, "degrees of freedom, limits of peak, power and noise",
+    rows.append(Row(PART, "degrees of freedom, limits of peak, power and noise",
                     "`design`: `limits.disturbance`",
                     "scipy.signal.welch, scipy.stats.f, numpy", ours, exact["figures"],
                     condition_of(lambda shake: spectral_limits(

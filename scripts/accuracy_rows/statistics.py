@@ -10,7 +10,6 @@ import scipy.stats
 
 from .common import (LONG, MJCF, SHAKEN, Row, ask, condition_of, mpf, read_csv, still)
 from .estimation import regression, solve_normal
-from .filters import signals_of
 from .runs import wave
 from .spectra import BONDER, SHORT
 

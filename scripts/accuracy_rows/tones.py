@@ -1,6 +1,5 @@
 """The disturbance analysis of a record: tones, their thresholds, and raised noise."""
 
-import json
 import pathlib
 import tempfile
 
@@ -8,12 +7,13 @@ import numpy as np
 import scipy.optimize
 import scipy.stats
 
-from .common import DRAWS, LONG, SHAKEN, Row, Shaker, ask, read_csv, spread_of, still
+from .common import (DRAWS, LONG, SHAKEN, Row, Shaker, ask, diagnosed, read_csv,
+                     spread_of, still)
 from .filters import signals_of
 from .spectra import (BONDER, NEIGHBOURS, RATE, SEGMENT, SHORT, USED, degrees_of,
                       design_of_three, disturbance_residual, fit_sines, middle,
-                      segment_count, segment_noise, sines, spectrum_scale, taper,
-                      upper_median, welch)
+                      segment_count, segment_noise, sines, taper, upper_median,
+                      welch)
 
 PART = "Disturbances"
 TONE, SIDE = 3, 12  # bins that a tone covers, and those beside it
@@ -117,10 +117,7 @@ def tones():
         ask("simulate", "--setup", BONDER, "--linear", *SHORT, "--fault", "gamma=0.2",
             "--seed", 7, "--out", folder)
         file = pathlib.Path(folder) / "record.csv"
-        filters = pathlib.Path(folder) / "filters.json"
-        filters.write_text(json.dumps(design), encoding="utf-8")
-        said = ask("diagnose", "--setup", BONDER, "--linear", *SHORT, "--filters", filters,
-                   "--record", file, status=(0, 1))
+        said = diagnosed(design, file, *SHORT)
         z = signals_of(design, read_csv(file))
     named = [fault["name"] for fault in said["faults"] if fault["detected"]]
     peaks = said["disturbance"]["peaks"]
