@@ -109,8 +109,8 @@ def applied():
     return [Row(PART, "residual of a record", "`Machine.diagnose(record).residual`",
                 "scipy.signal.lfilter in 60 digits", residual, theirs, condition, SHAKEN,
                 scale=largest),
-            Row(PART, "its extremes", "`diagnose`: `residual.min`, `residual.max`",
-                "the same", [said["min"], said["max"]], [min(theirs), max(theirs)],
+            Row(PART, "extremes of the residual", "`diagnose`: `residual.min`, `residual.max`",
+                "scipy.signal.lfilter in 60 digits", [said["min"], said["max"]], [min(theirs), max(theirs)],
                 condition, SHAKEN, scale=largest)]
 
 

@@ -20,8 +20,9 @@ SECTIONS = {
     "voice_coil": "One control tick",
     "pendulum": "The machine; One control tick",
     "applied": "The exact tick in delta form",
-    "denominators": "Relations of unit noise; Disturbances",
-    "nulling": "Null space; Relations of unit noise",
+    "denominators": "Relations of unit noise, and which becomes the residual; Disturbances",
+    "nulling": "Null space, minimal degree, unknown inputs; Relations of unit noise, and "
+               "which becomes the residual",
     "limits": "Detection",
     "spectra": "Disturbances",
     "tones": "Disturbances",
@@ -30,31 +31,31 @@ SECTIONS = {
     "voice_coil_twin": "Estimation by a twin",
     "bonder_twin": "Estimation by a twin",
     "false_alarms": "Detection",
-    "intervals": "datasets.md",
+    "intervals": "[datasets](datasets.md)",
     "usual_estimates": "Estimation from residuals",
     "mismatch": "Comparing with a measurement",
     "table": "The data-driven method",
-    "round_trips": "python.md, Records",
-    "sobol": "datasets.md, The plan",
-    "grids": "datasets.md, The plan",
+    "round_trips": "[python](python.md), Records",
+    "sobol": "[datasets](datasets.md), The plan",
+    "grids": "[datasets](datasets.md), The plan",
 }
 
 # Why an entry fails, for as long as it does.
 CAUSES = {
-    "largest eigenvalue of the closed loop":
-        "The loop's matrix has metres, radians and their speeds side by side, and "
-        "`SpectralRadius` (`signals/decompositions.cc`) takes its eigenvalues as it stands. "
-        "LAPACK, which balances the matrix first, is off by 6e-14 on the same one.",
-    "frequencies of three tones":
-        "`LineFrequency` (`diagnosis/disturbance/line_frequency.cc`) ends after three "
-        "steps. Of a tone beside one a hundred times as strong each leaves 1/270 of what "
-        "the one before was off by, and a fourth would be needed. The standard deviation of "
-        "such a frequency is a hundred thousand times larger.",
-    "standard deviations of faults from residuals":
-        "`FaultEstimator` (`diagnosis/residuals/fault_estimator.cc`) takes the noise behind "
-        "filters that began at rest for stationary as soon as its variance is within 1e-6 of "
-        "that (`kBuiltUp`), and keeps what it has then. With this rule our own sum agrees "
-        "to 2e-10.",
+    "largest eigenvalue of the closed loop": """
+  The loop's matrix has metres, radians and their speeds side by side, and `SpectralRadius`
+  (`signals/decompositions.cc`) takes its eigenvalues as it stands. LAPACK, which balances
+  the matrix first, is off by 6e-14 on the same one.""",
+    "frequencies of three tones": """
+  `LineFrequency` (`diagnosis/disturbance/line_frequency.cc`) ends after three steps. Of a
+  tone beside one that is a hundred times as strong each step leaves 1/270 of what the one
+  before was off by, so that three are too few. The standard deviation of this frequency is
+  thirty thousand times larger.""",
+    "standard deviations of faults from residuals": """
+  `FaultEstimator` (`diagnosis/residuals/fault_estimator.cc`) takes the noise behind filters
+  that began at rest for stationary as soon as its variance is within 1e-6 of that
+  (`kBuiltUp`), and keeps what it has then. With this rule the second computation agrees to
+  2e-10.""",
 }
 
 HEAD = """# How exact the numbers are
@@ -80,7 +81,8 @@ more than one operation. It is found in one of two ways, which the last column n
 
 An error is the largest of the values of an entry: relative to the value itself, or to the
 largest of its kind where values pass through zero (samples of a signal, entries of a
-matrix, bins of a spectrum). What stands in files is compared to the last bit.
+matrix in coordinates of unit mass, bins of a spectrum). The condition number is that of the
+value that has the largest. What stands in files is compared to the last bit.
 
 No bound is made wider for an entry that fails: it stays in the table, with its cause below.
 
@@ -94,7 +96,7 @@ TAIL = """
 - Discovery: its probabilities are sums over what a search has met, which nobody makes a
   second time.
 - The twin of the nonlinear machine and `mjdiag calibrate`: their passes go where the
-  record takes them. The voice coil, a linear machine, stands for the sums that they make;
+  record takes them. The voice coil and the linear bonder stand for the sums that they make;
   how good estimates are says [studies](studies.md).
 - The dry friction of MuJoCo is a constraint that is solved to 1e-12 by iteration; runs with
   it are as exact as that.
@@ -143,6 +145,6 @@ def document(rows):
     failed = [row for row in rows if not row.passed]
     text.append("Formulas are in the section of that name of [theory](theory.md), if no "
                 "other page is named.\n\n## What fails, and why\n\n")
-    text += [f"- *{row.what}*. {CAUSES.get(row.what, 'Not known yet.')}\n"
+    text += [f"- *{row.what}*.{CAUSES.get(row.what, ' Not known yet.')}\n"
              for row in failed] or ["Nothing.\n"]
     return "".join(text) + TAIL
