@@ -49,7 +49,9 @@ def relative(ours, theirs, scale):
 
 
 def mpf_of(x):
-    """Exact, for a long double too."""
+    """Exact, for a long double too; complex numbers of mpmath are what they are."""
+    if isinstance(x, mpmath.mpc):
+        return x
     if isinstance(x, np.longdouble):
         high = float(x)
         return mpf(high) + mpf(float(x - LONG(high)))

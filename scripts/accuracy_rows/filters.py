@@ -177,11 +177,16 @@ def high_pass(sections):
                condition, "sums of the coefficients' sizes over those of polynomials")
 
 
-def delta_form():
+@functools.lru_cache(maxsize=None)
+def bonder():
+    """Printed M, D, K, Gamma and b."""
+    said = ask("linearize", "--setup", MJCF / "ab383")
+    return [*model_of(said), matrix(said["b"])]
+
+
+def delta_form(M, D, K, Gamma, b):
     """A, B, C of a tick in powers of p, in coordinates of unit mass and velocities times
     the tick (docs/theory.md, The exact tick in delta form)."""
-    said = ask("linearize", "--setup", MJCF / "ab383")
-    M, D, K, Gamma = model_of(said)
     n, tick = M.rows, mpf(1) / 8000
     A, B = tick_map(M, D, K, Gamma, tick / 4, 4)
     root = mpmath.cholesky(M).T
@@ -189,8 +194,45 @@ def delta_form():
     zero = mpmath.zeros(n)
     to = blocks([[root, zero], [zero, tick * root]])
     back = blocks([[inverse, zero], [zero, inverse / tick]])
-    C = blocks([[matrix(said["b"]).T, mpmath.zeros(3, n)]])
+    C = blocks([[b.T, mpmath.zeros(b.cols, n)]])
     return to * (A - mpmath.eye(2 * n)) * back / DELTA, to * B / DELTA, C * back
+
+
+def size(A):
+    return A.apply(abs)
+
+
+class Stack:
+    """C A^i, one below the other, with a size of every row and column."""
+
+    def __init__(self, A, B, C, degree, shake=still):
+        self.B, self.powers = shake(B), [shake(C)]
+        A = shake(A)
+        for _ in range(degree):
+            self.powers.append(shake(self.powers[-1] * A))
+        self.rows = blocks([[part] for part in self.powers])
+        n, m = self.rows.rows, self.rows.cols
+        self.row_size = [max(size(self.rows[i, :])) for i in range(n)]
+        self.column_size = [max(abs(self.rows[i, j]) / self.row_size[i] for i in range(n))
+                            for j in range(m)]
+
+    def inputs(self, Ny):
+        """The input polynomials that belong to output polynomials."""
+        count = len(Ny)
+        return [-sum((Ny[i] * self.powers[i - k - 1] * self.B
+                      for i in range(k + 1, count)),
+                     mpmath.zeros(Ny[0].rows, self.B.cols)) for k in range(count)]
+
+    def relations(self):
+        """All parity relations of the degree, orthonormal where rows are of one size."""
+        n, m = self.rows.rows, self.rows.cols
+        even = matrix([[self.rows[i, j] / self.row_size[i] / self.column_size[j]
+                        for j in range(m)] for i in range(n)])
+        Q, _ = mpmath.qr(even)
+        ny = self.powers[0].rows
+        Ny = [matrix([[Q[ny * k + i, j] / self.row_size[ny * k + i] for i in range(ny)]
+                      for j in range(m, n)]) for k in range(len(self.powers))]
+        return [blocks([[y, u]]) for y, u in zip(Ny, self.inputs(Ny))]
 
 
 def bank_of(numerators, order, cutoff):
@@ -236,45 +278,31 @@ def residual_variance(bank, noise, shake=still):
     return total
 
 
-def size(A):
-    return A.apply(abs)
+def noise_condition(relations):
+    """Root of the condition number of their noise."""
+    covariance = noise_covariance(bank_of(relations, 7, 50), [2e-8] * 3)
+    spread = np.linalg.eigvalsh(covariance.astype(float))
+    return float(np.sqrt(spread[-1] / spread[0]))
 
 
 def nulling():
     """R z = 0 on all that the healthy machine does: both equations of docs/theory.md,
     Null space, for the relation of the design; and its noise is 1."""
     design = designed()
-    A, B, C = delta_form()
     rows = [matrix(part) for part in design["rows"]]
-    degree = len(rows) - 1
     Ny, Nu = [row[:, :3] for row in rows], [row[:, 3:] for row in rows]
-    powers = [C]
-    for _ in range(degree):
-        powers.append(powers[-1] * A)
-    stack = blocks([[part] for part in powers])
+    stack = Stack(*delta_form(*bonder()), len(rows) - 1)
     output = blocks([Ny])
     # A scale for every column, of the stack with its rows and columns equilibrated.
-    row_size = [max(size(stack[i, :])) for i in range(stack.rows)]
-    column_size = [max(abs(stack[i, j]) / row_size[i] for i in range(stack.rows))
-                   for j in range(stack.cols)]
-    weight = sum(abs(output[i]) * row_size[i] for i in range(stack.rows))
-    ours = list(output * stack)
-    scale = [weight * c for c in column_size]
-    for j in range(3):
-        largest = max(abs(N[j]) for N in Nu)
-        for k in range(degree):
-            ours.append(Nu[k][j] + sum((Ny[i] * powers[i - k - 1] * B)[j]
-                                       for i in range(k + 1, degree + 1)))
-            scale.append(largest)
+    weight = sum(abs(x) * r for x, r in zip(output, stack.row_size))
+    ours = list(output * stack.rows)
+    scale = [weight * c for c in stack.column_size]
+    for k, wanted in enumerate(stack.inputs(Ny)[:-1]):
+        for j in range(3):
+            ours.append(Nu[k][j] - wanted[j])
+            scale.append(max(abs(N[j]) for N in Nu))
     # The design takes a combination of all relations of the degree.
-    even = matrix([[stack[i, j] / row_size[i] / column_size[j] for j in range(stack.cols)]
-                   for i in range(stack.rows)])
-    Q, _ = mpmath.qr(even)
-    basis = [matrix([[Q[3 * k + i, j] / row_size[3 * k + i] for i in range(3)]
-                     for j in range(stack.cols, stack.rows)]) for k in range(degree + 1)]
-    covariance = noise_covariance(bank_of(basis, 7, 50), [2e-8] * 3)
-    spread = np.linalg.eigvalsh(covariance.astype(float))
-    condition = float(np.sqrt(spread[-1] / spread[0]))
+    condition = noise_condition(stack.relations())
     filters = Bank(design["filters"])
     variance = residual_variance(filters, design["sensor_noise"])
     rows = [Row(PART, "variance of the residual's noise: 1", "`design`: `filters`",

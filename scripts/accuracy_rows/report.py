@@ -7,7 +7,7 @@ import time
 from .common import BUILD
 
 # Modules in the order of the document.
-PARTS = ("linear", "runs", "filters", "spectra", "tones", "estimation", "twins", "statistics",
+PARTS = ("linear", "runs", "filters", "prefilters", "spectra", "tones", "estimation", "twins", "statistics",
          "features", "files")
 
 # Sections of docs/theory.md, or other pages, that have the formula of an entry.
@@ -23,6 +23,7 @@ SECTIONS = {
     "denominators": "Relations of unit noise, and which becomes the residual; Disturbances",
     "nulling": "Null space, minimal degree, unknown inputs; Relations of unit noise, and "
                "which becomes the residual",
+    "derivatives": "Prefilters",
     "limits": "Detection",
     "spectra": "Disturbances",
     "tones": "Disturbances",
