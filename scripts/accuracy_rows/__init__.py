@@ -1,0 +1,1 @@
+"""What scripts/accuracy compares, a module a part of mjdiag."""
