@@ -56,6 +56,19 @@ TEST(ForceBalance, IsInUnitsOfWhatWasMeasured) {
   EXPECT_NEAR(scaled[1] / whole[1], 1.0, 1e-6);
 }
 
+TEST(ForceBalance, DryFrictionOfThePlantIsAsSmoothAsTheReadings) {
+  const std::vector<std::string> friction = {"coulomb_friction@elbow:force=0.6"};
+  const Balanced balanced(friction);
+  const Machine machine = balanced.arm.machine.With(test::With(friction));
+  const ForceBalance balance = BalanceForces(machine, {}, balanced.filtered);
+  const Eigen::MatrixXd without =
+      MissingWithoutFriction(machine, balanced.filtered, balance);
+  EXPECT_GT(MissingRms(balanced.filtered, without)[1], 0.4);
+  const Eigen::MatrixXd smooth = MissingSmoothed(balanced.filtered, balance, without);
+  EXPECT_LT(MissingRms(balanced.filtered, smooth)[1],
+            0.7 * MissingRms(balanced.filtered, balance.missing)[1]);
+}
+
 TEST(ForceBalance, CountsNothingAtTheEndsOfARecord) {
   const FilteredRun filtered = Balanced().filtered;
   const Eigen::Index period = 67;  // of the band, in ticks
