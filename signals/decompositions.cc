@@ -83,4 +83,9 @@ Eigen::VectorXd SingularValuesOf(const MatrixXd& A) {
   return Eigen::JacobiSVD<MatrixXd>(A).singularValues();
 }
 
+SingularValues LeftSingularVectors(const MatrixXd& A) {
+  const Eigen::BDCSVD<MatrixXd> svd(A, Eigen::ComputeFullU);
+  return {svd.singularValues(), svd.matrixU(), {}};
+}
+
 }  // namespace mjdiag

@@ -58,11 +58,13 @@ ScaledEigenPairs ScaledEigenDecomposition(const Eigen::MatrixXd& A);
 struct SingularValues {
   Eigen::VectorXd values;  ///< decreasing, as many as the shorter side of A
   Eigen::MatrixXd U;       ///< square
-  Eigen::MatrixXd V;       ///< as many columns as values
+  Eigen::MatrixXd V;       ///< as many columns as values; empty if not asked for
 };
 /// By Jacobi's rotations: small singular values have small relative errors.
 SingularValues SingularValueDecomposition(const Eigen::MatrixXd& A);
 /// The same values alone, where vectors are not asked for.
 Eigen::VectorXd SingularValuesOf(const Eigen::MatrixXd& A);
+/// By divide and conquer, without V: for large matrices.
+SingularValues LeftSingularVectors(const Eigen::MatrixXd& A);
 
 }  // namespace mjdiag

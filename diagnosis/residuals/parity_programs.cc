@@ -31,7 +31,7 @@ constexpr double kTie = 1e-9;
 
 /// Orthonormal columns that span all v with v^T matrix = 0.
 MatrixXd LeftNullSpace(const MatrixXd& matrix) {
-  const SingularValues svd = SingularValueDecomposition(matrix);
+  const SingularValues svd = LeftSingularVectors(matrix);
   const VectorXd parts = svd.values / svd.values[0];
   const Index rank = (parts.array() > kNonzero).count();
   if (rank < (parts.array() > kZero).count()) {
