@@ -68,14 +68,39 @@ MatrixXd Slopes(const MeasuredRun& run, const MatrixXd& rows) {
   return slopes;
 }
 
-/// The inputs of a tick of the run, whichever it is set to.
-class FilteredInputs final : public TickControl {
+/// By how much rows change in the tick that begins at a sample.
+MatrixXd ChangesInTick(const MeasuredRun& run, const MatrixXd& rows) {
+  MatrixXd changes = MatrixXd::Zero(rows.rows(), rows.cols());
+  for (std::size_t i = 0; i < run.records.size(); ++i) {
+    const Index first = run.records[i].sample;
+    const Index count = run.SamplesOf(i) - 1;
+    changes.middleCols(first, count) =
+        (rows.middleCols(first + 1, count) - rows.middleCols(first, count)) /
+        run.sample_time;
+  }
+  return changes;
+}
+
+/// The joints whose own dry friction is below its bound.
+void MarkSticking(const mjData& data, Index sample, ForceBalance& balance) {
+  constexpr double kBound = 0.95;
+  for (int row = 0; row < data.nefc; ++row) {
+    if (data.efc_type[row] != mjCNSTR_FRICTION_DOF) continue;
+    if (std::abs(data.efc_force[row]) < kBound * data.efc_frictionloss[row]) {
+      balance.sticks(data.efc_id[row], sample) = true;
+    }
+  }
+}
+
+/// The inputs of a tick of the run as they were measured, whichever it is set to.
+class InputsOfTick final : public TickControl {
  public:
-  explicit FilteredInputs(const FilteredRun& filtered) : run_(filtered.run) {}
+  explicit InputsOfTick(const FilteredRun& filtered)
+      : run_(filtered.run), inputs_(filtered.inputs) {}
   void Set(Index sample) { sample_ = sample; }
   void Tick(std::span<const double>, std::span<double> inputs) noexcept override {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      inputs[i] = run_.inputs(static_cast<Index>(i), sample_);
+      inputs[i] = inputs_(static_cast<Index>(i), sample_);
     }
   }
   bool IsOn(std::size_t actuator) const noexcept override {
@@ -84,6 +109,7 @@ class FilteredInputs final : public TickControl {
 
  private:
   const MeasuredRun& run_;
+  const MatrixXd& inputs_;
   Index sample_ = 0;
 };
 
@@ -94,6 +120,7 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
   FilteredRun filtered;
   filtered.bandwidth = bandwidth;
   filtered.run = run;
+  filtered.inputs = run.inputs;
   for (Index row = 0; row < run.outputs.rows(); ++row) {
     filtered.run.outputs.row(row) =
         Filtered(run, bandwidth, run.outputs.row(row)).transpose();
@@ -114,7 +141,7 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
     filtered.position.col(k) = points[static_cast<std::size_t>(k)].position;
   }
   filtered.velocity = Slopes(run, filtered.position);
-  filtered.acceleration = Slopes(run, filtered.velocity);
+  filtered.acceleration = ChangesInTick(run, filtered.velocity);
   filtered.counts = SampleMask::Constant(run.samples(), false);
   const Index margin = PeriodIn(run, bandwidth);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
@@ -158,6 +185,7 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
   const Index nv = changed.plant().nv;
   ForceBalance balance;
   balance.missing.resize(nv, run.samples());
+  balance.sticks.setConstant(nv, run.samples(), false);
   ObservedMotion& motion = balance.motion;
   motion.sample_time = run.sample_time;
   motion.time = run.Time();
@@ -172,7 +200,8 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
   constexpr double kLeast = 1e-6;
   const VectorXd less = DriveFactors(machine, changed).cwiseMax(kLeast).cwiseInverse();
   MatrixXd M(nv, nv);
-  FilteredInputs inputs(filtered);
+  MatrixXd own(nv, run.samples());  // M a / g
+  InputsOfTick inputs(filtered);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     StartedPlant plant = StartPlant(changed, {});
     ChooseSolver(*plant.model);
@@ -188,38 +217,28 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
         throw NumericalError("balance of forces: diverged at " +
                              std::to_string(motion.time[k]) + " s");
       }
+      MarkSticking(data, k, balance);
       motion.own_acceleration.col(k) =
           (VectorXd::Map(data.qvel, nv) - filtered.velocity.col(k)) / run.sample_time;
       mj_fullM(plant.model.get(), M.data(), data.qM);
-      balance.missing.col(k) =
-          less.asDiagonal() * M *
-          (filtered.acceleration.col(k) - motion.own_acceleration.col(k));
+      balance.missing.col(k) = less.asDiagonal() * M * filtered.acceleration.col(k);
+      own.col(k) = less.asDiagonal() * M * motion.own_acceleration.col(k);
     }
+  }
+  for (Index dof = 0; dof < nv; ++dof) {
+    balance.missing.row(dof) -= LowPassed(filtered, own.row(dof)).transpose();
   }
   return balance;
 }
 
-MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filtered,
-                                const ForceBalance& balance) {
+MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filtered) {
   Changes frictionless;
   for (const PlantNumber& number : PlantNumbers(machine.plant())) {
     if (number.kind == PlantNumberKind::kFriction) {
       frictionless.numbers.emplace_back(number, 0.0);
     }
   }
-  if (frictionless.numbers.empty()) return balance.missing;
   return BalanceForces(machine, frictionless, filtered).missing;
-}
-
-MatrixXd MissingSmoothed(const FilteredRun& filtered, const ForceBalance& balance,
-                         MatrixXd without_friction) {
-  MatrixXd missing = std::move(without_friction);
-  for (Index dof = 0; dof < missing.rows(); ++dof) {
-    const VectorXd friction = missing.row(dof) - balance.missing.row(dof);
-    if (friction.isZero(0.0)) continue;
-    missing.row(dof) -= LowPassed(filtered, friction).transpose();
-  }
-  return missing;
 }
 
 VectorXd MissingRms(const FilteredRun& filtered, const MatrixXd& missing) {

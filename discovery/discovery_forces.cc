@@ -52,31 +52,21 @@ std::vector<std::vector<Hypothesis>> RivalsIn(const ForceSearchResult& found) {
 /// joint in the row of a sensor, at the samples that count.
 class ForceErrors {
  public:
-  /// @param nominal  of the plant as it is given
   ForceErrors(const DiscoveryProblem& problem, FilteredRun filtered,
-              const ForceSearchResult& found, const ForceBalance& nominal)
+              const ForceSearchResult& found)
       : machine_(problem.machine()),
         filtered_(std::move(filtered)),
         rows_(found.rows),
         noise_(found.noise),
-        nominal_(nominal.missing),
-        smoothed_(MissingSmoothed(
-            filtered_, nominal, MissingWithoutFriction(machine_, filtered_, nominal))),
         sd_(problem.observer().innovation_sd) {}
 
-  /// Forces that jump are as smooth as what was measured.
   MatrixXd operator()(const Changes& changes) const {
-    const MatrixXd added =
-        nominal_ - BalanceForces(machine_, changes, filtered_).missing;
-    MatrixXd left = smoothed_;
-    for (const Index dof : rows_.dofs) {
-      left.row(dof) -= LowPassed(filtered_, added.row(dof)).transpose();
-    }
+    const MatrixXd left = BalanceForces(machine_, changes, filtered_).missing;
     return Placed(Whitened(rows_, noise_, RowsOf(rows_, left)).col(0));
   }
   /// Of values of all joints.
   MatrixXd Placed(const VectorXd& white) const {
-    MatrixXd errors = MatrixXd::Zero(sd_.size(), nominal_.cols());
+    MatrixXd errors = MatrixXd::Zero(sd_.size(), filtered_.run.samples());
     for (Index j = 0; j < std::ssize(rows_.dofs); ++j) {
       for (Index k = 0; k < rows_.train; ++k) {
         errors(j, rows_.samples[static_cast<std::size_t>(k)]) =
@@ -91,8 +81,6 @@ class ForceErrors {
   FilteredRun filtered_;
   ForceRows rows_;
   ForceNoise noise_;
-  MatrixXd nominal_;
-  MatrixXd smoothed_;
   VectorXd sd_;
 };
 
@@ -181,12 +169,8 @@ int StepsEnough(const DiscoveryProblem& problem, const FilteredRun& filtered,
            problem.work()->MayBegin("finer physics steps",
                                     problem.RunWork() * 2 * substeps / given)) {
       MatrixXd fine = missing(2 * substeps);
-      MatrixXd change = fine - coarse;
-      for (const Index dof : found.rows.dofs) {
-        change.row(dof) = LowPassed(filtered, change.row(dof)).transpose();
-      }
       const MatrixXd white =
-          Whitened(found.rows, found.noise, RowsOf(found.rows, change));
+          Whitened(found.rows, found.noise, RowsOf(found.rows, fine - coarse));
       double told = 0.0;
       for (Index j = 0; j < std::ssize(found.rows.dofs); ++j) {
         told += white.col(0)
@@ -229,7 +213,7 @@ bool Discoverer::TakeForces(const SearchOptions& search) {
     nominal = BalanceForces(machine_, {}, filtered);
   }
   force_ = SearchForces(problem_, candidates_, filtered, nominal, options);
-  const ForceErrors errors(problem_, filtered, *force_, nominal);
+  const ForceErrors errors(problem_, filtered, *force_);
   const DiscoveryProblem balance =
       problem_.Simulating(errors, NumbersFirst(problem_, errors, *force_));
   Report("fit along the motion", 0.5);

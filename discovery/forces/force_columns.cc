@@ -37,6 +37,13 @@ ObservedMotion AsMeasured(ObservedMotion motion) {
   return motion;
 }
 
+/// The forces of laws are low-passed, and those of drives with what drove them as it was
+/// measured: what is filtered twice is not what a drive lacks.
+ObservedMotion OfLaws(ObservedMotion motion, const FilteredRun& filtered) {
+  motion.inputs = filtered.inputs;
+  return motion;
+}
+
 }  // namespace
 
 ForceColumns::ForceColumns(const DiscoveryProblem& problem, const FilteredRun& filtered,
@@ -44,11 +51,13 @@ ForceColumns::ForceColumns(const DiscoveryProblem& problem, const FilteredRun& f
     : problem_(problem),
       filtered_(filtered),
       motion_(AsMeasured(balance.motion)),
-      without_friction_(MissingWithoutFriction(problem.machine(), filtered, balance)),
-      missing_rms_(MissingRms(filtered, without_friction_)),
+      of_laws_(OfLaws(motion_, filtered)),
+      missing_rms_(
+          MissingRms(filtered, MissingWithoutFriction(problem.machine(), filtered))),
       rows_(RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train())),
-      jumping_(balance.missing),
-      missing_(RowsOf(rows_, MissingSmoothed(filtered, balance, without_friction_))) {}
+      missing_(RowsOf(rows_, balance.missing)) {
+  Silence(balance.sticks, rows_);
+}
 
 /// By a factor, samples x nv.
 MatrixXd ForceColumns::ForceOf(const DoubtedNumber& doubted) const {
@@ -56,19 +65,36 @@ MatrixXd ForceColumns::ForceOf(const DoubtedNumber& doubted) const {
   if (doubted.is_lateness) {
     return LatenessForce(machine.plant(), machine.linear().Gamma, motion_);
   }
-  const PlantNumber& number = doubted.number;
-  if (number.kind == PlantNumberKind::kFriction) {
-    // MuJoCo's dry friction is soft: up to its bound it goes by the speed and by what the
-    // joint carries. What twice the bound does is what a machine that has worn lacks.
-    const Eigen::Index dof = machine.plant().jnt_dofadr[number.element];
-    const MatrixXd more =
-        BalanceForces(machine, {{}, {}, {{number, 2.0}}}, filtered_).missing;
-    MatrixXd force = MatrixXd::Zero(motion_.samples(), more.rows());
-    force.col(dof) = LowPassed(filtered_, (jumping_ - more).row(dof));
-    return force;
+  MatrixXd force = NumberForce(machine.plant(), machine.channels(), doubted.number,
+                               motion_, problem_.StillSpeed());
+  if (doubted.number.kind == PlantNumberKind::kFriction) {
+    // It jumps, and readings do not.
+    const Index dof = machine.plant().jnt_dofadr[doubted.number.element];
+    force.col(dof) = LowPassed(filtered_, force.col(dof));
   }
-  return NumberForce(machine.plant(), machine.channels(), number, motion_,
-                     problem_.StillSpeed());
+  return force;
+}
+
+/// Numbers as everything else has them, z in logarithms, for those of a balance of forces,
+/// which is linear in most.
+VectorXd ForceColumns::NumbersOf(const VectorXd& z) const {
+  constexpr double kLeastFactor = 0.1;
+  VectorXd numbers = z;
+  for (Index i = 0; i < z.size(); ++i) {
+    const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
+    if (!doubted.is_lateness && !IsCentre(doubted.number.kind)) {
+      numbers[i] = std::log(std::max(1.0 + doubted.spread * z[i], kLeastFactor)) /
+                   doubted.spread;
+    }
+    numbers[i] = std::clamp(numbers[i], doubted.Least(), doubted.Most());
+  }
+  return numbers;
+}
+
+void ForceColumns::SilenceAt(const VectorXd& z, ForceProblem& forces) const {
+  const Changes changes = problem_.WithNumbers({}, NumbersOf(z));
+  problem_.work()->Add(problem_.RunWork());
+  Silence(BalanceForces(problem_.machine(), changes, filtered_).sticks, forces.rows);
 }
 
 ForceProblem ForceColumns::NumbersAlone() const {
@@ -118,8 +144,8 @@ bool ForceColumns::IsTold(const Candidate& candidate) const {
 /// Trials whose forces are within the band.
 std::vector<Trial> ForceColumns::Within(const Candidate& candidate) const {
   const auto sweep =
-      MakeSweep(problem_.machine(), candidate, motion_, problem_.FittedDuration());
-  if (!sweep) return MakeTrials(problem_.machine(), candidate, motion_);
+      MakeSweep(problem_.machine(), candidate, of_laws_, problem_.FittedDuration());
+  if (!sweep) return MakeTrials(problem_.machine(), candidate, of_laws_);
   std::vector<Trial> trials;
   const VectorXd first = sweep->angle;
   for (std::size_t i = 0; i < sweep->values.size(); ++i) {

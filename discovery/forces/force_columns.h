@@ -32,8 +32,13 @@ class ForceColumns {
   ForceColumns(const DiscoveryProblem& problem, const FilteredRun& filtered,
                const ForceBalance& balance);
 
-  /// What is missing, and what the numbers do.
+  /// What is missing, and what the numbers do, near those of the plant.
   ForceProblem NumbersAlone() const;
+  /// Silences what joints say where they stick with the numbers of a fit, too.
+  /// NumericalError if the plant cannot be there.
+  void SilenceAt(const Eigen::VectorXd& z, ForceProblem& forces) const;
+  /// z of a balance of forces, by factors, as z of the numbers in doubt.
+  Eigen::VectorXd NumbersOf(const Eigen::VectorXd& z) const;
   /// Of all candidates that a balance of forces can tell, in their order.
   std::vector<ForceTrial> TrialsOf(const std::vector<Candidate>& candidates) const;
 
@@ -47,11 +52,10 @@ class ForceColumns {
   const DiscoveryProblem& problem_;
   const FilteredRun& filtered_;
   const ObservedMotion motion_;
-  const Eigen::MatrixXd without_friction_;  // what is missing then
-  const Eigen::VectorXd missing_rms_;       // of that, of every joint
-  const ForceRows rows_;
-  const Eigen::MatrixXd jumping_;  // what is missing, as BalanceForces has it
-  const Eigen::VectorXd missing_;  // in rows, as MissingSmoothed has it
+  const ObservedMotion of_laws_;       // with inputs as they were measured
+  const Eigen::VectorXd missing_rms_;  // without the plant's friction, of every joint
+  ForceRows rows_;
+  const Eigen::VectorXd missing_;  // in rows
 };
 
 }  // namespace mjdiag

@@ -209,7 +209,7 @@ ForceFit FitFrom(const ForceProblem& problem,
   fit.z = theta.head(numbers);
   fit.amplitudes = theta.tail(theta.size() - numbers);
   const double n = std::max(2.0, static_cast<double>(problem.rows.train));
-  fit.score = DevianceOf(fit.noise, seen) + fit.z.squaredNorm() +
+  fit.score = DevianceOf(problem.rows, fit.noise, seen) + fit.z.squaredNorm() +
               static_cast<double>(fit.amplitudes.size()) * std::log(n);
   for (const ForceGroup* group : groups) fit.score += group->cost;
   if (!theta.allFinite() || !IsWithin(groups, fit.amplitudes)) fit.score = kNever;

@@ -14,7 +14,7 @@ ForceRows RowsAlong(const FilteredRun& filtered, std::vector<Index> dofs, Index 
   ForceRows rows;
   rows.dofs = std::move(dofs);
   const MeasuredRun& run = filtered.run;
-  const auto step = std::max<Index>(
+  const Index step = rows.step = std::max<Index>(
       1, static_cast<Index>(std::lround(0.5 / (filtered.bandwidth * run.sample_time))));
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
@@ -35,6 +35,35 @@ ForceRows RowsAlong(const FilteredRun& filtered, std::vector<Index> dofs, Index 
   }
   if (train >= run.samples()) rows.train = rows.values();
   return rows;
+}
+
+void Silence(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& sticks,
+             ForceRows& rows) {
+  constexpr Index kLeast = 20;  // values of a joint
+  if (!sticks.any()) return;
+  if (rows.silent.empty()) {
+    rows.silent.assign(static_cast<std::size_t>(rows.rows()), false);
+  }
+  for (Index j = 0; j < std::ssize(rows.dofs); ++j) {
+    const auto dof = rows.dofs[static_cast<std::size_t>(j)];
+    std::vector<Index> more;
+    Index left = 0;
+    for (Index k = 0; k < rows.values(); ++k) {
+      const Index row = j * rows.values() + k;
+      if (rows.IsSilent(row)) continue;
+      // A filter's value is that of the samples around it.
+      const Index at = rows.samples[static_cast<std::size_t>(k)];
+      const Index first = std::max<Index>(0, at - rows.step);
+      const Index count = std::min(sticks.cols() - first, 2 * rows.step + 1);
+      if (sticks.row(dof).segment(first, count).any()) {
+        more.push_back(row);
+      } else if (k < rows.train) {
+        ++left;
+      }
+    }
+    if (left < kLeast) continue;
+    for (const Index row : more) rows.silent[static_cast<std::size_t>(row)] = true;
+  }
 }
 
 VectorXd RowsOf(const ForceRows& rows, const MatrixXd& forces) {
@@ -60,7 +89,8 @@ ForceNoise NoiseOf(const ForceRows& rows, const VectorXd& left,
     double before = 0.0;
     for (Index k = 1; k < r.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
-      if (!seen[at] || rows.begins[at]) continue;
+      if (!seen[at] || rows.IsSilent(j * rows.values() + k) || rows.Begins(j, k))
+        continue;
       both += r[k] * r[k - 1];
       before += r[k - 1] * r[k - 1];
     }
@@ -70,9 +100,9 @@ ForceNoise NoiseOf(const ForceRows& rows, const VectorXd& left,
     double count = 0.0;
     for (Index k = 0; k < r.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
-      if (!seen[at]) continue;
+      if (!seen[at] || rows.IsSilent(j * rows.values() + k)) continue;
       const double e =
-          rows.begins[at] ? r[k] * std::sqrt(1.0 - phi * phi) : r[k] - phi * r[k - 1];
+          rows.Begins(j, k) ? r[k] * std::sqrt(1.0 - phi * phi) : r[k] - phi * r[k - 1];
       squares += e * e;
       count += 1.0;
     }
@@ -95,7 +125,9 @@ MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
     const double phi = noise.phi[j];
     for (Index k = 0; k < rows.values(); ++k) {
       const Index row = j * rows.values() + k;
-      if (rows.begins[static_cast<std::size_t>(k)]) {
+      if (rows.IsSilent(row)) {
+        white.row(row).setZero();
+      } else if (rows.Begins(j, k)) {
         white.row(row) = columns.row(row) * (std::sqrt(1.0 - phi * phi) / noise.sd[j]);
       } else {
         white.row(row) = (columns.row(row) - phi * columns.row(row - 1)) / noise.sd[j];
@@ -105,9 +137,19 @@ MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
   return white;
 }
 
-double DevianceOf(const ForceNoise& noise, const std::vector<bool>& seen) {
-  const auto count = static_cast<double>(std::ranges::count(seen, true));
-  return count * (2.0 * noise.sd.array().log() + 1.0).sum();
+double DevianceOf(const ForceRows& rows, const ForceNoise& noise,
+                  const std::vector<bool>& seen) {
+  double deviance = 0.0;
+  for (Index j = 0; j < noise.sd.size(); ++j) {
+    double count = 0.0;
+    for (Index k = 0; k < rows.values(); ++k) {
+      if (seen[static_cast<std::size_t>(k)] && !rows.IsSilent(j * rows.values() + k)) {
+        count += 1.0;
+      }
+    }
+    deviance += count * (2.0 * std::log(noise.sd[j]) + 1.0);
+  }
+  return deviance;
 }
 
 }  // namespace mjdiag

@@ -24,8 +24,21 @@ namespace mjdiag {
 struct ForceRows {
   std::vector<Eigen::Index> dofs;
   std::vector<Eigen::Index> samples;  ///< of every value of a joint
+  Eigen::Index step = 1;              ///< between two values that follow each other
   std::vector<bool> begins;           ///< whether a value does not follow the last one
   Eigen::Index train = 0;             ///< values of a joint that a fit sees, the first
+  /// Of every row, whether it says nothing: the joint's own dry friction takes there what is
+  /// missing. Empty: all say something.
+  std::vector<bool> silent;
+
+  bool IsSilent(Eigen::Index row) const {
+    return !silent.empty() && silent[static_cast<std::size_t>(row)];
+  }
+  /// Whether a row does not follow the last one.
+  bool Begins(Eigen::Index joint, Eigen::Index value) const {
+    return begins[static_cast<std::size_t>(value)] ||
+           IsSilent(joint * values() + value - 1);
+  }
 
   Eigen::Index values() const { return static_cast<Eigen::Index>(samples.size()); }
   Eigen::Index rows() const {
@@ -36,6 +49,11 @@ struct ForceRows {
 /// @param train  samples of the run that a fit sees
 ForceRows RowsAlong(const FilteredRun& filtered, std::vector<Eigen::Index> dofs,
                     Eigen::Index train);
+
+/// Rows near samples at which a joint sticks are silent; none of a joint that would be left
+/// with next to nothing. @param sticks  nv x samples
+void Silence(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& sticks,
+             ForceRows& rows);
 
 /// The rows of forces that are within the band. @param forces  nv x samples
 Eigen::VectorXd RowsOf(const ForceRows& rows, const Eigen::MatrixXd& forces);
@@ -55,6 +73,7 @@ ForceNoise WithoutMemory(ForceNoise noise);
 Eigen::MatrixXd Whitened(const ForceRows& rows, const ForceNoise& noise,
                          const Eigen::MatrixXd& columns);
 /// -2 ln L without its constants.
-double DevianceOf(const ForceNoise& noise, const std::vector<bool>& seen);
+double DevianceOf(const ForceRows& rows, const ForceNoise& noise,
+                  const std::vector<bool>& seen);
 
 }  // namespace mjdiag

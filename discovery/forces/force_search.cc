@@ -9,6 +9,7 @@
 
 #include "mjdiag/discovery/forces/force_columns.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
@@ -26,12 +27,17 @@ class Search {
   Search(const DiscoveryProblem& problem, const std::vector<Candidate>& candidates,
          const FilteredRun& filtered, const ForceBalance& balance,
          const ForceSearchOptions& options)
-      : problem_(problem), candidates_(candidates), options_(options) {
+      : problem_(problem),
+        candidates_(candidates),
+        options_(options),
+        columns_(problem, filtered, balance) {
     Report("numbers of the plant", 0.0);
-    const ForceColumns columns(problem, filtered, balance);
-    forces_ = columns.NumbersAlone();
+    forces_ = columns_.NumbersAlone();
+    silenced_ = VectorXd::Zero(forces_.numbers.cols());
+    Refit();
+    Silence();
     Report("laws along the motion", 0.1);
-    tried_ = columns.TrialsOf(candidates);
+    tried_ = columns_.TrialsOf(candidates);
   }
 
   ForceSearchResult Run();
@@ -53,6 +59,11 @@ class Search {
   std::vector<Best> BestBeside(const std::vector<std::size_t>& set, const ForceFit& fit,
                                const std::vector<std::size_t>& tried, std::size_t count,
                                std::size_t place) const;
+  void Refit() {
+    fit_ = Fit(set_);
+    score_ = ScoreOf(set_, fit_);
+  }
+  bool Silence();
   bool Add();
   bool LeaveOut();
   bool Exchange();
@@ -67,6 +78,8 @@ class Search {
   const DiscoveryProblem& problem_;
   const std::vector<Candidate>& candidates_;
   const ForceSearchOptions& options_;
+  ForceColumns columns_;
+  VectorXd silenced_;  // z of a plant that sticks only where rows are silent
   ForceProblem forces_;
   std::vector<ForceTrial> tried_;
   std::vector<std::size_t> set_;
@@ -157,6 +170,29 @@ std::vector<Search::Best> Search::BestBeside(const std::vector<std::size_t>& set
   });
   std::ranges::stable_sort(best, std::less<>(), &Best::score);
   return best;
+}
+
+/// True if the friction of the plant was found to be another one, with which other rows say
+/// nothing: the fit is another one then.
+bool Search::Silence() {
+  constexpr double kNear = 0.05;  // of a number
+  const auto& numbers = problem_.numbers();
+  bool moved = false;
+  for (Index i = 0; i < fit_.z.size(); ++i) {
+    const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(i)];
+    if (doubted.is_lateness || doubted.number.kind != PlantNumberKind::kFriction)
+      continue;
+    moved = moved || doubted.spread * std::abs(fit_.z[i] - silenced_[i]) > kNear;
+  }
+  if (!moved) return false;
+  silenced_ = fit_.z;
+  try {
+    columns_.SilenceAt(fit_.z, forces_);
+  } catch (const NumericalError&) {
+    return false;
+  }
+  Refit();
+  return true;
 }
 
 bool Search::Add() {
@@ -257,16 +293,13 @@ bool Search::KeepWhatIsNeededUnseen() {
     changed = true;
     forbidden_.insert(tried_[set_[static_cast<std::size_t>(least)]].candidate);
     set_.erase(set_.begin() + least);
-    fit_ = Fit(set_);
-    score_ = ScoreOf(set_, fit_);
+    Refit();
   }
   return changed;
 }
 
 ForceSearchResult Search::Run() {
   constexpr int kRounds = 6;
-  fit_ = Fit({});
-  score_ = ScoreOf({}, fit_);
   ForceSearchResult result;
   result.numbers_alone = fit_.z;
   for (int round = 0; round < kRounds; ++round) {
@@ -274,23 +307,13 @@ ForceSearchResult Search::Run() {
     Report("other laws in their places", 0.6);
     bool changed = Exchange();
     while (LeaveOut()) changed = true;
+    if (Silence()) changed = true;
     if (!changed && !KeepWhatIsNeededUnseen()) break;
   }
   KeepWhatIsNeededUnseen();
   Exchange();
   result.model.causes = CausesOf(set_, fit_);
-  result.model.numbers = fit_.z;
-  for (Index i = 0; i < fit_.z.size(); ++i) {
-    const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
-    // Forces are linear in most numbers, and z is their logarithm.
-    constexpr double kLeastFactor = 0.1;
-    const double moved =
-        doubted.is_lateness || IsCentre(doubted.number.kind)
-            ? fit_.z[i]
-            : std::log(std::max(1.0 + doubted.spread * fit_.z[i], kLeastFactor)) /
-                  doubted.spread;
-    result.model.numbers[i] = std::clamp(moved, doubted.Least(), doubted.Most());
-  }
+  result.model.numbers = columns_.NumbersOf(fit_.z);
   result.rivals = rivals_;
   UnseenLoss loss = LossUnseen(forces_, GroupsOf(set_), fit_);
   result.loss = std::move(loss.each);
