@@ -5,12 +5,12 @@ copyright = "the authors of mjdiag, Apache-2.0"
 extensions = ["myst_parser", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 4
-suppress_warnings = ["myst.header"]  # the tour begins its lists where the README does
 html_theme = "furo"
 html_title = "mjdiag"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = False
+html_show_search_summary = False  # a page opened as a file may not read another one
 # From this site itself: it is read without a network.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
 myst_update_mathjax = False

@@ -30,6 +30,9 @@ import formula  # noqa: E402
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TEXTS = sorted(text.stem for text in (ROOT / "docs").glob("*.md"))
+# "### Prefilters (`diagnosis/residuals/residual_bank.h`)"
+FILES_OF_HEADING = re.compile(r"^(#+ .*?) \(((?:\[?`[^`]+`(?:\]\([^)]*\))?(?:, )?)+)\)$",
+                              re.MULTILINE)
 FENCE = re.compile(r"^ *(```+).*?^ *\1\s*$", re.MULTILINE | re.DOTALL)
 
 
@@ -37,6 +40,9 @@ class Site:
     def __init__(self, out):
         self.out = out
         self.sources = set()  # files of the repository that pages link to
+        # Of the headings of the theory, which lose their files here.
+        self.anchors = {slug(heading[0]): slug(heading[1]) for heading in
+                        FILES_OF_HEADING.finditer((ROOT / "docs/theory.md").read_text())}
         self.equations = {}  # of each such file, the names that have some, with their numbers
 
     def write(self, name, text):
@@ -57,6 +63,10 @@ class Site:
         self.source(path)
         self.equations.setdefault(path, {}).setdefault(name, []).append(number)
         return label(path, name)
+
+
+def slug(heading):
+    return re.sub(r"[^\w -]", "", heading.lstrip("# ").lower()).replace(" ", "-")
 
 
 def label(path, name):
@@ -93,6 +103,8 @@ def link_files(site, text, folder):
             page = site.source(path)
             if page is None:
                 raise SystemExit(f"{folder}: links to {match[2]}, which is not there")
+        if page == "/theory.md":
+            anchor = site.anchors.get(anchor, anchor)
         # Relative, as all texts stand at the top: MyST finds no anchor behind a slash.
         return f"{match[1]}({page.lstrip('/')}{'#' + anchor if anchor else ''})"
     return re.sub(r"(\[[^\]]*\])\(([^)\s]+)\)", target, text)
@@ -104,13 +116,14 @@ def theory(site, text):
     for number, equation in enumerate(found, 1):
         out += lines[at:equation.first]
         at = equation.end
-        links = [f"[`{name}`]({page})" for name, page in
-                 ((name, site.equation(number, name, path)) for name, path in equation.code)]
-        files = dict.fromkeys(path for _, path in equation.code)
+        links = {}  # of every file
+        for name, path in equation.code:
+            links.setdefault(path, []).append(
+                f"{{ref}}`{name} <{site.equation(number, name, path)}>`")
         block = ["```{math}", f":label: equation-{number}", "",
                  formula.block(equation.lines), "```", "", ":::{container} where",
-                 ", ".join(links) + " in " + ", ".join(
-                     f"[{path}]({site.source(path)})" for path in files), ":::", ""]
+                 "; ".join(", ".join(names) + f" in [{path}]({site.source(path)})"
+                           for path, names in links.items()), ":::", ""]
         out += [equation.indent + line if line else "" for line in
                 "\n".join(block).split("\n")]
     out += lines[at:]
@@ -123,13 +136,14 @@ def theory(site, text):
         return f"${formula.tex(inner)}$" if formula.is_formula(inner) else match[0]
 
     def paragraph(match):
-        return re.sub(r"(?<!\[)`([^`]+)`", lambda m: code(re.match(
+        return re.sub(r"(?<![\[}])`([^`]+)`", lambda m: code(re.match(
             "`([^`]+)`", m[0].replace("\n", " "))), match[0])
 
     # Paragraph by paragraph: a line break may cut code in two.
     text = outside_fences("\n".join(out), lambda part: re.sub(
         r"(?:[^\n]+\n?)+", paragraph, part))
-    return text, len(found)
+    # Files of a section stand below its heading.
+    return re.sub(FILES_OF_HEADING, r"\1\n\n:::{container} files\n\2\n:::\n", text), len(found)
 
 
 def commands(site, program):
@@ -371,11 +385,11 @@ def main():
         shutil.rmtree(options.out)
     site = Site(options.out)
     for name in TEXTS:
-        text = link_files(site, (ROOT / f"docs/{name}.md").read_text(), "docs")
+        text = (ROOT / f"docs/{name}.md").read_text()
         if name == "theory":
             text, count = theory(site, text)
-            print(f"theory: {count} formulas")
-        site.write(f"{name}.md", text)
+            print(f"theory: {count} equations")
+        site.write(f"{name}.md", link_files(site, text, "docs"))
     site.write("index.md", link_files(site, (ROOT / "README.md").read_text(), ".") +
                (HERE / "index.md").read_text())
     commands(site, program)
