@@ -17,3 +17,21 @@ myst_update_mathjax = False
 mathjax2_config = {"tex2jax": {"inlineMath": [["\\(", "\\)"]], "displayMath": [["\\[", "\\]"]]},
                    "messageStyle": "none", "showMathMenu": False}
 add_module_names = False
+
+
+def setup(app):
+    """The tree at the side is the same for all sources, which are not in it: made for each of them
+    it takes most of the time."""
+    from sphinx.builders.html import StandaloneHTMLBuilder
+    made, make = {}, StandaloneHTMLBuilder._get_local_toctree
+
+    def once(builder, page, collapse=True, **options):
+        if not page.startswith("source/"):
+            return make(builder, page, collapse, **options)
+        key = (collapse, *sorted(options.items()))
+        if key not in made:
+            made[key] = make(builder, page, collapse, **options)
+        return made[key]
+
+    StandaloneHTMLBuilder._get_local_toctree = once
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
