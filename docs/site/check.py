@@ -42,8 +42,9 @@ def command_lines(text):
         joined = ""
 
 
-def check_commands(program):
-    whole, known = command_help.commands(program)
+def check_commands(program, helps=None):
+    """@param helps  what command_help.commands(program) gave, if it is known."""
+    whole, known = helps or command_help.commands(program)
     faults, count = [], 0
     texts = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")),
              ROOT / "docs/site/gallery.toml"]

@@ -2,6 +2,8 @@
 docs/, every command from its --help, every Python name from its stub and docstring, the
 sources that the theory names, the notebooks with what they put out, and a gallery.
 
+Checks the commands in the texts, too.
+
     pages.py --program <mjdiag> --python <folder of the package> [--quick] <out>
 
 --quick leaves out what takes minutes: the notebooks are not run, the gallery is empty.
@@ -23,6 +25,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "app/manual"))
 
+import check  # noqa: E402
 import command_help  # noqa: E402
 import equations  # noqa: E402
 import formula  # noqa: E402
@@ -147,7 +150,10 @@ def theory(site, text):
 
 
 def commands(site, program):
-    whole, parts = command_help.commands(program)
+    whole, parts = helps = command_help.commands(program)
+    faults = check.check_commands(program, helps)  # of the texts
+    if faults:
+        raise SystemExit("\n".join(faults))
     lines = ["# Commands\n", "Made from what `mjdiag --help` says.\n"]
     for name, command in parts.items():
         lines.append(f"[`mjdiag {name}`]({name}.md)\n: {command.summary}\n")
