@@ -6,7 +6,8 @@ Checks the commands in the texts, too.
 
     pages.py --program <mjdiag> --python <folder of the package> [--quick] <out>
 
---quick leaves out what takes minutes: the notebooks are not run, the gallery is empty.
+--quick leaves out what takes long: the notebooks are not run, the gallery is empty, of
+sources there are the headers.
 """
 
 import argparse
@@ -331,7 +332,8 @@ def picture_of_page(page, picture):
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def sources(site):
+def sources(site, quick):
+    kinds = (".h", ".xml", ".toml", ".py") if quick else (".h", ".xml", ".toml", ".py", ".cc")
     done = set()
     while site.sources - done:
         for path in sorted(site.sources - done):
@@ -339,15 +341,15 @@ def sources(site):
             page = f"---\norphan: true\n---\n# {path}\n\n"
             if (ROOT / path).is_dir():
                 files = [p for p in sorted((ROOT / path).iterdir())
-                         if p.suffix in (".h", ".xml", ".toml", ".cc", ".py") and p.is_file()]
+                         if p.suffix in kinds and p.is_file()]
                 page += "\n".join(f"- [{p.name}]({site.source(p.relative_to(ROOT))})"
                                   for p in files)
             else:
-                page += source_page(site, path)
+                page += source_page(site, path, quick)
             site.write(f"source/{path.replace('/', '.')}.md", page)
 
 
-def source_page(site, path):
+def source_page(site, path, quick):
     """A file as it is, its links from the theory leading to where a name is declared."""
     text = (ROOT / path).read_text(encoding="utf-8").rstrip("\n")
     language = {".h": "cpp", ".cc": "cpp", ".py": "python", ".xml": "xml",
@@ -361,7 +363,7 @@ def source_page(site, path):
                      "[theory](/theory.md)")
     parts.append("")
     other = Path(path).with_suffix({".h": ".cc", ".cc": ".h"}.get(Path(path).suffix, ".none"))
-    if parts[:-1] and (ROOT / other).exists():
+    if parts[:-1] and (ROOT / other).exists() and not quick:
         parts.append(f"[{other}]({site.source(other)})\n")
     lines = text.split("\n")
     starts = sorted({0, *marks})
@@ -402,7 +404,7 @@ def main():
     python_reference(site, python)
     notebooks(site, python, options.quick)
     gallery(site, program, options.quick)
-    sources(site)
+    sources(site, options.quick)
 
 
 if __name__ == "__main__":
