@@ -5,6 +5,7 @@ copyright = "the authors of mjdiag, Apache-2.0"
 extensions = ["myst_parser", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 4
+smartquotes = False  # --records is two signs
 html_theme = "furo"
 html_title = "mjdiag"
 html_static_path = ["static"]
@@ -20,8 +21,8 @@ add_module_names = False
 
 
 def setup(app):
-    """The tree at the side is the same for all sources, which are not in it: made for each of them
-    it takes most of the time."""
+    """The tree at the side is the same for all sources, which are not in it: made for each of
+    them it takes most of the time."""
     from sphinx.builders.html import StandaloneHTMLBuilder
     made, make = {}, StandaloneHTMLBuilder._get_local_toctree
 

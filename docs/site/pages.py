@@ -191,6 +191,9 @@ def python_reference(site, folder):
     tree = ast.parse((ROOT / "python/mjdiag/__init__.pyi").read_text())
     lines = ["# Python reference\n",
              "Names and types from the stubs, words from the docstrings.\n"]
+    lines += [f"- `{node.targets[0].id}` stands for `{ast.unparse(node.value)}`"
+              for node in tree.body if isinstance(node, ast.Assign)
+              and node.targets[0].id.startswith("_")] + [""]
     missing = []
 
     def words(thing, indent=""):
