@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -55,8 +56,37 @@ EigenPairs EigenDecomposition(const MatrixXd& A) {
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
+Eigen::VectorXd BalancingScales(MatrixXd A) {
+  constexpr int kMaxSweeps = 100;
+  constexpr double kWorthwhile = 0.95;
+  Eigen::VectorXd scales = Eigen::VectorXd::Ones(A.rows());
+  bool changed = true;
+  for (int sweep = 0; changed && sweep < kMaxSweeps; ++sweep) {
+    changed = false;
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      const double diagonal = std::abs(A(i, i));
+      const double column = A.col(i).lpNorm<1>() - diagonal;
+      const double row = A.row(i).lpNorm<1>() - diagonal;
+      if (column == 0.0 || row == 0.0) continue;
+      const double scale = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (column * scale + row / scale >= kWorthwhile * (column + row)) continue;
+      A.col(i) *= scale;
+      A.row(i) /= scale;
+      scales[i] *= scale;
+      changed = true;
+    }
+  }
+  return scales;
+}
+
 double SpectralRadius(const MatrixXd& A) {
-  return Eigen::EigenSolver<MatrixXd>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+  const Eigen::VectorXd scales = BalancingScales(A);
+  const MatrixXd balanced =
+      scales.cwiseInverse().asDiagonal() * A * scales.asDiagonal();
+  return Eigen::EigenSolver<MatrixXd>(balanced, false)
+      .eigenvalues()
+      .cwiseAbs()
+      .maxCoeff();
 }
 
 SymmetricEigenPairs SymmetricEigenDecomposition(const MatrixXd& A) {

@@ -35,6 +35,11 @@ struct EigenPairs {
 /// NumericalError if the iteration does not converge.
 EigenPairs EigenDecomposition(const Eigen::MatrixXd& A);
 
+/// Scales s for which row and column norms of diag(s)^-1 A diag(s) are alike: its
+/// eigenvalues are those of A and lose fewer digits. Powers of two, so that scaling rounds
+/// nothing. Parlett and Reinsch, Numerische Mathematik 13 (1969), 293-304.
+Eigen::VectorXd BalancingScales(Eigen::MatrixXd A);
+
 /// The largest modulus of an eigenvalue of A: below 1 where x+ = A x is stable.
 double SpectralRadius(const Eigen::MatrixXd& A);
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -25,31 +26,6 @@ void RequireContinuous(const StateSpace& system, double sample_time) {
                      "sample time " + std::to_string(sample_time) + " s",
                      "a positive time");
   }
-}
-
-/// Scales s for which row and column norms of diag(s)^-1 A diag(s) are alike (Parlett
-/// and Reinsch, 1969). Powers of two, so that scaling rounds nothing.
-VectorXd BalancingScales(MatrixXd A) {
-  constexpr int kMaxSweeps = 100;
-  constexpr double kWorthwhile = 0.95;
-  VectorXd scales = VectorXd::Ones(A.rows());
-  bool changed = true;
-  for (int sweep = 0; changed && sweep < kMaxSweeps; ++sweep) {
-    changed = false;
-    for (Index i = 0; i < A.rows(); ++i) {
-      const double diagonal = std::abs(A(i, i));
-      const double column = A.col(i).lpNorm<1>() - diagonal;
-      const double row = A.row(i).lpNorm<1>() - diagonal;
-      if (column == 0.0 || row == 0.0) continue;
-      const double scale = std::exp2(std::round(0.5 * std::log2(row / column)));
-      if (column * scale + row / scale >= kWorthwhile * (column + row)) continue;
-      A.col(i) *= scale;
-      A.row(i) /= scale;
-      scales[i] *= scale;
-      changed = true;
-    }
-  }
-  return scales;
 }
 
 }  // namespace

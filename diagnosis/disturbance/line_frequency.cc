@@ -93,11 +93,17 @@ double LineFrequency(const VectorXd& residual, double sample_time, double around
       best = offset;
     }
   }
-  // The blocks are exact only at offset 0, so go there.
+  // The blocks are exact only at offset 0, so go there: each time some digits nearer,
+  // until rounding is what is left.
   double frequency = around + best;
-  for (int i = 0; i < 3; ++i) {
-    frequency +=
+  double last = step;
+  constexpr int kMaxMoves = 30;
+  for (int i = 0; i < kMaxMoves; ++i) {
+    const double move =
         Maximum(Demodulate(residual, sample_time, frequency, block), -step, step);
+    frequency += move;
+    if (i > 0 && std::abs(move) >= 0.5 * last) break;
+    last = std::abs(move);
   }
   return frequency;
 }

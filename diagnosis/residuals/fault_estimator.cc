@@ -145,8 +145,11 @@ void FaultEstimator::BuildUp() noexcept {
   state_ = noise_.drive;
   state_.noalias() += next_state_ * noise_.A.transpose();
   UpdateNoise();
-  constexpr double kBuiltUp = 1e-6;  // of the variance of the residual
-  building_up_ = std::abs(output_.trace() - Variance()) > kBuiltUp * Variance();
+  // The variance grows up to that at rest, until rounding is all that is between them.
+  constexpr double kNear = 1e-6;  // of the variance of the residual
+  const double left = std::abs(output_.trace() - Variance());
+  building_up_ = left > kNear * Variance() || left < left_;
+  left_ = left;
 }
 
 double FaultEstimator::Variance() const noexcept {
