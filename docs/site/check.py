@@ -2,6 +2,9 @@
 
     check.py commands <mjdiag>   every command in README.md and docs/ names a subcommand,
                                  options and scripts that exist
+    check.py sources             every formula of docs/theory.md says which name in which file
+                                 has it, and it is there; so is every source that the texts
+                                 name
     check.py links <folder>      every link of the built site that stays inside leads
                                  somewhere, anchors included, and nothing is loaded from
                                  elsewhere
@@ -18,6 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "app/manual"))
 
 import command_help  # noqa: E402
+import equations  # noqa: E402
 
 
 def command_lines(text):
@@ -38,11 +42,12 @@ def command_lines(text):
         joined = ""
 
 
-def check_commands(program):
-    whole, known = command_help.commands(program)
+def check_commands(program, helps=None):
+    """@param helps  what command_help.commands(program) gave, if it is known."""
+    whole, known = helps or command_help.commands(program)
     faults, count = [], 0
     texts = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")),
-             ROOT / "docs/site/index.md", ROOT / "docs/site/gallery.toml"]
+             ROOT / "docs/site/gallery.toml"]
     for path in texts:
         text = path.read_text(encoding="utf-8")
         if path.suffix == ".toml":
@@ -89,6 +94,23 @@ def check_commands(program):
     return faults
 
 
+def check_sources():
+    theory = (ROOT / "docs/theory.md").read_text(encoding="utf-8")
+    count = len(equations.equations(theory))
+    faults = [f"docs/theory.md: {fault}" for fault in equations.faults(theory, ROOT)]
+    if count < 40:
+        faults.append(f"only {count} equations found: they are not read any more")
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for name in re.findall(r"`([a-z_]+/[\w/]+\.(?:h|cc|py))`",
+                               path.read_text(encoding="utf-8")):
+            if name.startswith(("out/", "your/")):
+                continue
+            if not (ROOT / name.removeprefix("mjdiag/")).exists():
+                faults.append(f"{path.relative_to(ROOT)}: no {name}")
+    print(f"{count} equations")
+    return faults
+
+
 class Page(HTMLParser):
     def __init__(self, text):
         super().__init__()
@@ -132,10 +154,12 @@ def check_links(folder):
 
 
 def main():
-    if len(sys.argv) != 3 or sys.argv[1] not in ("commands", "links"):
+    checks = {"commands": check_commands, "links": check_links, "sources": check_sources}
+    arguments = sys.argv[1:]
+    if not arguments or arguments[0] not in checks or len(arguments) != (
+            1 if arguments[0] == "sources" else 2):
         sys.exit(__doc__)
-    path = Path(sys.argv[2]).resolve()
-    faults = check_commands(path) if sys.argv[1] == "commands" else check_links(path)
+    faults = checks[arguments[0]](*(Path(path).resolve() for path in arguments[1:]))
     for fault in faults:
         print(fault, file=sys.stderr)
     sys.exit(1 if faults else 0)

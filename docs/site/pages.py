@@ -1,10 +1,13 @@
-"""Makes the pages that Sphinx builds the site from: the texts of docs/, the README as the
-tour, every command from its --help, every Python name from its stub and docstring, the
+"""Makes the pages that Sphinx builds the site from: the README as the first one, the texts of
+docs/, every command from its --help, every Python name from its stub and docstring, the
 sources that the theory names, the notebooks with what they put out, and a gallery.
+
+Checks the commands in the texts, too.
 
     pages.py --program <mjdiag> --python <folder of the package> [--quick] <out>
 
---quick leaves out what takes minutes: the notebooks are not run, the gallery is empty.
+--quick leaves out what takes long: the notebooks are not run, the gallery is empty, of
+sources there are the headers.
 """
 
 import argparse
@@ -23,19 +26,28 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "app/manual"))
 
+import check  # noqa: E402
 import command_help  # noqa: E402
+import equations  # noqa: E402
 import formula  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TEXTS = sorted(text.stem for text in (ROOT / "docs").glob("*.md"))
-FENCE = re.compile(r"^(```+).*?^\1\s*$", re.MULTILINE | re.DOTALL)
+# "### Prefilters (`diagnosis/residuals/residual_bank.h`)"
+FILES_OF_HEADING = re.compile(r"^(#+ .*?) \(((?:\[?`[^`]+`(?:\]\([^)]*\))?(?:, )?)+)\)$",
+                              re.MULTILINE)
+FENCE = re.compile(r"^ *(```+).*?^ *\1\s*$", re.MULTILINE | re.DOTALL)
 
 
 class Site:
     def __init__(self, out):
         self.out = out
         self.sources = set()  # files of the repository that pages link to
+        # Of the headings of the theory, which lose their files here.
+        self.anchors = {slug(heading[0]): slug(heading[1]) for heading in
+                        FILES_OF_HEADING.finditer((ROOT / "docs/theory.md").read_text())}
+        self.equations = {}  # of each such file, the names that have some, with their numbers
 
     def write(self, name, text):
         path = self.out / name
@@ -49,6 +61,20 @@ class Site:
             return None
         self.sources.add(path)
         return f"/source/{path.replace('/', '.')}.md"
+
+    def equation(self, number, name, path):
+        """The place of a name in the page of its file."""
+        self.source(path)
+        self.equations.setdefault(path, {}).setdefault(name, []).append(number)
+        return label(path, name)
+
+
+def slug(heading):
+    return re.sub(r"[^\w -]", "", heading.lstrip("# ").lower()).replace(" ", "-")
+
+
+def label(path, name):
+    return re.sub(r"\W+", "-", f"{path} {name}").lower()
 
 
 def outside_fences(text, change):
@@ -70,7 +96,7 @@ def link_files(site, text, folder):
         if path == "docs/notebooks":
             page = "/notebooks/index.md"
         elif path == "README.md":
-            page = "/tour.md"
+            page = "/index.md"
         elif path.startswith("docs/") and path[5:].removesuffix(".md") in TEXTS:
             page = f"/{path[5:]}"
         elif path.startswith("docs/") and path.endswith(".png"):
@@ -81,27 +107,30 @@ def link_files(site, text, folder):
             page = site.source(path)
             if page is None:
                 raise SystemExit(f"{folder}: links to {match[2]}, which is not there")
+        if page == "/theory.md":
+            anchor = site.anchors.get(anchor, anchor)
         # Relative, as all texts stand at the top: MyST finds no anchor behind a slash.
         return f"{match[1]}({page.lstrip('/')}{'#' + anchor if anchor else ''})"
     return re.sub(r"(\[[^\]]*\])\(([^)\s]+)\)", target, text)
 
 
 def theory(site, text):
-    """Formulas typeset, each with the files of its section, and paths as links."""
-    out, block, files, count = [], [], [], 0
-
-    def flush():
-        nonlocal count
-        while block and not block[-1].strip():
-            block.pop()
-        if not block:
-            return
-        count += 1
-        where = ", ".join(f"[{path}]({site.source(path)})" for path in files)
-        out.extend([f"```{{math}}\n:label: equation-{count}\n", formula.block(block), "```", ""])
-        if where:
-            out.extend([f":::{{container}} where\n{where}\n:::", ""])
-        block.clear()
+    """Equations typeset, each with what has it in the sources, and paths as links."""
+    found, lines, out, at = equations.equations(text), text.split("\n"), [], 0
+    for number, equation in enumerate(found, 1):
+        out += lines[at:equation.first]
+        at = equation.end
+        links = {}  # of every file
+        for name, path in equation.code:
+            links.setdefault(path, []).append(
+                f"{{ref}}`{name} <{site.equation(number, name, path)}>`")
+        block = ["```{math}", f":label: equation-{number}", "",
+                 formula.block(equation.lines), "```", "", ":::{container} where",
+                 "; ".join(", ".join(names) + f" in [{path}]({site.source(path)})"
+                           for path, names in links.items()), ":::", ""]
+        out += [equation.indent + line if line else "" for line in
+                "\n".join(block).split("\n")]
+    out += lines[at:]
 
     def code(match):
         inner = match[1]
@@ -110,33 +139,22 @@ def theory(site, text):
             return f"[`{inner}`]({page})"
         return f"${formula.tex(inner)}$" if formula.is_formula(inner) else match[0]
 
-    before = ""
-    for line in text.split("\n"):
-        if line.startswith("    ") and (block or not before.strip()):
-            block.append(line)
-        elif not line.strip() and block:
-            block.append(line)
-        else:
-            flush()
-            if line.startswith("#"):
-                named = [path for path in re.findall(r"`([^`\s]+/[^`]*)`", line)
-                         if (ROOT / path).exists()]
-                files = named or (files if line.startswith("###") else [])
-            out.append(line)
-        before = line
-    flush()
     def paragraph(match):
-        return re.sub(r"`([^`]+)`", lambda m: code(re.match(
+        return re.sub(r"(?<![\[}])`([^`]+)`", lambda m: code(re.match(
             "`([^`]+)`", m[0].replace("\n", " "))), match[0])
 
     # Paragraph by paragraph: a line break may cut code in two.
     text = outside_fences("\n".join(out), lambda part: re.sub(
         r"(?:[^\n]+\n?)+", paragraph, part))
-    return text, count
+    # Files of a section stand below its heading.
+    return re.sub(FILES_OF_HEADING, r"\1\n\n:::{container} files\n\2\n:::\n", text), len(found)
 
 
 def commands(site, program):
-    whole, parts = command_help.commands(program)
+    whole, parts = helps = command_help.commands(program)
+    faults = check.check_commands(program, helps)  # of the texts
+    if faults:
+        raise SystemExit("\n".join(faults))
     lines = ["# Commands\n", "Made from what `mjdiag --help` says.\n"]
     for name, command in parts.items():
         lines.append(f"[`mjdiag {name}`]({name}.md)\n: {command.summary}\n")
@@ -173,6 +191,9 @@ def python_reference(site, folder):
     tree = ast.parse((ROOT / "python/mjdiag/__init__.pyi").read_text())
     lines = ["# Python reference\n",
              "Names and types from the stubs, words from the docstrings.\n"]
+    lines += [f"- `{node.targets[0].id}` stands for `{ast.unparse(node.value)}`"
+              for node in tree.body if isinstance(node, ast.Assign)
+              and node.targets[0].id.startswith("_")] + [""]
     missing = []
 
     def words(thing, indent=""):
@@ -235,9 +256,8 @@ def notebooks(site, python, quick):
     site.write("notebooks/index.md", "# Notebooks\n\nRun when this site was made; what they "
                "put out is what they put out then.\n\n```{toctree}\n" + "\n".join(names) + "\n```\n")
     for name in names:
-        book = json.loads((ROOT / f"docs/notebooks/{name}.ipynb").read_text())
-        if not quick:
-            book = run_notebook(book, python)
+        text = (ROOT / f"docs/notebooks/{name}.ipynb").read_text(encoding="utf-8")
+        book = json.loads(text) if quick else run_notebook(text, python)
         lines, pictures = [], 0
         for cell in book["cells"]:
             text = "".join(cell["source"])
@@ -262,10 +282,10 @@ def notebooks(site, python, quick):
         site.write(f"notebooks/{name}.md", "\n".join(lines))
 
 
-def run_notebook(book, python):
+def run_notebook(text, python):
     import nbformat
     from nbclient import NotebookClient
-    book = nbformat.from_dict(book)
+    book = nbformat.reads(text, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         os.symlink(ROOT / "mjcf", os.path.join(folder, "mjcf"))
         os.environ["PYTHONPATH"] = str(python)
@@ -315,22 +335,53 @@ def picture_of_page(page, picture):
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def sources(site):
+def sources(site, quick):
+    kinds = (".h", ".xml", ".toml", ".py") if quick else (".h", ".xml", ".toml", ".py", ".cc")
     done = set()
     while site.sources - done:
         for path in sorted(site.sources - done):
             done.add(path)
-            name = f"source/{path.replace('/', '.')}.md"
+            page = f"---\norphan: true\n---\n# {path}\n\n"
             if (ROOT / path).is_dir():
                 files = [p for p in sorted((ROOT / path).iterdir())
-                         if p.suffix in (".h", ".xml", ".toml", ".cc", ".py") and p.is_file()]
-                rows = [f"- [{p.name}]({site.source(p.relative_to(ROOT))})" for p in files]
-                site.write(name, f"---\norphan: true\n---\n# {path}\n\n" + "\n".join(rows))
-                continue
-            text = (ROOT / path).read_text(encoding="utf-8")
-            language = {".h": "cpp", ".cc": "cpp", ".py": "python", ".xml": "xml",
-                        ".toml": "toml"}.get(Path(path).suffix, "text")
-            site.write(name, f"---\norphan: true\n---\n# {path}\n\n``````{language}\n{text}\n``````\n")
+                         if p.suffix in kinds and p.is_file()]
+                page += "\n".join(f"- [{p.name}]({site.source(p.relative_to(ROOT))})"
+                                  for p in files)
+            else:
+                page += source_page(site, path, quick)
+            site.write(f"source/{path.replace('/', '.')}.md", page)
+
+
+def source_page(site, path, quick):
+    """A file as it is, its links from the theory leading to where a name is declared."""
+    text = (ROOT / path).read_text(encoding="utf-8").rstrip("\n")
+    language = {".h": "cpp", ".cc": "cpp", ".py": "python", ".xml": "xml",
+                ".toml": "toml"}.get(Path(path).suffix, "text")
+    parts, marks = [], {}  # marks: a line at which a part begins, its labels and names
+    for name, numbers in site.equations.get(path, {}).items():
+        words, first, last = equations.declaration(text, name)
+        marks.setdefault(words, []).append((name, first, last))
+        of = ", ".join(f"{{eq}}`equation-{number}`" for number in numbers)
+        parts.append(f"- {{ref}}`{name} <{label(path, name)}>`: equation {of} of the "
+                     "[theory](/theory.md)")
+    parts.append("")
+    other = Path(path).with_suffix({".h": ".cc", ".cc": ".h"}.get(Path(path).suffix, ".none"))
+    if parts[:-1] and (ROOT / other).exists() and not quick:
+        parts.append(f"[{other}]({site.source(other)})\n")
+    lines = text.split("\n")
+    starts = sorted({0, *marks})
+    for start, end in zip(starts, starts[1:] + [len(lines)]):
+        names = marks.get(start, [])
+        parts += [f"({label(path, name)})=" for name, _, _ in names]
+        parts.append(f"``````{{code-block}} {language}")
+        if marks:
+            parts += [":linenos:", f":lineno-start: {start + 1}"]
+        if names:
+            shown = ",".join(f"{first - start + 1}-{last - start + 1}"
+                             for _, first, last in names)
+            parts.append(f":emphasize-lines: {shown}")
+        parts += ["", *lines[start:end], "``````", ""]
+    return "\n".join(parts)
 
 
 def main():
@@ -345,19 +396,18 @@ def main():
         shutil.rmtree(options.out)
     site = Site(options.out)
     for name in TEXTS:
-        text = link_files(site, (ROOT / f"docs/{name}.md").read_text(), "docs")
+        text = (ROOT / f"docs/{name}.md").read_text()
         if name == "theory":
             text, count = theory(site, text)
-            print(f"theory: {count} formulas")
-        site.write(f"{name}.md", text)
-    site.write("tour.md", link_files(site, re.sub("^# mjdiag", "# A tour", (
-        ROOT / "README.md").read_text()), "."))
-    site.write("index.md", link_files(site, (HERE / "index.md").read_text(), "docs"))
+            print(f"theory: {count} equations")
+        site.write(f"{name}.md", link_files(site, text, "docs"))
+    site.write("index.md", link_files(site, (ROOT / "README.md").read_text(), ".") +
+               (HERE / "index.md").read_text())
     commands(site, program)
     python_reference(site, python)
     notebooks(site, python, options.quick)
     gallery(site, program, options.quick)
-    sources(site)
+    sources(site, options.quick)
 
 
 if __name__ == "__main__":

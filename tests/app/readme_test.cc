@@ -1,5 +1,5 @@
-// The commands of README.md, as they stand there, in a folder that has nothing but the
-// machines.
+// The commands of README.md and of its tour, as they stand there, in a folder that has
+// nothing but the machines.
 
 #include <gtest/gtest.h>
 
@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Lines of code blocks that begin with "mjdiag", with what goes on behind a backslash.
-std::vector<std::string> CommandsOfReadme() {
-  std::istringstream readme(ReadAll(fs::path(MJDIAG_SOURCE_DIR) / "README.md"));
+std::vector<std::string> CommandsOf(const fs::path& page) {
+  std::istringstream text(ReadAll(fs::path(MJDIAG_SOURCE_DIR) / page));
   std::vector<std::string> commands;
   bool goes_on = false;
-  for (std::string line; std::getline(readme, line);) {
+  for (std::string line; std::getline(text, line);) {
     const bool begins = line.rfind("    mjdiag ", 0) == 0;
     if (begins) commands.emplace_back();
     if (!begins && !goes_on) continue;
@@ -60,8 +60,11 @@ TEST(Readme, CommandsDoWhatTheySay) {
   const auto panda = DataFolder("MJDIAG_PANDA_DATA");
   if (panda) LinkFiles(*panda, folder.path());
 
-  const std::vector<std::string> commands = CommandsOfReadme();
-  ASSERT_GE(commands.size(), 18u);
+  std::vector<std::string> commands = CommandsOf("README.md");
+  ASSERT_GE(commands.size(), 6u);
+  const std::vector<std::string> tour = CommandsOf("docs/tour.md");
+  ASSERT_GE(tour.size(), 18u);
+  commands.insert(commands.end(), tour.begin(), tour.end());
   int typed = 0;
   for (std::string command : commands) {
     // Studies take many minutes; tests of their own type them with fewer runs.
@@ -85,11 +88,11 @@ TEST(Readme, CommandsDoWhatTheySay) {
     EXPECT_EQ(std::system(line.c_str()), 0) << command << ReadAll(log);
     ++typed;
   }
-  EXPECT_GE(typed, 11);
+  EXPECT_GE(typed, 16);
   // What later commands, and the text, say is there.
-  for (const char* file :
-       {"out/worn/diagnosis.json", "out/worn/report.html", "out/clip/clip.mp4",
-        "out/calibrated/setup.toml", "out/filters/filters.json"}) {
+  for (const char* file : {"out/worn/diagnosis.json", "out/worn/report.html",
+                           "out/clip/clip.mp4", "out/calibrated/setup.toml",
+                           "out/filters/filters.json", "out/drag/report.html"}) {
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
   }
   // Nobody knows the numbers of a measured machine exactly.

@@ -1,5 +1,5 @@
 // A robot servo, really measured. The data belongs to its authors and is not part of this
-// repository: the folder is named by MJDIAG_SERVO_DATA, see the README.
+// repository: the folder is named by MJDIAG_SERVO_DATA, see docs/tour.md.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The EMPS stage, really measured. The data belongs to its authors and is not part of
-// this repository: the folder is named by MJDIAG_EMPS_DATA, see the README.
+// this repository: the folder is named by MJDIAG_EMPS_DATA, see docs/tour.md.
 
 #include <gtest/gtest.h>
 
