@@ -78,16 +78,14 @@ std::int64_t RunSchedule::Share(const Rank& rank, double now) const {
   std::int64_t threads = 0;
   for (const Rank& one : ranks_) threads += Works(one) ? one.threads : 0;
   const auto has = static_cast<std::int64_t>(rank.has.size());
-  const bool plenty = waiting_runs_ > 2 * threads;
-  if (!plenty) return rank.threads - has;
-  if (has >= 2 * rank.threads) return 0;
-  const std::int64_t guided = waiting_runs_ * rank.threads / (2 * threads);
+  if (waiting_runs_ <= 2 * threads) return rank.threads - has;
   const double seconds = now - rank.begun;
   const double rate = seconds > 0.0 ? static_cast<double>(rank.made) / seconds : 0.0;
-  const auto ahead = static_cast<std::int64_t>(
+  const auto made_ahead = static_cast<std::int64_t>(
       std::min(kAhead * rate, static_cast<double>(waiting_runs_)));
-  const std::int64_t next = std::max(rank.threads, std::min(guided, ahead));
-  return rank.threads + next - has;
+  const std::int64_t ahead =
+      std::min(waiting_runs_ * rank.threads / (2 * threads), made_ahead);
+  return has < rank.threads + ahead / 2 ? rank.threads + ahead - has : 0;
 }
 
 void RunSchedule::Take(std::int64_t count, Rank& rank, std::vector<RunRange>& taken) {

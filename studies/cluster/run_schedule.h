@@ -1,13 +1,14 @@
 #pragma once
-// Which rank makes which runs of a study. A rank gets some at a time and more before it
-// has none: with w runs waiting, t threads of its own and T of all ranks,
+// Which rank makes which runs of a study. A rank has a run for every one of its threads and
+// n ahead, and gets more when half of these are begun: with w runs waiting, t threads of its
+// own and T of all ranks,
 //
-//   n = min(w t / (2 T), what it makes in two seconds), at least t,
+//   n = min(w t / (2 T), what it makes in a second), 0 once w <= 2 T.
 //
-// (guided self-scheduling of Polychronopoulos and Kuck, which begins with large shares and
-// ends with small ones), and as few as it has idle threads once w <= 2 T: at the end nobody
-// holds runs back. Nothing is handed out to two ranks but runs of one that was not heard
-// for longer than `patience`: whichever makes such a run, its bits are the same.
+// So shares begin large and end small (guided self-scheduling of Polychronopoulos and
+// Kuck), a slow rank holds few, and at the end nobody holds runs back. Nothing is handed
+// out to two ranks but runs of one that was not heard for longer than `patience`: whichever
+// makes such a run, its bits are the same. scripts/scheduler-loss simulates it.
 //
 // No threads, no messages, no clock: `now` [s] comes from outside.
 
@@ -56,7 +57,7 @@ class RunSchedule {
     bool lost = false;
   };
 
-  static constexpr double kAhead = 2.0;  // s
+  static constexpr double kAhead = 1.0;  // s
 
   bool Works(const Rank& rank) const { return !rank.retired && !rank.lost; }
   void GiveBack(Rank& rank);
