@@ -24,6 +24,7 @@ std::optional<RankReport> PoolReport::Next(std::chrono::milliseconds longest) {
   constexpr auto kBeat = std::chrono::seconds(1);
   const RunPool::News news = pool_.Wait(longest);
   done_.insert(done_.end(), news.done.begin(), news.done.end());
+  has_waiting_ = news.waiting > 0;
   const auto threads = static_cast<std::size_t>(pool_.threads());
   const bool begins = news.is_ready && !is_prepared_;
   const bool fails = news.failure && !has_failed_;

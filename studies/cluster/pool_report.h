@@ -18,8 +18,9 @@ class PoolReport {
   std::optional<RankReport> Next(std::chrono::milliseconds longest);
   /// The runs that no report told of, of a pool that was stopped.
   std::vector<std::int64_t> Rest();
-  /// Whether runs are made, or have failed to be.
   bool is_prepared() const { return is_prepared_; }
+  /// Whether there are runs that no thread has begun: then a message may wait.
+  bool has_waiting() const { return has_waiting_; }
 
  private:
   RunPool& pool_;
@@ -27,6 +28,7 @@ class PoolReport {
   std::vector<std::int64_t> done_;
   std::chrono::steady_clock::time_point last_{};
   bool is_prepared_ = false;
+  bool has_waiting_ = false;
   bool has_failed_ = false;
 };
 

@@ -13,7 +13,11 @@ namespace {
 
 using Kind = RankReport::Kind;
 
+// Between two looks for messages, each of which costs some 20 us: of rank 0, which others
+// may wait for, of one that waits itself, and of one that has enough to do.
+constexpr auto kLeadTick = std::chrono::milliseconds(2);
 constexpr auto kTick = std::chrono::milliseconds(1);
+constexpr auto kBusyTick = std::chrono::milliseconds(10);
 
 double Now() {
   return std::chrono::duration<double>(
@@ -36,7 +40,7 @@ class Leader {
     team_.OrderAll({RankOrder::Kind::kBegin});
     while (!schedule_.is_finished()) {
       Listen();
-      if (const auto report = own_.Next(kTick)) Take(0, *report);
+      if (const auto report = own_.Next(kLeadTick)) Take(0, *report);
       LookForSilent();
       if (!schedule_.has_workers() && !schedule_.is_finished()) ThrowFailure();
       Tell();
@@ -188,7 +192,8 @@ std::vector<std::int64_t> MakeRuns(RankTeam& team, RunPool& pool, std::uint64_t 
       report.done = own.Rest();
       team.Report(report);
     }
-    if (const auto report = own.Next(kTick)) team.Report(*report);
+    const auto tick = own.has_waiting() ? kBusyTick : kTick;
+    if (const auto report = own.Next(tick)) team.Report(*report);
   }
   team.Abort();
   return {};
