@@ -10,12 +10,16 @@
 #include "app/command.h"
 #include "app/exit_status.h"
 #include "app/output.h"
+#include "app/study_plan.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
 namespace {
 
 std::string command_line;
+
+// The first rank has failed as this one, and says so.
+bool is_silent = false;
 
 /// A word as a POSIX shell takes it back.
 std::string Quoted(const std::string& word) {
@@ -52,6 +56,7 @@ void RequireKnownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Fail(ExitStatus status, const std::string& message) {
+  if (is_silent) return static_cast<int>(ExitStatus::kDone);
   DiscardOutput();
   std::string line = message;
   std::replace(line.begin(), line.end(), '\n', ' ');
@@ -61,6 +66,7 @@ int Fail(ExitStatus status, const std::string& message) {
 
 int Main(int argc, char** argv) {
   RememberCommandLine(argc, argv);
+  is_silent = IsSilentRank(argc, argv);
   // What Ceres says of steps that it gives up is none of ours.
   FLAGS_minloglevel = google::GLOG_FATAL;
   CLI::App app{"Fault diagnosis and model discovery for machines that move"};

@@ -58,11 +58,21 @@ void PlanLog::Show(const PlanProgress& progress) {
   Write(progress);
 }
 
-void PlanLog::Write(const PlanProgress& progress) {
+void PlanLog::Append(const std::string& line) {
   if (!log_.is_open()) log_.open(file_, std::ios::app);
+  log_ << line << std::flush;
+}
+
+void PlanLog::Note(const std::string& line) {
+  bar_.Wipe();
+  std::fputs(("study: " + line + "\n").c_str(), stderr);
+  Append(line + "\n");
+}
+
+void PlanLog::Write(const PlanProgress& progress) {
   const std::string line = DurationText(progress.seconds) + ": " + progress.doing +
                            ": " + ProgressText(progress) + "\n";
-  log_ << line << std::flush;
+  Append(line);
   // What takes no longer than a moment says nothing on the terminal.
   const bool is_long =
       progress.seconds > std::chrono::duration<double>(kBetweenNews).count();

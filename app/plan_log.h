@@ -19,11 +19,14 @@ class PlanLog {
 
   /// From any thread, one at a time.
   void Show(const PlanProgress& progress);
+  /// A line of its own, on stderr, too.
+  void Note(const std::string& line);
   /// The last line.
   void End(const PlanProgress& progress);
 
  private:
   void Write(const PlanProgress& progress);
+  void Append(const std::string& line);
 
   std::filesystem::path file_;
   ProgressBar bar_;

@@ -29,6 +29,8 @@ namespace mjdiag::app {
 namespace {
 
 constexpr double kLongestEndurance = 1e7;  // s
+constexpr double kLeastPatience = 2.0;     // s; ranks are heard every second
+constexpr int kMostThreads = 4096;
 
 struct StudyCommand {
   PlanCommand plan;
@@ -127,6 +129,7 @@ void CheckAlone(const CLI::App& app) {
     const std::string& name = option->get_name();
     const bool goes_with_a_plan = name == "--plan" || name == "--resume" ||
                                   name == "--restart" || name == "--out" ||
+                                  name == "--threads" || name == "--patience" ||
                                   name == "--json" || name == "--report";
     if (option->count() == 0 || goes_with_a_plan) continue;
     throw InputError(name, "given beside --plan", "a key of the plan");
@@ -196,6 +199,18 @@ void AddStudy(CLI::App& app) {
       ->add_flag("--resume", options->plan.resume,
                  "Go on with them, as it does without --restart")
       ->excludes("--restart");
+  command
+      ->add_option("--threads", options->plan.threads,
+                   "Threads that make the runs of a plan, of every rank under mpirun "
+                   "(docs/cluster.md); default: the cores that the process may use")
+      ->check(CLI::Range(1, kMostThreads))
+      ->needs("--plan");
+  command
+      ->add_option("--patience", options->plan.patience,
+                   "Under mpirun: how long a rank may be silent before others make its "
+                   "runs [s]")
+      ->check(Within(kLeastPatience, kLongestEndurance))
+      ->needs("--plan");
   command->add_option("--preset", options->preset, "Which study")
       ->check(CLI::IsMember(presets));
   command->add_option("--runs", options->runs, "Monte-Carlo runs")

@@ -1,5 +1,8 @@
 #include "app/study_plan.h"
 
+#include <algorithm>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "app/command.h"
@@ -8,6 +11,7 @@
 #include "app/study_log.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/cluster/rank_launch.h"
 #include "mjdiag/studies/dataset/plan_run.h"
 #include "mjdiag/studies/dataset/plan_tables.h"
 
@@ -45,14 +49,36 @@ std::string FilesText(const PlanOutcome& outcome) {
 
 }  // namespace
 
+bool IsSilentRank(int argc, char** argv) {
+  if (FindLaunch().rank == 0 || argc < 2 || std::string_view(argv[1]) != "study") {
+    return false;
+  }
+  return std::any_of(argv + 2, argv + argc, [](std::string_view word) {
+    return word == "--plan" || word.starts_with("--plan=");
+  });
+}
+
 void RunPlanFile(const PlanCommand& command, const OutputOptions& output) {
+  // Before anything can go wrong: what does is said once.
+  std::optional<RankTeam> team;
+  if (auto link = JoinLaunch()) team.emplace(std::move(link));
+  PlanRunOptions options;
+  options.folder = output.folder;
+  options.restart = command.restart;
+  options.threads = command.threads;
+  options.patience = command.patience;
+  if (team) options.team = &*team;
+  if (team && !team->is_led_here()) {
+    const Interrupt interrupt;
+    options.progress = [](const PlanProgress&) { Interrupt::ThrowIfWished(); };
+    ServePlan(command.file, options);
+    return;
+  }
   const LoadedPlan loaded = ReadPlan(command.file);
   PrepareOutput(output);
   const Interrupt interrupt;
   PlanLog log(output.folder);
-  PlanRunOptions options;
-  options.folder = output.folder;
-  options.restart = command.restart;
+  options.note = [&log](const std::string& line) { log.Note(line); };
   options.progress = [&log](const PlanProgress& progress) {
     log.Show(progress);
     Interrupt::ThrowIfWished();

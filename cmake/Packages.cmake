@@ -3,6 +3,9 @@
 set(MJDIAG_MAINTAINER "Maintainers of mjdiag <maintainers@mjdiag.example>" CACHE STRING
     "Whom the packages name as their maintainer")
 set(components mjdiag libmjdiag0 libmjdiag-dev mjdiag-data)
+if(TARGET mjdiag_mpi)
+  list(APPEND components mjdiag-mpi)
+endif()
 if(TARGET mjdiag_python)
   list(APPEND components python3-mjdiag)
 endif()
@@ -68,6 +71,12 @@ set(about "mjdiag finds what has worn in a machine that moves while it runs, and
 mjdiag_package(mjdiag SECTION science BINARY RECOMMENDS "mjdiag-data ${same}"
   SUMMARY "The command:"
   TEXT "${about} This package has the command, its manual pages and its completion.")
+if(TARGET mjdiag_mpi)
+  mjdiag_package(mjdiag-mpi SECTION science BINARY DEPENDS "mjdiag ${same}"
+    RECOMMENDS openmpi-bin
+    SUMMARY "studies of mjdiag on a cluster"
+    TEXT "${about} This package lets the ranks of an MPI job share the runs of a study.")
+endif()
 mjdiag_package(mjdiag-data SECTION science ALL
   SUMMARY "machines for mjdiag to diagnose"
   TEXT "${about} This package has MuJoCo models and setups of a wire bonder, a motion stage, a voice coil, a servo and an arm, as examples and as a beginning of one's own.")

@@ -2,11 +2,14 @@
 
 #include <chrono>
 #include <mutex>
+#include <utility>
 #include <vector>
 
-#include "mjdiag/signals/error.h"
+#include "mjdiag/plugin/runtime/threads.h"
 #include "mjdiag/signals/text_file.h"
 #include "mjdiag/studies/dataset/dataset_file.h"
+#include "mjdiag/studies/dataset/plan_identity.h"
+#include "mjdiag/studies/dataset/run_journals.h"
 #include "mjdiag/studies/growing_table.h"
 
 namespace mjdiag {
@@ -14,27 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-/// All that the results depend on.
-std::string Identity(const LoadedPlan& loaded) {
-  const Setup& setup = loaded.machine.setup();
-  std::string identity = MJDIAG_VERSION;
-  for (const std::string& part :
-       {loaded.plan.text, ReadTextFile(FindSetupFile(loaded.plan.setup)),
-        ReadTextFile(setup.plant)}) {
-    identity += "\n--- " + std::to_string(part.size()) + "\n" + part;
-  }
-  for (const PlanMotion& motion : loaded.plan.motions) {
-    if (!motion.record.empty()) identity += "\n---\n" + ReadTextFile(motion.record);
-  }
-  if (setup.calibration) {
-    for (const char* file : {"calibration.json", kCalibratedFilters}) {
-      const fs::path path = setup.folder / file;
-      if (fs::is_regular_file(path)) identity += "\n---\n" + ReadTextFile(path);
-    }
-  }
-  return identity;
-}
 
 /// Tells how far it is, one thread at a time.
 class Teller {
@@ -52,6 +34,12 @@ class Teller {
     ++progress_.done;
     Tell();
   }
+  void Made(std::int64_t runs, const char* doing) {
+    const std::lock_guard lock(mutex_);
+    progress_.done = progress_.found + runs;
+    progress_.doing = doing;
+    Tell();
+  }
   const PlanProgress& progress() const { return progress_; }
 
  private:
@@ -67,9 +55,73 @@ class Teller {
 };
 
 void Forget(const fs::path& folder) {
-  RunJournal::Remove(folder / "runs.journal");
+  RunJournals::Remove(folder);
   fs::remove(folder / "dataset.h5");
 }
+
+/// The runs that are missing.
+class MissingRuns {
+ public:
+  MissingRuns(const PlanRunOptions& options, RunWork& work, RunJournals& journals,
+              std::vector<std::int64_t> open, Teller& teller)
+      : options_(options),
+        work_(work),
+        journals_(journals),
+        open_(std::move(open)),
+        teller_(teller) {}
+
+  void Make() {
+    teller_.Say("healthy runs");
+    if (options_.team != nullptr) MakeWithOthers();
+    if (!open_.empty()) OnThreads(options_.threads, [this] { MakeAlone(); });
+  }
+
+ private:
+  void MakeOne(std::int64_t index) { journals_.Add(index, work_.Do(index)); }
+
+  void MakeAlone() {
+    work_.Prepare([this](double) { teller_.Say("healthy runs"); });
+    teller_.Say("runs");
+    ParallelInOrder(static_cast<int>(open_.size()), [this](int i) {
+      MakeOne(open_[static_cast<std::size_t>(i)]);
+      teller_.RunDone();
+    });
+  }
+
+  void MakeWithOthers() {
+    LeadOptions lead;
+    lead.open = open_;
+    lead.runs = work_.loaded().plan.Runs();
+    lead.study = ChecksumOf(PlanIdentity(work_.loaded()));
+    lead.patience = options_.patience;
+    lead.tell = [this](std::int64_t made, bool prepared) {
+      teller_.Made(made, prepared ? "runs" : "healthy runs");
+    };
+    lead.note = options_.note;
+    RunPool pool(options_.threads, {[this](const std::function<void()>& check) {
+                                      work_.Prepare([&](double) { check(); });
+                                    },
+                                    [this](std::int64_t run) { MakeOne(run); }});
+    LeadRuns(*options_.team, pool, lead);
+    options_.team->End();
+    journals_.ReadOthers();
+    // What a computer had not yet written when it died.
+    std::erase_if(open_, [this](std::int64_t run) {
+      return journals_.Has(run, work_.loaded().plan.keep.Series());
+    });
+    if (open_.empty()) return;
+    teller_.Made(static_cast<std::int64_t>(lead.open.size() - open_.size()), "runs");
+    options_.note(std::to_string(open_.size()) +
+                  " runs that were made are not in the folder: made again here. Do all "
+                  "ranks share it?");
+  }
+
+  const PlanRunOptions& options_;
+  RunWork& work_;
+  RunJournals& journals_;
+  std::vector<std::int64_t> open_;
+  Teller& teller_;
+};
 
 }  // namespace
 
@@ -88,7 +140,7 @@ PlanOutcome RunPlan(const LoadedPlan& loaded, const PlanRunOptions& options) {
   MakeOutputFolder(options.folder);
   if (options.restart) Forget(options.folder);
   const std::int64_t runs = loaded.plan.Runs();
-  RunJournal journal(options.folder / "runs.journal", Identity(loaded), runs);
+  RunJournals journals(options.folder, PlanIdentity(loaded), runs);
   WriteTextFile(options.folder / "plan.toml", loaded.plan.text);
 
   const fs::path dataset = options.folder / "dataset.h5";
@@ -96,36 +148,31 @@ PlanOutcome RunPlan(const LoadedPlan& loaded, const PlanRunOptions& options) {
   const bool series = loaded.plan.keep.Series() && !is_written;
   std::vector<std::int64_t> open;
   for (std::int64_t i = 0; i < runs; ++i) {
-    if (!journal.Has(i, series)) open.push_back(i);
+    if (!journals.Has(i, series)) open.push_back(i);
   }
   PlanProgress begin;
   begin.total = runs;
   begin.done = begin.found = runs - static_cast<std::int64_t>(open.size());
   Teller teller(options, begin);
-  if (!open.empty()) {
-    teller.Say("healthy runs");
-    work->Prepare([&](double) { teller.Say("healthy runs"); });
-    teller.Say("runs");
-    ParallelInOrder(static_cast<int>(open.size()), [&](int i) {
-      const std::int64_t index = open[static_cast<std::size_t>(i)];
-      journal.Add(index, work->Do(index));
-      teller.RunDone();
-    });
+  const bool is_complete = open.empty();
+  if (!is_complete) {
+    MissingRuns(options, *work, journals, std::move(open), teller).Make();
   }
+  if (options.team != nullptr) options.team->End();
   PlanOutcome outcome{work, {}, std::nullopt, {}};
   if (WritesDatasets()) {
-    if (!open.empty() || !is_written) {
+    if (!is_complete || !is_written) {
       teller.Say("data set");
       WriteDataset(
           dataset, *work,
-          {[&](std::int64_t i) -> const RunResult& { return journal.Result(i); },
-           [&](std::int64_t i) { return journal.ReadSeries(i); }});
+          {[&](std::int64_t i) -> const RunResult& { return journals.Result(i); },
+           [&](std::int64_t i) { return journals.ReadSeries(i); }});
     }
-    if (journal.HoldsSeries()) journal.DropSeries();
     outcome.dataset = dataset;
   }
+  journals.Settle();
   outcome.results.reserve(static_cast<std::size_t>(runs));
-  for (std::int64_t i = 0; i < runs; ++i) outcome.results.push_back(journal.Result(i));
+  for (std::int64_t i = 0; i < runs; ++i) outcome.results.push_back(journals.Result(i));
   outcome.progress = teller.progress();
   return outcome;
 }

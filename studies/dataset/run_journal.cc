@@ -79,11 +79,8 @@ std::string Beginning(const std::string& identity) {
 }  // namespace
 
 RunJournal::RunJournal(std::filesystem::path file, const std::string& identity,
-                       std::int64_t runs)
-    : file_(std::move(file)),
-      identity_(identity),
-      places_(static_cast<std::size_t>(runs)),
-      results_(static_cast<std::size_t>(runs)) {
+                       std::int64_t runs, Access access)
+    : file_(std::move(file)), identity_(identity), runs_(runs), access_(access) {
   try {
     Open();
   } catch (...) {
@@ -100,9 +97,15 @@ void RunJournal::Fail(const std::string& what, const std::string& expected) cons
 
 void RunJournal::Open() {
   constexpr mode_t kReadable = 0644;
-  descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kReadable);
-  if (descriptor_ < 0) Fail(std::strerror(errno), "a file that can be written");
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  const bool writes = access_ == Access::kWrite;
+  descriptor_ = open(file_.c_str(), (writes ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC,
+                     kReadable);
+  if (descriptor_ < 0) {
+    Fail(std::strerror(errno),
+         writes ? "a file that can be written" : "a file that can be read");
+  }
+  if (writes && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK) Fail(std::strerror(errno), "a file system with flock");
     Fail("another process is at work on this study", "one at a time in a folder");
   }
   struct stat status {};
@@ -118,9 +121,10 @@ void RunJournal::Open() {
          "the same ones, another folder, or --restart");
   }
   end_ = wanted.size();
-  if (found.size() == wanted.size()) {
-    ReadEntries(wanted.size(), size);
-  } else if (ftruncate(descriptor_, 0) != 0 || !WriteAll(descriptor_, wanted)) {
+  if (found.size() == wanted.size()) ReadEntries(wanted.size(), size);
+  if (!writes) return;
+  if (found.size() < wanted.size() &&
+      (ftruncate(descriptor_, 0) != 0 || !WriteAll(descriptor_, wanted))) {
     Fail(std::strerror(errno), "a disk with room");
   }
   const bool is_torn = end_ < size;
@@ -137,15 +141,14 @@ void RunJournal::ReadEntries(std::uint64_t from, std::uint64_t size) {
     if (!ReadAt(descriptor_, end_, reinterpret_cast<char*>(&head), sizeof head)) return;
     const std::uint64_t rest = size - end_ - sizeof head;
     if (head.mark != kMark || head.result > rest || head.series > rest - head.result ||
-        head.index < 0 || head.index >= static_cast<std::int64_t>(places_.size())) {
+        head.index < 0 || head.index >= runs_) {
       return;
     }
     body.resize(head.result + head.series);
     if (!ReadAt(descriptor_, end_ + sizeof head, body.data(), body.size())) return;
     if (Checksum(head, body) != head.checksum) return;
-    const auto at = static_cast<std::size_t>(head.index);
-    results_[at] = Unpacked(body.substr(0, head.result));
-    places_[at] = {end_ + sizeof head + head.result, head.series, true};
+    places_[head.index] = {end_ + sizeof head + head.result, head.series,
+                           Unpacked(body.substr(0, head.result))};
     end_ += sizeof head + body.size();
   }
 }
@@ -163,41 +166,48 @@ void RunJournal::Remove(const std::filesystem::path& file) {
 }
 
 bool RunJournal::Has(std::int64_t index, bool with_series) const {
-  const auto at = static_cast<std::size_t>(index);
-  const Place& place = places_[at];
-  return place.known && (!with_series || place.size > 0 || results_[at].diverged());
+  const auto found = places_.find(index);
+  if (found == places_.end()) return false;
+  const Place& place = found->second;
+  return !with_series || place.size > 0 || place.result.diverged();
 }
 
-void RunJournal::Append(std::int64_t index, const std::string& result,
+std::vector<std::int64_t> RunJournal::Runs() const {
+  std::vector<std::int64_t> runs;
+  runs.reserve(places_.size());
+  for (const auto& [run, place] : places_) runs.push_back(run);
+  return runs;
+}
+
+void RunJournal::Append(std::int64_t index, const RunResult& result,
                         const std::string& series) {
+  const std::string packed = Packed(result);
   Head head;
   head.index = index;
-  head.result = result.size();
+  head.result = packed.size();
   head.series = series.size();
-  const std::string body = result + series;
+  const std::string body = packed + series;
   head.checksum = Checksum(head, body);
   std::string entry(reinterpret_cast<const char*>(&head), sizeof head);
   entry += body;
+  RunResult kept = result;
+  kept.series.clear();
   const std::lock_guard lock(mutex_);
   if (!WriteAll(descriptor_, entry)) Fail(std::strerror(errno), "a disk with room");
-  places_[static_cast<std::size_t>(index)] = {end_ + sizeof head + result.size(),
-                                              series.size(), true};
+  places_[index] = {end_ + sizeof head + packed.size(), series.size(), std::move(kept)};
   end_ += entry.size();
 }
 
 void RunJournal::Add(std::int64_t index, const RunResult& result) {
-  Append(index, Packed(result), Text(result.series));
-  RunResult& kept = results_[static_cast<std::size_t>(index)];
-  kept = result;
-  kept.series.clear();
+  Append(index, result, Text(result.series));
 }
 
 const RunResult& RunJournal::Result(std::int64_t index) const {
-  return results_[static_cast<std::size_t>(index)];
+  return places_.at(index).result;
 }
 
 std::vector<std::string> RunJournal::ReadSeries(std::int64_t index) const {
-  const Place& place = places_[static_cast<std::size_t>(index)];
+  const Place& place = places_.at(index);
   std::string text(place.size, '\0');
   if (!ReadAt(descriptor_, place.offset, text.data(), text.size())) {
     Fail("cannot be read", "the file as it was written");
@@ -214,22 +224,25 @@ std::vector<std::string> RunJournal::ReadSeries(std::int64_t index) const {
 
 bool RunJournal::HoldsSeries() const {
   return std::ranges::any_of(places_,
-                             [](const Place& place) { return place.size > 0; });
+                             [](const auto& place) { return place.second.size > 0; });
 }
 
-void RunJournal::DropSeries() {
-  const std::filesystem::path other = file_.string() + ".part";
-  std::filesystem::remove(other);
-  {
-    RunJournal without(other, identity_, static_cast<std::int64_t>(places_.size()));
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (!places_[i].known) continue;
-      without.Append(static_cast<std::int64_t>(i), Packed(results_[i]), {});
-    }
+void RunJournal::Settle(const std::vector<const RunJournal*>& others) {
+  std::map<std::int64_t, const RunResult*> results;
+  for (const auto& [run, place] : places_) results.emplace(run, &place.result);
+  for (const RunJournal* other : others) {
+    for (const auto& [run, place] : other->places_) results.emplace(run, &place.result);
   }
-  std::filesystem::rename(other, file_);
+  const std::filesystem::path part = file_.string() + ".part";
+  std::filesystem::remove(part);
+  {
+    RunJournal settled(part, identity_, runs_);
+    for (const auto& [run, result] : results) settled.Append(run, *result, {});
+  }
+  std::filesystem::rename(part, file_);
   // From here on that file is the one that is open.
   close(descriptor_);
+  places_.clear();
   Open();
 }
 

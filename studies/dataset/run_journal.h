@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -23,10 +24,14 @@ namespace mjdiag {
 
 class RunJournal {
  public:
-  /// Opens the file, or makes it. InputError if it is of another study, is not to be
-  /// written, or another process is at work in it.
-  RunJournal(std::filesystem::path file, const std::string& identity,
-             std::int64_t runs);
+  enum class Access {
+    kWrite,  ///< opens the file, or makes it; InputError if a process is at work in it
+    kRead    ///< of a file that is there, as far as it is written, be it by a process
+  };
+
+  /// InputError if the file is of another study or cannot be opened that way.
+  RunJournal(std::filesystem::path file, const std::string& identity, std::int64_t runs,
+             Access access = Access::kWrite);
   ~RunJournal();
   RunJournal(const RunJournal&) = delete;
   RunJournal& operator=(const RunJournal&) = delete;
@@ -38,33 +43,37 @@ class RunJournal {
   bool Has(std::int64_t index, bool with_series) const;
   /// Appends the result, from any thread. InputError if the disk is full.
   void Add(std::int64_t index, const RunResult& result);
+  /// All runs that it has, in their order.
+  std::vector<std::int64_t> Runs() const;
   /// The result of a run that it has, without series; with them.
   const RunResult& Result(std::int64_t index) const;
   std::vector<std::string> ReadSeries(std::int64_t index) const;
 
   /// Whether there is a series in it.
   bool HoldsSeries() const;
-  /// Leaves the series out, which are elsewhere now: a new file in its place.
-  void DropSeries();
+  /// Leaves the series out, which are elsewhere now, and takes in what `others` have: a
+  /// new file in its place.
+  void Settle(const std::vector<const RunJournal*>& others = {});
 
  private:
   struct Place {
     std::uint64_t offset = 0;  // of the series in the file
     std::uint64_t size = 0;
-    bool known = false;
+    RunResult result;
   };
 
   void Open();
   void ReadEntries(std::uint64_t from, std::uint64_t size);
-  void Append(std::int64_t index, const std::string& result, const std::string& series);
+  void Append(std::int64_t index, const RunResult& result, const std::string& series);
   [[noreturn]] void Fail(const std::string& what, const std::string& expected) const;
 
   std::filesystem::path file_;
   std::string identity_;
+  std::int64_t runs_;
+  Access access_;
   int descriptor_ = -1;
   std::uint64_t end_ = 0;
-  std::vector<Place> places_;
-  std::vector<RunResult> results_;
+  std::map<std::int64_t, Place> places_;
   std::mutex mutex_;
 };
 

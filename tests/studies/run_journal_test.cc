@@ -129,7 +129,7 @@ TEST_F(Journal, IsForgottenWhereNobodyIsAtWork) {
 TEST_F(Journal, GivesItsSeriesAway) {
   RunJournal journal(file_, "identity", 4);
   ASSERT_TRUE(journal.HoldsSeries());
-  journal.DropSeries();
+  journal.Settle();
   EXPECT_FALSE(journal.HoldsSeries());
   EXPECT_TRUE(journal.Has(0, false));
   EXPECT_FALSE(journal.Has(0, true));
