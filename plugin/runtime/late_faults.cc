@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
 namespace {
@@ -136,6 +137,19 @@ std::vector<MachineStage> StagesOf(const Machine& machine,
     }
   }
   return stages;
+}
+
+LateFault ParseLateFault(std::string_view text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const std::string_view rest = text.substr(std::min(equals + 1, text.size()));
+  const std::size_t at = std::min(rest.find('@'), rest.size());
+  const auto value = ParseNumber(rest.substr(0, at));
+  const auto time = at == rest.size() ? 0.0 : ParseNumber(rest.substr(at + 1));
+  if (!value || !time) {
+    throw InputError("fault '" + std::string(text) + "'", "no number",
+                     "<name>=<value> or <name>=<value>@<seconds>");
+  }
+  return {{std::string(text.substr(0, equals)), *value}, *time};
 }
 
 }  // namespace mjdiag
