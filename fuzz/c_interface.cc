@@ -90,6 +90,7 @@ class Program {
   mjData* data_ = nullptr;
   std::array<mjdiag_monitor*, 3> monitors_;
   std::array<mjdiag_instance*, 2> instances_{};
+  bool prepared_ = false;
   int opened_ = 0;
   int attached_ = 0;
 };
@@ -165,7 +166,9 @@ void Program::Ask(std::uint8_t with) {
 void Program::Call(std::size_t which, std::uint8_t with) {
   switch (which) {
     case 0:
-      return Status(mjdiag_prepare(with == 255 ? nullptr : model_, StageFolder()));
+      if (prepared_) return;  // once, the header says
+      prepared_ = with != 255;
+      return Status(mjdiag_prepare(prepared_ ? model_ : nullptr, StageFolder()));
     case 1:
       return MakeData();
     case 2:
