@@ -50,11 +50,7 @@ const mjModel* FreshModel() {
 /// What a program has in its hands.
 class Program {
  public:
-  Program() : model_(mj_copyModel(nullptr, FreshModel())) {
-    monitors_.fill(nullptr);
-    monitors_[0] = LastingMonitor();
-    mjdiag_monitor_restart(monitors_[0]);
-  }
+  Program() : model_(mj_copyModel(nullptr, FreshModel())) {}
   ~Program() {
     for (mjdiag_instance* instance : instances_) mjdiag_detach(instance);
     for (std::size_t i = 1; i < monitors_.size(); ++i) {
@@ -78,6 +74,7 @@ class Program {
   void MakeData();
   void OpenMonitor(std::uint8_t with);
   void Attach(std::uint8_t with);
+  void Restart(std::uint8_t with);
   void Hear(std::uint8_t with);
   void Sample(std::uint8_t with);
   void Ask(std::uint8_t with);
@@ -88,7 +85,8 @@ class Program {
 
   mjModel* model_;
   mjData* data_ = nullptr;
-  std::array<mjdiag_monitor*, 3> monitors_;
+  /// The first is the one that lasts.
+  std::array<mjdiag_monitor*, 3> monitors_{};
   std::array<mjdiag_instance*, 2> instances_{};
   bool prepared_ = false;
   int opened_ = 0;
@@ -118,6 +116,16 @@ void Program::Attach(std::uint8_t with) {
   if (made == nullptr) return Status(1);
   mjdiag_detach(Instance(with));
   Instance(with) = made;
+}
+
+void Program::Restart(std::uint8_t with) {
+  if (with % monitors_.size() != 0) {
+    return Status(mjdiag_monitor_restart(Monitor(with)));
+  }
+  // Its twin is made anew, which takes a while.
+  if (monitors_[0] != nullptr) return;
+  monitors_[0] = LastingMonitor();
+  Status(mjdiag_monitor_restart(monitors_[0]));
 }
 
 void Program::Hear(std::uint8_t with) {
@@ -205,12 +213,13 @@ void Program::Call(std::size_t which, std::uint8_t with) {
       return Status(
           mjdiag_monitor_write(Monitor(with), (Folder() / "written.json").c_str()));
     case 16:
-      return Status(mjdiag_monitor_restart(Monitor(with)));
+      return Restart(with);
     case 17:
       return Status(
           mjdiag_set_fault(model_, with % 2 == 0 ? "zeta" : "none", 0.02 * (with - 4)));
     default:
       if (data_ != nullptr) mj_resetData(model_, data_);
+      return;
   }
 }
 

@@ -63,13 +63,19 @@ class Scanner {
   std::string_view Until(std::string_view mark) {
     const std::size_t found = text_.find(mark, at_);
     if (found == text_.npos) Fail("no '" + std::string(mark) + "' follows");
-    return text_.substr(std::exchange(at_, found), found - at_);
+    return TakeTo(found);
+  }
+
+  /// What lies up to there; goes there.
+  std::string_view TakeTo(std::size_t end) {
+    const std::size_t begin = std::exchange(at_, end);
+    return text_.substr(begin, end - begin);
   }
 
   std::string_view Name() {
     const std::size_t end =
         std::min(text_.find_first_of(" \t\r\n=/>", at_), text_.size());
-    return text_.substr(std::exchange(at_, end), end - at_);
+    return TakeTo(end);
   }
 
   void SkipSpace() {

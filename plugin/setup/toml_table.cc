@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mjdiag/plugin/setup/toml_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -48,14 +49,17 @@ std::string TypeName(const toml::node& node) {
 }
 
 toml::table ParseToml(std::string_view text, const std::string& where) {
+  const auto location = [&](auto line) {
+    return where.starts_with("override") ? where : where + ":" + std::to_string(line);
+  };
+  if (const auto trouble = FindTomlTrouble(text)) {
+    throw InputError(location(trouble->line), trouble->what, "TOML");
+  }
   try {
     return toml::parse(text, where);
   } catch (const toml::parse_error& error) {
-    std::string location = where;
-    if (!where.starts_with("override")) {
-      location += ":" + std::to_string(error.source().begin.line);
-    }
-    throw InputError(location, std::string(error.description()), "TOML");
+    throw InputError(location(error.source().begin.line),
+                     std::string(error.description()), "TOML");
   }
 }
 

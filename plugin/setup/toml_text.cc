@@ -1,0 +1,86 @@
+#include "mjdiag/plugin/setup/toml_text.h"
+
+#include <algorithm>
+
+namespace mjdiag {
+namespace {
+
+bool StartsKey(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         c == '_' || c == '-' || c == '"' || c == '\'';
+}
+
+class TomlScanner {
+ public:
+  explicit TomlScanner(std::string_view text) : text_(text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  }
+
+  std::optional<TomlTrouble> Scan() {
+    bool begins = true;  // nothing but blanks in this line so far
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (static_cast<unsigned char>(c) >= 0x80) {
+        return Trouble("a character beyond ASCII that is not in quotes");
+      }
+      if (c == '"' || c == '\'') {
+        SkipString(c);
+      } else if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      } else if (c == '[' && begins && depth_ == 0) {
+        if (!SkipHeader()) return Trouble("a [table] without a name");
+      } else {
+        if (c == '[' || c == '{') ++depth_;
+        if ((c == ']' || c == '}') && depth_ > 0) --depth_;
+        ++at_;
+      }
+      begins = c == '\n' || (begins && (c == ' ' || c == '\t' || c == '\r'));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  TomlTrouble Trouble(const std::string& what) const {
+    const auto before = text_.substr(0, at_);
+    return {1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')), what};
+  }
+
+  void SkipString(char quote) {
+    const std::string threefold(3, quote);
+    const bool lines = text_.substr(at_).starts_with(threefold);
+    const std::string_view close =
+        lines ? std::string_view(threefold) : std::string_view(&quote, 1);
+    at_ += close.size();
+    while (at_ < text_.size() && !text_.substr(at_).starts_with(close)) {
+      if (!lines && text_[at_] == '\n') return;  // the parser ends here
+      at_ += quote == '"' && text_[at_] == '\\' ? 2 : 1;
+    }
+    at_ = std::min(at_ + close.size(), text_.size());
+    // Up to two more quotes belong to a text of several lines.
+    while (lines && at_ < text_.size() && text_[at_] == quote) ++at_;
+  }
+
+  /// The brackets and what is before the name; the name is scanned as anything else.
+  bool SkipHeader() {
+    ++at_;
+    if (at_ < text_.size() && text_[at_] == '[') ++at_;
+    const std::size_t name =
+        std::min(text_.find_first_not_of(" \t", at_), text_.size());
+    if (name == text_.size() || !StartsKey(text_[name])) return false;
+    at_ = name;
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int depth_ = 0;  // of arrays and inline tables
+};
+
+}  // namespace
+
+std::optional<TomlTrouble> FindTomlTrouble(std::string_view text) {
+  return TomlScanner(text).Scan();
+}
+
+}  // namespace mjdiag

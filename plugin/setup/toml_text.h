@@ -1,0 +1,21 @@
+#pragma once
+// TOML as text, before it is parsed: toml++ 3.3 takes for granted that some things do not
+// occur, and what it does where they do is undefined. They are no TOML either.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace mjdiag {
+
+/// Why a text is no TOML.
+struct TomlTrouble {
+  int line = 1;
+  std::string what;
+};
+
+/// Characters beyond ASCII that stand neither in quotes nor in a comment, and [tables] that
+/// begin with something else than a name; none of them: nothing.
+std::optional<TomlTrouble> FindTomlTrouble(std::string_view text);
+
+}  // namespace mjdiag
