@@ -32,6 +32,8 @@ class Scanner {
       : where_(where), text_(text) {}
 
   std::vector<XmlElement> Scan() {
+    if (at_ = text_.find('\0'); at_ != text_.npos) Fail("a byte 0");
+    at_ = 0;
     while ((at_ = text_.find('<', at_)) != text_.npos) {
       if (!SkipMarkup("<!--", "-->") && !SkipMarkup("<![CDATA[", "]]>") &&
           !SkipMarkup("<?", "?>") && !SkipMarkup("<!", ">")) {
