@@ -86,8 +86,8 @@ std::optional<std::pair<std::string_view, int>> SplitPower(std::string_view text
   int power = 0;
   const char* end = exponent.data() + exponent.size();
   const auto [stop, error] = std::from_chars(exponent.data(), end, power);
-  if (error != std::errc() || stop != end || power == 0 ||
-      power < -kHighestPower || power > kHighestPower) {
+  if (error != std::errc() || stop != end || power == 0 || power < -kHighestPower ||
+      power > kHighestPower) {
     return std::nullopt;
   }
   return std::pair{text.substr(0, digits), power};

@@ -97,7 +97,11 @@ class Scanner {
       element.attributes_end = at_;
     }
     element.empty = Next() == '/';
-    Until(">");
+    if (element.empty) ++at_;
+    if (element.tag.empty() || element.tag.find_first_of("<\"'") != std::string::npos ||
+        Next() != '>') {
+      Fail("a tag that is none");
+    }
     element.content_begin = element.content_end = element.end = ++at_;
     if (!element.empty) open_.push_back(static_cast<int>(elements_.size()));
     elements_.push_back(std::move(element));
@@ -124,7 +128,8 @@ class Scanner {
     element.content_end = at_;
     at_ += 2;
     if (Name() != element.tag) Fail("<" + element.tag + "> has another end tag");
-    Until(">");
+    SkipSpace();
+    if (Next() != '>') Fail("an end tag without its '>'");
     element.end = ++at_;
   }
 

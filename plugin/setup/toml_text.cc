@@ -18,14 +18,21 @@ class TomlScanner {
   }
 
   std::optional<TomlTrouble> Scan() {
-    bool begins = true;  // nothing but blanks in this line so far
+    bool begins = true;    // nothing but blanks in this line so far
+    char previous = '\n';  // that is no blank
     while (at_ < text_.size()) {
       const char c = text_[at_];
       if (static_cast<unsigned char>(c) >= 0x80) {
         return Trouble("a character beyond ASCII that is not in quotes");
       }
       if (c == '"' || c == '\'') {
-        SkipString(c);
+        constexpr std::string_view kBeforeText = "\n=[,{.";
+        if (kBeforeText.find(previous) == kBeforeText.npos) {
+          return Trouble("a quotation mark within a value");
+        }
+        if (!SkipString(c)) {
+          return Trouble("a character beyond ASCII behind a line that goes on");
+        }
       } else if (c == '#') {
         at_ = std::min(text_.find('\n', at_), text_.size());
       } else if (c == '[' && begins && depth_ == 0) {
@@ -35,6 +42,7 @@ class TomlScanner {
         if ((c == ']' || c == '}') && depth_ > 0) --depth_;
         ++at_;
       }
+      if (c != ' ' && c != '\t' && c != '\r') previous = c == '#' ? '\n' : c;
       begins = c == '\n' || (begins && (c == ' ' || c == '\t' || c == '\r'));
     }
     return std::nullopt;
@@ -46,19 +54,28 @@ class TomlScanner {
     return {1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')), what};
   }
 
-  void SkipString(char quote) {
+  bool SkipString(char quote) {
     const std::string threefold(3, quote);
     const bool lines = text_.substr(at_).starts_with(threefold);
     const std::string_view close =
         lines ? std::string_view(threefold) : std::string_view(&quote, 1);
     at_ += close.size();
     while (at_ < text_.size() && !text_.substr(at_).starts_with(close)) {
-      if (!lines && text_[at_] == '\n') return;  // the parser ends here
-      at_ += quote == '"' && text_[at_] == '\\' ? 2 : 1;
+      if (!lines && text_[at_] == '\n') return true;  // the parser ends here
+      const bool escape = quote == '"' && text_[at_] == '\\';
+      if (lines && escape) {
+        const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
+        if (next != text_.npos && next > at_ + 1 &&
+            static_cast<unsigned char>(text_[next]) >= 0x80) {
+          return false;
+        }
+      }
+      at_ += escape ? 2 : 1;
     }
     at_ = std::min(at_ + close.size(), text_.size());
     // Up to two more quotes belong to a text of several lines.
     while (lines && at_ < text_.size() && text_[at_] == quote) ++at_;
+    return true;
   }
 
   /// The brackets and what is before the name; the name is scanned as anything else.

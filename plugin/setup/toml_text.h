@@ -14,8 +14,9 @@ struct TomlTrouble {
   std::string what;
 };
 
-/// Characters beyond ASCII that stand neither in quotes nor in a comment, and [tables] that
-/// begin with something else than a name; none of them: nothing.
+/// Characters beyond ASCII that stand neither in quotes nor in a comment, or behind a line
+/// of a text that ends with a backslash; quotation marks within values; [tables] that begin
+/// with something else than a name. None of them: nothing.
 std::optional<TomlTrouble> FindTomlTrouble(std::string_view text);
 
 }  // namespace mjdiag
