@@ -102,7 +102,8 @@ void FuzzMjcf(Input input) {
     if (kind == 0) break;
     const std::uint8_t element = choices.Byte();
     edits.push_back(
-        {kind % 4U, element, std::string(1, static_cast<char>(choices.Byte()))});
+        {kind % 4U, element,
+         std::string(1, static_cast<char>(std::max<std::uint8_t>(choices.Byte(), 1)))});
   }
   const std::string text(TextOf(choices.Rest()));
   Done([&] {

@@ -35,11 +35,16 @@ class TomlScanner {
         }
       } else if (c == '#') {
         at_ = std::min(text_.find('\n', at_), text_.size());
-      } else if (c == '[' && begins && depth_ == 0) {
+      } else if (c == '[' && begins && open_.empty()) {
         if (!SkipHeader()) return Trouble("a [table] without a name");
       } else {
-        if (c == '[' || c == '{') ++depth_;
-        if ((c == ']' || c == '}') && depth_ > 0) --depth_;
+        if (c == '[' || c == '{') open_ += c;
+        if ((c == ']' && !open_.empty()) || c == '}') {
+          if (!open_.ends_with(c == ']' ? '[' : '{')) {
+            return Trouble("a bracket that closes another one");
+          }
+          open_.pop_back();
+        }
         ++at_;
       }
       if (c != ' ' && c != '\t' && c != '\r') previous = c == '#' ? '\n' : c;
@@ -91,7 +96,7 @@ class TomlScanner {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  int depth_ = 0;  // of arrays and inline tables
+  std::string open_;  // brackets of arrays and inline tables
 };
 
 }  // namespace

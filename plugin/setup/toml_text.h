@@ -15,8 +15,8 @@ struct TomlTrouble {
 };
 
 /// Characters beyond ASCII that stand neither in quotes nor in a comment, or behind a line
-/// of a text that ends with a backslash; quotation marks within values; [tables] that begin
-/// with something else than a name. None of them: nothing.
+/// of a text that ends with a backslash; quotation marks within values; brackets that close
+/// another one; [tables] that begin with something else than a name. None of them: nothing.
 std::optional<TomlTrouble> FindTomlTrouble(std::string_view text);
 
 }  // namespace mjdiag
