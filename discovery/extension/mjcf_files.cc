@@ -67,8 +67,13 @@ bool IsUsed(const XmlText& xml, const FileFolder& folder) {
 }
 
 std::string PathFrom(const fs::path& folder, const fs::path& target) {
-  const fs::path relative =
-      fs::weakly_canonical(target).lexically_relative(fs::weakly_canonical(folder));
+  std::error_code error;
+  const fs::path to = fs::weakly_canonical(target, error);
+  if (error) {
+    throw InputError(target.string(), error.message(),
+                     "a folder of meshes or textures");
+  }
+  const fs::path relative = to.lexically_relative(fs::weakly_canonical(folder));
   return relative.generic_string() + "/";
 }
 
