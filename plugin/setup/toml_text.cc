@@ -26,8 +26,8 @@ class TomlScanner {
         return Trouble("a character beyond ASCII that is not in quotes");
       }
       if (c == '"' || c == '\'') {
-        constexpr std::string_view kBeforeText = "\n=[,{.";
-        if (kBeforeText.find(previous) == kBeforeText.npos) {
+        const std::string_view before = value_ ? "\n=[," : "\n[,{.";
+        if (before.find(previous) == before.npos) {
           return Trouble("a quotation mark within a value");
         }
         if (!SkipString(c)) {
@@ -38,13 +38,21 @@ class TomlScanner {
       } else if (c == '[' && begins && open_.empty()) {
         if (!SkipHeader()) return Trouble("a [table] without a name");
       } else {
-        if (c == '[' || c == '{') open_ += c;
+        if (c == '[' || c == '{') {
+          constexpr std::string_view kBeforeValue = "\n=[,";
+          if (!value_ || kBeforeValue.find(previous) == kBeforeValue.npos) {
+            return Trouble("a bracket within a key or value");
+          }
+          open_ += c;
+        }
+        if (c == ' ' && value_ && IsHalfATime()) return Trouble("half of a time");
         if ((c == ']' && !open_.empty()) || c == '}') {
           if (!open_.ends_with(c == ']' ? '[' : '{')) {
             return Trouble("a bracket that closes another one");
           }
           open_.pop_back();
         }
+        NoteValue(c);
         ++at_;
       }
       if (c != ' ' && c != '\t' && c != '\r') previous = c == '#' ? '\n' : c;
@@ -54,6 +62,27 @@ class TomlScanner {
   }
 
  private:
+  /// Whether what follows is a value, or a key.
+  void NoteValue(char c) {
+    if (c == '\n' && open_.empty()) value_ = false;
+    if (c == '=' || c == '[' || c == ']' || c == '}') value_ = true;
+    if (c == '{' || c == ',') value_ = !open_.ends_with('{');
+  }
+
+  /// A date, the blank where we are, and one digit.
+  bool IsHalfATime() const {
+    constexpr std::string_view kDate = "0000-00-00";
+    if (at_ < kDate.size() || !IsDigit(at_ + 1) || IsDigit(at_ + 2)) return false;
+    const std::size_t begin = at_ - kDate.size();
+    for (std::size_t i = 0; i < kDate.size(); ++i) {
+      if (kDate[i] == '-' ? text_[begin + i] != '-' : !IsDigit(begin + i)) return false;
+    }
+    return true;
+  }
+  bool IsDigit(std::size_t at) const {
+    return at < text_.size() && text_[at] >= '0' && text_[at] <= '9';
+  }
+
   TomlTrouble Trouble(const std::string& what) const {
     const auto before = text_.substr(0, at_);
     return {1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')), what};
@@ -96,6 +125,7 @@ class TomlScanner {
 
   std::string_view text_;
   std::size_t at_ = 0;
+  bool value_ = false;
   std::string open_;  // brackets of arrays and inline tables
 };
 

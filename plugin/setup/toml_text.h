@@ -15,8 +15,9 @@ struct TomlTrouble {
 };
 
 /// Characters beyond ASCII that stand neither in quotes nor in a comment, or behind a line
-/// of a text that ends with a backslash; quotation marks within values; brackets that close
-/// another one; [tables] that begin with something else than a name. None of them: nothing.
+/// of a text that ends with a backslash; quotation marks and brackets within values;
+/// brackets that close another one; dates with half a time; [tables] that begin with
+/// something else than a name. None of them: nothing.
 std::optional<TomlTrouble> FindTomlTrouble(std::string_view text);
 
 }  // namespace mjdiag
