@@ -4,11 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "app/format.h"
 #include "app/progress.h"
+#include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
@@ -19,21 +19,6 @@ namespace {
 
 constexpr double kLongestRun = 1e4;  // s
 constexpr double kMostNoise = 1e9;
-
-/// <name>=<value>, or <name>=<value>@<time>.
-LateFault ParseFault(const std::string& text) {
-  const std::size_t equals = std::min(text.find('='), text.size());
-  const std::string_view rest =
-      std::string_view(text).substr(std::min(equals + 1, text.size()));
-  const std::size_t at = std::min(rest.find('@'), rest.size());
-  const auto value = ParseNumber(rest.substr(0, at));
-  const auto time = at == rest.size() ? 0.0 : ParseNumber(rest.substr(at + 1));
-  if (!value || !time) {
-    throw InputError("--fault '" + text + "'", "no number",
-                     "<name>=<value> or <name>=<value>@<seconds>");
-  }
-  return {{text.substr(0, equals), *value}, *time};
-}
 
 void AddLateFault(const LateFault& late, Subject& subject) {
   const auto& [fault, time, growth] = late;
@@ -66,7 +51,7 @@ void AddFault(const Fault& fault, Subject& subject) {
 }
 
 void AddFault(const std::string& text, Subject& subject) {
-  const LateFault fault = ParseFault(text);
+  const LateFault fault = ParseLateFault(text);
   if (!std::isfinite(fault.fault.value)) {
     throw InputError("--fault " + fault.fault.name, "not a finite number",
                      "a finite one");

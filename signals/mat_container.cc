@@ -72,6 +72,120 @@ std::uint32_t Reverse(std::uint32_t value) {
   return value >> 24 | (value >> 8 & 0xFF00U) | (value << 8 & 0xFF0000U) | value << 24;
 }
 
+/// Variables of version 5: what they say of their size has to be backed by their bytes,
+/// for matio makes room for it at once.
+class Mat5Variables {
+ public:
+  Mat5Variables(const std::filesystem::path& file, Bytes& bytes, bool big_endian)
+      : file_(file), bytes_(bytes), big_endian_(big_endian) {}
+
+  /// Checks a matrix element. @param begin, end  of what is behind its tag
+  void Check(std::uint64_t begin, std::uint64_t end) { CheckMatrix(begin, end, 0); }
+
+ private:
+  enum Type : std::uint32_t { kInt8 = 1, kInt32 = 5, kUint32 = 6 };
+  enum Class : std::uint32_t { kCell = 1, kStruct = 2, kSparse = 5, kLastNumeric = 15 };
+  static constexpr int kDeepest = 32;
+  static constexpr std::uint64_t kMostDimensions = 16;
+
+  /// A part of a matrix element: its tag has been read.
+  struct Part {
+    std::uint32_t type = 0;
+    std::uint64_t begin = 0;  ///< of its data
+    std::uint64_t size = 0;
+    std::uint64_t next = 0;  ///< where the next one begins
+  };
+
+  std::uint32_t Number(std::string_view bytes) const {
+    const std::uint32_t value = LittleEndian32(bytes);
+    return big_endian_ ? Reverse(value) : value;
+  }
+
+  Part PartAt(std::uint64_t at, std::uint64_t end) {
+    if (at > end || end - at < kTagBytes) ThrowDamaged(file_, at);
+    const std::string tag = bytes_.Get(at, kTagBytes);
+    const std::uint32_t first = Number(tag);
+    Part part{first, at + kTagBytes, Number(std::string_view(tag).substr(4)), 0};
+    part.next = part.begin + (part.size + 7) / 8 * 8;
+    if (const std::uint32_t size = first >> 16; size > 0) {  // all of it in the tag
+      if (size > 4) ThrowDamaged(file_, at);
+      part = {first & 0xFFFFU, at + 4, size, at + kTagBytes};
+    }
+    if (part.size > end - part.begin) ThrowDamaged(file_, at);
+    return part;
+  }
+
+  Part PartAt(std::uint64_t at, std::uint64_t end, std::uint32_t type) {
+    const Part part = PartAt(at, end);
+    if (part.type != type) ThrowDamaged(file_, at);
+    return part;
+  }
+
+  /// Number of elements; at most as many as there are bytes.
+  std::uint64_t Count(const Part& dimensions, std::uint64_t most) {
+    if (dimensions.size < 8 || dimensions.size > 4 * kMostDimensions) {
+      ThrowDamaged(file_, dimensions.begin);
+    }
+    const std::string bytes = bytes_.Get(dimensions.begin, dimensions.size);
+    std::uint64_t count = 1;
+    std::uint64_t all = 1;  // of those that are not 0
+    for (std::size_t i = 0; i + 4 <= bytes.size(); i += 4) {
+      const std::uint64_t one = Number(std::string_view(bytes).substr(i));
+      count *= one;
+      if (one > 0) all *= one;
+      if (count > most || all > kMostWithoutBytes)
+        ThrowDamaged(file_, dimensions.begin);
+    }
+    return count;
+  }
+
+  void CheckMatrix(std::uint64_t begin, std::uint64_t end, int depth) {
+    if (depth > kDeepest) ThrowDamaged(file_, begin);
+    if (begin == end) return;  // an empty one within another
+    const Part flags = PartAt(begin, end, kUint32);
+    if (flags.size != 8) ThrowDamaged(file_, begin);
+    const std::string kinds = bytes_.Get(flags.begin, 8);
+    const std::uint32_t kind = Number(kinds) & 0xFFU;
+    if (kind == 0 || kind > kLastNumeric || kind == 3) return;  // objects, functions
+    const Part dimensions = PartAt(flags.next, end, kInt32);
+    const Part name = PartAt(dimensions.next, end, kInt8);
+    const std::uint64_t rest = end > name.next ? end - name.next : 0;
+    if (kind == kSparse && Number(std::string_view(kinds).substr(4)) > rest) {
+      ThrowDamaged(file_, flags.begin);
+    }
+    const std::uint64_t count =
+        Count(dimensions, kind == kSparse ? kMostWithoutBytes : rest);
+    if (kind == kCell) CheckMatrices(count, name.next, end, depth);
+    if (kind == kStruct) CheckStruct(count, name.next, end, depth);
+  }
+
+  void CheckStruct(std::uint64_t count, std::uint64_t at, std::uint64_t end,
+                   int depth) {
+    const Part length = PartAt(at, end, kInt32);
+    if (length.size != 4) ThrowDamaged(file_, at);
+    const std::uint32_t longest = Number(bytes_.Get(length.begin, 4));
+    const Part names = PartAt(length.next, end, kInt8);
+    if (longest == 0 || names.size % longest != 0) ThrowDamaged(file_, length.begin);
+    CheckMatrices(count * (names.size / longest), names.next, end, depth);
+  }
+
+  void CheckMatrices(std::uint64_t count, std::uint64_t at, std::uint64_t end,
+                     int depth) {
+    for (; count > 0; --count) {
+      const Part matrix = PartAt(at, end, kMatrixElement);
+      CheckMatrix(matrix.begin, matrix.begin + matrix.size, depth + 1);
+      at = matrix.next;
+    }
+  }
+
+  /// Of arrays with nothing in them.
+  static constexpr std::uint64_t kMostWithoutBytes = std::uint64_t{1} << 31;
+
+  const std::filesystem::path& file_;
+  Bytes& bytes_;
+  bool big_endian_;
+};
+
 void RequireCompleteMat5(const std::filesystem::path& file, Bytes& bytes) {
   const std::uint64_t size = bytes.size();
   const std::string header = bytes.Get(0, kHeaderBytes);
@@ -79,6 +193,7 @@ void RequireCompleteMat5(const std::filesystem::path& file, Bytes& bytes) {
     ThrowCutOff(file, size, "at least the header's 128");
   }
   const bool big_endian = header.compare(kByteOrderMarkAt, 2, "MI") == 0;
+  Mat5Variables variables(file, bytes, big_endian);
   std::uint64_t position = kHeaderBytes;
   while (position < size) {
     const std::string tag = bytes.Get(position, kTagBytes);
@@ -94,10 +209,12 @@ void RequireCompleteMat5(const std::filesystem::path& file, Bytes& bytes) {
     if (type != kMatrixElement && type != kCompressedElement) {
       ThrowDamaged(file, position);
     }
-    position += kTagBytes + count;
+    const std::uint64_t begin = position + kTagBytes;
+    position = begin + count;
     if (position > size) {
       ThrowCutOff(file, size, std::to_string(position) + " or more");
     }
+    if (type == kMatrixElement) variables.Check(begin, position);
   }
 }
 

@@ -127,7 +127,8 @@ std::string ToText(const matvar_t& variable) {
   } else {
     text.assign(static_cast<const char*>(variable.data), variable.nbytes);
   }
-  return text;
+  // Arrays of characters may be filled up with zeros.
+  return text.substr(0, text.find('\0'));
 }
 
 /// Field -> text of a scalar struct, in the order of the fields.

@@ -30,7 +30,8 @@ struct Selection {
 };
 
 std::unique_ptr<RecordSource> Open(const std::filesystem::path& file) {
-  if (std::filesystem::is_regular_file(file) && DetectMatVersion(file)) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored) && DetectMatVersion(file)) {
     return OpenMat(file);
   }
   std::string text = ReadTextFile(file);

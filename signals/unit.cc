@@ -45,6 +45,9 @@ constexpr std::array<Prefix, 7> kPrefixes{{{"n", 1e-9},
                                            {"k", 1e3},
                                            {"M", 1e6}}};
 
+/// Of a symbol, in all: no quantity has more.
+constexpr int kHighestPower = 12;
+
 struct Factor {
   double scale;
   std::string_view si;
@@ -83,7 +86,10 @@ std::optional<std::pair<std::string_view, int>> SplitPower(std::string_view text
   int power = 0;
   const char* end = exponent.data() + exponent.size();
   const auto [stop, error] = std::from_chars(exponent.data(), end, power);
-  if (error != std::errc() || stop != end || power == 0) return std::nullopt;
+  if (error != std::errc() || stop != end || power == 0 || power < -kHighestPower ||
+      power > kHighestPower) {
+    return std::nullopt;
+  }
   return std::pair{text.substr(0, digits), power};
 }
 
@@ -113,11 +119,14 @@ class Product {
     powers_.emplace_back(factor.si, power);
   }
 
-  Unit ToUnit() const {
+  /// None if no number holds its size.
+  std::optional<Unit> ToUnit() const {
+    if (!std::isnormal(scale_)) return std::nullopt;
     std::string numerator;
     std::string denominator;
     for (const auto& [si, exponent] : powers_) {
       if (exponent == 0) continue;
+      if (std::abs(exponent) > kHighestPower) return std::nullopt;
       std::string& side = exponent > 0 ? numerator : denominator;
       if (exponent < 0) {
         side += "/";
@@ -127,7 +136,7 @@ class Product {
       side += si;
       if (std::abs(exponent) > 1) side += "^" + std::to_string(std::abs(exponent));
     }
-    return {scale_, (numerator.empty() ? "1" : numerator) + denominator};
+    return Unit{scale_, (numerator.empty() ? "1" : numerator) + denominator};
   }
 
  private:

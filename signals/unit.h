@@ -16,8 +16,8 @@ struct Unit {
 
 /// Understands prefixes (n, u or the micro sign, m, k, M), products ("N m", "N*m",
 /// "Nm"), quotients ("m/s", "m/s^2", "m/s/s") and powers ("m^2", "m2", "s^-1") of
-/// m, s, g/kg, N, A, V, W, Hz, rad, deg and 1 (also "-" and an empty text). "g" is the
-/// gram. A product after a quotient ("N/A m") is ambiguous and refused.
+/// m, s, g/kg, N, A, V, W, Hz, rad, deg and 1 (also "-" and an empty text), up to the 12th
+/// power. "g" is the gram. A product after a quotient ("N/A m") is ambiguous and refused.
 /// InputError("unknown unit ...") otherwise.
 Unit ParseUnit(std::string_view text);
 

@@ -21,8 +21,18 @@ std::string Trimmed(std::string_view text) {
   return std::string(text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin));
 }
 
-std::string WithIncludes(const fs::path& file, const fs::path& folder) {
+/// @param around  files that this one is being put into
+std::string WithIncludes(const fs::path& file, const fs::path& folder,
+                         std::vector<fs::path> around = {}) {
+  std::error_code ignored;
+  if (std::ranges::any_of(around, [&](const fs::path& outer) {
+        return fs::equivalent(outer, file, ignored);
+      })) {
+    throw InputError(around.back().string(), "includes " + file.string() + " in itself",
+                     "every file once");
+  }
   XmlText xml(file.string(), ReadTextFile(file));
+  around.push_back(file);
   for (std::size_t i = 0; i < xml.elements().size(); ++i) {
     const XmlElement& element = xml.elements()[i];
     if (element.tag != "include") continue;
@@ -30,7 +40,7 @@ std::string WithIncludes(const fs::path& file, const fs::path& folder) {
     if (name == nullptr) {
       throw InputError(file.string(), "<include> without a file", "file=\"...\"");
     }
-    const XmlText included(*name, WithIncludes(folder / *name, folder));
+    const XmlText included(*name, WithIncludes(folder / *name, folder, around));
     xml.Replace(static_cast<int>(i), Trimmed(included.Content(included.At(0))));
   }
   return xml.Text();
@@ -57,8 +67,13 @@ bool IsUsed(const XmlText& xml, const FileFolder& folder) {
 }
 
 std::string PathFrom(const fs::path& folder, const fs::path& target) {
-  const fs::path relative =
-      fs::weakly_canonical(target).lexically_relative(fs::weakly_canonical(folder));
+  std::error_code error;
+  const fs::path to = fs::weakly_canonical(target, error);
+  if (error) {
+    throw InputError(target.string(), error.message(),
+                     "a folder of meshes or textures");
+  }
+  const fs::path relative = to.lexically_relative(fs::weakly_canonical(folder));
   return relative.generic_string() + "/";
 }
 

@@ -32,6 +32,8 @@ class Scanner {
       : where_(where), text_(text) {}
 
   std::vector<XmlElement> Scan() {
+    if (at_ = text_.find('\0'); at_ != text_.npos) Fail("a byte 0");
+    at_ = 0;
     while ((at_ = text_.find('<', at_)) != text_.npos) {
       if (!SkipMarkup("<!--", "-->") && !SkipMarkup("<![CDATA[", "]]>") &&
           !SkipMarkup("<?", "?>") && !SkipMarkup("<!", ">")) {
@@ -63,13 +65,19 @@ class Scanner {
   std::string_view Until(std::string_view mark) {
     const std::size_t found = text_.find(mark, at_);
     if (found == text_.npos) Fail("no '" + std::string(mark) + "' follows");
-    return text_.substr(std::exchange(at_, found), found - at_);
+    return TakeTo(found);
+  }
+
+  /// What lies up to there; goes there.
+  std::string_view TakeTo(std::size_t end) {
+    const std::size_t begin = std::exchange(at_, end);
+    return text_.substr(begin, end - begin);
   }
 
   std::string_view Name() {
     const std::size_t end =
         std::min(text_.find_first_of(" \t\r\n=/>", at_), text_.size());
-    return text_.substr(std::exchange(at_, end), end - at_);
+    return TakeTo(end);
   }
 
   void SkipSpace() {
@@ -89,7 +97,11 @@ class Scanner {
       element.attributes_end = at_;
     }
     element.empty = Next() == '/';
-    Until(">");
+    if (element.empty) ++at_;
+    if (element.tag.empty() || element.tag.find_first_of("<\"'") != std::string::npos ||
+        Next() != '>') {
+      Fail("a tag that is none");
+    }
     element.content_begin = element.content_end = element.end = ++at_;
     if (!element.empty) open_.push_back(static_cast<int>(elements_.size()));
     elements_.push_back(std::move(element));
@@ -116,7 +128,8 @@ class Scanner {
     element.content_end = at_;
     at_ += 2;
     if (Name() != element.tag) Fail("<" + element.tag + "> has another end tag");
-    Until(">");
+    SkipSpace();
+    if (Next() != '>') Fail("an end tag without its '>'");
     element.end = ++at_;
   }
 

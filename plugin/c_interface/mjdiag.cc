@@ -9,6 +9,7 @@
 #include "guard.h"
 #include "handle.h"
 #include "host_callback.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/time_step.h"
 #include "mjdiag/signals/record_file.h"
 
@@ -23,6 +24,14 @@ using Instances = mjdiag::Handles<mjdiag_instance>;
 template <typename Handle>
 auto& OpenedInstance(Handle* handle) {
   return mjdiag::Opened(handle, "an attached instance");
+}
+
+/// InputError for data that were made before the model was prepared: they have no room
+/// for the mark of an instance.
+void RequireDataOf(const mjModel& model, const mjData& data) {
+  if (mjdiag::MakeData(model)->nbuffer == data.nbuffer) return;
+  throw mjdiag::InputError("data", "not of the model as it is now",
+                           "mjdiag_prepare first, then mj_makeData");
 }
 
 void PutAtRest(const mjdiag::Machine& machine, const mjModel& model, mjData& data) {
@@ -53,7 +62,7 @@ int mjdiag_set_fault(mjModel* model, const char* parameter, double value) {
 int mjdiag_rest(const mjModel* model, mjData* data, const char* setup) {
   return Try([&] {
     NotNull(model, "a model");
-    NotNull(data, "data of the model");
+    RequireDataOf(*model, *NotNull(data, "data of the model"));
     PutAtRest(mjdiag::Machine(mjdiag::ReadSetup(Text(setup)), *model), *model, *data);
   });
 }
@@ -63,7 +72,7 @@ mjdiag_instance* mjdiag_attach(const mjModel* model, mjData* data, const char* s
   mjdiag_instance* attached = nullptr;
   mjdiag::Guard([&] {
     NotNull(model, "a model");
-    NotNull(data, "data of the model");
+    RequireDataOf(*model, *NotNull(data, "data of the model"));
     if (Instances::Any(
             [=](const ControlledMachine& other) { return other.data == data; })) {
       throw mjdiag::InputError("data", "an instance is attached to it",

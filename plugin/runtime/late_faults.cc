@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
 namespace {
@@ -136,6 +137,21 @@ std::vector<MachineStage> StagesOf(const Machine& machine,
     }
   }
   return stages;
+}
+
+LateFault ParseLateFault(std::string_view text) {
+  constexpr auto kNone = std::string_view::npos;
+  const std::size_t equals = text.find('=');
+  const std::string_view rest =
+      equals == kNone ? std::string_view{} : text.substr(equals + 1);
+  const std::size_t at = rest.find('@');
+  const auto value = ParseNumber(rest.substr(0, at));
+  const auto time = at == kNone ? 0.0 : ParseNumber(rest.substr(at + 1));
+  if (!value || !time) {
+    throw InputError("fault '" + std::string(text) + "'", "no number",
+                     "<name>=<value> or <name>=<value>@<seconds>");
+  }
+  return {{std::string(text.substr(0, equals)), *value}, *time};
 }
 
 }  // namespace mjdiag

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mjdiag/plugin/machine/machine.h"
@@ -26,6 +27,10 @@ struct MachineStage {
 /// disturbance that grows.
 std::vector<MachineStage> StagesOf(const Machine& machine,
                                    std::span<const LateFault> faults);
+
+/// From "<name>=<value>", there from the start, or "<name>=<value>@<seconds>"; InputError
+/// says what is malformed.
+LateFault ParseLateFault(std::string_view text);
 
 /// The first tick of a late fault.
 Eigen::Index TickOf(const LateFault& fault, double sample_time);

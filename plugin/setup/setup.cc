@@ -73,7 +73,9 @@ bool IsDisturbance(const Setup& setup, std::string_view name) {
 }
 
 std::filesystem::path FindSetupFile(const std::filesystem::path& where) {
-  return std::filesystem::is_regular_file(where) ? where : where / "setup.toml";
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(where, ignored) ? where
+                                                          : where / "setup.toml";
 }
 
 Setup ReadSetup(const std::filesystem::path& where,

@@ -27,7 +27,8 @@ constexpr int kMostComponents = 16;  // of an MJCF sensor
 fs::path ExistingFile(const TomlTable& root, std::string_view key,
                       const fs::path& folder) {
   fs::path file = folder / root.Text(key);
-  if (!fs::is_regular_file(file)) {
+  std::error_code ignored;  // such as a name that is too long
+  if (!fs::is_regular_file(file, ignored)) {
     root.Fail(key, "there is no file " + file.string(), "a file beside the setup");
   }
   return file;

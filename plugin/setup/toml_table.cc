@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mjdiag/plugin/setup/toml_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -47,15 +48,36 @@ std::string TypeName(const toml::node& node) {
   }
 }
 
+/// Characters 0, which no name of a file or channel has: what reads C strings would end
+/// there.
+bool HasZeros(const toml::node& node) {
+  constexpr char kZero = '\0';
+  if (const auto* text = node.as_string())
+    return text->get().find(kZero) != text->get().npos;
+  if (const toml::array* array = node.as_array()) {
+    return std::any_of(array->begin(), array->end(), HasZeros);
+  }
+  const toml::table* table = node.as_table();
+  return table && std::any_of(table->begin(), table->end(), [](const auto& entry) {
+           return entry.first.str().find(kZero) != std::string_view::npos ||
+                  HasZeros(entry.second);
+         });
+}
+
 toml::table ParseToml(std::string_view text, const std::string& where) {
+  const auto location = [&](auto line) {
+    return where.starts_with("override") ? where : where + ":" + std::to_string(line);
+  };
+  if (const auto trouble = FindTomlTrouble(text)) {
+    throw InputError(location(trouble->line), trouble->what, "TOML");
+  }
   try {
-    return toml::parse(text, where);
+    toml::table table = toml::parse(text, where);
+    if (HasZeros(table)) throw InputError(where, "a character 0", "texts without");
+    return table;
   } catch (const toml::parse_error& error) {
-    std::string location = where;
-    if (!where.starts_with("override")) {
-      location += ":" + std::to_string(error.source().begin.line);
-    }
-    throw InputError(location, std::string(error.description()), "TOML");
+    throw InputError(location(error.source().begin.line),
+                     std::string(error.description()), "TOML");
   }
 }
 

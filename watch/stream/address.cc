@@ -33,12 +33,15 @@ int ParsePort(std::string_view text, const std::string& what) {
 HostPort ParseHostPort(std::string_view text, int fallback, const std::string& what) {
   if (text.starts_with('[')) {
     const std::size_t close = text.find(']');
-    if (close != text.npos) {
+    if (close != text.npos && text.rfind('[') == 0) {
       const std::string host(text.substr(1, close - 1));
       const std::string_view rest = text.substr(close + 1);
       if (rest.empty() && fallback != 0) return {host, fallback};
       if (rest.starts_with(':')) return {host, ParsePort(rest.substr(1), what)};
     }
+    throw InputError(what, "'" + std::string(text) + "'", "[ADDRESS]:PORT");
+  }
+  if (text.find_first_of("[]") != text.npos) {
     throw InputError(what, "'" + std::string(text) + "'", "[ADDRESS]:PORT");
   }
   const std::size_t colon = text.rfind(':');

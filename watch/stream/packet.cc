@@ -63,6 +63,8 @@ PacketStart ReadPacketHead(std::string_view bytes) {
     start.trouble = "no ticks or no channels in it";
   } else if (Get<std::uint32_t>(bytes, 12) != 0) {
     start.trouble = "not 0 at offset 12";
+  } else if (start.head.number < -kMostTicks || start.head.number > kMostTicks) {
+    start.trouble = "a number of a tick beyond 10^15";
   }
   return start;
 }

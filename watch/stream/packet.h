@@ -9,7 +9,8 @@
 //        6      2  ticks in this packet, N
 //        8      4  stream: any number that the sender draws when it starts
 //       12      4  0
-//       16      8  number of the first tick; the others follow it without a gap
+//       16      8  number of the first tick, within +-10^15; the others follow it without a
+//                  gap
 //       24      8  clock of the sender at the first tick [ns since 1970]; 0: it has none
 //       32    8 N channels  float64, tick by tick; NaN: not measured
 
@@ -24,6 +25,8 @@ namespace mjdiag {
 inline constexpr std::string_view kPacketMagic = "MJDT";
 inline constexpr std::size_t kPacketHead = 32;  ///< bytes before the numbers
 inline constexpr std::size_t kMostChannels = 255;
+/// Numbers of ticks are not beyond that: 30000 years at 1 kHz.
+inline constexpr std::int64_t kMostTicks = 1'000'000'000'000'000;
 /// Of a datagram of UDP.
 inline constexpr std::size_t kMostPacketBytes = 65507;
 

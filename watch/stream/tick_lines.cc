@@ -9,6 +9,7 @@
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/unit.h"
+#include "mjdiag/watch/stream/packet.h"
 
 namespace mjdiag {
 namespace {
@@ -17,7 +18,7 @@ constexpr const char* kTickColumn = "tick";
 /// What is quoted of a line that is none.
 constexpr std::size_t kShown = 40;
 /// Beyond that a difference of times is no number of ticks.
-constexpr double kMostTicks = 1e15;
+constexpr auto kMostTicksApart = static_cast<double>(kMostTicks);
 
 std::string Shown(std::string_view line) {
   std::string text;
@@ -145,11 +146,13 @@ std::int64_t TickLines::NumberAt(double time) {
     return latest_;
   }
   const double ticks = (time - *latest_time_) / layout_.sample_time;
-  if (!(std::abs(ticks) < kMostTicks)) {
+  const std::int64_t number = std::abs(ticks) < kMostTicksApart
+                                  ? latest_ + std::llround(ticks)
+                                  : kMostTicks + 1;
+  if (number < -kMostTicks || number > kMostTicks) {
     throw InputError("line", "a time of " + std::to_string(time) + " s",
                      "one that follows those before");
   }
-  const std::int64_t number = latest_ + std::llround(ticks);
   if (time > *latest_time_) {
     latest_time_ = time;
     latest_ = number;
@@ -182,7 +185,7 @@ void TickLines::TakeNumbers(std::string_view line, double arrived) {
   if (time_) head.sent = time_->factor * cells_[time_->place];
   if (tick_) {
     const double number = cells_[tick_->place];
-    if (!(std::abs(number) < kMostTicks)) {
+    if (!(std::abs(number) < kMostTicksApart)) {
       throw InputError("line " + Shown(line), "no number of a tick", "an integer");
     }
     head.number = std::llround(number);

@@ -67,7 +67,7 @@ class ZeroOffsetEffect final : public Effect {
     StaticForce force(map.plant());
     std::vector<Index> joints = SeenJoints(map.model());
     std::ranges::sort(joints);
-    joints.erase(std::ranges::unique(joints).begin(), joints.end());
+    joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
     std::erase_if(joints, [&](Index joint) {
       const int id = map.plant().dof_jntid[joint];
       if (map.plant().jnt_type[id] != mjJNT_HINGE) return true;
