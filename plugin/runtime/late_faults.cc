@@ -148,7 +148,7 @@ LateFault ParseLateFault(std::string_view text) {
   const auto value = ParseNumber(rest.substr(0, at));
   const auto time = at == kNone ? 0.0 : ParseNumber(rest.substr(at + 1));
   if (!value || !time) {
-    throw InputError("fault '" + std::string(text) + "'", "no number",
+    throw InputError("--fault '" + std::string(text) + "'", "no number",
                      "<name>=<value> or <name>=<value>@<seconds>");
   }
   return {{std::string(text.substr(0, equals)), *value}, *time};

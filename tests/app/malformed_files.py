@@ -103,7 +103,7 @@ def record_cases(folder, stage, good):
         "header only.mat": (mat[:128], ["expected"]),
         "other byte order.mat": (mat[:126] + b"XX" + mat[128:], ["MAT"]),
         "text inside.mat": (mat_of_class(mat, 4), ["record: ", "expected"]),
-        "cells inside.mat": (mat_of_class(mat, 1), ["record: ", "expected"]),
+        "numbers called cells.mat": (mat_of_class(mat, 1), ["damaged", "expected"]),
         "no length.mat": (mat[:132] + struct.pack("<I", 0xFFFFFFF0) + mat[136:], ["truncated"]),
         "cut v7.3.mat": (mat73[:len(mat73) // 3], ["expected"]),
         "v7.3 head only.mat": (mat73[:512], ["expected"]),

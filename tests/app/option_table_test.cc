@@ -141,7 +141,9 @@ const std::map<std::string, Rows>& Table() {
                          {"--wear", kNothing},
                          {"--plan", kNothing},
                          {"--resume", kNothing},
-                         {"--restart", kNothing}}},
+                         {"--restart", kNothing},
+                         {"--threads", kNothing},  // all of the computer, or the job's
+                         {"--patience", kNothing}}},  // of plans in a job only
       {"excite", kMachine + kOutput + kReport +
                      Rows{{"--for", kNothing},
                           {"--limit", kNothing},
