@@ -68,7 +68,7 @@ MatrixXd Slopes(const MeasuredRun& run, const MatrixXd& rows) {
   return slopes;
 }
 
-/// By how much rows change in the tick that begins at a sample.
+/// Mean slopes of rows in the tick that begins at a sample, of every record by itself.
 MatrixXd ChangesInTick(const MeasuredRun& run, const MatrixXd& rows) {
   MatrixXd changes = MatrixXd::Zero(rows.rows(), rows.cols());
   for (std::size_t i = 0; i < run.records.size(); ++i) {
@@ -231,13 +231,15 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
   return balance;
 }
 
-MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filtered) {
+MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filtered,
+                                const ForceBalance& balance) {
   Changes frictionless;
   for (const PlantNumber& number : PlantNumbers(machine.plant())) {
     if (number.kind == PlantNumberKind::kFriction) {
       frictionless.numbers.emplace_back(number, 0.0);
     }
   }
+  if (frictionless.numbers.empty()) return balance.missing;
   return BalanceForces(machine, frictionless, filtered).missing;
 }
 

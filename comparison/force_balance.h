@@ -49,12 +49,15 @@ Eigen::VectorXd LowPassed(const FilteredRun& filtered, const Eigen::VectorXd& si
 /// g of every degree of freedom, nv.
 Eigen::VectorXd DriveFactors(const Machine& machine, const Machine& changed);
 
+/// Of every joint and sample, nv x samples.
+using JointMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
 struct ForceBalance {
   ObservedMotion motion;    ///< own_acceleration is a
   Eigen::MatrixXd missing;  ///< F, nv x samples [N, N m]
   /// Where the plant's own dry friction (`frictionloss`) is below its bound: it takes most of
   /// what would be missing, nv x samples.
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> sticks;
+  JointMask sticks;
 };
 
 /// NumericalError if the plant diverges in a tick.
@@ -63,7 +66,8 @@ ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
 
 /// F without the dry friction of the plant, which MuJoCo has as `frictionloss`.
 Eigen::MatrixXd MissingWithoutFriction(const Machine& machine,
-                                       const FilteredRun& filtered);
+                                       const FilteredRun& filtered,
+                                       const ForceBalance& balance);
 
 /// Root mean square of every row of F over the samples that count, nv.
 Eigen::VectorXd MissingRms(const FilteredRun& filtered, const Eigen::MatrixXd& missing);

@@ -1,44 +1,31 @@
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX
-
 #include <fstream>
 
 #include "fuzz/target.h"
+#include "support/temporary_folder.h"
 
 namespace mjdiag::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ProcessFolder {
+/// In memory where the system has that.
+fs::path Within() {
+  const fs::path memory = "/dev/shm";
+  std::error_code ignored;
+  return fs::is_directory(memory, ignored) ? memory : fs::temp_directory_path();
+}
+
+class FolderWithStage : public test::TemporaryFolder {
  public:
-  ProcessFolder() {
-    const fs::path memory = "/dev/shm";
-    std::error_code ignored;
-    std::string name =
-        ((fs::is_directory(memory, ignored) ? memory : fs::temp_directory_path()) /
-         "mjdiag-fuzz-XXXXXX")
-            .string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder " + name);
-    path_ = name;
-    fs::copy(MJDIAG_SOURCE_DIR "/fuzz/stage", path_);
+  FolderWithStage() : TemporaryFolder(Within()) {
+    fs::copy(MJDIAG_SOURCE_DIR "/fuzz/stage", path());
   }
-  ~ProcessFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ProcessFolder(const ProcessFolder&) = delete;
-  ProcessFolder& operator=(const ProcessFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 }  // namespace
 
 const fs::path& Folder() {
-  static const ProcessFolder folder;
+  static const FolderWithStage folder;
   return folder.path();
 }
 

@@ -94,15 +94,16 @@ class FaultEstimator {
   ResidualNoise noise_;
   double forgetting_;
   Eigen::Index samples_ = 0;
-  Eigen::MatrixXd information_;                            // G^T G
-  Eigen::VectorXd right_;                                  // G^T r
-  Eigen::MatrixXd spread_;                                 // M, nf x nf
-  Eigen::MatrixXd memory_;                                 // X, nf x ns
-  bool building_up_;                                       // S is not stationary yet
-  double left_ = std::numeric_limits<double>::infinity();  // to the variance at rest
-  Eigen::MatrixXd state_;                                  // S
-  Eigen::MatrixXd output_;                                 // N
-  Eigen::MatrixXd ahead_;                                  // E[xi+ n^T]
+  Eigen::MatrixXd information_;  // G^T G
+  Eigen::VectorXd right_;        // G^T r
+  Eigen::MatrixXd spread_;       // M, nf x nf
+  Eigen::MatrixXd memory_;       // X, nf x ns
+  bool building_up_;             // S is not stationary yet
+  Eigen::MatrixXd state_;        // S
+  Eigen::MatrixXd output_;       // N
+  Eigen::MatrixXd ahead_;        // E[xi+ n^T]
+  // From the variance of the residual to that at rest.
+  double left_ = std::numeric_limits<double>::infinity();
   // Work space, so that nothing allocates.
   Eigen::MatrixXd state_C_;     // S C^T
   Eigen::MatrixXd next_state_;  // A S

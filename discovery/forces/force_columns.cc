@@ -52,8 +52,8 @@ ForceColumns::ForceColumns(const DiscoveryProblem& problem, const FilteredRun& f
       filtered_(filtered),
       motion_(AsMeasured(balance.motion)),
       of_laws_(OfLaws(motion_, filtered)),
-      missing_rms_(
-          MissingRms(filtered, MissingWithoutFriction(problem.machine(), filtered))),
+      missing_rms_(MissingRms(
+          filtered, MissingWithoutFriction(problem.machine(), filtered, balance))),
       rows_(RowsAlong(filtered, ForcedDofs(problem.machine()), problem.train())),
       missing_(RowsOf(rows_, balance.missing)) {
   Silence(balance.sticks, rows_);

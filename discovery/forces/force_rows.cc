@@ -37,8 +37,7 @@ ForceRows RowsAlong(const FilteredRun& filtered, std::vector<Index> dofs, Index 
   return rows;
 }
 
-void Silence(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& sticks,
-             ForceRows& rows) {
+void Silence(const JointMask& sticks, ForceRows& rows) {
   constexpr Index kLeast = 20;  // values of a joint
   if (!sticks.any()) return;
   if (rows.silent.empty()) {

@@ -12,6 +12,9 @@
 // so that e = (r[k] - phi_j r[k-1]) / s_j are the independent values, and
 //
 //   -2 ln L = sum over joints of n_j (ln s_j^2 + 1),   s_j^2 = mean (r[k] - phi_j r[k-1])^2.
+//
+// Where a joint's own dry friction is below its bound it takes what is missing, and the joint
+// says nothing: such rows are silent, and the next one begins anew.
 
 #include <Eigen/Core>
 #include <vector>
@@ -52,8 +55,7 @@ ForceRows RowsAlong(const FilteredRun& filtered, std::vector<Eigen::Index> dofs,
 
 /// Rows near samples at which a joint sticks are silent; none of a joint that would be left
 /// with next to nothing. @param sticks  nv x samples
-void Silence(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& sticks,
-             ForceRows& rows);
+void Silence(const JointMask& sticks, ForceRows& rows);
 
 /// The rows of forces that are within the band. @param forces  nv x samples
 Eigen::VectorXd RowsOf(const ForceRows& rows, const Eigen::MatrixXd& forces);

@@ -1,22 +1,18 @@
 #include "mjdiag/studies/cluster/rank_message.h"
 
-#include <cstring>
+#include <string_view>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_bytes.h"
 
 namespace mjdiag {
 namespace {
 
-template <typename T>
-void Put(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 /// The numbers first, as they lie in memory: ranks of a job run on computers of a kind.
 template <typename T>
 void PutAll(std::string& bytes, const std::vector<T>& values) {
-  Put(bytes, static_cast<std::uint64_t>(values.size()));
-  for (const T& value : values) Put(bytes, value);
+  AppendBytes(static_cast<std::uint64_t>(values.size()), bytes);
+  for (const T& value : values) AppendBytes(value, bytes);
 }
 
 class Reader {
@@ -25,11 +21,8 @@ class Reader {
 
   template <typename T>
   T Get() {
-    T value;
-    Require(sizeof value);
-    std::memcpy(&value, bytes_.data() + at_, sizeof value);
-    at_ += sizeof value;
-    return value;
+    Require(sizeof(T));
+    return TakeNumber<T>(bytes_);
   }
   template <typename T>
   std::vector<T> GetAll() {
@@ -40,34 +33,33 @@ class Reader {
     for (std::uint64_t i = 0; i < count; ++i) values.push_back(Get<T>());
     return values;
   }
-  std::string Rest() const { return bytes_.substr(at_); }
+  std::string Rest() const { return std::string(bytes_); }
 
  private:
   void Require(std::size_t size) const {
-    if (size <= bytes_.size() - at_) return;
+    if (size <= bytes_.size()) return;
     throw InputError("message of a rank", "is cut off", "mjdiag of one version");
   }
 
-  const std::string& bytes_;
-  std::size_t at_ = 0;
+  std::string_view bytes_;  // that are left
 };
 
 }  // namespace
 
 std::string Packed(const RankReport& report) {
   std::string bytes;
-  Put(bytes, report.kind);
-  Put(bytes, report.threads);
-  Put(bytes, report.study);
+  AppendBytes(report.kind, bytes);
+  AppendBytes(report.threads, bytes);
+  AppendBytes(report.study, bytes);
   PutAll(bytes, report.done);
-  Put(bytes, report.run);
-  Put(bytes, report.bad_input);
+  AppendBytes(report.run, bytes);
+  AppendBytes(report.bad_input, bytes);
   return bytes + report.text;
 }
 
 std::string Packed(const RankOrder& order) {
   std::string bytes;
-  Put(bytes, order.kind);
+  AppendBytes(order.kind, bytes);
   PutAll(bytes, order.runs);
   return bytes;
 }

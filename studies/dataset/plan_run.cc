@@ -63,10 +63,11 @@ void Forget(const fs::path& folder) {
 class MissingRuns {
  public:
   MissingRuns(const PlanRunOptions& options, RunWork& work, RunJournals& journals,
-              std::vector<std::int64_t> open, Teller& teller)
+              std::uint64_t study, std::vector<std::int64_t> open, Teller& teller)
       : options_(options),
         work_(work),
         journals_(journals),
+        study_(study),
         open_(std::move(open)),
         teller_(teller) {}
 
@@ -92,7 +93,7 @@ class MissingRuns {
     LeadOptions lead;
     lead.open = open_;
     lead.runs = work_.loaded().plan.Runs();
-    lead.study = ChecksumOf(PlanIdentity(work_.loaded()));
+    lead.study = study_;
     lead.patience = options_.patience;
     lead.tell = [this](std::int64_t made, bool prepared) {
       teller_.Made(made, prepared ? "runs" : "healthy runs");
@@ -119,6 +120,7 @@ class MissingRuns {
   const PlanRunOptions& options_;
   RunWork& work_;
   RunJournals& journals_;
+  std::uint64_t study_;
   std::vector<std::int64_t> open_;
   Teller& teller_;
 };
@@ -140,7 +142,8 @@ PlanOutcome RunPlan(const LoadedPlan& loaded, const PlanRunOptions& options) {
   MakeOutputFolder(options.folder);
   if (options.restart) Forget(options.folder);
   const std::int64_t runs = loaded.plan.Runs();
-  RunJournals journals(options.folder, PlanIdentity(loaded), runs);
+  const std::string identity = PlanIdentity(loaded);
+  RunJournals journals(options.folder, identity, runs);
   WriteTextFile(options.folder / "plan.toml", loaded.plan.text);
 
   const fs::path dataset = options.folder / "dataset.h5";
@@ -156,7 +159,8 @@ PlanOutcome RunPlan(const LoadedPlan& loaded, const PlanRunOptions& options) {
   Teller teller(options, begin);
   const bool is_complete = open.empty();
   if (!is_complete) {
-    MissingRuns(options, *work, journals, std::move(open), teller).Make();
+    MissingRuns(options, *work, journals, ChecksumOf(identity), std::move(open), teller)
+        .Make();
   }
   if (options.team != nullptr) options.team->End();
   PlanOutcome outcome{work, {}, std::nullopt, {}};

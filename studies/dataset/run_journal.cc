@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_bytes.h"
 
 namespace mjdiag {
 namespace {
@@ -39,8 +40,7 @@ std::uint32_t Checksum(const Head& head, std::string_view body) {
 std::string Text(const std::vector<std::string>& series) {
   std::string text;
   for (const std::string& one : series) {
-    const std::uint64_t size = one.size();
-    text.append(reinterpret_cast<const char*>(&size), sizeof size);
+    AppendBytes(static_cast<std::uint64_t>(one.size()), text);
     text += one;
   }
   return text;
@@ -70,9 +70,8 @@ bool WriteAll(int descriptor, std::string_view bytes) {
 }
 
 std::string Beginning(const std::string& identity) {
-  const std::uint64_t size = identity.size();
   std::string text(kMagic);
-  text.append(reinterpret_cast<const char*>(&size), sizeof size);
+  AppendBytes(static_cast<std::uint64_t>(identity.size()), text);
   return text + identity;
 }
 
@@ -188,7 +187,8 @@ void RunJournal::Append(std::int64_t index, const RunResult& result,
   head.series = series.size();
   const std::string body = packed + series;
   head.checksum = Checksum(head, body);
-  std::string entry(reinterpret_cast<const char*>(&head), sizeof head);
+  std::string entry;
+  AppendBytes(head, entry);
   entry += body;
   RunResult kept = result;
   kept.series.clear();
@@ -213,11 +213,10 @@ std::vector<std::string> RunJournal::ReadSeries(std::int64_t index) const {
     Fail("cannot be read", "the file as it was written");
   }
   std::vector<std::string> series;
-  for (std::size_t at = 0; at < text.size();) {
-    std::uint64_t size = 0;
-    std::memcpy(&size, text.data() + at, sizeof size);
-    series.push_back(text.substr(at + sizeof size, size));
-    at += sizeof size + size;
+  for (std::string_view rest = text; !rest.empty();) {
+    const auto size = TakeNumber<std::uint64_t>(rest);
+    series.emplace_back(rest.substr(0, size));
+    rest.remove_prefix(series.back().size());
   }
   return series;
 }

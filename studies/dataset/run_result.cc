@@ -1,8 +1,9 @@
 #include "mjdiag/studies/dataset/run_result.h"
 
-#include <cstring>
+#include <string_view>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_bytes.h"
 
 namespace mjdiag {
 namespace {
@@ -11,7 +12,7 @@ class Writer {
  public:
   template <typename T>
   void Put(const T& value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    AppendBytes(value, bytes_);
   }
   void PutText(const std::string& text) {
     Put(static_cast<std::uint32_t>(text.size()));
@@ -29,13 +30,15 @@ class Reader {
 
   template <typename T>
   T Get() {
-    T value;
-    std::memcpy(&value, Next(sizeof value), sizeof value);
-    return value;
+    Require(sizeof(T));
+    return TakeNumber<T>(bytes_);
   }
   std::string GetText() {
     const auto size = Get<std::uint32_t>();
-    return {Next(size), size};
+    Require(size);
+    const std::string text(bytes_.substr(0, size));
+    bytes_.remove_prefix(size);
+    return text;
   }
   std::size_t GetCount(std::size_t least_size) {
     const auto count = Get<std::uint32_t>();
@@ -43,21 +46,18 @@ class Reader {
     return count;
   }
   void RequireEnd() const {
-    if (at_ != bytes_.size()) Fail();
+    if (!bytes_.empty()) Fail();
   }
 
  private:
   [[noreturn]] static void Fail() {
     throw InputError("journal", "holds no result of a run", "one of this version");
   }
-  const char* Next(std::size_t size) {
-    if (size > bytes_.size() - at_) Fail();
-    at_ += size;
-    return bytes_.data() + at_ - size;
+  void Require(std::size_t size) const {
+    if (size > bytes_.size()) Fail();
   }
 
-  const std::string& bytes_;
-  std::size_t at_ = 0;
+  std::string_view bytes_;  // that are left
 };
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_bytes.h"
 
 namespace mjdiag {
 namespace {
@@ -19,20 +19,6 @@ std::uint64_t Checksum(std::string_view bytes) {
     hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
   }
   return hash;
-}
-
-template <typename Number>
-void Append(const Number& number, std::string& bytes) {
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-}
-
-/// Takes a number off the begin; the caller knows that it is there.
-template <typename Number>
-Number TakeNumber(std::string_view& bytes) {
-  Number number;
-  std::memcpy(&number, bytes.data(), sizeof number);
-  bytes.remove_prefix(sizeof number);
-  return number;
 }
 
 float Least(float a, float b) { return std::isnan(a) || b < a ? b : a; }
@@ -120,12 +106,12 @@ std::string History::ToBytes(const nlohmann::json& kept) const {
     const std::vector<HistoryRow> rows = Rows(i);
     levels.push_back({{"width", kHistoryLevels[i].width}, {"rows", rows.size()}});
     for (const HistoryRow& row : rows) {
-      Append(row.time, body);
-      Append(row.looks, body);
+      AppendBytes(row.time, body);
+      AppendBytes(row.looks, body);
       for (const HistoryValue& value : row.values) {
-        Append(value.least, body);
-        Append(value.mean, body);
-        Append(value.most, body);
+        AppendBytes(value.least, body);
+        AppendBytes(value.mean, body);
+        AppendBytes(value.most, body);
       }
     }
   }
@@ -133,7 +119,7 @@ std::string History::ToBytes(const nlohmann::json& kept) const {
       {"quantities", quantities_}, {"levels", levels}, {"kept", kept}};
   std::string bytes(kMagic);
   bytes += head.dump() + "\n" + body;
-  Append(Checksum(bytes), bytes);
+  AppendBytes(Checksum(bytes), bytes);
   return bytes;
 }
 
