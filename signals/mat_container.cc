@@ -155,8 +155,14 @@ class Mat5Variables {
     }
     const std::uint64_t count =
         Count(dimensions, kind == kSparse ? kMostWithoutBytes : rest);
+    if (kind != kCell && kind != kStruct) CheckData(name.next, end);
     if (kind == kCell) CheckMatrices(count, name.next, end, depth);
     if (kind == kStruct) CheckStruct(count, name.next, end, depth);
+  }
+
+  /// Real and imaginary parts; of sparse ones where they stand, too.
+  void CheckData(std::uint64_t at, std::uint64_t end) {
+    while (at < end && end - at >= kTagBytes) at = PartAt(at, end).next;
   }
 
   void CheckStruct(std::uint64_t count, std::uint64_t at, std::uint64_t end,

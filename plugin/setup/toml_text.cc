@@ -10,6 +10,8 @@ bool StartsKey(char c) {
          c == '_' || c == '-' || c == '"' || c == '\'';
 }
 
+bool IsBeyondAscii(char c) { return static_cast<unsigned char>(c) >= 0x80; }
+
 class TomlScanner {
  public:
   explicit TomlScanner(std::string_view text) : text_(text) {
@@ -22,8 +24,11 @@ class TomlScanner {
     char previous = '\n';  // that is no blank
     while (at_ < text_.size()) {
       const char c = text_[at_];
-      if (static_cast<unsigned char>(c) >= 0x80) {
+      if (IsBeyondAscii(c)) {
         return Trouble("a character beyond ASCII that is not in quotes");
+      }
+      if ((c < ' ' && c != '\t' && c != '\r' && c != '\n') || c == 0x7f) {
+        return Trouble("a control character");
       }
       if (c == '"' || c == '\'') {
         const std::string_view before = value_ ? "\n=[," : "\n[,{.";
@@ -31,7 +36,7 @@ class TomlScanner {
           return Trouble("a quotation mark within a value");
         }
         if (!SkipString(c)) {
-          return Trouble("a character beyond ASCII behind a line that goes on");
+          return Trouble("a character beyond ASCII behind a backslash");
         }
       } else if (c == '#') {
         at_ = std::min(text_.find('\n', at_), text_.size());
@@ -71,13 +76,10 @@ class TomlScanner {
 
   /// A date, the blank where we are, and one digit.
   bool IsHalfATime() const {
-    constexpr std::string_view kDate = "0000-00-00";
-    if (at_ < kDate.size() || !IsDigit(at_ + 1) || IsDigit(at_ + 2)) return false;
-    const std::size_t begin = at_ - kDate.size();
-    for (std::size_t i = 0; i < kDate.size(); ++i) {
-      if (kDate[i] == '-' ? text_[begin + i] != '-' : !IsDigit(begin + i)) return false;
-    }
-    return true;
+    constexpr std::size_t kDate = 10;  // "1979-05-27", to the parser "....-..-.."
+    if (at_ < kDate || !IsDigit(at_ + 1) || IsDigit(at_ + 2)) return false;
+    const std::string_view date = text_.substr(at_ - kDate, kDate);
+    return date[4] == '-' && date[7] == '-';
   }
   bool IsDigit(std::size_t at) const {
     return at < text_.size() && text_[at] >= '0' && text_[at] <= '9';
@@ -97,12 +99,10 @@ class TomlScanner {
     while (at_ < text_.size() && !text_.substr(at_).starts_with(close)) {
       if (!lines && text_[at_] == '\n') return true;  // the parser ends here
       const bool escape = quote == '"' && text_[at_] == '\\';
-      if (lines && escape) {
-        const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
-        if (next != text_.npos && next > at_ + 1 &&
-            static_cast<unsigned char>(text_[next]) >= 0x80) {
-          return false;
-        }
+      if (escape) {
+        const std::size_t next =
+            lines ? text_.find_first_not_of(" \t\r\n", at_ + 1) : at_ + 1;
+        if (next < text_.size() && IsBeyondAscii(text_[next])) return false;
       }
       at_ += escape ? 2 : 1;
     }

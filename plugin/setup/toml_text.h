@@ -14,9 +14,9 @@ struct TomlTrouble {
   std::string what;
 };
 
-/// Characters beyond ASCII that stand neither in quotes nor in a comment, or behind a line
-/// of a text that ends with a backslash; quotation marks and brackets within values;
-/// brackets that close another one; dates with half a time; [tables] that begin with
+/// Characters beyond ASCII that stand neither in quotes nor in a comment, or behind a
+/// backslash that breaks a line; control characters; quotation marks and brackets within
+/// values; brackets that close another one; dates with half a time; [tables] that begin with
 /// something else than a name. None of them: nothing.
 std::optional<TomlTrouble> FindTomlTrouble(std::string_view text);
 

@@ -32,6 +32,8 @@ TEST(TomlText, TakesWhatIsToml) {
 TEST(TomlText, FindsWhatItsParserTakesForImpossible) {
   EXPECT_THAT(TroubleOf("a = 1\nµ = 2"), HasSubstr("2: a character beyond ASCII"));
   EXPECT_THAT(TroubleOf("a = \"\"\"x\\\n  µ\"\"\""), HasSubstr("beyond ASCII behind"));
+  EXPECT_THAT(TroubleOf("a = \"\\µ\""), HasSubstr("beyond ASCII behind"));
+  EXPECT_THAT(TroubleOf("a = 1\x14"), HasSubstr("control character"));
   EXPECT_THAT(TroubleOf("a = 12\"3µ\""), HasSubstr("within a value"));
   EXPECT_THAT(TroubleOf("a = 1.\"µ\""), HasSubstr("within a value"));
   EXPECT_THAT(TroubleOf("a = [}"), HasSubstr("closes another one"));
