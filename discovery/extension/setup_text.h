@@ -2,15 +2,13 @@
 // A setup file's text in which single values are changed. Everything else stays as its
 // author wrote it, to the byte (text_changes.h).
 
-#include <toml++/toml.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "mjdiag/discovery/extension/text_changes.h"
-
+#include "mjdiag/plugin/setup/toml_library.h"
 namespace mjdiag {
 
 class SetupText {

@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "mjdiag/plugin/setup/toml_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -64,13 +63,25 @@ bool HasZeros(const toml::node& node) {
          });
 }
 
+/// The first line with which the parser's assumptions fail, counted from 1.
+int LineOfAssumption(std::string_view text) {
+  int line = 1;
+  for (std::size_t end = text.find('\n'); end != text.npos;
+       end = text.find('\n', end + 1), ++line) {
+    try {
+      static_cast<void>(toml::parse(text.substr(0, end + 1)));
+    } catch (const toml::parse_error&) {  // cut within an array, or in several lines
+    } catch (const TomlAssumption&) {
+      return line;
+    }
+  }
+  return line;
+}
+
 toml::table ParseToml(std::string_view text, const std::string& where) {
   const auto location = [&](auto line) {
     return where.starts_with("override") ? where : where + ":" + std::to_string(line);
   };
-  if (const auto trouble = FindTomlTrouble(text)) {
-    throw InputError(location(trouble->line), trouble->what, "TOML");
-  }
   try {
     toml::table table = toml::parse(text, where);
     if (HasZeros(table)) throw InputError(where, "a character 0", "texts without");
@@ -78,6 +89,10 @@ toml::table ParseToml(std::string_view text, const std::string& where) {
   } catch (const toml::parse_error& error) {
     throw InputError(location(error.source().begin.line),
                      std::string(error.description()), "TOML");
+  } catch (const TomlAssumption&) {
+    throw InputError(
+        location(LineOfAssumption(text)), "a line that is no TOML",
+        "names and numbers in ASCII, other text in quotes, brackets in pairs");
   }
 }
 

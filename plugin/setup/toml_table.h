@@ -3,8 +3,6 @@
 // document remembers which keys were asked for, so that a key that nobody asks for (a
 // typing error) is refused at the end.
 
-#include <toml++/toml.h>
-
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -12,6 +10,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "mjdiag/plugin/setup/toml_library.h"
 
 namespace mjdiag {
 
