@@ -1,0 +1,91 @@
+#include "mjdiag/studies/excitation/fourier_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// How finely peaks are looked for, in samples of the fastest period.
+constexpr Index kPeaksPerPeriod = 32;
+
+/// What is beyond 0 .. 1 is mirrored there.
+double Folded(double value) {
+  const double within = std::abs(std::remainder(value, 2.0));
+  return std::clamp(within, 0.0, 1.0);
+}
+
+/// sin or cos of every harmonic, or their derivative in time of that order: what begins at
+/// rest. Beside harmonic l there is as much of the first one as that takes.
+MatrixXd Waves(double duration, int harmonics, Index samples, int derivative) {
+  const double w = 2.0 * std::numbers::pi / duration;
+  const VectorXd time = VectorXd::LinSpaced(samples, 0.0, duration);
+  const auto wave = [&](double l, bool sine) -> VectorXd {
+    const double phase = 0.5 * std::numbers::pi * (derivative + (sine ? 0 : 1));
+    return std::pow(l * w, derivative) * (l * w * time.array() + phase).sin();
+  };
+  MatrixXd waves(samples, 2 * harmonics - 2);
+  for (Index i = 0; i < harmonics - 1; ++i) {
+    const auto l = static_cast<double>(i + 2);
+    waves.col(2 * i) = wave(l, true) / l - wave(1.0, true);
+    waves.col(2 * i + 1) = wave(l, false) / (l * l) - wave(1.0, false);
+  }
+  return waves;
+}
+
+}  // namespace
+
+FourierMotion::Basis FourierMotion::MakeBasis(double duration, int harmonics,
+                                              Index samples) {
+  return {Waves(duration, harmonics, samples, 0),
+          Waves(duration, harmonics, samples, 1),
+          Waves(duration, harmonics, samples, 2)};
+}
+
+FourierMotion::FourierMotion(double duration, int harmonics,
+                             std::vector<AxisLimits> limits, Index samples)
+    : limits_(std::move(limits)),
+      wanted_(MakeBasis(duration, harmonics, samples)),
+      fine_(MakeBasis(duration, harmonics, kPeaksPerPeriod * harmonics + 1)) {}
+
+Index FourierMotion::parameters() const {
+  return std::ssize(limits_) * (fine_.position.cols() + 2);
+}
+
+JointMotion FourierMotion::At(const VectorXd& parameters) const {
+  const Index shapes = fine_.position.cols(), samples = wanted_.position.rows();
+  const Index joints = std::ssize(limits_);
+  JointMotion motion{MatrixXd(joints, samples), MatrixXd(joints, samples),
+                     MatrixXd(joints, samples)};
+  for (Index j = 0; j < joints; ++j) {
+    const auto own = parameters.segment(j * (shapes + 2), shapes + 2);
+    const VectorXd shape = own.head(shapes);
+    const AxisLimits& limits = limits_[static_cast<std::size_t>(j)];
+    const VectorXd positions = fine_.position * shape;
+    const double lowest = positions.minCoeff();
+    const double width = positions.maxCoeff() - lowest;
+    const double range = limits.highest - limits.lowest;
+    double size = 0.0;
+    if (width > 0.0) {
+      size = Folded(own[shapes + 1]) *
+             std::min({range / width,
+                       limits.velocity / (fine_.velocity * shape).cwiseAbs().maxCoeff(),
+                       limits.acceleration /
+                           (fine_.acceleration * shape).cwiseAbs().maxCoeff()});
+    }
+    const double offset =
+        limits.lowest - size * lowest + Folded(own[shapes]) * (range - size * width);
+    motion.position.row(j) = (size * (wanted_.position * shape)).array() + offset;
+    motion.velocity.row(j) = size * (wanted_.velocity * shape);
+    motion.acceleration.row(j) = size * (wanted_.acceleration * shape);
+  }
+  return motion;
+}
+
+}  // namespace mjdiag
