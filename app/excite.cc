@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/excite_command.h"
 #include "app/exit_status.h"
 #include "app/format.h"
 #include "app/interrupt.h"
@@ -21,14 +22,6 @@
 
 namespace mjdiag::app {
 namespace {
-
-struct ExciteCommand {
-  MachineOptions machine;
-  OutputOptions output;
-  std::vector<std::string> limits;
-  double budget = 60.0;
-  MotionDesignOptions design;
-};
 
 /// "x:velocity=0.3,force=100"
 void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits) {
@@ -50,12 +43,6 @@ void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits
     if (!std::isfinite(number)) fail("'" + name + "' is not finite");
     own.*(limit->second) = number;
   }
-}
-
-nlohmann::json LimitsJson(const AxisLimits& limits) {
-  nlohmann::json document;
-  for (const auto& [name, limit] : kAxisLimits) document[name] = limits.*limit;
-  return document;
 }
 
 nlohmann::json ExcitationJson(const Machine& machine, const MotionDesign& design) {
@@ -111,20 +98,18 @@ std::string ExcitationText(const MotionDesign& design) {
     text += "tone on " + tone.axis + ": " + Short(tone.frequency) + " Hz, amplitude " +
             Short(tone.amplitude) + "\n";
   }
-  if (design.stopped) {
-    text += "ended before everything was tried: by a signal, or by --budget\n";
-  }
+  if (design.stopped) text += kStoppedText;
   return text;
 }
 
-void Excite(ExciteCommand& command) {
-  RequireAsItIs(command.machine, "the setup that is written");
-  for (const std::string& text : command.limits)
-    ReadLimits(text, command.design.limits);
-  const Machine machine = LoadSubject(command.machine).nominal;
+void ExciteAxes(const Machine& machine, ExciteCommand& command) {
+  if (!command.record.empty()) {
+    throw InputError(
+        "--record " + command.record, "the setup has controllers",
+        "no --record: their default motion is what others are held against");
+  }
   PrepareOutput(command.output);
   const Interrupt interrupt;
-  const auto begin = std::chrono::steady_clock::now();
   MotionDesign design;
   {
     ProgressBar bar("motions");
@@ -138,11 +123,7 @@ void Excite(ExciteCommand& command) {
                             : "the default motion");
       }
     };
-    command.design.stop = [&] {
-      const std::chrono::duration<double> taken =
-          std::chrono::steady_clock::now() - begin;
-      return Interrupt::IsWished() || taken.count() > command.budget;
-    };
+    command.design.stop = StopOf(command.budget);
     design = DesignMotion(machine, command.design);
   }
   std::string text = ExcitationText(design);
@@ -160,7 +141,33 @@ void Excite(ExciteCommand& command) {
   Interrupt::ThrowIfWished();
 }
 
+void Excite(ExciteCommand& command) {
+  RequireAsItIs(command.machine, "the setup that is written");
+  for (const std::string& text : command.limits)
+    ReadLimits(text, command.design.limits);
+  const Machine machine = LoadSubject(command.machine).nominal;
+  if (machine.setup().control.axes.empty()) {
+    ExciteJoints(machine, command);
+  } else {
+    ExciteAxes(machine, command);
+  }
+}
+
 }  // namespace
+
+nlohmann::json LimitsJson(const AxisLimits& limits) {
+  nlohmann::json document;
+  for (const auto& [name, limit] : kAxisLimits) document[name] = limits.*limit;
+  return document;
+}
+
+std::function<bool()> StopOf(double budget) {
+  return [budget, begin = std::chrono::steady_clock::now()] {
+    const std::chrono::duration<double> taken =
+        std::chrono::steady_clock::now() - begin;
+    return Interrupt::IsWished() || taken.count() > budget;
+  };
+}
 
 void AddExcite(CLI::App& app) {
   auto options = std::make_shared<ExciteCommand>();
@@ -173,15 +180,22 @@ void AddExcite(CLI::App& app) {
                       "Fault parameter, or number of the plant (mass@x_stage), that is "
                       "wanted; may be given more than once; all fault parameters "
                       "without it");
-  command->add_option("--limit", options->limits,
-                      "Limits of an axis in the place of what the default motion does: "
-                      "x:velocity=0.3,force=100; also lowest, highest (positions), "
-                      "acceleration, jerk, snap; may be given more than once");
+  command->add_option("--record", options->record,
+                      "Measured record, CSV or MAT, of a machine without controllers, "
+                      "which others are held against");
+  command->add_option(
+      "--limit", options->limits,
+      "Limits of an axis or joint in the place of what that motion does: "
+      "x:velocity=0.3,force=100; also lowest, highest (positions), "
+      "acceleration, jerk, snap; may be given more than once");
   command
-      ->add_option("--max-frequency", options->design.highest_frequency,
-                   "Highest frequency of a tone [Hz]; 0: a quarter of the control rate")
+      ->add_option(
+          "--max-frequency", options->design.highest_frequency,
+          "Highest frequency of a tone [Hz]; 0: a quarter of the control rate, "
+          "or what suits the limits of the joints")
       ->check(Within(0.0, 1e6));
-  command->add_option("--name", options->design.name, "Name of the trajectory");
+  command->add_option("--name", options->design.name,
+                      "Name of the trajectory, or of its file");
   command
       ->add_option("--budget", options->budget,
                    "Seconds after which no further motion is tried")

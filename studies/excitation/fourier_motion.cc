@@ -1,5 +1,6 @@
 #include "mjdiag/studies/excitation/fourier_motion.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -21,21 +22,28 @@ double Folded(double value) {
   return std::clamp(within, 0.0, 1.0);
 }
 
-/// sin or cos of every harmonic, or their derivative in time of that order: what begins at
-/// rest. Beside harmonic l there is as much of the first one as that takes.
+/// An orthonormal basis of what is at right angles to a vector.
+MatrixXd BesideOf(const VectorXd& vector) {
+  const MatrixXd q = Eigen::HouseholderQR<MatrixXd>(vector).householderQ();
+  return q.rightCols(vector.size() - 1);
+}
+
+/// What begins at rest, or its derivative in time of that order: combinations of sines, then
+/// of cosines, each with velocities of the same mean square.
 MatrixXd Waves(double duration, int harmonics, Index samples, int derivative) {
   const double w = 2.0 * std::numbers::pi / duration;
   const VectorXd time = VectorXd::LinSpaced(samples, 0.0, duration);
-  const auto wave = [&](double l, bool sine) -> VectorXd {
-    const double phase = 0.5 * std::numbers::pi * (derivative + (sine ? 0 : 1));
-    return std::pow(l * w, derivative) * (l * w * time.array() + phase).sin();
-  };
-  MatrixXd waves(samples, 2 * harmonics - 2);
-  for (Index i = 0; i < harmonics - 1; ++i) {
-    const auto l = static_cast<double>(i + 2);
-    waves.col(2 * i) = wave(l, true) / l - wave(1.0, true);
-    waves.col(2 * i + 1) = wave(l, false) / (l * l) - wave(1.0, false);
+  const VectorXd order = VectorXd::LinSpaced(harmonics, 1.0, harmonics);
+  MatrixXd sines(samples, harmonics), cosines(samples, harmonics);
+  for (Index i = 0; i < harmonics; ++i) {
+    const double rate = order[i] * w;
+    const double quarters = 0.5 * std::numbers::pi * derivative;
+    const double size = std::pow(rate, derivative - 1);
+    sines.col(i) = size * (rate * time.array() + quarters).sin();
+    cosines.col(i) = size * (rate * time.array() + quarters).cos();
   }
+  MatrixXd waves(samples, 2 * harmonics - 2);
+  waves << sines * BesideOf(VectorXd::Ones(harmonics)), cosines * BesideOf(order);
   return waves;
 }
 

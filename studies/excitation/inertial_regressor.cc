@@ -1,6 +1,7 @@
 #include "mjdiag/studies/excitation/inertial_regressor.h"
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "mjdiag/signals/error.h"
 
@@ -48,6 +49,8 @@ InertialRegressor::InertialRegressor(const mjModel& model)
           "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"}) {
       name(what, mjOBJ_BODY, body);
     }
+    for (const auto& [count, unit] : {std::pair{1, "kg"}, {3, "kg m"}, {6, "kg m^2"}})
+      units_.insert(units_.end(), count, unit);
   }
   for (int joint = 0; joint < model.njnt; ++joint) {
     if (model.jnt_type[joint] != mjJNT_HINGE && model.jnt_type[joint] != mjJNT_SLIDE) {
@@ -57,6 +60,11 @@ InertialRegressor::InertialRegressor(const mjModel& model)
     }
     for (const char* what : {"armature", "viscous_friction", "dry_friction"})
       name(what, mjOBJ_JOINT, joint);
+    if (model.jnt_type[joint] == mjJNT_HINGE) {
+      units_.insert(units_.end(), {"kg m^2", "N m s/rad", "N m"});
+    } else {
+      units_.insert(units_.end(), {"kg", "N s/m", "N"});
+    }
   }
 }
 

@@ -30,6 +30,7 @@ class InertialRegressor {
   /// "mass@link3", "moment_x@link3" [kg m], "inertia_xy@link3" [kg m^2], then
   /// "armature@joint3", "viscous_friction@joint3", "dry_friction@joint3".
   const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::string>& units() const { return units_; }
   Eigen::Index numbers() const { return static_cast<Eigen::Index>(names_.size()); }
   Eigen::Index joints() const { return model_->nv; }
   /// theta of the plant as it is given.
@@ -45,6 +46,7 @@ class InertialRegressor {
   DataPtr data_;
   std::vector<int> bodies_;
   std::vector<std::string> names_;
+  std::vector<std::string> units_;
 };
 
 }  // namespace mjdiag

@@ -146,6 +146,7 @@ const std::map<std::string, Rows>& Table() {
                          {"--patience", kNothing}}},  // of plans in a job only
       {"excite", kMachine + kOutput + kReport +
                      Rows{{"--for", kNothing},
+                          {"--record", kNothing},  // of machines without controllers
                           {"--limit", kNothing},
                           {"--max-frequency", Same("--max-frequency 0")},
                           {"--name", Same("--name excite")},

@@ -1,0 +1,34 @@
+#pragma once
+// mjdiag excite: what its two kinds of machines share.
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/output.h"
+#include "app/subject.h"
+#include "mjdiag/studies/excitation/motion_design.h"
+
+namespace mjdiag::app {
+
+struct ExciteCommand {
+  MachineOptions machine;
+  OutputOptions output;
+  std::string record;
+  std::vector<std::string> limits;  ///< as they were typed
+  double budget = 60.0;             ///< [s]
+  MotionDesignOptions design;
+};
+
+inline constexpr const char* kStoppedText =
+    "ended before everything was tried: by a signal, or by --budget\n";
+
+nlohmann::json LimitsJson(const AxisLimits& limits);
+/// Whether the time is over, or an end is wished.
+std::function<bool()> StopOf(double budget);
+
+/// Of a machine without controllers, beside a measured motion.
+void ExciteJoints(const Machine& machine, const ExciteCommand& command);
+
+}  // namespace mjdiag::app

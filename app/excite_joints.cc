@@ -1,0 +1,141 @@
+// mjdiag excite, of a machine whose controllers are not known: beside a measured motion.
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/command.h"
+#include "app/excite_command.h"
+#include "app/format.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "mjdiag/plugin/replay/tracking.h"
+#include "mjdiag/report/joint_excitation_page.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/number_text.h"
+#include "mjdiag/signals/quantity.h"
+#include "mjdiag/studies/excitation/joint_motion_design.h"
+
+namespace mjdiag::app {
+namespace {
+
+nlohmann::json JointExcitationJson(const Machine& machine, const ExciteCommand& command,
+                                   const JointMotionDesign& design) {
+  nlohmann::json document = {
+      {"schema", "mjdiag.joint_excitation/1"},
+      {"command", CommandLine()},
+      {"setup", machine.setup().name},
+      {"record", command.record},
+      {"duration",
+       design.sample_time * static_cast<double>(design.position.cols() - 1)},
+      {"highest_frequency", design.highest_frequency},
+      {"condition_before", design.condition_before},
+      {"condition_after", design.condition_after},
+      {"bandwidth", design.bandwidth},
+      {"stopped", design.stopped},
+      {"numbers", nlohmann::json::array()},
+      {"untold", design.untold},
+      {"joints", nlohmann::json::object()}};
+  for (std::size_t i = 0; i < design.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    document["numbers"].push_back({{"name", design.numbers[i]},
+                                   {"unit", design.units[i]},
+                                   {"sd_before", design.before[at]},
+                                   {"sd_after", design.after[at]}});
+  }
+  for (std::size_t j = 0; j < design.joints.size(); ++j) {
+    nlohmann::json& joint = document["joints"][design.joints[j]];
+    joint["noise"] = design.noise[static_cast<Eigen::Index>(j)];
+    joint["limits"] = LimitsJson(design.limits[j]);
+    joint["peaks"] = LimitsJson(design.peaks[j]);
+  }
+  return document;
+}
+
+std::string JointExcitationText(const JointMotionDesign& design) {
+  Table table({"number", "sd, measured motion", "this motion", "times smaller"});
+  for (std::size_t i = 0; i < design.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    table.Add({design.numbers[i], FormatQuantity(design.before[at], design.units[i]),
+               FormatQuantity(design.after[at], design.units[i]),
+               Short(design.before[at] / design.after[at])});
+  }
+  return ConditionText(design) + "\n\n" + table.ToString() + "\n" + ToldText(design) +
+         "\n" + (design.stopped ? kStoppedText : "");
+}
+
+/// Where the joints go, sample by sample.
+Record MotionRecord(const Machine& machine, const JointMotionDesign& design) {
+  Record record(design.sample_time);
+  for (std::size_t j = 0; j < design.joints.size(); ++j) {
+    const bool turns = machine.plant().jnt_type[j] == mjJNT_HINGE;
+    record.Add({design.joints[j], turns ? "rad" : "m",
+                design.position.row(static_cast<Eigen::Index>(j))});
+  }
+  return record;
+}
+
+}  // namespace
+
+void ExciteJoints(const Machine& machine, const ExciteCommand& command) {
+  if (command.record.empty()) {
+    throw InputError("--setup", "'" + machine.setup().name + "' has no controlled axes",
+                     "--record RECORD with a motion of it");
+  }
+  if (!command.design.wanted.empty()) {
+    throw InputError("--for " + command.design.wanted.front(),
+                     "'" + machine.setup().name + "' has no controlled axes",
+                     "no --for: all numbers of its links and joints are wanted");
+  }
+  for (const auto& [joint, limits] : command.design.limits) {
+    if (std::isfinite(limits.jerk) || std::isfinite(limits.snap)) {
+      throw InputError(
+          "--limit " + joint, "jerk or snap",
+          "lowest, highest, velocity, acceleration and force, of a machine "
+          "without controlled axes");
+    }
+  }
+  std::vector<std::string> notes;
+  const Record measured = ReadMeasured(machine.setup(), command.record, notes);
+  PrepareOutput(command.output);
+  const Interrupt interrupt;
+  JointMotionDesign design;
+  {
+    ProgressBar bar("motions");
+    ProgressLog log;
+    design = DesignJointMotion(
+        machine, ToMeasuredRun(machine.setup(), measured),
+        {.limits = command.design.limits,
+         .highest_frequency = command.design.highest_frequency,
+         .progress =
+             [&](double fraction, double condition) {
+               if (bar.is_on_terminal()) {
+                 bar.Show(fraction);
+               } else {
+                 log.Show("motions, " + Short(std::round(100.0 * fraction)) + " %",
+                          "condition number " + FormatNumber(condition, 3));
+               }
+             },
+         .stop = StopOf(command.budget)});
+  }
+  nlohmann::json document = JointExcitationJson(machine, command, design);
+  std::string text = JointExcitationText(design);
+  if (!command.output.folder.empty()) {
+    HoldFiles();
+    const auto file =
+        std::filesystem::path(command.output.folder) / (command.design.name + ".csv");
+    WriteRecord(file, MotionRecord(machine, design), RecordFormat::kCsv);
+    text += "motion: " + file.string() + "\n";
+  }
+  AddNotes(notes, document, text);
+  Publish(command.output, "excitation", document, text, [&] {
+    NamedPage page{"excitation",
+                   JointExcitationPage(
+                       machine, design,
+                       {CommandLine(), command.record, {{"mjdiag", MJDIAG_VERSION}}})};
+    AddNotes(notes, page.page);
+    return page;
+  });
+  Interrupt::ThrowIfWished();
+}
+
+}  // namespace mjdiag::app
