@@ -83,12 +83,15 @@ if("studies" IN_LIST mjdiag_parts)
 endif()
 if("render" IN_LIST mjdiag_parts)
   mjdiag_library(mjdiag::opencv_library BUILD_HEADER opencv2/core.hpp SUFFIXES opencv4
-                 LIBRARIES opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio)
+                 LIBRARIES opencv_core opencv_imgproc)
+  mjdiag_library(mjdiag::png_library BUILD_HEADER png.h LIBRARIES png)
 endif()
 
 # Of these nothing but headers is needed, and only to build mjdiag. OSMesa is loaded when
 # a picture is asked for.
 if(mjdiag_building)
+  mjdiag_library(mjdiag::opencv_files_library HEADER opencv2/videoio.hpp SUFFIXES opencv4
+                 LIBRARIES opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio)
   mjdiag_library(mjdiag::osmesa_headers HEADER GL/osmesa.h)
   mjdiag_library(mjdiag::boost_library HEADER boost/math/distributions.hpp)
   mjdiag_library(mjdiag::toml_library HEADER toml++/toml.h)

@@ -91,8 +91,7 @@ mjdiag_package(libmjdiag-dev SECTION libdevel
   DEPENDS "libmjdiag0 ${same}" libmujoco-dev libeigen3-dev
   # For programs that link the libraries in C++: what Dependencies.cmake asks for.
   RECOMMENDS libmatio-dev coinor-libclp-dev libtbb-dev libceres-dev libopencv-core-dev
-             libopencv-ml-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
-             libopencv-videoio-dev libosmesa6-dev libhdf5-dev zlib1g-dev
+             libopencv-ml-dev libopencv-imgproc-dev libpng-dev libosmesa6-dev libhdf5-dev zlib1g-dev
   SUMMARY "control and diagnosis in any MuJoCo program - development"
   TEXT "${about} This package has the headers, the libraries in C++ and what CMake needs to find them.")
 if(TARGET mjdiag_python)

@@ -1,19 +1,26 @@
 #include "mjdiag/render/scene/image.h"
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <png.h>
 
-#include "mjdiag/render/scene/image_pixels.h"
+#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 
 namespace mjdiag {
 
 std::string EncodePng(const Image& image) {
-  cv::Mat bgr;
-  cv::cvtColor(PixelsOf(image), bgr, cv::COLOR_RGB2BGR);
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", bgr, bytes);
-  return {bytes.begin(), bytes.end()};
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(), 0,
+                                nullptr) == 0) {
+    throw NumericalError(std::string("picture: ") + png.message);
+  }
+  bytes.resize(size);
+  return bytes;
 }
 
 void WritePng(const std::filesystem::path& file, const Image& image) {
