@@ -221,7 +221,10 @@ std::vector<Designer::Plan> Designer::Plans() const {
   std::vector<Plan> plans = {TonesAlone(little)};
   for (const Trajectory& trajectory : machine_.setup().trajectories.all) {
     if (IsStopped() && plans.size() > 1) break;
-    if (!trajectory.moves.empty()) plans.push_back(TonesBeside(trajectory, little));
+    if (trajectory.moves.empty()) continue;
+    Plan plan = TonesBeside(trajectory, little);
+    // None of moves of an axis that has to rest.
+    if (plan.share > 0.0) plans.push_back(std::move(plan));
   }
   std::ranges::stable_sort(plans, {},
                            [](const Plan& plan) { return plan.tones.log_sd; });

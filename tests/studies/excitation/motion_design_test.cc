@@ -91,6 +91,18 @@ TEST_F(ExcitedBonder, EndsWithWhatItHasWhenAsked) {
   EXPECT_FALSE(design.trajectory.moves.empty());
 }
 
+// The default motion moves x alone: trajectories that move y or z have no share that is
+// within the limits.
+TEST_F(ExcitedBonder, LeavesOutMovesOfAxesThatHaveToRest) {
+  const Machine resting =
+      test::Bonder({"default_trajectory=\"x\"", "trajectories.x.duration=0.1"});
+  MotionDesignOptions options = BetaX();
+  options.stop = [] { return true; };
+  const MotionDesign design = DesignMotion(resting, options);
+  EXPECT_GT(design.share_of_moves, 0.0);
+  EXPECT_EQ(design.peaks[1].velocity, 0.0);
+}
+
 TEST_F(ExcitedBonder, RefusesWhatItDoesNotKnow) {
   const auto refuses = [&](const MotionDesignOptions& options, const char* words) {
     EXPECT_THAT([&] { DesignMotion(bonder_, options); },
