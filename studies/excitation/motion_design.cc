@@ -246,7 +246,8 @@ Trajectory Designer::MovesOf(const Plan& plan) const {
     const AxisLimits& limits = design_.limits[i];
     const auto own = default_.limits.find(axes[i].name);
     const double middle = 0.5 * (limits.lowest + limits.highest);
-    if (own == default_.limits.end() || !std::isfinite(middle) ||
+    const bool rests = limits.velocity == 0.0;
+    if (own == default_.limits.end() || rests || !std::isfinite(middle) ||
         std::abs(middle) < 0.01 * (limits.highest - limits.lowest)) {
       continue;
     }
