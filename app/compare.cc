@@ -24,7 +24,7 @@ struct CompareOptions {
   bool open_loop = false;
 };
 
-std::string ChannelTable(const Comparison& comparison) {
+std::string ChannelText(const Comparison& comparison) {
   Table table({"channel", "rms mismatch", "mean absolute", "fit", "relative error",
                "noise floor", "above noise", "worst window"});
   for (const ChannelMismatch& channel : comparison.channels) {
@@ -40,7 +40,7 @@ std::string ChannelTable(const Comparison& comparison) {
   return table.ToString();
 }
 
-std::string DerivedTable(const Comparison& comparison) {
+std::string DerivedText(const Comparison& comparison) {
   if (comparison.derived.empty()) return "";
   Table table({"derived", "relative error"});
   for (const DerivedMismatch& derived : comparison.derived) {
@@ -50,7 +50,7 @@ std::string DerivedTable(const Comparison& comparison) {
 }
 
 /// Of a machine that falls: errors of predictions, and forces that are missing.
-std::string FollowedTables(const Comparison& comparison) {
+std::string FollowedText(const Comparison& comparison) {
   const Prediction& prediction = comparison.prediction;
   std::vector<std::string> columns = {"prediction error, rms"};
   for (const double horizon : prediction.horizons) {
@@ -96,8 +96,8 @@ void Compare(const CompareOptions& options) {
   document["command"] = CommandLine();
   std::string text =
       ComparisonVerdict(comparison) + "\n\n" +
-      (comparison.falls ? FollowedTables(comparison)
-                        : ChannelTable(comparison) + DerivedTable(comparison));
+      (comparison.falls ? FollowedText(comparison)
+                        : ChannelText(comparison) + DerivedText(comparison));
   AddNotes(notes, document, text);
   const RunDescription run{CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
   Publish(options.output, "compare", document, text, [&] {

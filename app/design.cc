@@ -7,13 +7,8 @@
 #include "app/diagnosis_output.h"
 #include "app/format.h"
 #include "app/output.h"
-#include "app/parity_programs.h"
-#include "mjdiag/diagnosis/filters_file.h"
-#include "mjdiag/diagnosis/model/delta_form.h"
-#include "mjdiag/diagnosis/model/left_null_space.h"
-#include "mjdiag/plugin/design/fault_family.h"
-#include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/linearize.h"
+#include "mjdiag/plugin/design/design_facts.h"
+#include "mjdiag/report/design_json.h"
 #include "mjdiag/report/design_page.h"
 
 namespace mjdiag::app {
@@ -25,50 +20,6 @@ struct DesignOptions {
   DiagnosisSource source;
   std::string method = "svd";
 };
-
-// Beyond it a plant without parity relations is one without redundancy.
-constexpr int kHighestDegree = 40;
-
-// What is left of a spring in the plot of what lost stiffness changes ([AB383],
-// Fig. 30).
-constexpr double kLostStiffness = 0.01;
-
-std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
-  std::vector<ChangedMachine> changed;
-  for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
-    if (parameter.kind != PlantNumberKind::kStiffness) continue;
-    changed.push_back(
-        {parameter.name + " = " + Short(kLostStiffness),
-         machine.With({{{parameter.name, kLostStiffness}}, {}}).linear()});
-  }
-  return changed;
-}
-
-DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
-  DesignFacts facts;
-  facts.healthy = machine.linear();
-  const SynthesisOptions options = SynthesisOf(machine);
-  const StateSpace system = DeltaForm(facts.healthy, options.timing);
-  facts.observability_ranks = ObservabilityRanks(system, options.residual.degree);
-  facts.states = system.states();
-  facts.minimal_degree =
-      MinimalDegree(system, UnknownForces(facts.healthy, options), kHighestDegree);
-  if (linear_programs)
-    facts.linear_program = SolveParityPrograms(machine, facts.healthy);
-  return facts;
-}
-
-nlohmann::json ToJson(const ParityProgramFacts& facts) {
-  const bool found = facts.feasible > 0;
-  return {{"degree", facts.degree},
-          {"norm", facts.norm},
-          {"fault_inputs", facts.fault_inputs},
-          {"programs", facts.programs},
-          {"feasible", facts.feasible},
-          {"objective", found ? nlohmann::json(facts.objective) : nlohmann::json()},
-          {"defect", found ? nlohmann::json(facts.defect) : nlohmann::json()},
-          {"angle", found ? nlohmann::json(facts.angle) : nlohmann::json()}};
-}
 
 std::string Summary(const DiagnosisDesign& design, const DesignFacts& facts) {
   const ThresholdDesign& residual = design.limits.residual;
@@ -107,16 +58,12 @@ NamedPage PageOfDesign(const Machine& machine, const DiagnosisDesign& design,
 void Design(const DesignOptions& options) {
   const Machine machine = LoadSubject(options.machine).nominal;
   PrepareOutput(options.output);
-  std::vector<std::string> notes;  // of records, and there is none
-  const PreparedDiagnosis prepared =
-      Prepare(machine, options.source, MakeExcitation(machine.setup(), {}, notes));
+  const PreparedDiagnosis prepared = Prepare(
+      machine, options.source,
+      NeedsMotion(options.source) ? DefaultMotion(machine.setup()) : Excitation{});
   const DesignFacts facts = FactsOf(machine, options.method == "lp");
-  auto document = nlohmann::json::parse(FiltersJson(prepared.design));
+  nlohmann::json document = DesignJson(prepared.design, facts);
   document["command"] = CommandLine();
-  document["observability_ranks"] = facts.observability_ranks;
-  document["states"] = facts.states;
-  document["minimal_degree"] = facts.minimal_degree;
-  if (facts.linear_program) document["linear_program"] = ToJson(*facts.linear_program);
   std::string text = Summary(prepared.design, facts);
   if (!options.output.folder.empty()) {
     text += "filters: " +

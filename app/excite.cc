@@ -1,6 +1,5 @@
 // mjdiag excite: a motion within the limits of the axes that tells most.
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/report/excitation_json.h"
 #include "mjdiag/report/excitation_page.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
@@ -37,48 +37,11 @@ void ReadLimits(std::string_view text, std::map<std::string, AxisLimits>& limits
   const auto given = ParseAssignments(text.substr(colon + 1), fail);
   if (given.empty()) fail("no limit");
   for (const auto& [name, number] : given) {
-    const auto limit = std::ranges::find(
-        kAxisLimits, name, [](const auto& one) { return std::string(one.first); });
-    if (limit == kAxisLimits.end()) fail("there is no '" + name + "'");
+    double* limit = FindLimit(own, name);
+    if (limit == nullptr) fail("there is no '" + name + "'");
     if (!std::isfinite(number)) fail("'" + name + "' is not finite");
-    own.*(limit->second) = number;
+    *limit = number;
   }
-}
-
-nlohmann::json ExcitationJson(const Machine& machine, const MotionDesign& design) {
-  nlohmann::json document = {
-      {"schema", "mjdiag.excitation/1"},
-      {"command", CommandLine()},
-      {"setup", machine.setup().name},
-      {"trajectory", design.trajectory.name},
-      {"duration", design.trajectory.duration},
-      {"gain", design.Gain()},
-      {"stopped", design.stopped},
-      {"moves", {{"of", nullptr}, {"times", design.share_of_moves}}},
-      {"tones", nlohmann::json::array()},
-      {"unknowns", nlohmann::json::array()},
-      {"limits", nlohmann::json::object()},
-      {"peaks", nlohmann::json::object()}};
-  if (!design.moves_of.empty()) document["moves"]["of"] = design.moves_of;
-  for (const ReferenceTone& tone : design.trajectory.tones) {
-    document["tones"].push_back({{"axis", tone.axis},
-                                 {"frequency", tone.frequency},
-                                 {"amplitude", tone.amplitude},
-                                 {"phase", tone.phase}});
-  }
-  for (std::size_t i = 0; i < design.unknowns.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    document["unknowns"].push_back({{"name", design.unknowns[i]},
-                                    {"wanted", static_cast<bool>(design.wanted[i])},
-                                    {"sd_before", design.before[at]},
-                                    {"sd_after", design.after[at]}});
-  }
-  for (std::size_t i = 0; i < design.limits.size(); ++i) {
-    const std::string& axis = machine.setup().control.axes[i].name;
-    document["limits"][axis] = LimitsJson(design.limits[i]);
-    document["peaks"][axis] = LimitsJson(design.peaks[i]);
-  }
-  return document;
 }
 
 std::string ExcitationText(const MotionDesign& design) {
@@ -133,7 +96,9 @@ void ExciteAxes(const Machine& machine, ExciteCommand& command) {
                         design.trajectory);
     text += "setup: " + command.output.folder + "/setup.toml\n";
   }
-  Publish(command.output, "excitation", ExcitationJson(machine, design), text, [&] {
+  nlohmann::json document = ToJson(machine, design);
+  document["command"] = CommandLine();
+  Publish(command.output, "excitation", document, text, [&] {
     return NamedPage{"excitation",
                      ExcitationPage(machine, design,
                                     {CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}})};
@@ -154,12 +119,6 @@ void Excite(ExciteCommand& command) {
 }
 
 }  // namespace
-
-nlohmann::json LimitsJson(const AxisLimits& limits) {
-  nlohmann::json document;
-  for (const auto& [name, limit] : kAxisLimits) document[name] = limits.*limit;
-  return document;
-}
 
 std::function<bool()> StopOf(double budget) {
   return [budget, begin = std::chrono::steady_clock::now()] {

@@ -2,7 +2,6 @@
 // mjdiag excite: what its two kinds of machines share.
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,6 @@ struct ExciteCommand {
 inline constexpr const char* kStoppedText =
     "ended before everything was tried: by a signal, or by --budget\n";
 
-nlohmann::json LimitsJson(const AxisLimits& limits);
 /// Whether the time is over, or an end is wished.
 std::function<bool()> StopOf(double budget);
 

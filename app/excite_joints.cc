@@ -9,6 +9,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "mjdiag/plugin/replay/tracking.h"
+#include "mjdiag/report/excitation_json.h"
 #include "mjdiag/report/joint_excitation_page.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
@@ -17,39 +18,6 @@
 
 namespace mjdiag::app {
 namespace {
-
-nlohmann::json JointExcitationJson(const Machine& machine, const ExciteCommand& command,
-                                   const JointMotionDesign& design) {
-  nlohmann::json document = {
-      {"schema", "mjdiag.joint_excitation/1"},
-      {"command", CommandLine()},
-      {"setup", machine.setup().name},
-      {"record", command.record},
-      {"duration",
-       design.sample_time * static_cast<double>(design.position.cols() - 1)},
-      {"highest_frequency", design.highest_frequency},
-      {"condition_before", design.condition_before},
-      {"condition_after", design.condition_after},
-      {"bandwidth", design.bandwidth},
-      {"stopped", design.stopped},
-      {"numbers", nlohmann::json::array()},
-      {"untold", design.untold},
-      {"joints", nlohmann::json::object()}};
-  for (std::size_t i = 0; i < design.numbers.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    document["numbers"].push_back({{"name", design.numbers[i]},
-                                   {"unit", design.units[i]},
-                                   {"sd_before", design.before[at]},
-                                   {"sd_after", design.after[at]}});
-  }
-  for (std::size_t j = 0; j < design.joints.size(); ++j) {
-    nlohmann::json& joint = document["joints"][design.joints[j]];
-    joint["noise"] = design.noise[static_cast<Eigen::Index>(j)];
-    joint["limits"] = LimitsJson(design.limits[j]);
-    joint["peaks"] = LimitsJson(design.peaks[j]);
-  }
-  return document;
-}
 
 std::string JointExcitationText(const JointMotionDesign& design) {
   Table table({"number", "sd, measured motion", "this motion", "times smaller"});
@@ -117,7 +85,9 @@ void ExciteJoints(const Machine& machine, const ExciteCommand& command) {
              },
          .stop = StopOf(command.budget)});
   }
-  nlohmann::json document = JointExcitationJson(machine, command, design);
+  nlohmann::json document = ToJson(machine, design);
+  document["command"] = CommandLine();
+  document["record"] = command.record;
   std::string text = JointExcitationText(design);
   if (!command.output.folder.empty()) {
     HoldFiles();

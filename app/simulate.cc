@@ -13,8 +13,9 @@
 #include "app/subject.h"
 #include "app/tolerance_output.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
-#include "mjdiag/plugin/design/fault_tolerance.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
+#include "mjdiag/plugin/design/tolerant_run.h"
+#include "mjdiag/report/tolerance_json.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
 
@@ -76,29 +77,39 @@ void Simulate(const SimulateOptions& options) {
   PrepareOutput(options.output);
 
   std::optional<PreparedDiagnosis> prepared;
-  std::optional<DiagnosisRecording> recording;
-  std::optional<MonitorObserver> observer;
-  std::optional<TolerancePlan> plan;
-  std::optional<FaultTolerance> tolerance;
   if (options.diagnose || options.tolerate) {
     DiagnosisSource source = options.source;
     source.nominal.linear = options.motion.linear;
     prepared = Prepare(subject.nominal, source, excitation);
-    recording.emplace(BeginDiagnosis(subject.nominal, *prepared, excitation.samples()));
-    observer.emplace(*recording);
-    subject.options.observer = &*observer;
   }
+  std::chrono::duration<double> elapsed{};
+  const auto run = [&](const RunOptions& with) {
+    const auto start = std::chrono::steady_clock::now();
+    Record made = Run(subject.machine, options.motion, excitation, with, "simulating");
+    elapsed = std::chrono::steady_clock::now() - start;
+    return made;
+  };
+  Record record;
+  std::optional<Diagnosis> diagnosis;
+  std::optional<TolerancePlan> plan;
+  std::optional<TolerantRun> tolerant;
   if (options.tolerate) {
     plan = PlanTolerance(subject.nominal, subject.options.mode);
-    tolerance.emplace(*plan, recording->monitor, *observer);
-    subject.options.observer = &*tolerance;
-    subject.options.reconfiguration = &tolerance->reconfiguration();
+    tolerant = RunTolerantly(subject.nominal, *prepared, *plan, excitation.samples(),
+                             subject.options, run);
+    record = std::move(tolerant->record);
+    diagnosis = std::move(tolerant->diagnosis);
+  } else if (options.diagnose) {
+    DiagnosisRecording recording =
+        BeginDiagnosis(subject.nominal, *prepared, excitation.samples());
+    MonitorObserver observer(recording);
+    subject.options.observer = &observer;
+    record = run(subject.options);
+    recording.Finish();
+    diagnosis = ConcludeWithLog(recording);
+  } else {
+    record = run(subject.options);
   }
-  const auto start = std::chrono::steady_clock::now();
-  const Record record =
-      Run(subject.machine, options.motion, excitation, subject.options, "simulating");
-  const std::chrono::duration<double> elapsed =
-      std::chrono::steady_clock::now() - start;
 
   nlohmann::json document = ToJson(subject);
   document["schema"] = "mjdiag.simulate/1";
@@ -121,22 +132,19 @@ void Simulate(const SimulateOptions& options) {
     text += "\nrecord: " + file.string() + "\n";
   }
   std::function<NamedPage()> page;
-  if (tolerance) {
-    document["tolerance"] =
-        ToleranceJson(tolerance->reconfiguration(), *plan, subject.setup());
-    text += "\n" + DescribeTolerance(tolerance->reconfiguration(), subject.setup());
+  if (tolerant) {
+    document["tolerance"] = ToleranceJson(*tolerant, *plan, subject.setup());
+    text += "\n" + DescribeTolerance(tolerant->faults);
   }
-  if (recording) {
-    recording->Finish();
-    const Diagnosis diagnosis = ConcludeWithLog(*recording);
-    document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
-    text += "\n" + Describe(diagnosis.result);
+  if (diagnosis) {
+    document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis->result));
+    text += "\n" + Describe(diagnosis->result);
     if (!options.output.folder.empty()) {
       WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
                     document["diagnosis"].dump(2) + "\n");
     }
-    page = [&, diagnosis] {
-      return PageOf(prepared->design, diagnosis, "simulated: " + Describe(subject));
+    page = [&] {
+      return PageOf(prepared->design, *diagnosis, "simulated: " + Describe(subject));
     };
   }
   AddNotes(notes, document, text);

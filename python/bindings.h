@@ -7,12 +7,16 @@
 
 namespace mjdiag::python {
 
-void BindRecord(pybind11::module_& module);     // Record
-void BindLinear(pybind11::module_& module);     // LinearModel
-void BindDiagnosis(pybind11::module_& module);  // Diagnosis, Fault
-void BindDiscovery(pybind11::module_& module);  // Discovery, Cause, Parameter
-void BindMachine(pybind11::module_& module);    // Machine
-void BindMonitor(pybind11::module_& module);    // Monitor
-void BindStudy(pybind11::module_& module);      // Study, StudyResult
+void BindRecord(pybind11::module_& module);        // Record
+void BindLinear(pybind11::module_& module);        // LinearModel
+void BindDiagnosis(pybind11::module_& module);     // Diagnosis, Fault
+void BindDiscovery(pybind11::module_& module);     // Discovery, Cause, Parameter
+void BindComparison(pybind11::module_& module);    // Comparison, Mismatch, MissingForce
+void BindFilterDesign(pybind11::module_& module);  // FilterDesign
+void BindTolerance(pybind11::module_& module);     // TolerantRun
+void BindExcitation(pybind11::module_& module);    // MotionDesign
+void BindMachine(pybind11::module_& module);       // Machine
+void BindMonitor(pybind11::module_& module);       // Monitor
+void BindStudy(pybind11::module_& module);         // Study, StudyResult
 
 }  // namespace mjdiag::python

@@ -12,6 +12,7 @@
 #include "mjdiag/report/page/html.h"
 #include "mjdiag/report/page/page_document.h"
 #include "mjdiag/report/report.h"
+#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
 #include "python/arrays.h"
@@ -27,23 +28,35 @@ bool DiagnoseRequest::IsUsual() const {
          nominal_runs == NominalRuns{}.runs;
 }
 
+DiagnoseRequest RequestOf(bool linear, const py::object& filters, bool baseline,
+                          const std::string& robust, int nominal_runs) {
+  if (nominal_runs < 2) {
+    throw InputError("nominal_runs", std::to_string(nominal_runs), "2 or more");
+  }
+  return {linear, filters.is_none() ? "" : PathOf(filters, "filters").string(),
+          baseline, robust, nominal_runs};
+}
+
+std::shared_ptr<const PreparedDiagnosis> PreparedFor(
+    const MachineObject& object, const DiagnoseRequest& request,
+    const std::function<Excitation()>& motion, LongCall& call) {
+  const Machine& machine = object.machine();
+  if (request.IsUsual()) return object.prepared().For(machine, request.linear, call);
+  DiagnosisSource source{request.filters, request.robust, request.baseline, {}};
+  source.nominal.linear = request.linear;
+  source.nominal.runs = request.nominal_runs;
+  source.nominal.progress = call.Teller("healthy runs");
+  return std::make_shared<PreparedDiagnosis>(
+      PrepareDiagnosis(machine, source, NeedsMotion(source) ? motion() : Excitation{}));
+}
+
 DiagnosisObject DiagnoseRecord(const MachineObject& object, MeasuredFile measured,
                                const DiagnoseRequest& request, LongCall& call) {
   const Machine& machine = object.machine();
   DiagnosisObject made;
   made.notes = std::move(measured.notes);
-  if (request.IsUsual()) {
-    made.prepared = object.prepared().For(machine, request.linear, call);
-  } else {
-    DiagnosisSource source{request.filters, request.robust, request.baseline, {}};
-    source.nominal.linear = request.linear;
-    source.nominal.runs = request.nominal_runs;
-    source.nominal.progress = call.Teller("healthy runs");
-    const Excitation motion =
-        NeedsMotion(source) ? Replay(machine.setup(), measured.record) : Excitation{};
-    made.prepared =
-        std::make_shared<PreparedDiagnosis>(PrepareDiagnosis(machine, source, motion));
-  }
+  const auto motion = [&] { return Replay(machine.setup(), measured.record); };
+  made.prepared = PreparedFor(object, request, motion, call);
   call.Tell(1.0, "diagnosing");
   made.diagnosis = Diagnose(machine, *made.prepared, measured.record);
   return made;

@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ struct DiagnosisObject {
   std::vector<std::string> notes;  ///< on how a file became the record
 };
 
-/// What `Machine.diagnose` is asked for.
+/// What `Machine.diagnose` is asked for, and whatever else makes filters.
 struct DiagnoseRequest {
   bool linear = false;
   std::string filters;  ///< path, or empty
@@ -29,6 +30,17 @@ struct DiagnoseRequest {
 
   bool IsUsual() const;
 };
+
+/// Of keyword arguments. InputError.
+/// @param filters  path or None
+DiagnoseRequest RequestOf(bool linear, const pybind11::object& filters, bool baseline,
+                          const std::string& robust, int nominal_runs);
+
+/// Filters and limits as that asks for them, kept for the next call if it is usual.
+/// @param motion  gives what is going to be diagnosed, where that matters
+std::shared_ptr<const PreparedDiagnosis> PreparedFor(
+    const MachineObject& machine, const DiagnoseRequest& request,
+    const std::function<Excitation()>& motion, LongCall& call);
 
 DiagnosisObject DiagnoseRecord(const MachineObject& machine, MeasuredFile measured,
                                const DiagnoseRequest& request, LongCall& call);

@@ -203,6 +203,7 @@ void BindMachine(py::module_& module) {
       the setup itself; a calibrated one with other changes.)");
   BindDescription(machine);
   BindMachineWork(machine);
+  BindMachineDesign(machine);
 }
 
 }  // namespace mjdiag::python

@@ -62,16 +62,30 @@ class MachineObject {
   /// The machine with that in it, as if it had been given so.
   MachineObject Extended(const Changes& changes, int substeps) const;
 
+  /// The machine with one more trajectory, which is its default one.
+  MachineObject Following(const Trajectory& trajectory) const;
+
   /// Makes a folder of it, which is a setup: with all that was put into the plant, or with
   /// what a calibration said. @return plant.xml or, of the latter, setup.toml
   std::filesystem::path Write(const std::filesystem::path& folder) const;
+
+  /// Makes a folder with its setup, and that trajectory as the default one.
+  /// @return setup.toml. InputError if it is not as its files have it
+  std::filesystem::path WriteFollowing(const std::filesystem::path& folder,
+                                       const Trajectory& trajectory) const;
 
   /// What it is asked of has to be a machine that runs by itself. InputError beginning
   /// with `what` if it has disturbances.
   void RequireQuiet(const std::string& what) const;
 
  private:
+  using Folders = std::vector<std::unique_ptr<TemporaryFolder>>;
+
   MachineObject Changed(Changes changes) const;
+  /// Its setup, with the trajectories that it was made to follow, for another folder.
+  /// @param made  holds what is written for that
+  std::filesystem::path SetupFor(const std::filesystem::path& folder,
+                                 Folders& made) const;
 
   MachineSource source_;
   Machine original_;  // as its files have it
@@ -79,6 +93,7 @@ class MachineObject {
   Machine machine_;   // with them
   Changes changes_;   // from nominal to machine
   std::map<std::string, double> disturbances_;
+  std::vector<Trajectory> followed_;  // besides those of its files
   std::shared_ptr<PreparedCache> prepared_ = std::make_shared<PreparedCache>();
   std::optional<CalibrationReport> calibration_;
 };

@@ -97,10 +97,50 @@ MachineObject MachineObject::Extended(const Changes& changes, int substeps) cons
   return extended;
 }
 
+MachineObject MachineObject::Following(const Trajectory& trajectory) const {
+  MachineObject following = *this;
+  for (Machine* machine :
+       {&following.original_, &following.nominal_, &following.machine_}) {
+    Setup setup = machine->setup();
+    setup.trajectories.all.push_back(trajectory);
+    setup.trajectories.fallback = trajectory.name;
+    *machine = machine->WithSetup(std::move(setup));
+  }
+  following.followed_.push_back(trajectory);
+  following.prepared_ = std::make_shared<PreparedCache>();
+  return following;
+}
+
+std::filesystem::path MachineObject::SetupFor(const std::filesystem::path& folder,
+                                              Folders& made) const {
+  std::filesystem::path setup = source_.setup;
+  if (!followed_.empty()) FileForOther(setup, folder);
+  for (const Trajectory& trajectory : followed_) {
+    made.push_back(std::make_unique<TemporaryFolder>());
+    WriteSetupFollowing(made.back()->path(), setup, trajectory);
+    setup = made.back()->path();
+  }
+  return setup;
+}
+
+std::filesystem::path MachineObject::WriteFollowing(
+    const std::filesystem::path& folder, const Trajectory& trajectory) const {
+  if (machine_.changes() != Changes{} || !source_.overrides.empty() || calibration_) {
+    throw InputError("MotionDesign.write",
+                     "of a machine that is not as its files have it",
+                     "one without faults, effects, keys that were set and calibration; "
+                     "or MotionDesign.machine.write");
+  }
+  Folders made;
+  WriteSetupFollowing(folder, SetupFor(folder, made), trajectory);
+  return folder / "setup.toml";
+}
+
 std::filesystem::path MachineObject::Write(const std::filesystem::path& folder) const {
   RequireQuiet("Machine.write");
+  Folders made;
   if (!calibration_) {
-    return WriteExtendedSetup(folder, source_.setup,
+    return WriteExtendedSetup(folder, SetupFor(folder, made),
                               original_.WithSubsteps(machine_.rates().substeps),
                               machine_.changes());
   }
@@ -110,7 +150,7 @@ std::filesystem::path MachineObject::Write(const std::filesystem::path& folder) 
                      "one without faults, effects and keys that were set");
   }
   const auto prepared = prepared_->Kept();
-  WriteCalibratedSetup(folder, source_.setup, calibration_->calibration,
+  WriteCalibratedSetup(folder, SetupFor(folder, made), calibration_->calibration,
                        prepared->design);
   return folder / "setup.toml";
 }

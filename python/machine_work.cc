@@ -5,7 +5,6 @@
 
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,27 +21,10 @@ namespace py = pybind11;
 
 namespace {
 
-std::vector<LateFault> LateFaultsOf(
-    const std::vector<std::tuple<std::string, double, double>>& given) {
-  std::vector<LateFault> late;
-  late.reserve(given.size());
-  for (const auto& [name, value, time] : given) late.push_back({{name, value}, time});
-  return late;
-}
-
-/// Record of a `replay` argument, which the caller holds.
-const Record* ReplayOf(const py::object& replay) {
-  if (replay.is_none()) return nullptr;
-  if (py::isinstance<Record>(replay)) return py::cast<const Record*>(replay);
-  throw InputError("replay", KindOf(replay),
-                   "an mjdiag.Record; Machine.read makes one of a file");
-}
-
 Record DoSimulate(const MachineObject& machine, std::uint64_t seed,
                   const std::string& trajectory, const py::object& replay,
                   std::optional<double> duration, const std::string& mode, double noise,
-                  bool linear, bool log_joints,
-                  const std::vector<std::tuple<std::string, double, double>>& late,
+                  bool linear, bool log_joints, const GivenLateFaults& late,
                   const py::object& progress) {
   return SimulateMachine(machine,
                          {trajectory, ReplayOf(replay), duration, mode, noise, seed,
@@ -91,12 +73,8 @@ DiagnosisObject DoDiagnose(const MachineObject& machine, const py::object& recor
                            const std::string& robust, int nominal_runs,
                            const py::object& progress) {
   machine.RequireQuiet("diagnose");
-  if (nominal_runs < 2) {
-    throw InputError("nominal_runs", std::to_string(nominal_runs), "2 or more");
-  }
-  const DiagnoseRequest request{
-      linear, filters.is_none() ? "" : PathOf(filters, "filters").string(), baseline,
-      robust, nominal_runs};
+  const DiagnoseRequest request =
+      RequestOf(linear, filters, baseline, robust, nominal_runs);
   MeasuredFile measured = MeasuredOf(machine.setup(), record, "diagnose");
   std::optional<DiagnosisObject> made;
   RunLong(progress, false, [&](LongCall& call) {
@@ -134,9 +112,7 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
            py::arg("trajectory") = "", py::arg("replay") = py::none(),
            py::arg("duration") = py::none(), py::arg("mode") = "both",
            py::arg("noise") = 1.0, py::arg("linear") = false,
-           py::arg("log_joints") = false,
-           py::arg("late_faults") =
-               std::vector<std::tuple<std::string, double, double>>(),
+           py::arg("log_joints") = false, py::arg("late_faults") = GivenLateFaults(),
            py::arg("progress") = py::none(),
            R"(
           A run of the machine, as a Record at the control rate: references, sensors,

@@ -66,6 +66,10 @@ PYBIND11_MODULE(_mjdiag, module) {
   mjdiag::python::BindLinear(module);
   mjdiag::python::BindDiagnosis(module);
   mjdiag::python::BindDiscovery(module);
+  mjdiag::python::BindComparison(module);
+  mjdiag::python::BindFilterDesign(module);
+  mjdiag::python::BindTolerance(module);
+  mjdiag::python::BindExcitation(module);
   mjdiag::python::BindMachine(module);
   mjdiag::python::BindMonitor(module);
   mjdiag::python::BindStudy(module);

@@ -23,6 +23,17 @@ bool IsPath(py::handle object) {
   return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__");
 }
 
+py::object Library(const char* name, const std::string& for_what) {
+  try {
+    return py::module_::import(name);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ImportError)) throw;
+    PyErr_SetString(PyExc_ImportError,
+                    (for_what + ": " + name + " is not installed").c_str());
+    throw py::error_already_set();
+  }
+}
+
 std::filesystem::path PathOf(py::handle path, const std::string& what) {
   if (!IsPath(path)) {
     throw InputError(what, KindOf(path), "a path");
@@ -156,17 +167,6 @@ py::list ArraysOf(const py::object& self, bool with_names) {
     }
   }
   return arrays;
-}
-
-py::object Library(const char* name, const std::string& for_what) {
-  try {
-    return py::module_::import(name);
-  } catch (const py::error_already_set& error) {
-    if (!error.matches(PyExc_ImportError)) throw;
-    PyErr_SetString(PyExc_ImportError,
-                    (for_what + ": " + name + " is not installed").c_str());
-    throw py::error_already_set();
-  }
 }
 
 py::object ToPandas(const py::object& self) {

@@ -18,6 +18,9 @@ std::filesystem::path PathOf(pybind11::handle path, const std::string& what);
 /// Whether it is one.
 bool IsPath(pybind11::handle object);
 
+/// A package that may not be installed; ImportError beginning with `for_what`.
+pybind11::object Library(const char* name, const std::string& for_what);
+
 /// What was noted about a file, as warnings.
 void Warn(const std::vector<std::string>& notes);
 

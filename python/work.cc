@@ -6,6 +6,8 @@
 
 #include "mjdiag/discovery/hypotheses/observed_joints.h"
 #include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/setup/declared_names.h"
+#include "mjdiag/report/tolerance_json.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 #include "python/arrays.h"
@@ -116,6 +118,16 @@ std::vector<TitledRecord> RunsOf(const MachineObject& machine,
   return runs;
 }
 
+/// What corrects the one is given to the controllers of the other.
+void RequireSameAxes(const Setup& healthy, const Setup& worn) {
+  const auto names = [](const Setup& setup) {
+    return NamesOf(setup.control.axes, &AxisSetup::name);
+  };
+  if (names(healthy) == names(worn)) return;
+  throw InputError("tolerate", "'" + worn.name + "' has other axes",
+                   "'" + healthy.name + "' with faults and effects");
+}
+
 /// The records of a manifest, which tells what was set in each; none if it is no manifest.
 Measurements Listed(const MachineObject& object, const py::object& records,
                     const py::object& data) {
@@ -149,6 +161,20 @@ std::string Described(const MachineObject& machine) {
     append(effect.name() + " at " + effect.site);
   }
   return text.empty() ? "healthy" : text;
+}
+
+std::vector<LateFault> LateFaultsOf(const GivenLateFaults& given) {
+  std::vector<LateFault> late;
+  late.reserve(given.size());
+  for (const auto& [name, value, time] : given) late.push_back({{name, value}, time});
+  return late;
+}
+
+const Record* ReplayOf(const py::object& replay) {
+  if (replay.is_none()) return nullptr;
+  if (py::isinstance<Record>(replay)) return py::cast<const Record*>(replay);
+  throw InputError("replay", KindOf(replay),
+                   "an mjdiag.Record; Machine.read makes one of a file");
 }
 
 Record SimulateMachine(const MachineObject& object, const RunRequest& request,
@@ -245,6 +271,38 @@ DiscoveryObject DiscoverCauses(const MachineObject& object, const py::object& re
                 news.best.empty() ? news.what : news.what + "; so far: " + news.best);
     };
     made.discovery = Discover(machine, measurements, options);
+  });
+  return made;
+}
+
+TolerantRunObject TolerateMachine(const MachineObject& object, const py::object& worn,
+                                  const RunRequest& request,
+                                  const DiagnoseRequest& diagnosis,
+                                  const py::object& progress) {
+  object.RequireQuiet("tolerate");
+  if (!worn.is_none() && !py::isinstance<MachineObject>(worn)) {
+    throw InputError("tolerate", KindOf(worn), "an mjdiag.Machine or None");
+  }
+  const MachineObject& runs =
+      worn.is_none() ? object : py::cast<const MachineObject&>(worn);
+  RequireSameAxes(object.setup(), runs.setup());
+  const Excitation motion = ExcitationOf(object.setup(), request);
+  const RunOptions options = OptionsOf(runs, request);
+  TolerantRunObject made;
+  for (const AxisSetup& axis : object.setup().control.axes) {
+    made.axes.push_back(axis.name);
+  }
+  RunLong(progress, false, [&](LongCall& call) {
+    made.plan = PlanTolerance(object.machine(), options.mode);
+    made.prepared = PreparedFor(
+        object, diagnosis, [&] { return motion; }, call);
+    RequireSameMachine("tolerate", made.prepared->design, runs.setup());
+    made.run = RunTolerantly(object.machine(), *made.prepared, made.plan,
+                             motion.samples(), options, [&](const RunOptions& with) {
+                               return RunOnce(runs.machine(), motion, with,
+                                              request.linear, call, "simulating");
+                             });
+    made.json = ToleranceJson(made.run, made.plan, object.setup()).dump();
   });
   return made;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mjdiag/render/clip.h"
@@ -14,8 +15,15 @@
 #include "python/diagnosis.h"
 #include "python/discovery.h"
 #include "python/machine.h"
+#include "python/tolerance.h"
 
 namespace mjdiag::python {
+
+/// Name, value and time [s] of each.
+using GivenLateFaults = std::vector<std::tuple<std::string, double, double>>;
+std::vector<LateFault> LateFaultsOf(const GivenLateFaults& given);
+/// Record of a `replay` argument, which the caller holds; null of None. InputError.
+const Record* ReplayOf(const pybind11::object& replay);
 
 /// What moves a machine, and how.
 struct RunRequest {
@@ -51,10 +59,20 @@ DiscoveryObject DiscoverCauses(const MachineObject& machine,
                                DiscoverOptions options, std::optional<bool> doubt,
                                const pybind11::object& progress);
 
+/// @param machine  the healthy one
+/// @param worn     the one that runs; None: that, too
+TolerantRunObject TolerateMachine(const MachineObject& machine,
+                                  const pybind11::object& worn,
+                                  const RunRequest& request,
+                                  const DiagnoseRequest& diagnosis,
+                                  const pybind11::object& progress);
+
 /// "healthy", or what was put into it: "zeta_x = 1.2, coulomb_friction at X".
 std::string Described(const MachineObject& machine);
 
 /// Methods of Machine for all of that.
 void BindMachineWork(pybind11::class_<MachineObject>& machine);
+/// Those that compare, excite, design and tolerate.
+void BindMachineDesign(pybind11::class_<MachineObject>& machine);
 
 }  // namespace mjdiag::python

@@ -51,65 +51,23 @@ constexpr const char* kHowToRead =
     "noise: the mean square of the mismatch is larger than that of the floor, in a "
     "one-sided F test at a level of ";
 
-void AddChannelTable(Page& page, const Comparison& comparison) {
-  Table table;
-  table.columns = {{"Channel"},
-                   {"Mismatch, rms", true},
-                   {"Mean absolute", true},
-                   {"Fit", true},
-                   {"Peak", true},
-                   {"Relative error", true},
-                   {"Noise floor", true},
-                   {"Times the floor", true},
-                   {"Beyond noise"},
-                   {"Worst window", true},
-                   {"Its rms", true}};
-  for (const ChannelMismatch& channel : comparison.channels) {
-    const WorstWindow& worst = channel.worst;
-    const std::string end = Seconds(worst.start + worst.duration) + " s";
-    table.rows.push_back(
-        {channel.name, FormatQuantity(channel.rms, channel.unit),
-         FormatQuantity(channel.mae, channel.unit), PercentText(channel.fit_percent),
-         FormatQuantity(channel.peak, channel.unit),
-         PercentText(channel.relative_error_percent),
-         FormatQuantity(channel.noise_floor.rms, channel.unit), Ratio(channel),
-         channel.exceeds_noise ? "yes" : "no", Seconds(worst.start) + " to " + end,
-         FormatQuantity(worst.rms, channel.unit)});
-  }
-  page.AddTable(table);
+void AddChannels(Page& page, const Comparison& comparison) {
+  page.AddTable(ChannelTable(comparison));
   const double level = 100.0 * comparison.options.level;
   page.AddParagraph(kHowToRead + FormatNumber(level, 1) + " % for each channel.");
 }
 
-void AddDerivedTable(Page& page, const Comparison& comparison) {
+void AddDerived(Page& page, const Comparison& comparison) {
   if (comparison.derived.empty()) return;
   page.AddHeading("Derived signals");
-  Table table;
-  table.columns = {{"Signal"}, {"Mismatch, rms", true}, {"Relative error", true}};
-  for (const DerivedMismatch& derived : comparison.derived) {
-    table.rows.push_back({derived.name, FormatQuantity(derived.rms, derived.unit),
-                          PercentText(derived.relative_error_percent)});
-  }
-  page.AddTable(table);
+  page.AddTable(DerivedTable(comparison));
 }
 
 /// Of a machine that falls.
 void AddFollowed(Page& page, const Comparison& comparison) {
-  const Prediction& prediction = comparison.prediction;
-  if (prediction.sensors.empty()) return;
+  if (comparison.prediction.sensors.empty()) return;
   page.AddHeading("Prediction");
-  Table ahead;
-  ahead.columns = {{"Channel"}};
-  for (const double horizon : prediction.horizons) {
-    ahead.columns.push_back(
-        {"Error over " + FormatQuantity(horizon, "s") + ", rms", true});
-  }
-  for (const Prediction::Sensor& sensor : prediction.sensors) {
-    std::vector<std::string> row = {sensor.channel};
-    for (const double rms : sensor.rms) row.push_back(FormatQuantity(rms, sensor.unit));
-    ahead.rows.push_back(row);
-  }
-  page.AddTable(ahead);
+  page.AddTable(PredictionTable(comparison));
   page.AddParagraph(
       "The plant runs on with the measured inputs alone, from states that an observer "
       "has found from the readings up to then.");
@@ -223,6 +181,72 @@ std::string ComparisonVerdict(const Comparison& comparison) {
          " times its noise floor (" + size + ").";
 }
 
+Table ChannelTable(const Comparison& comparison) {
+  Table table;
+  table.columns = {{"Channel"},
+                   {"Mismatch, rms", true},
+                   {"Mean absolute", true},
+                   {"Fit", true},
+                   {"Peak", true},
+                   {"Relative error", true},
+                   {"Noise floor", true},
+                   {"Times the floor", true},
+                   {"Beyond noise"},
+                   {"Worst window", true},
+                   {"Its rms", true}};
+  for (const ChannelMismatch& channel : comparison.channels) {
+    const WorstWindow& worst = channel.worst;
+    const std::string end = Seconds(worst.start + worst.duration) + " s";
+    table.rows.push_back(
+        {channel.name, FormatQuantity(channel.rms, channel.unit),
+         FormatQuantity(channel.mae, channel.unit), PercentText(channel.fit_percent),
+         FormatQuantity(channel.peak, channel.unit),
+         PercentText(channel.relative_error_percent),
+         FormatQuantity(channel.noise_floor.rms, channel.unit), Ratio(channel),
+         channel.exceeds_noise ? "yes" : "no", Seconds(worst.start) + " to " + end,
+         FormatQuantity(worst.rms, channel.unit)});
+  }
+  return table;
+}
+
+Table DerivedTable(const Comparison& comparison) {
+  Table table;
+  table.columns = {{"Signal"}, {"Mismatch, rms", true}, {"Relative error", true}};
+  for (const DerivedMismatch& derived : comparison.derived) {
+    table.rows.push_back({derived.name, FormatQuantity(derived.rms, derived.unit),
+                          PercentText(derived.relative_error_percent)});
+  }
+  return table;
+}
+
+Table PredictionTable(const Comparison& comparison) {
+  const Prediction& prediction = comparison.prediction;
+  Table ahead;
+  ahead.columns = {{"Channel"}};
+  for (const double horizon : prediction.horizons) {
+    ahead.columns.push_back(
+        {"Error over " + FormatQuantity(horizon, "s") + ", rms", true});
+  }
+  for (const Prediction::Sensor& sensor : prediction.sensors) {
+    std::vector<std::string> row = {sensor.channel};
+    for (const double rms : sensor.rms) row.push_back(FormatQuantity(rms, sensor.unit));
+    ahead.rows.push_back(row);
+  }
+  return ahead;
+}
+
+Table MissingForceTable(const Comparison& comparison) {
+  Table table;
+  table.columns = {
+      {"Joint"}, {"Missing force, rms", true}, {"Known to", true}, {"Up to", true}};
+  for (const MissingForce& force : comparison.missing_force) {
+    table.rows.push_back({force.joint, FormatQuantity(force.rms, force.unit),
+                          FormatQuantity(force.sd, force.unit),
+                          FormatQuantity(force.bandwidth, "Hz")});
+  }
+  return table;
+}
+
 Page ComparisonPage(const Comparison& comparison, const RunDescription& run) {
   Page page("Measured against simulated: " + comparison.setup);
   page.SetVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
@@ -230,8 +254,8 @@ Page ComparisonPage(const Comparison& comparison, const RunDescription& run) {
   AddRecordFacts(page, comparison, run);
   AddFollowed(page, comparison);
   page.AddHeading(comparison.falls ? "Channels, predicted over one tick" : "Channels");
-  AddChannelTable(page, comparison);
-  AddDerivedTable(page, comparison);
+  AddChannels(page, comparison);
+  AddDerived(page, comparison);
   for (const ChannelMismatch& channel : comparison.channels) {
     page.AddHeading("Channel " + channel.name);
     AddSignalPlot(page, comparison, channel);

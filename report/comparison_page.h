@@ -13,6 +13,15 @@ namespace mjdiag {
 /// noise floor (1.1 µm rms)."
 std::string ComparisonVerdict(const Comparison& comparison);
 
+/// A row for every channel.
+Table ChannelTable(const Comparison& comparison);
+/// A row for every derived signal.
+Table DerivedTable(const Comparison& comparison);
+/// Of a machine that falls: how far ahead it predicts, a column for every horizon.
+Table PredictionTable(const Comparison& comparison);
+/// Of a machine that falls: a row for every joint.
+Table MissingForceTable(const Comparison& comparison);
+
 /// The whole page.
 Page ComparisonPage(const Comparison& comparison, const RunDescription& run);
 

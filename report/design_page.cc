@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/report/filter_plots.h"
 #include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -18,16 +19,6 @@ bool HasNoise(const DiagnosisDesign& design) {
   return !design.sensor_noise.isZero(0.0);
 }
 
-std::string Verdict(const DiagnosisDesign& design, const DesignFacts& facts) {
-  std::string text =
-      "Parity relations exist from degree " + std::to_string(facts.minimal_degree) +
-      " on; the residual has degree " + std::to_string(design.options.residual.degree);
-  if (!design.limits.known) return text + ".";
-  const Interval& limits = design.limits.residual.limits;
-  return text + " and is healthy between " + Number(limits.min) + " and " +
-         Number(limits.max) + (HasNoise(design) ? " times its noise." : ".");
-}
-
 std::string Ranks(const DesignFacts& facts) {
   std::string text;
   for (const int rank : facts.observability_ranks) {
@@ -40,19 +31,6 @@ std::string Joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text.empty() ? "none" : text;
-}
-
-void AddLimits(Page& page, const DiagnosisLimits& limits) {
-  page.AddHeading("Limits");
-  Table table;
-  table.columns = {{"Limit"}, {"From", true}, {"To", true}};
-  table.rows = {
-      {"Residual", Number(limits.residual.limits.min),
-       Number(limits.residual.limits.max)},
-      {"Mean of |residual|", "0", Number(limits.integral)},
-      {"Peak of the disturbance spectrum", "0", Number(limits.disturbance.peak)},
-      {"Power of the disturbance residual", "0", Number(limits.disturbance.total)}};
-  page.AddTable(table);
 }
 
 void AddHealthyEstimates(Page& page, const DiagnosisDesign& design) {
@@ -93,6 +71,28 @@ void AddFilters(Page& page, const DiagnosisDesign& design, const DesignFacts& fa
 }
 
 }  // namespace
+
+std::string DesignVerdict(const DiagnosisDesign& design, const DesignFacts& facts) {
+  std::string text =
+      "Parity relations exist from degree " + std::to_string(facts.minimal_degree) +
+      " on; the residual has degree " + std::to_string(design.options.residual.degree);
+  if (!design.limits.known) return text + ".";
+  const Interval& limits = design.limits.residual.limits;
+  return text + " and is healthy between " + Number(limits.min) + " and " +
+         Number(limits.max) + (HasNoise(design) ? " times its noise." : ".");
+}
+
+Table LimitTable(const DiagnosisLimits& limits) {
+  Table table;
+  table.columns = {{"Limit"}, {"From", true}, {"To", true}};
+  table.rows = {
+      {"Residual", Number(limits.residual.limits.min),
+       Number(limits.residual.limits.max)},
+      {"Mean of |residual|", "0", Number(limits.integral)},
+      {"Peak of the disturbance spectrum", "0", Number(limits.disturbance.peak)},
+      {"Power of the disturbance residual", "0", Number(limits.disturbance.total)}};
+  return table;
+}
 
 std::string DescribeParityPrograms(const ParityProgramFacts& facts) {
   std::string text =
@@ -135,7 +135,7 @@ HistogramPlot ResidualHistogram(const ThresholdDesign& thresholds) {
 Page DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
                 const RunDescription& run) {
   Page page("Diagnosis designed for " + design.setup);
-  page.SetVerdict(Tone::kNeutral, Verdict(design, facts));
+  page.SetVerdict(Tone::kNeutral, DesignVerdict(design, facts));
   page.AddFacts({{"Setup", design.setup},
                  {"Faults estimated", Joined(design.FaultNames())},
                  {"Residuals", std::to_string(design.bank.residuals)},
@@ -146,7 +146,8 @@ Page DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
   }
   if (design.limits.known) {
     const ThresholdDesign& residual = design.limits.residual;
-    AddLimits(page, design.limits);
+    page.AddHeading("Limits");
+    page.AddTable(LimitTable(design.limits));
     page.AddParagraph("Margin of the thresholds over the extremes of healthy runs: " +
                       Number(residual.alpha) + ". Normal fit: mean " +
                       Number(residual.fit.mean) + ", standard deviation " +

@@ -5,23 +5,6 @@
 namespace mjdiag {
 namespace {
 
-Table Deviations(const MotionDesign& design) {
-  Table table{{{"unknown", false},
-               {"standard deviation, default motion", true},
-               {"this motion", true},
-               {"times smaller", true},
-               {"wanted", false}},
-              {}};
-  for (std::size_t i = 0; i < design.unknowns.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    table.rows.push_back({design.unknowns[i], FormatNumber(design.before[at], 3),
-                          FormatNumber(design.after[at], 3),
-                          FormatNumber(design.before[at] / design.after[at], 3),
-                          design.wanted[i] ? "yes" : ""});
-  }
-  return table;
-}
-
 Table Limits(const Machine& machine, const MotionDesign& design) {
   Table table{{{"axis", false}, {"", false}, {"limit", true}, {"this motion", true}},
               {}};
@@ -62,6 +45,23 @@ TimePlot Readings(const std::string& channel, const MotionDesign& design) {
 
 }  // namespace
 
+Table DeviationTable(const MotionDesign& design) {
+  Table table{{{"unknown", false},
+               {"standard deviation, default motion", true},
+               {"this motion", true},
+               {"times smaller", true},
+               {"wanted", false}},
+              {}};
+  for (std::size_t i = 0; i < design.unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    table.rows.push_back({design.unknowns[i], FormatNumber(design.before[at], 3),
+                          FormatNumber(design.after[at], 3),
+                          FormatNumber(design.before[at] / design.after[at], 3),
+                          design.wanted[i] ? "yes" : ""});
+  }
+  return table;
+}
+
 std::string GainText(const MotionDesign& design) {
   std::string names;
   for (std::size_t i = 0; i < design.unknowns.size(); ++i) {
@@ -82,7 +82,7 @@ Page ExcitationPage(const Machine& machine, const MotionDesign& design,
       "Standard deviations that no estimator is better than, of the linear machine, "
       "all "
       "unknown together.");
-  page.AddTable(Deviations(design));
+  page.AddTable(DeviationTable(design));
   page.AddHeading("The motion");
   if (!design.moves_of.empty()) {
     page.AddParagraph("The moves of trajectory " + design.moves_of + ", " +

@@ -9,6 +9,9 @@ namespace mjdiag {
 /// "The largest standard deviation of beta_x becomes 3.2 times smaller."
 std::string GainText(const MotionDesign& design);
 
+/// Of every unknown, with either motion.
+Table DeviationTable(const MotionDesign& design);
+
 /// The whole page.
 Page ExcitationPage(const Machine& machine, const MotionDesign& design,
                     const RunDescription& run);

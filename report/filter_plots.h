@@ -10,6 +10,7 @@
 
 #include "mjdiag/diagnosis/diagnosis_design.h"
 #include "mjdiag/diagnosis/model/mechanical_model.h"
+#include "mjdiag/plugin/design/design_facts.h"
 #include "mjdiag/report/page/plot.h"
 
 namespace mjdiag {
@@ -39,12 +40,6 @@ BodePlot CommandResponsePlot(const DiagnosisDesign& design);
 /// From every command to the disturbance residual behind its high-pass, with the
 /// frequencies of the known disturbances.
 BodePlot DisturbanceResponsePlot(const DiagnosisDesign& design);
-
-/// A machine with a fault.
-struct ChangedMachine {
-  std::string label;
-  MechanicalModel model;
-};
 
 /// How far the responses of changed machines are from that of the healthy one, with
 /// G = b^T (K + i w D - w^2 M)^-1 Gamma and sigma the noise of each sensor:

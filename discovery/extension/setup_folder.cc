@@ -18,16 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCalibrationFile = "calibration.json";
 
-/// Of a setup whose text will go into another folder. InputError if that is its own.
-fs::path FileForOther(const fs::path& setup, const fs::path& folder) {
-  const fs::path file = fs::absolute(FindSetupFile(setup));
-  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
-    throw InputError(folder.string(), "is the folder of the setup itself",
-                     "another folder");
-  }
-  return file;
-}
-
 /// The setup's text, and what stands beside it.
 void WriteBeside(const fs::path& folder, const fs::path& file,
                  const std::string& text) {
@@ -41,6 +31,15 @@ void WriteBeside(const fs::path& folder, const fs::path& file,
 }
 
 }  // namespace
+
+fs::path FileForOther(const fs::path& setup, const fs::path& folder) {
+  const fs::path file = fs::absolute(FindSetupFile(setup));
+  if (fs::exists(folder) && fs::equivalent(file.parent_path(), folder)) {
+    throw InputError(folder.string(), "is the folder of the setup itself",
+                     "another folder");
+  }
+  return file;
+}
 
 fs::path WriteExtendedSetup(const fs::path& folder, const fs::path& setup,
                             const Machine& machine, const Changes& changes) {

@@ -12,6 +12,11 @@
 
 namespace mjdiag {
 
+/// The file of a setup whose text will go into another folder. InputError if that is its
+/// own.
+std::filesystem::path FileForOther(const std::filesystem::path& setup,
+                                   const std::filesystem::path& folder);
+
 /// Makes a folder with plant.xml and setup.toml of a machine with those changes.
 /// @param setup    of the machine, a file or its folder
 /// @param machine  as that setup has it

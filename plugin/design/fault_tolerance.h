@@ -2,14 +2,10 @@
 // Fault-tolerant control of a machine: what a diagnosis finds while the machine runs
 // acts on its controllers ([AB383], Fig. 25).
 //
-//   DiagnosisRecording recording(prepared.design, motion.samples());
-//   recording.monitor.Follow(MakeTwinEstimator(machine, linear));
-//   MonitorObserver watched(recording);
-//   FaultTolerance tolerance(machine, recording.monitor, watched);
-//   options.observer = &tolerance;
-//   options.reconfiguration = &tolerance.reconfiguration();
-//   const Record record = Simulate(worn, motion, options);
-//   Summarise(tolerance.reconfiguration(), machine.setup());  // what was corrected
+//   const TolerancePlan plan = PlanTolerance(machine);
+//   const TolerantRun run = RunTolerantly(machine, prepared, plan, motion.samples(), {},
+//       [&](const RunOptions& options) { return Simulate(worn, motion, options); });
+//   run.faults;  // what was corrected (tolerant_run.h)
 //
 // What is done about which fault follows from the plant: a motor whose fault parameter
 // scales its gear is driven harder, inside the gain margins of the machine

@@ -13,19 +13,25 @@ from typing import NamedTuple as _NamedTuple
 from . import _mjdiag, _plots
 from ._mjdiag import (
     Cause,
+    Comparison,
     Diagnosis,
     Discovery,
     Fault,
+    FilterDesign,
     InputError,
     Kind,
     LinearModel,
     Machine,
+    Mismatch,
+    MissingForce,
     Monitor,
+    MotionDesign,
     NumericalError,
     Parameter,
     Record,
     Study,
     StudyResult,
+    TolerantRun,
     __version__,
 )
 
@@ -90,6 +96,40 @@ class Calibration(_NamedTuple):
     doubts: list
 
 
+class Tone(_NamedTuple):
+    """amplitude sin(2 pi frequency t + phase) on an axis.
+
+    frequency [Hz], amplitude [m or rad, as the axis has it], phase [rad].
+    """
+
+    axis: str
+    frequency: float
+    amplitude: float
+    phase: float
+
+
+class Correction(_NamedTuple):
+    """What was done about a fault while the machine ran.
+
+    action: "drive gain of x", "feedforward", "tones cancelled"; value: of the fault that is
+    acted on at the end; since, until: when [s], until None where it is acting still.
+    """
+
+    action: str
+    value: float
+    since: float
+    acting: bool
+    until: object
+
+
+class LoopGain(_NamedTuple):
+    """gain of the loop of an axis; least and most: between which it is known to be stable."""
+
+    gain: float
+    least: float
+    most: float
+
+
 _Mapping.register(Record)
 Record.plot = _plots.plot_record
 Diagnosis.plot = _plots.plot_diagnosis
@@ -98,15 +138,22 @@ __all__ = [
     "CalibratedNumber",
     "Calibration",
     "Cause",
+    "Comparison",
+    "Correction",
     "Diagnosis",
     "Discovery",
     "Fault",
+    "FilterDesign",
     "InputError",
     "Kind",
     "LinearModel",
+    "LoopGain",
     "Machine",
+    "Mismatch",
+    "MissingForce",
     "Mode",
     "Monitor",
+    "MotionDesign",
     "NumericalError",
     "Parameter",
     "PlantNumber",
@@ -114,6 +161,8 @@ __all__ = [
     "StateSpace",
     "Study",
     "StudyResult",
+    "TolerantRun",
+    "Tone",
 ]
 
 for _name in __all__:

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,14 @@ inline constexpr std::array<std::pair<const char*, double AxisLimits::*>, 7>
                  {"jerk", &AxisLimits::jerk},
                  {"snap", &AxisLimits::snap},
                  {"force", &AxisLimits::force}}};
+
+/// The one of that name; null if there is none.
+inline double* FindLimit(AxisLimits& limits, std::string_view name) {
+  for (const auto& [known, limit] : kAxisLimits) {
+    if (name == known) return &(limits.*limit);
+  }
+  return nullptr;
+}
 
 /// What an axis does, sample by sample: a linear machine does the sum of what it does.
 struct AxisCourse {

@@ -221,7 +221,10 @@ std::vector<Designer::Plan> Designer::Plans() const {
   std::vector<Plan> plans = {TonesAlone(little)};
   for (const Trajectory& trajectory : machine_.setup().trajectories.all) {
     if (IsStopped() && plans.size() > 1) break;
-    if (!trajectory.moves.empty()) plans.push_back(TonesBeside(trajectory, little));
+    if (trajectory.moves.empty()) continue;
+    Plan plan = TonesBeside(trajectory, little);
+    // None of moves of an axis that has to rest.
+    if (plan.share > 0.0) plans.push_back(std::move(plan));
   }
   std::ranges::stable_sort(plans, {},
                            [](const Plan& plan) { return plan.tones.log_sd; });
@@ -243,7 +246,8 @@ Trajectory Designer::MovesOf(const Plan& plan) const {
     const AxisLimits& limits = design_.limits[i];
     const auto own = default_.limits.find(axes[i].name);
     const double middle = 0.5 * (limits.lowest + limits.highest);
-    if (own == default_.limits.end() || !std::isfinite(middle) ||
+    const bool rests = limits.velocity == 0.0;
+    if (own == default_.limits.end() || rests || !std::isfinite(middle) ||
         std::abs(middle) < 0.01 * (limits.highest - limits.lowest)) {
       continue;
     }

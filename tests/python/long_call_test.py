@@ -119,6 +119,34 @@ class LongCallTest(Test):
         self.assertTrue(found.stopped)
         self.assertEqual([cause.effect for cause in found.causes], ["cubic_stiffness"])
 
+    def test_ctrl_c_ends_an_excitation_with_the_best_motion(self):
+        pressed = []
+
+        def press(fraction, what):
+            if "so far" in what and not pressed:
+                pressed.append(what)
+                os.kill(os.getpid(), signal.SIGINT)
+
+        start = time.monotonic()
+        found = self.bonder.excite("beta_x", budget=1000, progress=press)
+        self.assertTrue(pressed)
+        self.assertTrue(found.stopped)
+        self.assertGreater(found.gain, 1.0)
+        self.assertLess(time.monotonic() - start, 60.0)
+        self.assertGreater(found.machine.simulate(duration=0.01).samples, 0)
+
+    def test_ctrl_c_ends_a_comparison(self):
+        record = self.bonder.simulate()
+        interrupt_after(0.1)
+        with self.assertRaises(KeyboardInterrupt):
+            for _ in range(1000):
+                self.bonder.compare(record)
+
+    def test_ctrl_c_ends_a_design(self):
+        interrupt_after(0.3)
+        with self.assertRaises(KeyboardInterrupt):
+            self.bonder.design(nominal_runs=1000)
+
 
 if __name__ == "__main__":
     unittest.main()

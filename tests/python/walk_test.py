@@ -41,12 +41,15 @@ class WalkTest(Test):
                     continue
                 exec(compile(block, "docs/python.md", "exec"), typed)
         self.assertIn("Detected: zeta_x = 1.2.", printed.getvalue())
+        self.assertIn("drive gain of x", printed.getvalue())
+        self.assertIn("times smaller", printed.getvalue())
         self.assertIn("zeta_q", printed.getvalue())
         effects = {cause.effect for cause in typed["found"].causes}
         self.assertEqual(effects, {"zeta_x", "coulomb_friction"})
         for name in ("clip.mp4", "found.html"):
             self.assertGreater(os.path.getsize(name), 10000)
         self.assertIsInstance(typed["extended"], mjdiag.Machine)
+        self.assertEqual(mjdiag.Machine("excited").trajectories[-1], "excite")
 
 
 if __name__ == "__main__":

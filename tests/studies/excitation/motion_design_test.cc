@@ -91,6 +91,19 @@ TEST_F(ExcitedBonder, EndsWithWhatItHasWhenAsked) {
   EXPECT_FALSE(design.trajectory.moves.empty());
 }
 
+// Of axes that the default motion leaves alone no share of a move is within the limits.
+TEST_F(ExcitedBonder, LeavesOutMovesOfAxesThatHaveToRest) {
+  for (const std::string name : {"x", "xy"}) {
+    const Machine resting = test::Bonder({"default_trajectory=\"" + name + "\"",
+                                          "trajectories." + name + ".duration=0.26"});
+    MotionDesignOptions options = BetaX();
+    options.stop = [] { return true; };
+    const MotionDesign design = DesignMotion(resting, options);
+    EXPECT_GT(design.peaks[0].velocity, 0.0) << name;
+    EXPECT_EQ(design.peaks[2].velocity, 0.0) << name;
+  }
+}
+
 TEST_F(ExcitedBonder, RefusesWhatItDoesNotKnow) {
   const auto refuses = [&](const MotionDesignOptions& options, const char* words) {
     EXPECT_THAT([&] { DesignMotion(bonder_, options); },

@@ -1,4 +1,4 @@
-#include "app/parity_programs.h"
+#include "mjdiag/plugin/design/parity_facts.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
-namespace mjdiag::app {
+namespace mjdiag {
 namespace {
 
 using Eigen::Index;
@@ -56,7 +56,7 @@ SignalEntry FaultEntry(const Machine& machine, const MechanicalModel& healthy,
                        const TickTiming& timing) {
   const std::vector<PerturbedModels> faults = MakeFaultFamily(machine).Perturbed();
   if (faults.empty()) {
-    throw InputError("--method lp", "the plant has no fault parameters",
+    throw InputError("method lp", "the plant has no fault parameters",
                      "at least one, for a parity relation has to see a fault");
   }
   MatrixXd forces(healthy.M.rows(), 0);
@@ -94,8 +94,8 @@ double Angle(const VectorXd& vector, const MatrixXd& rows) {
 
 }  // namespace
 
-SignalEntry UnknownForces(const MechanicalModel& healthy,
-                          const SynthesisOptions& options) {
+SignalEntry UnknownForceEntry(const MechanicalModel& healthy,
+                              const SynthesisOptions& options) {
   const MatrixXd& forces = options.unknown_inputs.forces;
   if (forces.cols() == 0) return NoSignal(DeltaForm(healthy, options.timing));
   return HeldForces(healthy, options.timing, forces);
@@ -105,14 +105,14 @@ ParityProgramFacts SolveParityPrograms(const Machine& machine,
                                        const MechanicalModel& healthy) {
   const SynthesisOptions options = SynthesisOf(machine);
   const StateSpace system = DeltaForm(healthy, options.timing);
-  const SignalEntry unknown = UnknownForces(healthy, options);
+  const SignalEntry unknown = UnknownForceEntry(healthy, options);
   const SignalEntry faults = FaultEntry(machine, healthy, options.timing);
   const DaeModel dae = MakeDae(system, unknown, faults);
   ParityProgramFacts facts;
   facts.degree = options.residual.degree;
   facts.norm = "one";
   facts.fault_inputs = static_cast<int>(dae.F.cols());
-  const std::optional<ParityProgramSolution> solution = mjdiag::SolveParityPrograms(
+  const std::optional<ParityProgramSolution> solution = SolveParityPrograms(
       dae, options.residual.degree, ParityProgramOptions{RelationNorm::kOne});
   facts.programs = facts.fault_inputs * (dae.F.degree() + options.residual.degree + 1);
   if (!solution) return facts;
@@ -125,4 +125,4 @@ ParityProgramFacts SolveParityPrograms(const Machine& machine,
   return facts;
 }
 
-}  // namespace mjdiag::app
+}  // namespace mjdiag

@@ -1,0 +1,30 @@
+#pragma once
+// A motion that tells most, as Python has it, and the machine that it was designed for.
+
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <string>
+
+#include "mjdiag/studies/excitation/motion_design.h"
+#include "python/machine.h"
+
+namespace mjdiag::python {
+
+struct MotionDesignObject {
+  MachineObject machine;
+  MotionDesign design;
+};
+
+/// @param wanted         a name, or several
+/// @param limits         axis -> name -> number, or None
+/// @param max_frequency  [Hz]; none: a quarter of the control rate
+/// @param budget         [s]
+MotionDesignObject ExciteMachine(const MachineObject& machine,
+                                 const pybind11::object& wanted,
+                                 const pybind11::object& limits,
+                                 std::optional<double> max_frequency,
+                                 const std::string& name, double budget,
+                                 const pybind11::object& progress);
+
+}  // namespace mjdiag::python
