@@ -39,6 +39,8 @@ class WalkTest(Test):
                         __import__(needs)
                 except ImportError:
                     continue
+                # The best motion is waited for by other tests.
+                block = block.replace("budget=30", "budget=5")
                 exec(compile(block, "docs/python.md", "exec"), typed)
         self.assertIn("Detected: zeta_x = 1.2.", printed.getvalue())
         self.assertIn("drive gain of x", printed.getvalue())
