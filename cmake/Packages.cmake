@@ -1,7 +1,8 @@
 # Debian packages, by `cpack -G DEB` in the build folder; scripts/packages does all of it.
 # An installation has one component a package, of the same name.
-set(MJDIAG_MAINTAINER "Maintainers of mjdiag <maintainers@mjdiag.example>" CACHE STRING
-    "Whom the packages name as their maintainer")
+# Nobody has an address so far: whoever hands packages on puts theirs there.
+set(MJDIAG_MAINTAINER "The authors of mjdiag <authors@mjdiag.example>" CACHE STRING
+    "Whom the packages name as their maintainer: name <address>")
 set(components mjdiag libmjdiag0 libmjdiag-dev mjdiag-data)
 if(TARGET mjdiag_mpi)
   list(APPEND components mjdiag-mpi)
@@ -42,19 +43,21 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 
 # mjdiag_package(<component> SECTION <section> SUMMARY <words> TEXT <words>
-#                [DEPENDS <packages...>] [RECOMMENDS <packages...>] [CONTROL <files...>]
-#                [BINARY | ALL])
+#                [DEPENDS <packages...>] [RECOMMENDS <packages...>] [SUGGESTS <packages...>]
+#                [CONTROL <files...>] [BINARY | ALL])
 # BINARY: the libraries that it is linked to are found out. ALL: the same on every machine.
 function(mjdiag_package component)
-  cmake_parse_arguments(arg "BINARY;ALL" "SECTION;SUMMARY;TEXT" "DEPENDS;RECOMMENDS;CONTROL"
-                        ${ARGN})
+  cmake_parse_arguments(arg "BINARY;ALL" "SECTION;SUMMARY;TEXT"
+                        "DEPENDS;RECOMMENDS;SUGGESTS;CONTROL" ${ARGN})
   string(TOUPPER ${component} id)
   list(JOIN arg_DEPENDS ", " depends)
   list(JOIN arg_RECOMMENDS ", " recommends)
+  list(JOIN arg_SUGGESTS ", " suggests)
   set(CPACK_DEBIAN_${id}_PACKAGE_NAME ${component} PARENT_SCOPE)
   set(CPACK_DEBIAN_${id}_PACKAGE_SECTION ${arg_SECTION} PARENT_SCOPE)
   set(CPACK_DEBIAN_${id}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${id}_PACKAGE_RECOMMENDS "${recommends}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${id}_PACKAGE_SUGGESTS "${suggests}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${id}_PACKAGE_CONTROL_EXTRA "${arg_CONTROL}" PARENT_SCOPE)
   set(CPACK_COMPONENT_${id}_DESCRIPTION "${arg_SUMMARY}\n${arg_TEXT}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${id}_DESCRIPTION "${arg_SUMMARY}\n${arg_TEXT}" PARENT_SCOPE)
@@ -68,7 +71,8 @@ endfunction()
 
 set(same "(= ${PROJECT_VERSION})")
 set(about "mjdiag finds what has worn in a machine that moves while it runs, and what a MuJoCo model of it gets wrong on measured data.")
-mjdiag_package(mjdiag SECTION science BINARY RECOMMENDS "mjdiag-data ${same}"
+# OSMesa is loaded when a picture is asked for.
+mjdiag_package(mjdiag SECTION science BINARY RECOMMENDS "mjdiag-data ${same}" libosmesa6
   SUMMARY "The command:"
   TEXT "${about} This package has the command, its manual pages and its completion.")
 if(TARGET mjdiag_mpi)
@@ -102,7 +106,9 @@ if(TARGET mjdiag_python)
   math(EXPR next "${minor} + 1")
   mjdiag_package(python3-mjdiag SECTION python BINARY
     DEPENDS "python3 (>= 3.${minor})" "python3 (<< 3.${next})" python3-numpy
-    RECOMMENDS "mjdiag-data ${same}" python3-pandas python3-matplotlib
+    RECOMMENDS "mjdiag-data ${same}" libosmesa6
+    # For frames and plots only, and twice as much to fetch as all the rest.
+    SUGGESTS python3-pandas python3-matplotlib
     CONTROL ${PROJECT_SOURCE_DIR}/cmake/packages/python3-mjdiag/postinst
             ${PROJECT_SOURCE_DIR}/cmake/packages/python3-mjdiag/prerm
     SUMMARY "fault diagnosis and model discovery for machines - Python 3"
