@@ -106,7 +106,7 @@ mjdiag_package(libmjdiag-dev SECTION libdevel
   # For programs that link the libraries in C++: what Dependencies.cmake asks for.
   RECOMMENDS libmatio-dev coinor-libclp-dev libtbb-dev libceres-dev libopencv-core-dev
              libopencv-ml-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
-             libopencv-videoio-dev libosmesa6-dev libhdf5-dev zlib1g-dev ${report}
+             libopencv-videoio-dev libhdf5-dev zlib1g-dev ${report}
   SUMMARY "control and diagnosis in any MuJoCo program - development"
   TEXT "${about}
 This package has the headers, the libraries in C++ and what CMake needs to
