@@ -6,9 +6,9 @@
 
 #include <utility>
 
+#include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
-#include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"
 #include "python/arrays.h"

@@ -18,9 +18,11 @@ const std::filesystem::path& CheckName(const std::filesystem::path& file) {
 
 std::unique_ptr<VideoFile> OpenVideo(const std::filesystem::path& file, int width,
                                      int height, double fps) {
-  static const auto open = reinterpret_cast<OpenVideoFile*>(FunctionOf(
-      {"libmjdiag-video.so", "MJDIAG_VIDEO_MODULE", kVideoFileFunction},
-      "the module of clips of this version, and the libraries of OpenCV's videoio"));
+  static const auto open = reinterpret_cast<OpenVideoFile*>(
+      FunctionOf({"libmjdiag-video.so", "MJDIAG_VIDEO_MODULE", kVideoFileFunction},
+                 "the module of clips (package mjdiag-video) of this version, and the "
+                 "libraries of "
+                 "OpenCV's videoio"));
   std::unique_ptr<VideoFile> video(open(file.c_str(), width, height, fps));
   if (video) return video;
   throw InputError("clip", "no video encoder opens for " + file.string(),

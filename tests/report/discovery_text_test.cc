@@ -1,9 +1,9 @@
-#include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/discovery_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mjdiag/report/cause_text.h"
 #include "report/sample_discovery.h"
 
 namespace mjdiag {
