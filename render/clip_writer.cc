@@ -21,8 +21,7 @@ std::unique_ptr<VideoFile> OpenVideo(const std::filesystem::path& file, int widt
   static const auto open = reinterpret_cast<OpenVideoFile*>(
       FunctionOf({"libmjdiag-video.so", "MJDIAG_VIDEO_MODULE", kVideoFileFunction},
                  "the module of clips (package mjdiag-video) of this version, and the "
-                 "libraries of "
-                 "OpenCV's videoio"));
+                 "libraries of OpenCV's videoio"));
   std::unique_ptr<VideoFile> video(open(file.c_str(), width, height, fps));
   if (video) return video;
   throw InputError("clip", "no video encoder opens for " + file.string(),
