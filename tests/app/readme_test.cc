@@ -76,7 +76,7 @@ TEST(Readme, CommandsDoWhatTheySay) {
     // The walk of docs/own-machine.md types it with the same records.
     if (command.rfind("mjdiag discover --setup mjcf/servo", 0) == 0) continue;
     // Other tests wait for the answers of a minute, and for the best motion.
-    command = std::regex_replace(command, std::regex("--budget [0-9]+"), "--budget 4");
+    command = std::regex_replace(command, std::regex("--budget [0-9]+"), "--budget 10");
     command = std::regex_replace(command, std::regex("^mjdiag excite "),
                                  "mjdiag excite --budget 5 ");
     // FOLDER is where the reader has the records of the servo.
