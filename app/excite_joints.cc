@@ -31,17 +31,6 @@ std::string JointExcitationText(const JointMotionDesign& design) {
          "\n" + (design.stopped ? kStoppedText : "");
 }
 
-/// Where the joints go, sample by sample.
-Record MotionRecord(const Machine& machine, const JointMotionDesign& design) {
-  Record record(design.sample_time);
-  for (std::size_t j = 0; j < design.joints.size(); ++j) {
-    const bool turns = machine.plant().jnt_type[j] == mjJNT_HINGE;
-    record.Add({design.joints[j], turns ? "rad" : "m",
-                design.position.row(static_cast<Eigen::Index>(j))});
-  }
-  return record;
-}
-
 }  // namespace
 
 void ExciteJoints(const Machine& machine, const ExciteCommand& command) {
@@ -53,14 +42,6 @@ void ExciteJoints(const Machine& machine, const ExciteCommand& command) {
     throw InputError("--for " + command.design.wanted.front(),
                      "'" + machine.setup().name + "' has no controlled axes",
                      "no --for: all numbers of its links and joints are wanted");
-  }
-  for (const auto& [joint, limits] : command.design.limits) {
-    if (std::isfinite(limits.jerk) || std::isfinite(limits.snap)) {
-      throw InputError(
-          "--limit " + joint, "jerk or snap",
-          "lowest, highest, velocity, acceleration and force, of a machine "
-          "without controlled axes");
-    }
   }
   std::vector<std::string> notes;
   const Record measured = ReadMeasured(machine.setup(), command.record, notes);
@@ -93,7 +74,7 @@ void ExciteJoints(const Machine& machine, const ExciteCommand& command) {
     HoldFiles();
     const auto file =
         std::filesystem::path(command.output.folder) / (command.design.name + ".csv");
-    WriteRecord(file, MotionRecord(machine, design), RecordFormat::kCsv);
+    WriteRecord(file, design.Motion(), RecordFormat::kCsv);
     text += "motion: " + file.string() + "\n";
   }
   AddNotes(notes, document, text);

@@ -15,8 +15,9 @@ void BindComparison(pybind11::module_& module);    // Comparison, Mismatch, Miss
 void BindFilterDesign(pybind11::module_& module);  // FilterDesign
 void BindTolerance(pybind11::module_& module);     // TolerantRun
 void BindExcitation(pybind11::module_& module);    // MotionDesign
-void BindMachine(pybind11::module_& module);       // Machine
-void BindMonitor(pybind11::module_& module);       // Monitor
-void BindStudy(pybind11::module_& module);         // Study, StudyResult
+void BindJointExcitation(pybind11::module_& module);  // JointMotionDesign
+void BindMachine(pybind11::module_& module);          // Machine
+void BindMonitor(pybind11::module_& module);          // Monitor
+void BindStudy(pybind11::module_& module);            // Study, StudyResult
 
 }  // namespace mjdiag::python

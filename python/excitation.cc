@@ -60,6 +60,8 @@ AxisLimits LimitsOf(const std::map<std::string, double>& given,
   return limits;
 }
 
+}  // namespace
+
 std::map<std::string, AxisLimits> LimitsByAxis(const py::object& given) {
   std::map<std::string, AxisLimits> limits;
   if (given.is_none()) return limits;
@@ -81,8 +83,6 @@ void RequirePositive(const char* what, double value, const char* unit) {
   if (value > 0.0 && std::isfinite(value)) return;
   throw InputError(what, FormatNumber(value) + " " + unit, "more than 0");
 }
-
-}  // namespace
 
 MotionDesignObject ExciteMachine(const MachineObject& object, const py::object& wanted,
                                  const py::object& limits,

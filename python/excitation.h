@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,11 @@ struct MotionDesignObject {
   MachineObject machine;
   MotionDesign design;
 };
+
+/// axis -> name -> number, or None. InputError on anything else.
+std::map<std::string, AxisLimits> LimitsByAxis(const pybind11::object& given);
+/// InputError on what is not finite and above 0.
+void RequirePositive(const char* what, double value, const char* unit);
 
 /// @param wanted         a name, or several
 /// @param limits         axis -> name -> number, or None

@@ -9,6 +9,7 @@
 #include "python/comparison.h"
 #include "python/excitation.h"
 #include "python/filter_design.h"
+#include "python/joint_excitation.h"
 #include "python/machine.h"
 #include "python/tolerance.h"
 #include "python/work.h"
@@ -85,6 +86,26 @@ void BindExcite(MachineClass& machine) {
               InputError: a machine without controllers or trajectory, names that there
               are not, limits that not even a rest keeps, a trajectory of that name.
               NumericalError if the default motion does not tell the unknowns apart.)");
+  machine.def("excite_joints", &ExciteJoints, py::arg("record"), py::kw_only(),
+              py::arg("limits") = py::none(), py::arg("max_frequency") = py::none(),
+              py::arg("budget") = 60.0, py::arg("progress") = py::none(),
+              R"(
+              Of a machine whose controllers are not known, an arm: a motion of its joints
+              within the limits of a measured one and as long as that, along which the
+              forces tell inertial and friction numbers apart best: a JointMotionDesign
+              (docs/excite.md).
+
+              record: measured, with what drove the joints, a Record or a path.
+              limits: joint -> dict of lowest, highest [m or rad], velocity, acceleration
+              and force [N or N m], in the place of what the measured motion does.
+              max_frequency: of the Fourier series [Hz]; None: what suits that motion.
+              budget: seconds after which no further motion is tried; then, and at
+              Ctrl-C, the best motion so far is given (JointMotionDesign.stopped).
+              progress: as of simulate.
+
+              InputError: joints that there are not, limits that cannot be kept, a record
+              that does not say where the joints are. NumericalError if the measured motion
+              does not tell the numbers apart.)");
 }
 
 void BindDesign(MachineClass& machine) {

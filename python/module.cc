@@ -70,6 +70,7 @@ PYBIND11_MODULE(_mjdiag, module) {
   mjdiag::python::BindFilterDesign(module);
   mjdiag::python::BindTolerance(module);
   mjdiag::python::BindExcitation(module);
+  mjdiag::python::BindJointExcitation(module);
   mjdiag::python::BindMachine(module);
   mjdiag::python::BindMonitor(module);
   mjdiag::python::BindStudy(module);

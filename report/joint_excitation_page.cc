@@ -7,22 +7,6 @@
 namespace mjdiag {
 namespace {
 
-Table NumberDeviations(const JointMotionDesign& design) {
-  Table table{{{"number", false},
-               {"standard deviation, measured motion", true},
-               {"this motion", true},
-               {"times smaller", true}},
-              {}};
-  for (std::size_t i = 0; i < design.numbers.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    table.rows.push_back({design.numbers[i],
-                          FormatQuantity(design.before[at], design.units[i]),
-                          FormatQuantity(design.after[at], design.units[i]),
-                          FormatNumber(design.before[at] / design.after[at], 3)});
-  }
-  return table;
-}
-
 Table JointLimits(const JointMotionDesign& design) {
   Table table{{{"joint", false}, {"", false}, {"limit", true}, {"this motion", true}},
               {}};
@@ -38,6 +22,22 @@ Table JointLimits(const JointMotionDesign& design) {
 }
 
 }  // namespace
+
+Table NumberTable(const JointMotionDesign& design) {
+  Table table{{{"number", false},
+               {"standard deviation, measured motion", true},
+               {"this motion", true},
+               {"times smaller", true}},
+              {}};
+  for (std::size_t i = 0; i < design.numbers.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    table.rows.push_back({design.numbers[i],
+                          FormatQuantity(design.before[at], design.units[i]),
+                          FormatQuantity(design.after[at], design.units[i]),
+                          FormatNumber(design.before[at] / design.after[at], 3)});
+  }
+  return table;
+}
 
 std::string ConditionText(const JointMotionDesign& design) {
   const double smaller =
@@ -64,17 +64,16 @@ Page JointExcitationPage(const Machine& machine, const JointMotionDesign& design
                     "noise as large as "
                     "what no such numbers explain of the record, up to " +
                     FormatQuantity(design.bandwidth, "Hz") + ".");
-  page.AddTable(NumberDeviations(design));
+  page.AddTable(NumberTable(design));
   page.AddHeading("The motion");
   page.AddParagraph("A Fourier series up to " +
                     FormatQuantity(design.highest_frequency, "Hz") +
                     ", at rest at its begin and end.");
   for (std::size_t j = 0; j < design.joints.size(); ++j) {
     const auto row = static_cast<Eigen::Index>(j);
-    const bool turns = machine.plant().jnt_type[j] == mjJNT_HINGE;
     TimePlot plot{.caption = "Position of " + design.joints[j],
                   .quantity = design.joints[j],
-                  .unit = turns ? "rad" : "m",
+                  .unit = design.joint_units[j],
                   .sample_time = design.sample_time,
                   .curves = {},
                   .bands = {},

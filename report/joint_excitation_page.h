@@ -12,6 +12,9 @@ std::string ConditionText(const JointMotionDesign& design);
 /// "54 numbers can be told apart; 37 others only together with those."
 std::string ToldText(const JointMotionDesign& design);
 
+/// Standard deviations of all numbers with both motions.
+Table NumberTable(const JointMotionDesign& design);
+
 /// The whole page.
 Page JointExcitationPage(const Machine& machine, const JointMotionDesign& design,
                          const RunDescription& run);

@@ -58,7 +58,7 @@ InertialRegressor::InertialRegressor(const mjModel& model)
                        "a joint that is neither a hinge nor a slide",
                        "a machine whose joints all are");
     }
-    for (const char* what : {"armature", "viscous_friction", "dry_friction"})
+    for (const char* what : {"armature", "damping", "friction"})
       name(what, mjOBJ_JOINT, joint);
     if (model.jnt_type[joint] == mjJNT_HINGE) {
       units_.insert(units_.end(), {"kg m^2", "N m s/rad", "N m"});

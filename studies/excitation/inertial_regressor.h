@@ -28,7 +28,7 @@ class InertialRegressor {
   explicit InertialRegressor(const mjModel& model);
 
   /// "mass@link3", "moment_x@link3" [kg m], "inertia_xy@link3" [kg m^2], then
-  /// "armature@joint3", "viscous_friction@joint3", "dry_friction@joint3".
+  /// "armature@joint3", "damping@joint3", "friction@joint3".
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<std::string>& units() const { return units_; }
   Eigen::Index numbers() const { return static_cast<Eigen::Index>(names_.size()); }

@@ -78,8 +78,11 @@ class JointMotionDesigner {
       : plant_(machine.plant()), options_(options), random_(options.seed) {
     InertialRegressor regressor(plant_);
     design_.sample_time = run.sample_time;
-    for (int joint = 0; joint < plant_.njnt; ++joint)
+    for (int joint = 0; joint < plant_.njnt; ++joint) {
       design_.joints.push_back(ElementName(plant_, mjOBJ_JOINT, joint));
+      design_.joint_units.emplace_back(plant_.jnt_type[joint] == mjJNT_HINGE ? "rad"
+                                                                             : "m");
+    }
     const FilteredRun filtered = FilterRun(
         machine, run,
         std::min(FastestForce(run), kFastestOfControl * machine.rates().control));
@@ -149,6 +152,11 @@ class JointMotionDesigner {
         for (const std::string& one : design_.joints)
           joints += (joints.empty() ? "" : ", ") + one;
         throw InputError("limits of " + name, "no such joint", "one of " + joints);
+      }
+      if (std::isfinite(wanted.jerk) || std::isfinite(wanted.snap)) {
+        throw InputError("limits of " + name, "jerk or snap",
+                         "lowest, highest, velocity, acceleration and force, beside a "
+                         "measured motion");
       }
       AxisLimits& own =
           design_.limits[static_cast<std::size_t>(joint - design_.joints.begin())];
@@ -293,6 +301,13 @@ class JointMotionDesigner {
 };
 
 }  // namespace
+
+Record JointMotionDesign::Motion() const {
+  Record record(sample_time);
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    record.Add({joints[j], joint_units[j], position.row(static_cast<Index>(j))});
+  return record;
+}
 
 JointMotionDesign DesignJointMotion(const Machine& machine, const MeasuredRun& run,
                                     const JointMotionOptions& options) {

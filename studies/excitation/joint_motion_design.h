@@ -43,11 +43,12 @@ struct JointMotionOptions {
 
 struct JointMotionDesign {
   std::vector<std::string> joints;
-  std::vector<std::string> numbers;  ///< that can be told
-  std::vector<std::string> units;    ///< of every number
-  Eigen::Index untold = 0;           ///< further ones that no motion tells from those
-  Eigen::VectorXd before;            ///< standard deviations, measured motion
-  Eigen::VectorXd after;             ///< of the design, as long as that
+  std::vector<std::string> joint_units;  ///< "rad" or "m"
+  std::vector<std::string> numbers;      ///< that can be told
+  std::vector<std::string> units;        ///< of every number
+  Eigen::Index untold = 0;  ///< further ones that no motion tells from those
+  Eigen::VectorXd before;   ///< standard deviations, measured motion
+  Eigen::VectorXd after;    ///< of the design, as long as that
   double condition_before = 0.0;
   double condition_after = 0.0;
   double highest_frequency = 0.0;   ///< [Hz]
@@ -61,10 +62,12 @@ struct JointMotionDesign {
   bool stopped = false;
 
   double Gain() const { return condition_before / condition_after; }
+  /// Where the joints go, for their controller to follow.
+  Record Motion() const;
 };
 
-/// InputError on joints that are limited and not there, on limits that the plant cannot
-/// keep, or a record that does not say where the joints are. NumericalError if the measured
+/// InputError on joints that are limited and not there, on limits of jerk and snap, or that
+/// the plant cannot keep, or a record that does not say where the joints are. NumericalError if the measured
 /// motion does not tell the numbers apart.
 JointMotionDesign DesignJointMotion(const Machine& machine, const MeasuredRun& run,
                                     const JointMotionOptions& options);

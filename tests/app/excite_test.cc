@@ -49,8 +49,6 @@ TEST(ExciteCommand, SaysWhatAMachineWithoutControllersNeeds) {
   EXPECT_THAT(complaint("panda --record none.csv"), HasSubstr("none.csv"));
   EXPECT_THAT(complaint("panda --record none.csv --for friction"),
               HasSubstr("no --for"));
-  EXPECT_THAT(complaint("panda --record none.csv --limit joint1:snap=1"),
-              HasSubstr("jerk or snap"));
   EXPECT_THAT(complaint("ab383 --record none.csv"), HasSubstr("controllers"));
 }
 

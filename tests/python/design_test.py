@@ -338,5 +338,42 @@ class TolerateTest(Test):
         self.assertRefuses(lambda: unseen.tolerate(duration=0.1), "twin")
 
 
+class ExciteJointsTest(Test):
+    def setUp(self):
+        super().setUp()
+        self.arm = mjdiag.Machine(arm())
+        self.record = self.arm.simulate(seed=1)
+
+    def test_tells_numbers_apart_better_within_the_limits(self):
+        design = self.arm.excite_joints(
+            self.record, limits={"elbow": {"velocity": 3.0}}, budget=2)
+        self.assertLess(design.condition_after, design.condition_before)
+        # Of a planar arm: an inertia and two moments of each link, two frictions of each
+        # joint and the elbow's rotor.
+        self.assertEqual(len(design.numbers), 3 * 2 + 2 * 2 + 1)
+        for of_all in (design.units, design.sd_before, design.sd_after):
+            self.assertEqual(len(of_all), len(design.numbers))
+        self.assertEqual(design.joints, ["shoulder", "elbow"])
+        self.assertEqual(design.position.shape, (2, len(self.record["q1"])))
+        np.testing.assert_array_equal(design.record["elbow"], design.position[1])
+        self.assertEqual(design.record.units["elbow"], "rad")
+        self.assertLessEqual(design.peaks["elbow"]["velocity"], 3.01)
+        self.assertEqual(design.limits["elbow"]["velocity"], 3.0)
+        self.assertEqual(design.to_dict()["schema"], "mjdiag.joint_excitation/1")
+        self.assertIn("condition number", design.verdict)
+        self.assertIn("damping@elbow", design._repr_html_())
+        design.report("next.html")
+        self.assertGreater(os.path.getsize("next.html"), 10000)
+
+    def test_refuses_what_it_cannot_keep(self):
+        excite = self.arm.excite_joints
+        self.assertRefuses(lambda: excite(self.record, limits={"wrist": {"force": 1}}),
+                           "shoulder, elbow")
+        self.assertRefuses(lambda: excite(self.record, limits={"elbow": {"snap": 1}}),
+                           "snap")
+        self.assertRefuses(lambda: excite(self.record, budget=0), "budget")
+        self.assertRefuses(lambda: excite(3), "int")
+
+
 if __name__ == "__main__":
     unittest.main()

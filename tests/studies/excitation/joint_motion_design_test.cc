@@ -142,6 +142,8 @@ TEST_F(ExcitedArm, RefusesLimitsOfNoJointAndThoseThatNothingKeeps) {
   };
   EXPECT_THAT([&] { designed("wrist", {}); },
               ThrowsMessage<InputError>(HasSubstr("shoulder, elbow")));
+  EXPECT_THAT([&] { designed("elbow", {.snap = 2.0}); },
+              ThrowsMessage<InputError>(HasSubstr("jerk or snap")));
   EXPECT_THAT([&] { designed("elbow", {.lowest = 2.0, .highest = 1.0}); },
               ThrowsMessage<InputError>(HasSubstr("lowest < highest")));
   EXPECT_THAT(
