@@ -1,6 +1,7 @@
 #include "mjdiag/signals/loaded_module.h"
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -16,11 +17,14 @@ namespace fs = std::filesystem;
 /// Of the program or library that this code was linked into.
 fs::path OwnFolder() {
   Dl_info own{};
+  link_map* map = nullptr;
+  const bool found = dladdr1(reinterpret_cast<const void*>(&FunctionOf), &own,
+                             reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0;
+  // Of the program the loader knows no more than how it was called, which may be the name
+  // of something else in the folder where it runs; it is listed without a name.
+  const bool is_library = found && map != nullptr && *map->l_name != '\0';
   std::error_code ignored;
-  if (dladdr(reinterpret_cast<const void*>(&FunctionOf), &own) == 0) return {};
-  // A program is named as it was called.
-  const fs::path file = fs::canonical(own.dli_fname, ignored);
-  return (file.empty() ? fs::read_symlink("/proc/self/exe", ignored) : file)
+  return fs::canonical(is_library ? map->l_name : "/proc/self/exe", ignored)
       .parent_path();
 }
 
