@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
@@ -20,6 +21,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// Of the control rate: what is faster no filter tells from noise.
+constexpr double kFastestOfControl = 0.1;
 constexpr int kFilterOrder = 2;  // forwards and backwards: four
 
 /// Continued by two periods of the band on either side, by point reflection: a record may
@@ -114,6 +117,10 @@ class InputsOfTick final : public TickControl {
 };
 
 }  // namespace
+
+double BalanceBandwidth(const Machine& machine, const MeasuredRun& run) {
+  return std::min(FastestForce(run), kFastestOfControl * machine.rates().control);
+}
 
 FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
                       double bandwidth) {

@@ -39,6 +39,10 @@ struct FilteredRun {
   double bandwidth = 0.0;  ///< [Hz]
 };
 
+/// Of the filter of a run [Hz]: the fastest force that goes with the motion (FastestForce),
+/// or what a filter at the control rate still tells from noise.
+double BalanceBandwidth(const Machine& machine, const MeasuredRun& run);
+
 /// @param bandwidth  of the filter [Hz], below half the control rate
 /// InputError if the readings do not say where the joints are.
 FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run, double bandwidth);

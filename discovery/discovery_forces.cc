@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "mjdiag/comparison/missing_force.h"
+#include "mjdiag/comparison/force_balance.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/forces/force_search.h"
 #include "mjdiag/discovery/selection/model_choice.h"
@@ -18,9 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// Of the control rate: what is faster no filter tells from noise.
-constexpr double kFastest = 0.1;
 
 /// The problem with doubts about where masses are, too: a machine that stays at its rest
 /// does not show it.
@@ -191,9 +188,8 @@ int StepsEnough(const DiscoveryProblem& problem, const FilteredRun& filtered,
 
 bool Discoverer::TakeForces(const SearchOptions& search) {
   if (!GoesAlongMotion() || !work_->MayBegin("laws along the motion")) return false;
-  const double bandwidth =
-      std::min(FastestForce(problem_.run()), kFastest * machine_.rates().control);
-  const FilteredRun filtered = FilterRun(machine_, problem_.run(), bandwidth);
+  const FilteredRun filtered =
+      FilterRun(machine_, problem_.run(), BalanceBandwidth(machine_, problem_.run()));
   ForceBalance nominal = BalanceForces(machine_, {}, filtered);
   problem_ = WithCentres(problem_, KnownNumbers());
   ForceSearchOptions options;

@@ -10,6 +10,7 @@
 #include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -156,9 +157,7 @@ void Discoverer::NoteBudget() {
   Budget& budget = discovery_.budget;
   budget = {work_->used(), work_->limit(), work_->IsStopped(), work_->left_out()};
   if (budget.left_out.empty()) return;
-  std::string rest;
-  for (const std::string& what : budget.left_out)
-    rest += (rest.empty() ? "" : ", ") + what;
+  const std::string rest = Listed(budget.left_out);
   discovery_.notes.push_back(budget.stopped
                                  ? "it was stopped; left out: " + rest
                                  : "ended by its budget of " + Seconds(budget.limit) +

@@ -4,7 +4,6 @@
 
 #include <pybind11/stl.h>
 
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -79,6 +78,19 @@ std::map<std::string, AxisLimits> LimitsByAxis(const py::object& given) {
   return limits;
 }
 
+py::dict LimitDict(const std::vector<std::string>& names,
+                   const std::vector<AxisLimits>& all) {
+  py::dict axes;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    py::dict own;
+    for (const auto& [name, limit] : kAxisLimits) {
+      if (std::isfinite(all[i].*limit)) own[name] = all[i].*limit;
+    }
+    axes[names[i].c_str()] = own;
+  }
+  return axes;
+}
+
 void RequirePositive(const char* what, double value, const char* unit) {
   if (value > 0.0 && std::isfinite(value)) return;
   throw InputError(what, FormatNumber(value) + " " + unit, "more than 0");
@@ -104,12 +116,7 @@ MotionDesignObject ExciteMachine(const MachineObject& object, const py::object& 
   }
   MotionDesignObject made{object, {}};
   RunLong(progress, true, [&](LongCall& call) {
-    const auto begin = std::chrono::steady_clock::now();
-    options.stop = [&] {
-      const std::chrono::duration<double> taken =
-          std::chrono::steady_clock::now() - begin;
-      return call.IsStopped() || taken.count() > budget;
-    };
+    options.stop = call.StopAfter(budget);
     options.progress = [&](double fraction, double gain) {
       call.Tell(fraction, gain > 1.0 ? "motions; so far: sd " + FormatNumber(gain, 3) +
                                            " times smaller"
@@ -122,15 +129,11 @@ MotionDesignObject ExciteMachine(const MachineObject& object, const py::object& 
 
 namespace {
 
-py::dict NumbersByAxis(const MotionDesignObject& object,
-                       const std::vector<AxisLimits>& all) {
-  py::dict axes;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    py::dict own;
-    for (const auto& [name, limit] : kAxisLimits) own[name] = all[i].*limit;
-    axes[object.machine.setup().control.axes[i].name.c_str()] = own;
-  }
-  return axes;
+std::vector<std::string> AxesOf(const MotionDesignObject& object) {
+  std::vector<std::string> names;
+  for (const AxisSetup& axis : object.machine.setup().control.axes)
+    names.push_back(axis.name);
+  return names;
 }
 
 py::list TonesOf(const MotionDesignObject& object) {
@@ -208,7 +211,7 @@ void BindMotion(MotionClass& design) {
       .def_property_readonly(
           "limits",
           [](const MotionDesignObject& object) {
-            return NumbersByAxis(object, object.design.limits);
+            return LimitDict(AxesOf(object), object.design.limits);
           },
           R"(
           Axis -> dict with lowest, highest [m or rad], velocity, acceleration, jerk, snap
@@ -216,7 +219,7 @@ void BindMotion(MotionClass& design) {
       .def_property_readonly(
           "peaks",
           [](const MotionDesignObject& object) {
-            return NumbersByAxis(object, object.design.peaks);
+            return LimitDict(AxesOf(object), object.design.peaks);
           },
           "The same of what it does in the nonlinear machine without noise.")
       .def_property_readonly(

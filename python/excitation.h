@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mjdiag/studies/excitation/motion_design.h"
 #include "python/machine.h"
@@ -19,6 +20,9 @@ struct MotionDesignObject {
 
 /// axis -> name -> number, or None. InputError on anything else.
 std::map<std::string, AxisLimits> LimitsByAxis(const pybind11::object& given);
+/// name -> dict of the limits that there are.
+pybind11::dict LimitDict(const std::vector<std::string>& names,
+                         const std::vector<AxisLimits>& all);
 /// InputError on what is not finite and above 0.
 void RequirePositive(const char* what, double value, const char* unit);
 

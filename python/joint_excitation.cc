@@ -4,7 +4,6 @@
 
 #include <pybind11/stl.h>
 
-#include <chrono>
 #include <utility>
 
 #include "mjdiag/plugin/replay/tracking.h"
@@ -35,12 +34,7 @@ JointMotionObject ExciteJoints(const MachineObject& object, const py::object& re
   const MeasuredFile measured = MeasuredOf(object.setup(), record, "excite_joints");
   JointMotionObject made{object, {}, measured.notes};
   RunLong(progress, true, [&](LongCall& call) {
-    const auto begin = std::chrono::steady_clock::now();
-    options.stop = [&] {
-      const std::chrono::duration<double> taken =
-          std::chrono::steady_clock::now() - begin;
-      return call.IsStopped() || taken.count() > budget;
-    };
+    options.stop = call.StopAfter(budget);
     options.progress = [&](double fraction, double condition) {
       call.Tell(fraction,
                 "motions; so far: condition number " + FormatNumber(condition, 3));
@@ -76,21 +70,6 @@ py::object NumberFrame(const JointMotionObject& object) {
   columns["sd_after"] = Copy(object.design.after);
   return Library("pandas", "JointMotionDesign.to_pandas")
       .attr("DataFrame")(columns, py::arg("index") = object.design.numbers);
-}
-
-py::dict NumbersByJoint(const JointMotionDesign& design,
-                        const std::vector<AxisLimits>& all) {
-  py::dict joints;
-  for (std::size_t j = 0; j < all.size(); ++j) {
-    py::dict own;
-    for (const char* name :
-         {"lowest", "highest", "velocity", "acceleration", "force"}) {
-      AxisLimits limits = all[j];
-      own[name] = *FindLimit(limits, name);
-    }
-    joints[design.joints[j].c_str()] = own;
-  }
-  return joints;
 }
 
 std::string JointMotionHtml(const JointMotionObject& object) {
@@ -150,7 +129,7 @@ void BindJointPath(JointMotionClass& design) {
       .def_property_readonly(
           "limits",
           [](const JointMotionObject& object) {
-            return NumbersByJoint(object.design, object.design.limits);
+            return LimitDict(object.design.joints, object.design.limits);
           },
           R"(
           Joint -> dict with lowest, highest [m or rad], velocity, acceleration and force
@@ -158,7 +137,7 @@ void BindJointPath(JointMotionClass& design) {
       .def_property_readonly(
           "peaks",
           [](const JointMotionObject& object) {
-            return NumbersByJoint(object.design, object.design.peaks);
+            return LimitDict(object.design.joints, object.design.peaks);
           },
           "The same of what it does.");
 }

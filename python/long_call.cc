@@ -68,6 +68,14 @@ std::function<void(double)> LongCall::Teller(std::string what) {
   };
 }
 
+std::function<bool()> LongCall::StopAfter(double seconds) const {
+  return [this, seconds, begin = std::chrono::steady_clock::now()] {
+    const std::chrono::duration<double> taken =
+        std::chrono::steady_clock::now() - begin;
+    return IsStopped() || taken.count() > seconds;
+  };
+}
+
 void LongCall::Tell(double fraction, const std::string& what) {
   const std::lock_guard lock(mutex_);
   news_ = {fraction, what};

@@ -28,6 +28,9 @@ class LongCall {
   /// The same of work that ends by itself if it is asked to.
   void Tell(double fraction, const std::string& what);
   bool IsStopped() const { return stopped_; }
+  /// For options that take a function: whether to end, by then or because that many
+  /// seconds are over. The call must outlive it.
+  std::function<bool()> StopAfter(double seconds) const;
 
  private:
   friend void RunLong(const pybind11::object& progress, bool has_answer,

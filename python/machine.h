@@ -79,7 +79,7 @@ class MachineObject {
   void RequireQuiet(const std::string& what) const;
 
  private:
-  using Folders = std::vector<std::unique_ptr<TemporaryFolder>>;
+  using Folders = std::vector<std::unique_ptr<ScratchFolder>>;
 
   MachineObject Changed(Changes changes) const;
   /// Its setup, with the trajectories that it was made to follow, for another folder.

@@ -116,7 +116,7 @@ std::filesystem::path MachineObject::SetupFor(const std::filesystem::path& folde
   std::filesystem::path setup = source_.setup;
   if (!followed_.empty()) FileForOther(setup, folder);
   for (const Trajectory& trajectory : followed_) {
-    made.push_back(std::make_unique<TemporaryFolder>());
+    made.push_back(std::make_unique<ScratchFolder>());
     WriteSetupFollowing(made.back()->path(), setup, trajectory);
     setup = made.back()->path();
   }

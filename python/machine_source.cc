@@ -3,8 +3,6 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <system_error>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
@@ -16,19 +14,6 @@ namespace mjdiag::python {
 
 namespace fs = std::filesystem;
 namespace py = pybind11;
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "mjdiag-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw InputError(name, "cannot be made", "a folder for temporary files");
-  }
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
 
 // JSON has the same texts and escapes.
 std::string TomlText(const std::string& key, py::handle value) {
@@ -144,7 +129,7 @@ std::string SetupOf(const fs::path& mjcf, const fs::path& plant) {
 /// A file with that MJCF, which may be one already.
 fs::path MjcfFile(const std::string& mjcf, MachineSource& source) {
   if (!IsMjcfText(mjcf)) return fs::absolute(mjcf);
-  if (!source.texts) source.texts = std::make_shared<TemporaryFolder>();
+  if (!source.texts) source.texts = std::make_shared<ScratchFolder>();
   fs::path file = source.texts->path() / "plant.xml";
   WriteTextFile(file, mjcf);
   return file;
@@ -162,7 +147,7 @@ MachineSource SourceOf(const py::object& machine, const py::object& plant,
     }
     const fs::path mjcf = MjcfFile(text, source);
     const std::string setup = SetupOf(mjcf, source.texts ? mjcf.filename() : mjcf);
-    if (!source.texts) source.texts = std::make_shared<TemporaryFolder>();
+    if (!source.texts) source.texts = std::make_shared<ScratchFolder>();
     source.setup = source.texts->path() / "setup.toml";
     WriteTextFile(source.setup, setup);
   } else if (!plant.is_none()) {

@@ -9,27 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/signals/scratch_folder.h"
+
 namespace mjdiag::python {
-
-/// A folder that is there as long as somebody holds it.
-class TemporaryFolder {
- public:
-  /// InputError if it cannot be made.
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 struct MachineSource {
   std::filesystem::path setup;         ///< for ReadSetup
   std::vector<std::string> overrides;  ///< the same
   /// Holds what was given as text; null if nothing was.
-  std::shared_ptr<const TemporaryFolder> texts{};
+  std::shared_ptr<const ScratchFolder> texts{};
 };
 
 /// A value in TOML. InputError names the key of one that TOML does not have.

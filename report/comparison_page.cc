@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "mjdiag/report/page/page.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -15,12 +16,6 @@ std::string Seconds(double value) { return FormatNumber(value, 4); }
 std::string Ratio(const ChannelMismatch& channel) {
   if (channel.rms == 0.0) return "0";
   return FormatNumber(channel.rms / channel.noise_floor.rms);
-}
-
-std::string Listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 void AddRecordFacts(Page& page, const Comparison& comparison,

@@ -5,6 +5,7 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/report/filter_plots.h"
 #include "mjdiag/report/page/page.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -27,10 +28,8 @@ std::string Ranks(const DesignFacts& facts) {
   return text + " of " + std::to_string(facts.states) + " states";
 }
 
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
+std::string ListedOrNone(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : Listed(names);
 }
 
 void AddHealthyEstimates(Page& page, const DiagnosisDesign& design) {
@@ -137,7 +136,7 @@ Page DesignPage(const DiagnosisDesign& design, const DesignFacts& facts,
   Page page("Diagnosis designed for " + design.setup);
   page.SetVerdict(Tone::kNeutral, DesignVerdict(design, facts));
   page.AddFacts({{"Setup", design.setup},
-                 {"Faults estimated", Joined(design.FaultNames())},
+                 {"Faults estimated", ListedOrNone(design.FaultNames())},
                  {"Residuals", std::to_string(design.bank.residuals)},
                  {"Sampling rate", FormatQuantity(1.0 / design.sample_time(), "Hz")},
                  {"Ranks of the observability stack", Ranks(facts)}});

@@ -1,22 +1,11 @@
 #include "mjdiag/report/excitation_page.h"
 
+#include <cmath>
+
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
-
-Table Limits(const Machine& machine, const MotionDesign& design) {
-  Table table{{{"axis", false}, {"", false}, {"limit", true}, {"this motion", true}},
-              {}};
-  for (std::size_t i = 0; i < design.limits.size(); ++i) {
-    for (const auto& [name, limit] : kAxisLimits) {
-      table.rows.push_back({machine.setup().control.axes[i].name, name,
-                            FormatNumber(design.limits[i].*limit, 4),
-                            FormatNumber(design.peaks[i].*limit, 4)});
-    }
-  }
-  return table;
-}
 
 Table Tones(const MotionDesign& design) {
   Table table{{{"axis", false}, {"frequency [Hz]", true}, {"amplitude", true}}, {}};
@@ -25,22 +14,6 @@ Table Tones(const MotionDesign& design) {
         {tone.axis, FormatNumber(tone.frequency, 4), FormatNumber(tone.amplitude, 4)});
   }
   return table;
-}
-
-TimePlot Readings(const std::string& channel, const MotionDesign& design) {
-  const Channel& after = design.run_after.At(channel);
-  TimePlot plot{.caption = "Reading of " + channel,
-                .quantity = channel,
-                .unit = after.unit,
-                .sample_time = design.run_after.sample_time(),
-                .curves = {},
-                .bands = {},
-                .levels = {},
-                .marks = {}};
-  plot.curves = {
-      {"default motion", CurveRole::kMeasured, design.run_before.At(channel).samples},
-      {"this motion", CurveRole::kSimulated, after.samples}};
-  return plot;
 }
 
 }  // namespace
@@ -60,6 +33,36 @@ Table DeviationTable(const MotionDesign& design) {
                           design.wanted[i] ? "yes" : ""});
   }
   return table;
+}
+
+Table LimitTable(const std::string& kind, const std::vector<std::string>& names,
+                 const std::vector<AxisLimits>& limits,
+                 const std::vector<AxisLimits>& peaks) {
+  Table table{{{kind, false}, {"", false}, {"limit", true}, {"this motion", true}}, {}};
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    for (const auto& [name, limit] : kAxisLimits) {
+      if (!std::isfinite(limits[i].*limit)) continue;
+      table.rows.push_back({names[i], name, FormatNumber(limits[i].*limit, 4),
+                            FormatNumber(peaks[i].*limit, 4)});
+    }
+  }
+  return table;
+}
+
+TimePlot BesidePlot(const std::string& what, const Channel& before,
+                    const std::string& beside, const Channel& after,
+                    double sample_time) {
+  TimePlot plot{.caption = what + " of " + after.name,
+                .quantity = after.name,
+                .unit = after.unit,
+                .sample_time = sample_time,
+                .curves = {},
+                .bands = {},
+                .levels = {},
+                .marks = {}};
+  plot.curves = {{beside, CurveRole::kMeasured, before.samples},
+                 {"this motion", CurveRole::kSimulated, after.samples}};
+  return plot;
 }
 
 std::string GainText(const MotionDesign& design) {
@@ -90,12 +93,16 @@ Page ExcitationPage(const Machine& machine, const MotionDesign& design,
                       " times as far, and tones.");
   }
   page.AddTable(Tones(design));
+  std::vector<std::string> axes;
   for (const AxisSetup& axis : machine.setup().control.axes) {
-    page.AddPlot(Readings(axis.sensor, design));
+    axes.push_back(axis.name);
+    page.AddPlot(BesidePlot("Reading", design.run_before.At(axis.sensor),
+                            "default motion", design.run_after.At(axis.sensor),
+                            design.run_after.sample_time()));
   }
   page.AddHeading("Its limits");
   page.AddParagraph("Peaks of the nonlinear machine without noise, in SI units.");
-  page.AddTable(Limits(machine, design));
+  page.AddTable(LimitTable("axis", axes, design.limits, design.peaks));
   page.SetRun(run);
   return page;
 }

@@ -2,27 +2,10 @@
 
 #include <cmath>
 
+#include "mjdiag/report/excitation_page.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
-namespace {
-
-Table JointLimits(const JointMotionDesign& design) {
-  Table table{{{"joint", false}, {"", false}, {"limit", true}, {"this motion", true}},
-              {}};
-  for (std::size_t j = 0; j < design.joints.size(); ++j) {
-    for (const auto& [name, limit] : kAxisLimits) {
-      if (limit == &AxisLimits::jerk || limit == &AxisLimits::snap) continue;
-      table.rows.push_back({design.joints[j], name,
-                            FormatNumber(design.limits[j].*limit, 4),
-                            FormatNumber(design.peaks[j].*limit, 4)});
-    }
-  }
-  return table;
-}
-
-}  // namespace
-
 Table NumberTable(const JointMotionDesign& design) {
   Table table{{{"number", false},
                {"standard deviation, measured motion", true},
@@ -59,34 +42,26 @@ Page JointExcitationPage(const Machine& machine, const JointMotionDesign& design
   page.SetVerdict(design.Gain() > 1.0 ? Tone::kGood : Tone::kNeutral,
                   ConditionText(design));
   page.AddHeading("What it tells");
-  page.AddParagraph(ToldText(design) +
-                    " Standard deviations of the best linear unbiased estimator, with "
-                    "noise as large as "
-                    "what no such numbers explain of the record, up to " +
-                    FormatQuantity(design.bandwidth, "Hz") + ".");
+  page.AddParagraph(
+      ToldText(design) +
+      " Standard deviations of the best linear unbiased estimator, with "
+      "noise as large as what no such numbers explain of the record, up to " +
+      FormatQuantity(design.bandwidth, "Hz") + ".");
   page.AddTable(NumberTable(design));
   page.AddHeading("The motion");
   page.AddParagraph("A Fourier series up to " +
                     FormatQuantity(design.highest_frequency, "Hz") +
                     ", at rest at its begin and end.");
+  const Record motion = design.Motion();
   for (std::size_t j = 0; j < design.joints.size(); ++j) {
-    const auto row = static_cast<Eigen::Index>(j);
-    TimePlot plot{.caption = "Position of " + design.joints[j],
-                  .quantity = design.joints[j],
-                  .unit = design.joint_units[j],
-                  .sample_time = design.sample_time,
-                  .curves = {},
-                  .bands = {},
-                  .levels = {},
-                  .marks = {}};
-    plot.curves = {
-        {"measured motion", CurveRole::kMeasured, design.position_before.row(row)},
-        {"this motion", CurveRole::kSimulated, design.position.row(row)}};
-    page.AddPlot(plot);
+    const Channel before{design.joints[j], design.joint_units[j],
+                         design.position_before.row(static_cast<Eigen::Index>(j))};
+    page.AddPlot(BesidePlot("Position", before, "measured motion",
+                            motion.At(design.joints[j]), design.sample_time));
   }
   page.AddHeading("Its limits");
   page.AddParagraph("In SI units; forces are those of the plant as it is given.");
-  page.AddTable(JointLimits(design));
+  page.AddTable(LimitTable("joint", design.joints, design.limits, design.peaks));
   page.SetRun(run);
   return page;
 }

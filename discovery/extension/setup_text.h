@@ -9,6 +9,7 @@
 
 #include "mjdiag/discovery/extension/text_changes.h"
 #include "mjdiag/plugin/setup/toml_library.h"
+
 namespace mjdiag {
 
 class SetupText {

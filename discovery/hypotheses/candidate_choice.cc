@@ -5,6 +5,7 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
@@ -23,12 +24,6 @@ bool IsMeantBy(const Candidate& candidate, const std::string& text) {
 bool IsMeantByAny(const Candidate& candidate, const std::vector<std::string>& texts) {
   return std::ranges::any_of(
       texts, [&](const std::string& text) { return IsMeantBy(candidate, text); });
-}
-
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// What an effect that is known may be called at the sites of a machine.
@@ -65,9 +60,9 @@ void RequireMeaning(const std::vector<Candidate>& all, const std::string& option
   const std::vector<std::string> places = PlacesOf(all, text.substr(0, text.find('@')));
   throw InputError(option, "'" + text + "' is no cause that is looked for here",
                    places.empty()
-                       ? "one of " + Joined(plain) + ", or an effect at a site as in " +
+                       ? "one of " + Listed(plain) + ", or an effect at a site as in " +
                              (all.empty() ? "" : Describe(all.back()))
-                       : "one of " + Joined(places));
+                       : "one of " + Listed(places));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
@@ -28,10 +29,6 @@ bool MovesTheEquilibrium(const Machine& machine, const Fault& fault) {
 
 Eigen::VectorXd Magnitudes(const Setup& setup,
                            const std::vector<std::string>& parameters) {
-  std::string known;
-  for (const std::string& name : parameters) {
-    known += (known.empty() ? "" : ", ") + name;
-  }
   Eigen::VectorXd magnitudes = Eigen::VectorXd::Constant(
       static_cast<Eigen::Index>(parameters.size()), kDefaultMagnitude);
   for (const auto& [name, magnitude] : setup.diagnosis.magnitudes) {
@@ -39,7 +36,7 @@ Eigen::VectorXd Magnitudes(const Setup& setup,
     if (found == parameters.end()) {
       throw InputError("setup '" + setup.name + "': diagnosis.estimation.magnitudes",
                        "the plant has no fault parameter '" + name + "'",
-                       "one of " + known);
+                       "one of " + Listed(parameters));
     }
     magnitudes[found - parameters.begin()] = magnitude;
   }

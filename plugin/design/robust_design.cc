@@ -7,6 +7,7 @@
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
@@ -72,10 +73,8 @@ MatrixXd Response(const DiagnosisDesign& design, const Machine& machine,
   const std::vector<std::string> names = design.FaultNames();
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {
-    std::string known;
-    for (const auto& name : names) known += (known.empty() ? "" : ", ") + name;
     throw InputError("robust residual", "there is no fault '" + fault + "'",
-                     "one of " + known);
+                     "one of " + Listed(names));
   }
   const Index index = found - names.begin();
   const auto parameters = static_cast<Index>(design.bank.faults.size());

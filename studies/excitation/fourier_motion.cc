@@ -62,17 +62,14 @@ FourierMotion::FourierMotion(double duration, int harmonics,
       wanted_(MakeBasis(duration, harmonics, samples)),
       fine_(MakeBasis(duration, harmonics, kPeaksPerPeriod * harmonics + 1)) {}
 
-Index FourierMotion::parameters() const {
-  return std::ssize(limits_) * (fine_.position.cols() + 2);
-}
-
 JointMotion FourierMotion::At(const VectorXd& parameters) const {
   const Index shapes = fine_.position.cols(), samples = wanted_.position.rows();
   const Index joints = std::ssize(limits_);
   JointMotion motion{MatrixXd(joints, samples), MatrixXd(joints, samples),
                      MatrixXd(joints, samples)};
   for (Index j = 0; j < joints; ++j) {
-    const auto own = parameters.segment(j * (shapes + 2), shapes + 2);
+    const auto own =
+        parameters.segment(j * parameters_of_a_joint(), parameters_of_a_joint());
     const VectorXd shape = own.head(shapes);
     const AxisLimits& limits = limits_[static_cast<std::size_t>(j)];
     const VectorXd positions = fine_.position * shape;

@@ -34,7 +34,10 @@ class FourierMotion {
   /// Numbers of a motion: of every joint its shape, where it stands in what is left of its
   /// range (0: lowest, 1: highest) and the share of the largest size, these two brought
   /// into 0 .. 1.
-  Eigen::Index parameters() const;
+  Eigen::Index parameters() const {
+    return parameters_of_a_joint() * static_cast<Eigen::Index>(limits_.size());
+  }
+  Eigen::Index parameters_of_a_joint() const { return fine_.position.cols() + 2; }
   /// As large as the limits allow, times the share.
   JointMotion At(const Eigen::VectorXd& parameters) const;
 

@@ -46,6 +46,7 @@ InertialRows RowsAlong(InertialRegressor& regressor, const JointMotion& motion,
   for (Index k = 0; k < samples; ++k) {
     const MatrixXd Y = regressor.At(motion.position.col(k), motion.velocity.col(k),
                                     motion.acceleration.col(k));
+    rows.touches = rows.touches || regressor.Touches();
     rows.force = rows.force.cwiseMax((Y * values).cwiseAbs());
     for (Index c = 0; c < std::ssize(numbers); ++c) {
       for (Index j = 0; j < joints; ++j) {

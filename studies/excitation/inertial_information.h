@@ -18,6 +18,7 @@ struct InertialRows {
   Eigen::MatrixXd
       W;  ///< one joint after the other, a column for every number asked for
   Eigen::VectorXd force;  ///< largest magnitude at every joint, of the plant as it is
+  bool touches = false;   ///< whether bodies of the plant do anywhere
 };
 
 /// @param numbers  places in the regressor's

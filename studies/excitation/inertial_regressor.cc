@@ -132,10 +132,7 @@ MatrixXd InertialRegressor::At(const VectorXd& position, const VectorXd& velocit
   return Y;
 }
 
-bool InertialRegressor::Touches(const VectorXd& position) {
-  VectorXd::Map(data_->qpos, joints()) = position;
-  mj_kinematics(model_.get(), data_.get());
-  mj_comPos(model_.get(), data_.get());
+bool InertialRegressor::Touches() {
   mj_collision(model_.get(), data_.get());
   return data_->ncon > 0;
 }

@@ -38,8 +38,8 @@ class InertialRegressor {
   /// Y, joints x numbers. @param position, velocity, acceleration  of every joint
   Eigen::MatrixXd At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity,
                      const Eigen::VectorXd& acceleration);
-  /// Whether bodies of the plant touch at that position.
-  bool Touches(const Eigen::VectorXd& position);
+  /// Whether bodies of the plant touch at the position of the last At.
+  bool Touches();
 
  private:
   ModelPtr model_;

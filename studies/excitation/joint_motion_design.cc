@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "mjdiag/comparison/force_balance.h"
-#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/studies/excitation/fourier_motion.h"
 #include "mjdiag/studies/excitation/inertial_information.h"
 
@@ -22,8 +22,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the control rate: what is faster no filter tells from noise.
-constexpr double kFastestOfControl = 0.1;
 // Samples of the fastest period at which a motion is judged.
 constexpr Index kJudgedPerPeriod = 12;
 constexpr int kMostHarmonics = 40;
@@ -83,9 +81,8 @@ class JointMotionDesigner {
       design_.joint_units.emplace_back(plant_.jnt_type[joint] == mjJNT_HINGE ? "rad"
                                                                              : "m");
     }
-    const FilteredRun filtered = FilterRun(
-        machine, run,
-        std::min(FastestForce(run), kFastestOfControl * machine.rates().control));
+    const FilteredRun filtered =
+        FilterRun(machine, run, BalanceBandwidth(machine, run));
     design_.bandwidth = filtered.bandwidth;
     TakeMeasured(filtered);
     SetLimits(regressor);
@@ -148,10 +145,8 @@ class JointMotionDesigner {
     for (const auto& [name, wanted] : options_.limits) {
       const auto joint = std::ranges::find(design_.joints, name);
       if (joint == design_.joints.end()) {
-        std::string joints;
-        for (const std::string& one : design_.joints)
-          joints += (joints.empty() ? "" : ", ") + one;
-        throw InputError("limits of " + name, "no such joint", "one of " + joints);
+        throw InputError("limits of " + name, "no such joint",
+                         "one of " + Listed(design_.joints));
       }
       if (std::isfinite(wanted.jerk) || std::isfinite(wanted.snap)) {
         throw InputError("limits of " + name, "jerk or snap",
@@ -191,10 +186,8 @@ class JointMotionDesigner {
   InertialInformation Judge(InertialRegressor& regressor,
                             const VectorXd& parameters) const {
     const JointMotion motion = judged_->At(parameters);
-    for (Index k = 0; k < motion.position.cols(); ++k) {
-      if (regressor.Touches(motion.position.col(k))) return {};
-    }
     const InertialRows rows = RowsAlong(regressor, motion, columns_, design_.noise);
+    if (rows.touches) return {};
     for (Index j = 0; j < rows.force.size(); ++j) {
       if (rows.force[j] > design_.limits[static_cast<std::size_t>(j)].force) return {};
     }
@@ -217,7 +210,7 @@ class JointMotionDesigner {
 
   /// Somewhere in the middle of each range.
   VectorXd Start(int round) {
-    const Index own = judged_->parameters() / std::ssize(design_.joints);
+    const Index own = judged_->parameters_of_a_joint();
     VectorXd start = VectorXd::Zero(judged_->parameters());
     Draw(1.0, start);
     for (Index j = 0; j < std::ssize(design_.joints); ++j)
@@ -228,7 +221,7 @@ class JointMotionDesigner {
   /// A motion with one joint moved otherwise.
   VectorXd Child(const VectorXd& parent, double step) {
     std::uniform_int_distribution<Index> any(0, std::ssize(design_.joints) - 1);
-    const Index own = judged_->parameters() / std::ssize(design_.joints);
+    const Index own = judged_->parameters_of_a_joint();
     VectorXd child = parent;
     Draw(step, child.segment(any(random_) * own, own));
     return child;

@@ -7,6 +7,7 @@
 
 #include "mjdiag/signals/csv_file.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/unit.h"
 #include "mjdiag/watch/stream/packet.h"
@@ -89,10 +90,8 @@ TickLines::Column TickLines::Find(const TickChannel& channel,
   const bool mapped = found != names.end();
   if (!mapped) found = std::ranges::find(names, channel.name);
   if (found == names.end()) {
-    std::string all;
-    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
     throw InputError("line of names", "no column '" + channel.column + "'",
-                     "it among " + all);
+                     "it among " + Listed(names));
   }
   const auto place = static_cast<std::size_t>(found - names.begin());
   const std::string& said = units[place];
