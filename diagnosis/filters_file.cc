@@ -73,7 +73,7 @@ json Json(const DisturbanceOptions& options) {
 
 DisturbanceOptions ToDisturbanceOptions(const json& object) {
   DisturbanceOptions options;
-  options.segment = object.at("segment");
+  options.segment = WholeOf(object.at("segment"));
   options.low = object.at("low");
   if (!object.at("high").is_null()) options.high = object.at("high");
   options.peak_margin = object.at("peak_margin");
@@ -96,7 +96,7 @@ json Json(const DisturbanceThresholds& limits) {
 
 DisturbanceThresholds ToDisturbanceThresholds(const json& object) {
   DisturbanceThresholds limits;
-  limits.segment = object.at("segment");
+  limits.segment = WholeOf(object.at("segment"));
   limits.peak = object.at("peak");
   limits.total = object.at("total");
   limits.noise_ratio = object.at("noise_ratio");
@@ -128,8 +128,9 @@ DiagnosisLimits ToLimits(const json& object) {
   limits.residual.fit = {object.at("fit").at("mean"), object.at("fit").at("sd")};
   limits.residual.histogram.edges =
       object.at("histogram").at("edges").get<std::vector<double>>();
-  limits.residual.histogram.count =
-      object.at("histogram").at("count").get<std::vector<Index>>();
+  for (const json& count : object.at("histogram").at("count")) {
+    limits.residual.histogram.count.push_back(WholeOf(count));
+  }
   limits.integral = object.at("integral");
   for (const json& pair : object.at("estimates")) {
     limits.estimates.push_back(ToInterval(pair));
@@ -148,7 +149,7 @@ DiagnosisDesign Parse(const json& object) {
   design.inputs = object.at("inputs").get<std::vector<std::string>>();
   design.offset = VectorOf(object.at("offset"));
   design.sensor_noise = VectorOf(object.at("sensor_noise"));
-  design.bank.residuals = object.at("residuals");
+  design.bank.residuals = WholeOf(object.at("residuals"));
   design.bank.faults = object.at("faults").get<std::vector<std::string>>();
   design.bank.filters = Bank(object.at("filters"), sample_time);
   for (const json& rows : object.at("rows"))
@@ -159,7 +160,7 @@ DiagnosisDesign Parse(const json& object) {
                                    VectorOf(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
-  design.decimation = object.at("stride");
+  design.decimation = WholeOf(object.at("stride"));
   const json& options = object.at("options");
   design.options.integral_window = options.at("integral_window");
   design.options.forgetting = options.at("forgetting");

@@ -41,4 +41,12 @@ inline Eigen::MatrixXd MatrixOf(const nlohmann::json& rows) {
   return matrix;
 }
 
+/// A whole number. The library converts 1e300, which is undefined.
+inline Eigen::Index WholeOf(const nlohmann::json& number) {
+  if (!number.is_number_integer()) {
+    throw nlohmann::json::type_error::create(302, "number is not whole", &number);
+  }
+  return number.get<Eigen::Index>();
+}
+
 }  // namespace mjdiag

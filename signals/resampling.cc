@@ -23,20 +23,20 @@ constexpr double kRounded = 0.01;  // of an interval: time stamps with few digit
 std::string Irregularity(const VectorXd& intervals, double usual) {
   VectorXd around(intervals.size());
   Index count = 0;
-  Index missing = 0;
+  double missing = 0.0;  // an interval may be 1e300 usual ones
   for (const double interval : intervals) {
     if (interval < kMissing * usual) {
       around[count++] = interval / usual - 1.0;
     } else {
-      missing += std::lround(interval / usual) - 1;
+      missing += std::round(interval / usual) - 1.0;
     }
   }
   const double sd = std::sqrt(around.head(count).squaredNorm() /
                               static_cast<double>(std::max<Index>(count, 1)));
-  const std::string fewer = std::to_string(missing) + " samples are missing";
-  if (sd < kRounded && missing > 0) return fewer;
+  const std::string fewer = FormatNumber(missing, 9) + " samples are missing";
+  if (sd < kRounded && missing > 0.0) return fewer;
   return "time stamps are irregular (their intervals vary by " +
-         FormatNumber(100.0 * sd, 2) + " %" + (missing > 0 ? ", " + fewer : "") + ")";
+         FormatNumber(100.0 * sd, 2) + " %" + (missing > 0.0 ? ", " + fewer : "") + ")";
 }
 
 /// The last sample that is not after the time; the first before all of them.

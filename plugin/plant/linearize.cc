@@ -111,18 +111,18 @@ MatrixXd JointDamping(const mjModel& model) {
 }
 
 /// Stiffness of everything but the joint springs: gravity, tendons, actuator bias.
-MatrixXd GeometricStiffness(const mjModel& model, const VectorXd& position) {
-  const ModelPtr bare = WithoutJointSprings(model);
-  SmoothDynamics dynamics(*bare, position);
+/// @param bare  WithoutJointSprings
+MatrixXd GeometricStiffness(const mjModel& bare, const VectorXd& position) {
+  SmoothDynamics dynamics(bare, position);
   return -Differentiate([&] { return dynamics.Force(); }, dynamics.data().qpos,
                         dynamics.size());
 }
 
 /// Damping of everything but the joint dampers. Terms quadratic in the velocity cancel
 /// in central differences.
-MatrixXd OtherDamping(const mjModel& model, const VectorXd& position) {
-  const ModelPtr bare = WithoutJointSprings(model);
-  SmoothDynamics dynamics(*bare, position);
+/// @param bare  WithoutJointSprings
+MatrixXd OtherDamping(const mjModel& bare, const VectorXd& position) {
+  SmoothDynamics dynamics(bare, position);
   return -Differentiate([&] { return dynamics.Force(); }, dynamics.data().qvel,
                         dynamics.size());
 }
@@ -209,6 +209,7 @@ VectorXd StaticEquilibrium(const mjModel& model) {
   SmoothDynamics dynamics(model, position);
   const VectorXd mass = dynamics.Mass().diagonal();
   const MatrixXd springs(JointStiffness(model).asDiagonal());
+  const ModelPtr bare = WithoutJointSprings(model);
   const auto force_at = [&](const VectorXd& at) {
     VectorXd::Map(dynamics.data().qpos, at.size()) = at;
     return dynamics.Force();
@@ -220,7 +221,7 @@ VectorXd StaticEquilibrium(const mjModel& model) {
   constexpr double kRounding = 1e-9;
   for (int i = 0; i < kIterations; ++i) {
     const VectorXd step =
-        NewtonStep(springs + GeometricStiffness(model, position), mass, force);
+        NewtonStep(springs + GeometricStiffness(*bare, position), mass, force);
     if (step.cwiseAbs().maxCoeff() <= kTolerance) {
       RequireRest(model, force.cwiseQuotient(mass));
       return position + step;
@@ -251,8 +252,9 @@ MechanicalModel Linearize(const mjModel& model, const Channels& channels,
   result.inputs = ChannelsOf(channels.actuators);
   result.outputs = ChannelsOf(channels.sensors);
   result.M = SmoothDynamics(model, rest).Mass();
-  result.D = JointDamping(model) + OtherDamping(model, rest);
-  result.K = GeometricStiffness(model, rest);
+  const ModelPtr bare = WithoutJointSprings(model);
+  result.D = JointDamping(model) + OtherDamping(*bare, rest);
+  result.K = GeometricStiffness(*bare, rest);
   result.K += JointStiffness(model).asDiagonal();
   result.Gamma = InputMatrix(*WithoutLimits(model), channels, rest);
   result.b = OutputMatrix(model, channels, rest);

@@ -1,9 +1,14 @@
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
+#include <mujoco/mjxmacro.h>
+
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <iterator>
 #include <mutex>
 #include <regex>
+#include <vector>
 
 #include "mjdiag/signals/error.h"
 
@@ -40,6 +45,63 @@ InputError MjcfError(const std::filesystem::path& mjcf, const std::string& repor
   std::smatch match;
   if (std::regex_search(report, match, kLine)) where += ":" + match[1].str();
   return {where, OneLine(report), "a valid MJCF model"};
+}
+
+bool HaveTheSameSizes(const mjModel& one, const mjModel& other) {
+#define X(name) \
+  if (one.name != other.name) return false;
+  MJMODEL_INTS
+#undef X
+  return true;
+}
+
+/// Models that nobody needs any more, for copies to be written into. Faults and causes are
+/// copies of a machine, made and dropped by the thousand; with textures or meshes most of
+/// the time of one is fresh memory, which the system clears and MuJoCo clears again.
+class SpareModels {
+ public:
+  /// One with the sizes of `like`, or nullptr.
+  mjModel* Take(const mjModel& like) {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(spares_.rbegin(), spares_.rend(),
+                     [&](mjModel* spare) { return HaveTheSameSizes(*spare, like); });
+    if (found == spares_.rend()) return nullptr;
+    mjModel* model = *found;
+    spares_.erase(std::next(found).base());
+    bytes_ -= Bytes(*model);
+    return model;
+  }
+
+  /// Takes it over. The oldest make room.
+  void Keep(mjModel* model) {
+    const std::lock_guard lock(mutex_);
+    spares_.push_back(model);
+    bytes_ += Bytes(*model);
+    while (bytes_ > kMostBytes || spares_.size() > kMostModels) {
+      bytes_ -= Bytes(*spares_.front());
+      mj_deleteModel(spares_.front());
+      spares_.erase(spares_.begin());
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostBytes = 64u << 20;
+  static constexpr std::size_t kMostModels = 16;
+
+  static std::size_t Bytes(const mjModel& model) {
+    return static_cast<std::size_t>(model.nbuffer);
+  }
+
+  std::mutex mutex_;
+  std::vector<mjModel*> spares_;
+  std::size_t bytes_ = 0;
+};
+
+/// Never destroyed: static machines give their models back after it would be.
+SpareModels& Spares() {
+  static SpareModels& spares = *new SpareModels;
+  return spares;
 }
 
 /// Number of elements of a kind.
@@ -89,8 +151,10 @@ ModelPtr LoadModel(const std::filesystem::path& mjcf) {
   return model;
 }
 
+void ModelDeleter::operator()(mjModel* model) const { Spares().Keep(model); }
+
 ModelPtr CopyModel(const mjModel& model) {
-  return ModelPtr(mj_copyModel(nullptr, &model));
+  return ModelPtr(mj_copyModel(Spares().Take(model), &model));
 }
 
 DataPtr MakeData(const mjModel& model) { return DataPtr(mj_makeData(&model)); }

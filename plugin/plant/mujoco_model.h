@@ -10,8 +10,9 @@
 
 namespace mjdiag {
 
+/// Gives a model back: its memory serves the next copy of one of the same sizes.
 struct ModelDeleter {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjModel* model) const;
 };
 struct DataDeleter {
   void operator()(mjData* data) const { mj_deleteData(data); }

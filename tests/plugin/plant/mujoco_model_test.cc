@@ -85,5 +85,37 @@ TEST(CopyModel, IsADeepCopy) {
   EXPECT_NE(model->body_mass[1], 1.0);
 }
 
+std::vector<std::byte> BytesOf(const mjModel& model) {
+  std::vector<std::byte> bytes(static_cast<std::size_t>(mj_sizeModel(&model)));
+  mj_saveModel(&model, nullptr, bytes.data(), static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+TEST(CopyModel, IntoTheMemoryOfADroppedOneLeavesNothingOfThat) {
+  const ModelPtr model = LoadModel(kBonder);
+  ModelPtr dropped = CopyModel(*model);
+  const mjModel* memory = dropped.get();
+  dropped->body_mass[1] = 1.0;
+  dropped->opt.timestep = 1.0;
+  dropped->geom_rgba[0] = 0.5f;
+  dropped.reset();
+  const ModelPtr copy = CopyModel(*model);
+  EXPECT_EQ(copy.get(), memory);
+  EXPECT_EQ(BytesOf(*copy), BytesOf(*model));
+}
+
+TEST(CopyModel, OfOtherSizesTakesOtherMemory) {
+  const ModelPtr model = LoadModel(kBonder);
+  ModelPtr dropped = CopyModel(*model);
+  const mjModel* memory = dropped.get();
+  dropped.reset();
+  const test::TemporaryFolder folder;
+  const ModelPtr other = LoadModel(
+      folder.Write("other.xml", "<mujoco><worldbody><light/></worldbody></mujoco>"));
+  const ModelPtr copy = CopyModel(*other);
+  EXPECT_NE(copy.get(), memory);
+  EXPECT_EQ(BytesOf(*copy), BytesOf(*other));
+}
+
 }  // namespace
 }  // namespace mjdiag
