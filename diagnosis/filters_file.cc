@@ -1,8 +1,10 @@
 #include "mjdiag/diagnosis/filters_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "mjdiag/diagnosis/json_matrix.h"
@@ -160,7 +162,10 @@ DiagnosisDesign Parse(const json& object) {
                                    VectorOf(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
-  design.decimation = WholeOf(object.at("stride"));
+  // What no int holds is refused with all that is too long.
+  constexpr Eigen::Index kMost = std::numeric_limits<int>::max();
+  design.decimation =
+      static_cast<int>(std::clamp(WholeOf(object.at("stride")), -kMost, kMost));
   const json& options = object.at("options");
   design.options.integral_window = options.at("integral_window");
   design.options.forgetting = options.at("forgetting");
