@@ -87,7 +87,7 @@ void StudyOverBareLoop(benchmark::State& state) {
   state.counters["runs/s"] = turn * kRuns / study_seconds;
 }
 
-BENCHMARK(StudyOverBareLoop)->Iterations(7)->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyOverBareLoop)->Iterations(3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace mjdiag

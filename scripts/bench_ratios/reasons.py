@@ -1,0 +1,3 @@
+"""Why a target is missed, for as long as it is."""
+
+REASONS = ""
