@@ -20,7 +20,7 @@ class Entry:
     values: dict  # name of a ratio -> one of every round
 
     @staticmethod
-    def of_now(root, values):
+    def of_now(root):
         def git(*words):
             return subprocess.run(["git", "-C", str(root), *words], check=True,
                                   capture_output=True, text=True).stdout.strip()
@@ -30,7 +30,7 @@ class Entry:
                       ":!docs/performance.md", ":!docs/performance.json")
         commit = git("rev-parse", "--short=8", "HEAD") + ("+" if changed else "")
         cores = len(os.sched_getaffinity(0))
-        return Entry(commit, f"{cores} core" + "s" * (cores != 1), values)
+        return Entry(commit, f"{cores} core" + "s" * (cores != 1), {})
 
 
 def read(path):

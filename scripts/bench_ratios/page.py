@@ -22,7 +22,7 @@ the same computer. Bold is a target that is missed; the reasons are below the ta
 
 
 def number(value, ratio):
-    return f"{value:.{ratio.digits}f}" if value < 100 else f"{value:.3g}"
+    return f"{value:.{ratio.digits if value < 100 else 0}f}"
 
 
 def line(ratio, entries):

@@ -35,7 +35,7 @@ def clip(case, counter):
 
 
 def discovery(case):
-    return ("discovery_bench", f"DiscoverIn/{case}", "runs")
+    return ("discovery_bench", f"DiscoverIn/{case}", "work")
 
 
 RATIOS = (
@@ -74,9 +74,9 @@ RATIOS = (
     Ratio("clip_rate", "frames of 1280x720 of a clip with its diagnosis", "a second",
           clip("with_diagnosis", "clip_frames_per_s"), less_is_better=False, target=60.0,
           takes_long=True, judged=False),
-    Ratio("discovery_bonder", "discovery of an asymmetric damper in the bonder, 0.5 s",
+    Ratio("discovery_bonder", "work of discovering an asymmetric damper in the bonder, 0.5 s",
           "one replay of the record", discovery("ab383_half_second"), takes_long=True),
-    Ratio("discovery_emps", "discovery of dry friction and an offset in EMPS, 24.8 s",
+    Ratio("discovery_emps", "work of discovering dry friction and an offset in EMPS, 24.8 s",
           "one replay of the record", discovery("emps"), takes_long=True),
     Ratio("python_run", "`Machine.simulate`, 0.125 s of the bonder", "the same in C++",
           ("beside_python", "python_run")),
