@@ -10,7 +10,7 @@ SHOWN = 6  # commits of the history
 HEAD = """# What it costs
 
 What mjdiag costs, as ratios, each measured five times. Written by `scripts/bench`, which
-takes ten minutes, keeps the five values in `docs/performance.json`, and ends with status 1
+takes ten minutes on a quiet computer, keeps the five values in `docs/performance.json`, and ends with status 1
 if a ratio got worse: if all five values are worse than all five of the last commit that was
 measured on such a computer. Without a change that happens once in 252 times, whatever the
 noise is like.
