@@ -335,7 +335,7 @@ void LinearTwin::Predict(VectorXd& reading) noexcept {
 }
 
 void LinearTwin::Push() noexcept {
-  Index weight = static_cast<Index>(moving_.size() * pulses_.size());
+  auto weight = static_cast<Index>(moving_.size() * pulses_.size());
   weights_.head(weight) = end_.segment(states(), weight);
   for (const Held& held : held_) {
     weights_[weight++] = held.input == kNoInput ? 1.0 : u_[held.input];

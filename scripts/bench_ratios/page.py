@@ -10,10 +10,10 @@ SHOWN = 6  # commits of the history
 HEAD = """# What it costs
 
 What mjdiag costs, as ratios, each measured five times. Written by `scripts/bench`, which
-takes ten minutes on a quiet computer, keeps the five values in `docs/performance.json`, and ends with status 1
-if a ratio got worse: if all five values are worse than all five of the last commit that was
-measured on such a computer. Without a change that happens once in 252 times, whatever the
-noise is like.
+takes ten minutes on a quiet computer, keeps the five values in `docs/performance.json`, and
+ends with status 1 if a ratio got worse: if all five values are worse than all five of the
+last commit that was measured on such a computer. Without a change that happens once in 252
+times, whatever the noise is like.
 
 No absolute times: both sides of a ratio are measured in turn, in short slices, and so meet
 the same computer. Bold is a target that is missed; the reasons are below the table. An empty
