@@ -160,7 +160,7 @@ DiagnosisDesign Parse(const json& object) {
                                    VectorOf(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
-  design.decimation = WholeOf(object.at("stride"));
+  design.decimation = WholeOf<int>(object.at("stride"));
   const json& options = object.at("options");
   design.options.integral_window = options.at("integral_window");
   design.options.forgetting = options.at("forgetting");
