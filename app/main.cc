@@ -12,6 +12,7 @@
 #include "app/output.h"
 #include "app/study_plan.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/freed_memory.h"
 
 namespace mjdiag::app {
 namespace {
@@ -65,6 +66,7 @@ int Fail(ExitStatus status, const std::string& message) {
 }
 
 int Main(int argc, char** argv) {
+  KeepFreedMemory();
   RememberCommandLine(argc, argv);
   is_silent = IsSilentRank(argc, argv);
   // What Ceres says of steps that it gives up is none of ours.

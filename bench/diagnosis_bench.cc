@@ -1,8 +1,7 @@
 // What a diagnosis costs: a closed loop with a monitor in its control callback over the
 // same loop without, and the time of synthesis. The two loops run the same motion and
-// are timed in turn, in short slices, the one that goes first changing from slice to
-// slice, so that whatever else the machine does meets both alike; the figure is the
-// median of the slices' ratios. Synthesis is a time against a limit in the same unit:
+// are timed in turn, in short slices, in time of the thread, the one that goes first
+// changing from slice to slice; the figure is the median of the slices' ratios. Synthesis is a time against a limit in the same unit:
 // each part is the median of its repetitions.
 //
 // A twin is timed on the record of a run, beside a closed loop and bare steps of the same
@@ -40,6 +39,20 @@ double Seconds(const Action& action) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Of this thread [s].
+double ThreadTime() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+template <typename Action>
+double ThreadSeconds(const Action& action) {
+  const double start = ThreadTime();
+  action();
+  return ThreadTime() - start;
+}
+
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
   return values[values.size() / 2];
@@ -59,7 +72,7 @@ class Loop {
     Attach(*plant_.model, *plant_.data, instance_);
   }
   double TimeSteps(int steps) {
-    return Seconds([&] {
+    return ThreadSeconds([&] {
       for (int i = 0; i < steps; ++i) mj_step(plant_.model.get(), plant_.data.get());
     });
   }
@@ -111,20 +124,6 @@ BENCHMARK_CAPTURE(MonitoredOverPlainLoop, with_friction, true)
 BENCHMARK_CAPTURE(MonitoredOverPlainLoop, without_friction, false)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(5);
-
-/// Of this thread [s].
-double ThreadTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-template <typename Action>
-double ThreadSeconds(const Action& action) {
-  const double start = ThreadTime();
-  action();
-  return ThreadTime() - start;
-}
 
 /// Readings and commands of a run that is long enough for a twin to follow.
 struct WatchedRun {

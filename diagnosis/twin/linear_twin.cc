@@ -112,14 +112,35 @@ void LinearTwin::AddSources() {
     moving_.back().end = i + 1;
   }
   const auto forces = static_cast<Index>(moving_.size() * pulses_.size());
-  tick_ = MatrixXd::Zero(nx + forces, before_.cols());
+  tick_ = MatrixXd::Zero(WideRows(nx + forces), before_.cols());
   start_ = VectorXd::Ones(before_.cols());
   end_ = VectorXd::Zero(tick_.rows());
   sources_ =
       MatrixXd::Zero(nx, forces + static_cast<Index>(held_.size() + tone_held_.size()));
+  const Index rows = WideRows(nx + outputs());
   left_.assign(static_cast<std::size_t>(block()),
-               MatrixXd::Zero(nx + outputs(), sources_.cols()));
-  block_ = MatrixXd::Zero(nx + outputs(), columns);
+               MatrixXd::Zero(rows, sources_.cols()));
+  carry_ = MatrixXd::Zero(rows, nx);
+  carried_ = VectorXd::Zero(rows);
+  block_ = MatrixXd::Zero(rows, columns);
+  AddTerms();
+}
+
+void LinearTwin::AddTerms() {
+  Index source = 0;
+  Index weight = 0;
+  for (std::size_t s = 0; s < pulses_.size(); ++s) {
+    for (const Moving& moving : moving_) {
+      terms_.push_back({weight++, source++, entries_[moving.first].number});
+    }
+  }
+  for (const Held& held : held_) terms_.push_back({weight++, source++, held.column});
+  for (const Held& tone : tone_held_) {
+    terms_.push_back({weight++, source, tone.column});
+    terms_.push_back({weight++, source++, tone.column + 1});
+  }
+  weights_ = VectorXd::Zero(weight);
+  std::ranges::stable_sort(terms_, {}, &WideTerm::into);
 }
 
 void LinearTwin::AddEntries(Index number, Motion motion, const MatrixXd& part) {
@@ -264,14 +285,16 @@ void LinearTwin::LiftSensitivities() noexcept {
     row_.swap(row_next_);
     seen_ += row_;
   }
+  carry_.topRows(nx) = power_;
+  carry_.middleRows(nx, outputs()) = seen_;
   left_.back().topRows(nx) = sources_;
-  left_.back().bottomRows(outputs()).setZero();
+  left_.back().middleRows(nx, outputs()).setZero();
   for (std::size_t j = left_.size() - 1; j > 0; --j) {
     const auto later = left_[j].topRows(nx);
     left_[j - 1].topRows(nx).noalias() = F_ * later;
     // What is carried from the end of tick j - 1 is seen from the next one on.
-    auto seen = left_[j - 1].bottomRows(outputs());
-    seen = left_[j].bottomRows(outputs());
+    auto seen = left_[j - 1].middleRows(nx, outputs());
+    seen = left_[j].middleRows(nx, outputs());
     seen.noalias() += mean_ * later;
   }
 }
@@ -312,24 +335,16 @@ void LinearTwin::Predict(VectorXd& reading) noexcept {
 }
 
 void LinearTwin::Push() noexcept {
-  const MatrixXd& left = left_[static_cast<std::size_t>(in_block_)];
-  Index source = 0;
-  Index force = states();
-  for (std::size_t s = 0; s < pulses_.size(); ++s) {
-    for (const Moving& moving : moving_) {
-      block_.col(entries_[moving.first].number) += end_[force++] * left.col(source++);
-    }
-  }
+  Index weight = static_cast<Index>(moving_.size() * pulses_.size());
+  weights_.head(weight) = end_.segment(states(), weight);
   for (const Held& held : held_) {
-    const double times = held.input == kNoInput ? 1.0 : u_[held.input];
-    block_.col(held.column) += times * left.col(source++);
+    weights_[weight++] = held.input == kNoInput ? 1.0 : u_[held.input];
   }
   for (Index i = 0; i < tones_.count(); ++i) {
-    const Index column = tone_held_[static_cast<std::size_t>(i)].column;
-    block_.col(column) += tones_.sine(i) * left.col(source);
-    block_.col(column + 1) += tones_.cosine(i) * left.col(source);
-    ++source;
+    weights_[weight++] = tones_.sine(i);
+    weights_[weight++] = tones_.cosine(i);
   }
+  WideAdd(terms_, weights_.data(), left_[static_cast<std::size_t>(in_block_)], block_);
 }
 
 void LinearTwin::Step(std::span<const double> inputs,
@@ -337,7 +352,7 @@ void LinearTwin::Step(std::span<const double> inputs,
   Command(inputs);
   start_.head(x_.size()) = x_;
   start_.segment(x_.size(), u_.size()) = u_;
-  end_.noalias() = tick_ * start_;
+  WideProduct(tick_, start_.data(), end_.data());
   Push();
   x_ += end_.head(x_.size());
   x_.noalias() += gain().L * innovation;
@@ -349,7 +364,7 @@ const MatrixXd& LinearTwin::EndBlock() noexcept {
   sensitivity_.setZero();
   S_next_.setZero();
   const auto carried = block_.topRows(states());
-  const auto seen = block_.bottomRows(outputs());
+  const auto seen = block_.middleRows(states(), outputs());
   Index column = 0;
   for (const ModelPart& part : model_.parts) {
     const double value = values_[column];
@@ -364,8 +379,11 @@ const MatrixXd& LinearTwin::EndBlock() noexcept {
   sensitivity_.middleCols(first_tone(), of_tones) = seen.rightCols(of_tones);
   // S_next_ and sensitivity_ hold what the forces of the block have left, so far.
   if (drifts_) LiftDrift();
-  sensitivity_.leftCols(acting()).noalias() += seen_ * S_.leftCols(acting());
-  S_next_.leftCols(acting()).noalias() += power_ * S_.leftCols(acting());
+  for (Index i = 0; i < acting(); ++i) {
+    WideProduct(carry_, S_.col(i).data(), carried_.data());
+    S_next_.col(i) += carried_.head(states());
+    sensitivity_.col(i) += carried_.segment(states(), outputs());
+  }
   S_.swap(S_next_);
   block_.setZero();
   in_block_ = 0;
@@ -376,12 +394,12 @@ void LinearTwin::LiftDrift() noexcept {
   const double length = static_cast<double>(block()) * sample_time_;
   const double grown = drift_time_ + 0.5 * length;
   drift_time_ += length;
-  drift_.noalias() = seen_ * S_rate_;
-  S_rate_next_.noalias() = power_ * S_rate_;
   for (Index i = 0; i < S_rate_.cols(); ++i) {
     const Index of = drifting_[static_cast<std::size_t>(i)];
-    drift_.col(i) += grown * sensitivity_.col(of);
-    S_rate_next_.col(i) += grown * S_next_.col(of);
+    WideProduct(carry_, S_rate_.col(i).data(), carried_.data());
+    drift_.col(i) =
+        carried_.segment(states(), outputs()) + grown * sensitivity_.col(of);
+    S_rate_next_.col(i) = carried_.head(states()) + grown * S_next_.col(of);
   }
   S_rate_.swap(S_rate_next_);
 }

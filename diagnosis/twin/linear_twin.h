@@ -30,6 +30,7 @@
 #include "mjdiag/diagnosis/twin/model_part.h"
 #include "mjdiag/diagnosis/twin/moved_rest.h"
 #include "mjdiag/diagnosis/twin/twin.h"
+#include "mjdiag/signals/wide_product.h"
 
 namespace mjdiag {
 
@@ -98,6 +99,7 @@ class LinearTwin final : public Twin {
 
   void AddEntries(Eigen::Index number, Motion motion, const Eigen::MatrixXd& part);
   void AddSources();
+  void AddTerms();
   void Reset() noexcept;
   void MakeMaps() noexcept;
   void MakeStep() noexcept;
@@ -132,14 +134,16 @@ class LinearTwin final : public Twin {
   Eigen::VectorXd constant_;         // of f, a step
   // Of [x; u; 1] at the start of a tick: how far x has moved before a step and after it;
   // how far in the tick, above the forces of what moves.
-  Eigen::MatrixXd before_, after_, tick_;
+  Eigen::MatrixXd before_, after_, tick_;       // tick_ in whole registers
   Eigen::MatrixXd F_, power_, base_, scratch_;  // A - L C, F^d
   Eigen::MatrixXd row_, row_next_, seen_;       // (1/d) sum_j C F^j
+  Eigen::MatrixXd carry_;                       // F^d above seen_, in whole registers
+  Eigen::VectorXd carried_;                     // carry_ times a column
   std::vector<Eigen::MatrixXd> pulses_;         // P_s
   Eigen::MatrixXd pulse_;                       // their sum
   Eigen::MatrixXd sources_;  // what a unit of each leaves in its tick
   /// In a tick j of a block: what it moves, F^(d-1-j) P, above what of that the mean of
-  /// the block sees, (2 nq + ny) x sources.
+  /// the block sees, (2 nq + ny, in whole registers) x sources.
   std::vector<Eigen::MatrixXd> left_;
 
   // The run.
@@ -148,6 +152,10 @@ class LinearTwin final : public Twin {
   /// What a unit of every number, and tone, has left in a block: at its end, and below
   /// that in its mean.
   Eigen::MatrixXd block_;
+  /// How strong every source is in a tick, those of tones by their sines and cosines, and
+  /// which columns of left_ these are times of, and of block_ they go to.
+  Eigen::VectorXd weights_;
+  std::vector<WideTerm> terms_;
   Eigen::MatrixXd S_next_, sensitivity_;
   Eigen::MatrixXd S_rate_next_;
 };

@@ -8,6 +8,7 @@
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/tangent.h"
+#include "mjdiag/signals/wide_product.h"
 
 namespace mjdiag {
 
@@ -93,15 +94,19 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   place_ = PlacementOf(linear);
   state_ = VectorXd::Zero(2 * nv);
   before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
-  for (Map& map : maps_) map.Q = map.V = map.G = MatrixXd::Zero(nv, nv);
+  for (Map& map : maps_) {
+    map.QV = MatrixXd::Zero(WideRows(nv), 2 * nv);
+    map.G = MatrixXd::Zero(WideRows(nv), nv);
+  }
+  lifted_ = by_force_ = VectorXd::Zero(WideRows(nv));
   inertia_ = identity_ = work_ = MatrixXd::Identity(nv, nv);
   stick_r_.assign(static_cast<std::size_t>(nv), 0.0);
   stick_rb_ = stick_r_;
   tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
-  drive_ = drive_work_ = force_ = MatrixXd::Zero(nv, p);
+  drive_ = force_ = MatrixXd::Zero(nv, p);
   read_ = sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
-  drift_force_ = drift_work_ = MatrixXd::Zero(nv, S_rate_.cols());
+  drift_force_ = MatrixXd::Zero(nv, S_rate_.cols());
   drift_read_ = drift_sum_ = drift_;
   UseGain(0);
 }
@@ -145,17 +150,19 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
   factor_.compute(inertia_);
   work_ = identity_;
   factor_.solveInPlace(work_);
-  map.G.noalias() = M_now_ * work_;
+  auto G = map.G.topRows(nv);
+  G.noalias() = M_now_ * work_;
   inertia_ = M_now_ + h * D_;
   factor_.compute(inertia_);
-  factor_.solveInPlace(map.G);
-  map.G *= h;
-  map.Q.noalias() = -map.G * K_;
+  factor_.solveInPlace(G);
+  G *= h;
+  map.QV.topLeftCorner(nv, nv).noalias() = -G * K_;
   for (Index j = 0; j < nv; ++j) {
     if ((sticking >> j & 1) != 0) D_(j, j) += stick_rb_[static_cast<std::size_t>(j)];
   }
-  map.V = identity_;
-  map.V.noalias() -= map.G * D_;
+  auto V = map.QV.topRightCorner(nv, nv);
+  V = identity_;
+  V.noalias() -= G * D_;
   return map;
 }
 
@@ -358,24 +365,27 @@ void PlantTwin::Substep() noexcept {
     AddInertial(number);
   }
   const Map& map = MapOf(sticking);
-  // S_v' = Q S_q + V S_v + G f
-  auto next = drive_work_.leftCols(acting());
-  next.noalias() = map.Q * S_.topRows(nv).leftCols(acting());
-  next.noalias() += map.V * S_.bottomRows(nv).leftCols(acting());
-  const Index forced = theta_.size() - start_unknowns();
-  next.leftCols(forced).noalias() += map.G * force_.leftCols(forced);
-  S_.bottomRows(nv).leftCols(acting()) = next;
-  S_.topRows(nv).leftCols(acting()) += model_->opt.timestep * next;
+  Lift(map, acting(), theta_.size() - start_unknowns(), force_, S_);
   if (!drifts_) return;
   for (Index i = 0; i < drift_force_.cols(); ++i) {
     drift_force_.col(i) =
         drift_time_ * force_.col(drifting_[static_cast<std::size_t>(i)]);
   }
-  drift_work_.noalias() = map.Q * S_rate_.topRows(nv);
-  drift_work_.noalias() += map.V * S_rate_.bottomRows(nv);
-  drift_work_.noalias() += map.G * drift_force_;
-  S_rate_.bottomRows(nv) = drift_work_;
-  S_rate_.topRows(nv) += model_->opt.timestep * drift_work_;
+  Lift(map, S_rate_.cols(), S_rate_.cols(), drift_force_, S_rate_);
+}
+
+void PlantTwin::Lift(const Map& map, Index count, Index forced, const MatrixXd& force,
+                     MatrixXd& S) noexcept {
+  const Index nv = model_->nv;
+  for (Index i = 0; i < count; ++i) {
+    WideProduct(map.QV, S.col(i).data(), lifted_.data());
+    if (i < forced) {
+      WideProduct(map.G, force.col(i).data(), by_force_.data());
+      lifted_ += by_force_;
+    }
+    S.col(i).tail(nv) = lifted_.head(nv);
+    S.col(i).head(nv) += model_->opt.timestep * lifted_.head(nv);
+  }
 }
 
 const MatrixXd& PlantTwin::EndBlock() noexcept {

@@ -68,11 +68,11 @@ class PlantTwin final : public Twin {
     double times = 1.0;
     double force = 0.0;
   };
-  /// The map of a step with these joints sticking.
+  /// The map of a step with these joints sticking, S_v' = [Q V] S + G f.
   struct Map {
     std::uint64_t sticking = 0;
     bool known = false;
-    Eigen::MatrixXd Q, V, G;
+    Eigen::MatrixXd QV, G;  // in whole registers
   };
 
   void Reset() noexcept;
@@ -85,6 +85,9 @@ class PlantTwin final : public Twin {
   void AddStepForces() noexcept;
   /// After a step: of what depends on where it went.
   void Substep() noexcept;
+  /// Sensitivities over a step, the first `forced` of them under forces.
+  void Lift(const Map& map, Eigen::Index count, Eigen::Index forced,
+            const Eigen::MatrixXd& force, Eigen::MatrixXd& S) noexcept;
   /// Columns of the unknowns of that number.
   void AddForce(Eigen::MatrixXd& forces, const Number& number, Eigen::Index dof,
                 double force) const noexcept;
@@ -117,9 +120,10 @@ class PlantTwin final : public Twin {
 
   double time_ = 0.0;
   Eigen::VectorXd tone_, before_, acceleration_, inertial_;
+  Eigen::VectorXd lifted_, by_force_;  // in whole registers
   std::vector<double> outputs_;
-  Eigen::MatrixXd drive_, drive_work_, force_, read_, sensitivity_, sum_;
-  Eigen::MatrixXd drift_force_, drift_work_, drift_read_, drift_sum_;
+  Eigen::MatrixXd drive_, force_, read_, sensitivity_, sum_;
+  Eigen::MatrixXd drift_force_, drift_read_, drift_sum_;
 };
 
 }  // namespace mjdiag

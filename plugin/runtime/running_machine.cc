@@ -12,11 +12,13 @@
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/runtime/instance.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/wide_product.h"
 
 namespace mjdiag {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 int JointOfPosition(const mjModel& model, int address) {
@@ -134,29 +136,29 @@ class LinearRun final : public RunningMachine {
         plant_(LinearPlantOf(machine)),
         loop_(machine.setup(), excitation, options) {
     const Index nq = plant_.rest.size();
-    x_ = next_ = VectorXd::Zero(2 * nq);
+    x_ = VectorXd::Zero(2 * nq);
     x_.head(nq) = StartPosition(machine.channels(), machine.plant(), plant_.rest,
                                 excitation.start) -
                   plant_.rest;
     y_ = VectorXd::Zero(plant_.rest_reading.size());
     u_ = VectorXd::Zero(plant_.tick.inputs());
+    MakeMaps();
     joints_.resize(options.log_joints ? nq : 0, excitation.samples());
   }
 
   void Tick() override {
     if (becoming_ > 0) Wear();
     const Index nq = plant_.rest.size();
-    y_.noalias() = plant_.tick.C * x_;
-    y_ += plant_.rest_reading;
+    WideProduct(from_x_, x_.data(), of_x_.data());
+    y_ = of_x_.segment(x_.size(), y_.size()) + plant_.rest_reading;
     if (loop_.ticks_done() < joints_.cols() && joints_.rows() > 0) {
       joints_.col(loop_.ticks_done()) = plant_.rest + x_.head(nq);
     }
     loop_.Tick({y_.data(), static_cast<std::size_t>(y_.size())},
                {u_.data(), static_cast<std::size_t>(u_.size())});
     AddMeanCourse(loop_, machine_.rates().substeps, u_);
-    next_.noalias() = plant_.tick.A * x_;
-    next_.noalias() += plant_.tick.B * u_;
-    x_.swap(next_);
+    WideProduct(from_u_, u_.data(), of_u_.data());
+    x_ = of_x_.head(x_.size()) + of_u_.head(x_.size());
     if (Index worst = 0; !(x_.cwiseAbs().maxCoeff(&worst) < mjMAXVAL)) {
       const double time =
           static_cast<double>(loop_.ticks_done() - 1) * machine_.rates().tick();
@@ -187,6 +189,7 @@ class LinearRun final : public RunningMachine {
   void MoveTo(const LinearPlant& plant) {
     x_.head(plant.rest.size()) += plant_.rest - plant.rest;
     plant_ = plant;
+    MakeMaps();
   }
 
   void Wear() {
@@ -198,13 +201,29 @@ class LinearRun final : public RunningMachine {
     plant_.tick.B += part * (target_.tick.B - plant_.tick.B);
     plant_.tick.C += part * (target_.tick.C - plant_.tick.C);
     --becoming_;
+    MakeMaps();
+  }
+
+  void MakeMaps() {
+    const StateSpace& tick = plant_.tick;
+    const Index rows = WideRows(tick.states() + tick.outputs());
+    from_x_.setZero(rows, tick.states());
+    from_x_.topRows(tick.states()) = tick.A;
+    from_x_.middleRows(tick.states(), tick.outputs()) = tick.C;
+    from_u_.setZero(rows, tick.inputs());
+    from_u_.topRows(tick.states()) = tick.B;
+    of_x_.resize(rows);
+    of_u_.resize(rows);
   }
 
   Machine machine_;
   LinearPlant plant_, target_;
+  // Of a tick, in whole registers: A above C, and B.
+  MatrixXd from_x_, from_u_;
+  VectorXd of_x_, of_u_;
   Index becoming_ = 0;  // ticks until it is that
   TickLoop loop_;
-  VectorXd x_, next_, y_, u_;
+  VectorXd x_, y_, u_;
   Eigen::MatrixXd joints_;  // nq x ticks, empty: not logged
 };
 
