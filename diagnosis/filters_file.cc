@@ -1,10 +1,8 @@
 #include "mjdiag/diagnosis/filters_file.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "mjdiag/diagnosis/json_matrix.h"
@@ -162,10 +160,7 @@ DiagnosisDesign Parse(const json& object) {
                                    VectorOf(source.at("amplitude"))});
   }
   design.disturbance = ToDisturbanceFilter(object.at("disturbance"), sample_time);
-  // What no int holds is refused with all that is too long.
-  constexpr Eigen::Index kMost = std::numeric_limits<int>::max();
-  design.decimation =
-      static_cast<int>(std::clamp(WholeOf(object.at("stride")), -kMost, kMost));
+  design.decimation = WholeOf<int>(object.at("stride"));
   const json& options = object.at("options");
   design.options.integral_window = options.at("integral_window");
   design.options.forgetting = options.at("forgetting");

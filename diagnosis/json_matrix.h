@@ -3,7 +3,9 @@
 // Reading throws nlohmann::json::exception where there is something else.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 namespace mjdiag {
@@ -41,12 +43,16 @@ inline Eigen::MatrixXd MatrixOf(const nlohmann::json& rows) {
   return matrix;
 }
 
-/// A whole number. The library converts 1e300, which is undefined.
-inline Eigen::Index WholeOf(const nlohmann::json& number) {
-  if (!number.is_number_integer()) {
-    throw nlohmann::json::type_error::create(302, "number is not whole", &number);
+/// A whole number within what `Number` holds. The library converts 1e300, too, which is
+/// undefined.
+template <typename Number = Eigen::Index>
+Number WholeOf(const nlohmann::json& number) {
+  const auto value = number.is_number_integer() ? number.get<std::int64_t>() : -1;
+  if (!number.is_number_integer() || !std::in_range<Number>(value)) {
+    throw nlohmann::json::type_error::create(302, "no whole number of this size",
+                                             &number);
   }
-  return number.get<Eigen::Index>();
+  return static_cast<Number>(value);
 }
 
 }  // namespace mjdiag

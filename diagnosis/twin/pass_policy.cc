@@ -188,7 +188,10 @@ void PredictionErrorEstimator::PullAlong() noexcept {
 
 bool PredictionErrorEstimator::TryChange() noexcept {
   if (gain() > 0 && !following()) return false;
-  if (pass_.seen() - now().origin < kLongExplained) return false;
+  // Early in a run a change is harder to tell from a bad theta: all else is tried first,
+  // and it is taken for one once, or what nothing explains would be cut into pieces.
+  const bool nothing_else = segment_.attempts > 0 && segment_.since == 0;
+  if (pass_.seen() - now().origin < kLongExplained && !nothing_else) return false;
   const Checkpoint* from = LastCheckpoint(pass_.seen() - kUnnoticed);
   if (from == nullptr) return false;
   PassStart& first = segment_.first;

@@ -126,6 +126,21 @@ TEST(Diagnose, NamesAFaultThatAppearsInTheCourseOfARun) {
   }
 }
 
+// There it could as well be a bad estimate of a machine that was faulty from the start.
+TEST(Diagnose, NamesAFaultThatAppearsATenthOfASecondAfterTheStart) {
+  const Machine machine = test::Bonder();
+  RunOptions options;
+  options.late_faults = {{{"eta_x", 0.7}, 0.1}};
+  const Record record = Simulate(machine, DefaultMotion(machine.setup()), options);
+  const Diagnosis diagnosis = Diagnose(machine, PrepareDiagnosis(machine), record);
+  EXPECT_LT(diagnosis.result.misfit, 2.0);
+  for (const FaultVerdict& fault : diagnosis.result.faults) {
+    EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
+    if (fault.name != "eta_x") continue;
+    EXPECT_NEAR(fault.value, 0.7, 5.0 * fault.sd);
+  }
+}
+
 // A quarter of a second into the motion nothing is at rest.
 TEST(Diagnose, NamesAFaultOfTheNonlinearMachineInMidMotion) {
   const Machine machine = test::Bonder();
