@@ -31,7 +31,7 @@ class ForcedPath {
  public:
   ForcedPath(const Machine& machine, const MeasuredRun& run, const Observer& observer,
              const MatrixXd& innovations, const std::vector<Index>& dofs)
-      : run_(run), observer_(observer), path_(*observer.following->path) {
+      : run_(run), path_(*observer.following->path) {
     const auto forces = static_cast<Index>(dofs.size());
     const VectorXd& noise = observer.noise_sd;
     const double unit = noise.minCoeff();
@@ -120,7 +120,6 @@ class ForcedPath {
 
  private:
   const MeasuredRun& run_;
-  const Observer& observer_;
   const MotionPath& path_;
   Index states_ = 0;
   VectorXd scale_;
