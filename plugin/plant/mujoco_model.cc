@@ -47,9 +47,15 @@ InputError MjcfError(const std::filesystem::path& mjcf, const std::string& repor
   return {where, OneLine(report), "a valid MJCF model"};
 }
 
-bool HaveTheSameSizes(const mjModel& one, const mjModel& other) {
+/// Whether a copy of `model` fits into the memory of `spare`, out of which scenery may
+/// have been dropped since (DropScenery).
+bool Fits(const mjModel& model, const mjModel& spare) {
+  mjModel sizes = spare;
+  sizes.ngeom = model.ngeom;
+  sizes.ncam = model.ncam;
+  sizes.nlight = model.nlight;
 #define X(name) \
-  if (one.name != other.name) return false;
+  if (sizes.name != model.name) return false;
   MJMODEL_INTS
 #undef X
   return true;

@@ -13,15 +13,17 @@ bool AnyCanTouch(const mjModel& model) {
          std::any_of(model.geom_conaffinity, model.geom_conaffinity + model.ngeom, set);
 }
 
-bool AnyIsRead(const mjModel& model) {
-  const auto geom = [](int kind) { return kind == mjOBJ_GEOM; };
+bool AnyIsRead(const mjModel& model, mjtObj kind) {
+  const auto same = [kind](int other) { return other == kind; };
   return std::any_of(model.sensor_objtype, model.sensor_objtype + model.nsensor,
-                     geom) ||
-         std::any_of(model.sensor_reftype, model.sensor_reftype + model.nsensor,
-                     geom) ||
-         std::find(model.sensor_type, model.sensor_type + model.nsensor,
+                     same) ||
+         std::any_of(model.sensor_reftype, model.sensor_reftype + model.nsensor, same);
+}
+
+bool AnyIsLookedFor(const mjModel& model) {
+  return std::find(model.sensor_type, model.sensor_type + model.nsensor,
                    static_cast<int>(mjSENS_RANGEFINDER)) !=
-             model.sensor_type + model.nsensor;
+         model.sensor_type + model.nsensor;
 }
 
 bool AnyHoldsATendon(const mjModel& model) {
@@ -37,8 +39,10 @@ bool AnyIsInAFluid(const mjModel& model) {
 }  // namespace
 
 void DropScenery(mjModel& model) {
-  if (AnyCanTouch(model) || AnyIsRead(model) || AnyHoldsATendon(model) ||
-      AnyIsInAFluid(model)) {
+  model.nlight = 0;
+  if (!AnyIsRead(model, mjOBJ_CAMERA)) model.ncam = 0;
+  if (AnyCanTouch(model) || AnyIsRead(model, mjOBJ_GEOM) || AnyIsLookedFor(model) ||
+      AnyHoldsATendon(model) || AnyIsInAFluid(model)) {
     return;
   }
   model.opt.disableflags |= mjDSBL_CONTACT;

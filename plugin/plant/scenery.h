@@ -5,10 +5,10 @@
 
 namespace mjdiag {
 
-/// Takes geoms out of a model that is only going to be stepped, if none of them can
-/// touch anything, hold a tendon or be read by a sensor: updating a hundred of them
-/// costs more than the dynamics of a ten-joint machine. The motion stays bitwise the
-/// same. Models of which a geom matters are left as they are. Such a model can make
+/// Takes lights, cameras and geoms out of a model that is only going to be stepped:
+/// cameras unless a sensor reads one; geoms if none of them can touch anything, hold a
+/// tendon or be read by a sensor. Updating a hundred of them costs more than the dynamics
+/// of a ten-joint machine. The motion stays bitwise the same. Such a model can make
 /// mjData, but cannot be copied or rendered.
 void DropScenery(mjModel& model);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 
+#include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
@@ -98,6 +99,7 @@ TEST(CopyModel, IntoTheMemoryOfADroppedOneLeavesNothingOfThat) {
   dropped->body_mass[1] = 1.0;
   dropped->opt.timestep = 1.0;
   dropped->geom_rgba[0] = 0.5f;
+  DropScenery(*dropped);
   dropped.reset();
   const ModelPtr copy = CopyModel(*model);
   EXPECT_EQ(copy.get(), memory);
