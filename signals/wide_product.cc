@@ -57,8 +57,8 @@ constexpr int Fewer(int registers) {
 
 /// The rows of kCount registers of a product, and of less if rows are left.
 template <typename Register, int kCount>
-MJDIAG_INLINED void Product(const MatrixXd& matrix, Index row, const double* x,
-                            double* result) noexcept {
+MJDIAG_INLINED void ProductOf(const MatrixXd& matrix, Index row, const double* x,
+                              double* result) noexcept {
   constexpr Index kRows = SumsOf<Register, kCount>::kRows;
   for (; row + kRows <= matrix.rows(); row += kRows) {
     SumsOf<Register, kCount> sums;
@@ -68,12 +68,13 @@ MJDIAG_INLINED void Product(const MatrixXd& matrix, Index row, const double* x,
     }
     sums.Write(result + row);
   }
-  if constexpr (kCount > 1) Product<Register, Fewer(kCount)>(matrix, row, x, result);
+  if constexpr (kCount > 1) ProductOf<Register, Fewer(kCount)>(matrix, row, x, result);
 }
 
 template <typename Register, int kCount>
-MJDIAG_INLINED void Add(std::span<const WideTerm> terms, const double* weights,
-                        const MatrixXd& columns, Index row, MatrixXd& sums) noexcept {
+MJDIAG_INLINED void AddTerms(std::span<const WideTerm> terms, const double* weights,
+                             const MatrixXd& columns, Index row,
+                             MatrixXd& sums) noexcept {
   constexpr Index kRows = SumsOf<Register, kCount>::kRows;
   for (; row + kRows <= columns.rows(); row += kRows) {
     auto term = terms.begin();
@@ -90,7 +91,7 @@ MJDIAG_INLINED void Add(std::span<const WideTerm> terms, const double* weights,
     }
   }
   if constexpr (kCount > 1) {
-    Add<Register, Fewer(kCount)>(terms, weights, columns, row, sums);
+    AddTerms<Register, Fewer(kCount)>(terms, weights, columns, row, sums);
   }
 }
 
@@ -98,33 +99,33 @@ MJDIAG_INLINED void Add(std::span<const WideTerm> terms, const double* weights,
 constexpr int kRegisters = 8;
 
 void ProductOfAny(const MatrixXd& matrix, const double* x, double* result) noexcept {
-  Product<Two, kRegisters>(matrix, 0, x, result);
+  ProductOf<Two, kRegisters>(matrix, 0, x, result);
 }
 void AddOfAny(std::span<const WideTerm> terms, const double* weights,
               const MatrixXd& columns, MatrixXd& sums) noexcept {
-  Add<Two, kRegisters>(terms, weights, columns, 0, sums);
+  AddTerms<Two, kRegisters>(terms, weights, columns, 0, sums);
 }
 
 #if defined(__x86_64__)
 [[gnu::target("avx")]] void ProductOfAvx(const MatrixXd& matrix, const double* x,
                                          double* result) noexcept {
-  Product<Four, kRegisters>(matrix, 0, x, result);
+  ProductOf<Four, kRegisters>(matrix, 0, x, result);
 }
 [[gnu::target("avx")]] void AddOfAvx(std::span<const WideTerm> terms,
                                      const double* weights, const MatrixXd& columns,
                                      MatrixXd& sums) noexcept {
-  Add<Four, kRegisters>(terms, weights, columns, 0, sums);
+  AddTerms<Four, kRegisters>(terms, weights, columns, 0, sums);
 }
 
 [[gnu::target("avx512f")]] void ProductOfAvx512(const MatrixXd& matrix, const double* x,
                                                 double* result) noexcept {
-  Product<Eight, kRegisters>(matrix, 0, x, result);
+  ProductOf<Eight, kRegisters>(matrix, 0, x, result);
 }
 [[gnu::target("avx512f")]] void AddOfAvx512(std::span<const WideTerm> terms,
                                             const double* weights,
                                             const MatrixXd& columns,
                                             MatrixXd& sums) noexcept {
-  Add<Eight, kRegisters>(terms, weights, columns, 0, sums);
+  AddTerms<Eight, kRegisters>(terms, weights, columns, 0, sums);
 }
 #endif
 

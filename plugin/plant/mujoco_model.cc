@@ -69,9 +69,8 @@ class SpareModels {
   /// One with the sizes of `like`, or nullptr.
   mjModel* Take(const mjModel& like) {
     const std::lock_guard lock(mutex_);
-    const auto found =
-        std::find_if(spares_.rbegin(), spares_.rend(),
-                     [&](mjModel* spare) { return HaveTheSameSizes(*spare, like); });
+    const auto found = std::find_if(spares_.rbegin(), spares_.rend(),
+                                    [&](mjModel* spare) { return Fits(like, *spare); });
     if (found == spares_.rend()) return nullptr;
     mjModel* model = *found;
     spares_.erase(std::next(found).base());
