@@ -33,7 +33,10 @@ std::string Irregularity(const VectorXd& intervals, double usual) {
   }
   const double sd = std::sqrt(around.head(count).squaredNorm() /
                               static_cast<double>(std::max<Index>(count, 1)));
-  const std::string fewer = FormatNumber(missing, 9) + " samples are missing";
+  constexpr double kCountable = 1e15;
+  const std::string fewer =
+      std::to_string(std::llround(std::min(missing, kCountable))) +
+      " samples are missing";
   if (sd < kRounded && missing > 0.0) return fewer;
   return "time stamps are irregular (their intervals vary by " +
          FormatNumber(100.0 * sd, 2) + " %" + (missing > 0.0 ? ", " + fewer : "") + ")";
