@@ -7,9 +7,9 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mjdiag/plugin/runtime/instance.h"
 #include "support/bonder.h"
 
@@ -17,25 +17,6 @@ namespace mjdiag {
 namespace {
 
 constexpr int kTicksPerSlice = 400;
-
-/// Of this thread [s].
-double ThreadTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-template <typename Action>
-double Seconds(const Action& action) {
-  const double start = ThreadTime();
-  action();
-  return ThreadTime() - start;
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 void ClosedLoopOverBareSteps(benchmark::State& state, bool static_friction) {
   const Machine machine = test::Bonder(
@@ -62,14 +43,14 @@ void ClosedLoopOverBareSteps(benchmark::State& state, bool static_friction) {
     for (Eigen::Index tick = 0; tick + kTicksPerSlice <= commands.cols();
          tick += kTicksPerSlice) {
       const auto time_closed = [&] {
-        return Seconds([&] {
+        return Seconds(ThreadTime, [&] {
           for (int i = 0; i < kTicksPerSlice * substeps; ++i) {
             mj_step(&model, closed.get());
           }
         });
       };
       const auto time_bare = [&] {
-        return Seconds([&] {
+        return Seconds(ThreadTime, [&] {
           for (Eigen::Index k = tick; k < tick + kTicksPerSlice; ++k) {
             for (std::size_t i = 0; i < actuators.size(); ++i) {
               bare->ctrl[actuators[i]] = commands(static_cast<Eigen::Index>(i), k);

@@ -1,8 +1,8 @@
 // What a diagnosis costs: a closed loop with a monitor in its control callback over the
 // same loop without, and the time of synthesis. The two loops run the same motion and
 // are timed in turn, in short slices, in time of the thread, the one that goes first
-// changing from slice to slice; the figure is the median of the slices' ratios. Synthesis is a time against a limit in the same unit:
-// each part is the median of its repetitions.
+// changing from slice to slice; the figure is the median of the slices' ratios. Synthesis
+// is a time against a limit in the same unit: each part is the median of its repetitions.
 //
 // A twin is timed on the record of a run, beside a closed loop and bare steps of the same
 // machine, all in time of the thread: while it goes back to learn (the first two
@@ -11,13 +11,12 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mjdiag/diagnosis/diagnosis_recording.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
@@ -29,34 +28,7 @@
 namespace mjdiag {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int kTicksPerSlice = 400;
-
-template <typename Action>
-double Seconds(const Action& action) {
-  const auto start = Clock::now();
-  action();
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Of this thread [s].
-double ThreadTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-template <typename Action>
-double ThreadSeconds(const Action& action) {
-  const double start = ThreadTime();
-  action();
-  return ThreadTime() - start;
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 Machine Bonder(bool static_friction) {
   return test::Bonder(
@@ -72,7 +44,7 @@ class Loop {
     Attach(*plant_.model, *plant_.data, instance_);
   }
   double TimeSteps(int steps) {
-    return ThreadSeconds([&] {
+    return Seconds(ThreadTime, [&] {
       for (int i = 0; i < steps; ++i) mj_step(plant_.model.get(), plant_.data.get());
     });
   }
@@ -171,7 +143,7 @@ void TwinOverTick(benchmark::State& state, bool linear) {
     Attach(*closed.model, *closed.data, instance);
     const DataPtr bare = MakeData(*closed.model);
     const auto time_steps = [&](mjData& data) {
-      return ThreadSeconds([&] {
+      return Seconds(ThreadTime, [&] {
         for (int i = 0; i < steps; ++i) mj_step(closed.model.get(), &data);
       });
     };
@@ -183,7 +155,7 @@ void TwinOverTick(benchmark::State& state, bool linear) {
       Detach(*closed.model, *bare);
       const double of_steps = time_steps(*bare);
       const double of_loop = time_steps(*closed.data);
-      const double of_twin = ThreadSeconds([&] {
+      const double of_twin = Seconds(ThreadTime, [&] {
         for (int k = 0; k < kTicksPerSlice; ++k) Feed(*monitor, run, tick + k);
       });
       if (tick >= kLearns && tick < kFollows) continue;
@@ -220,7 +192,7 @@ void TwinTicks(benchmark::State& state, bool linear) {
     const std::unique_ptr<DiagnosisMonitor> monitor = Watch(machine, linear);
     std::vector<double> learns, follows;
     for (Eigen::Index tick = 0; tick < run.outputs.cols(); ++tick) {
-      const double us = 1e6 * ThreadSeconds([&] { Feed(*monitor, run, tick); });
+      const double us = 1e6 * Seconds(ThreadTime, [&] { Feed(*monitor, run, tick); });
       if (tick < kLearns) learns.push_back(us);
       if (tick >= kFollows) follows.push_back(us);
     }
@@ -252,15 +224,15 @@ void Synthesis(benchmark::State& state) {
   std::vector<double> design;
   for (auto _ : state) {
     linearise.push_back(
-        Seconds([&] { perturbed = MakeFaultFamily(machine).Perturbed(); }));
-    synthesise.push_back(Seconds([&] {
+        Seconds(ClockTime, [&] { perturbed = MakeFaultFamily(machine).Perturbed(); }));
+    synthesise.push_back(Seconds(ClockTime, [&] {
       const ResidualSpace space = MakeResidualSpace(healthy, options);
       const Eigen::Index size = space.relations.front().rows();
       benchmark::DoNotOptimize(SynthesiseBank(
           space, Eigen::MatrixXd::Identity(size, size), perturbed, options));
     }));
     design.push_back(
-        Seconds([&] { benchmark::DoNotOptimize(DesignFilters(machine)); }));
+        Seconds(ClockTime, [&] { benchmark::DoNotOptimize(DesignFilters(machine)); }));
   }
   state.counters["ms_linearisations"] = 1e3 * Median(linearise);
   state.counters["ms_bank"] = 1e3 * Median(synthesise);

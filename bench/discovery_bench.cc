@@ -1,23 +1,20 @@
-// What a discovery costs, in runs: the time from a record to causes over the time of
+// What a discovery costs, in runs: the processor time from a record to causes over that of
 // one nominal replay of that record, and the largest memory of the process. A run in
 // real time is the machine's own: 2.5 s of the AB383, or the first half second of it,
 // 24.8 s of EMPS. The effects that are looked for are put in here, so that no measured
 // data is needed.
 //
-// Counters: seconds (for people; no test reads it), runs (seconds over one replay), work
-// (the same of processor time, which does not know how many cores share it and how busy
-// they are), MiB (largest resident set), found (1 if the cause was named).
+// Counters: seconds (for people; no test reads it), work (processor time over one replay,
+// which does not know how many cores share it and how busy they are), MiB (largest resident
+// set), found (1 if the cause was named).
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <ctime>
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/runtime/simulation.h"
@@ -25,19 +22,6 @@
 
 namespace mjdiag {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double Since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Of all threads of the process [s].
-double ProcessorTime() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 double LargestMiB() {
   rusage usage{};
@@ -49,16 +33,14 @@ double LargestMiB() {
 /// none yet.
 double ReplayTime(const Machine& machine, const Record& measured,
                   const DiscoverOptions& options) {
-  std::array<double, 5> times{};
+  std::vector<double> times(5);
   for (double& time : times) {
     const DiscoveryProblem problem =
         PoseProblem(machine, measured, options.train_share, options.bandwidth);
-    const double start = ProcessorTime();
-    benchmark::DoNotOptimize(problem.Residual({}));
-    time = ProcessorTime() - start;
+    time =
+        Seconds(ProcessTime, [&] { benchmark::DoNotOptimize(problem.Residual({})); });
   }
-  std::ranges::nth_element(times, times.begin() + 2);
-  return times[2];
+  return Median(times);
 }
 
 /// @param share  of the motion
@@ -73,13 +55,11 @@ void DiscoverIn(benchmark::State& state, const std::string& folder, double share
   DiscoverOptions options;
   for (auto _ : state) {
     const double replay = ReplayTime(machine, measured, options);
-    const double worked = ProcessorTime();
-    const auto start = Clock::now();
+    const double worked = ProcessTime();
+    const double start = ClockTime();
     const Discovery discovery = Discover(machine, measured, nullptr, options);
-    const double seconds = Since(start);
-    state.counters["seconds"] = seconds;
-    state.counters["runs"] = seconds / replay;
-    state.counters["work"] = (ProcessorTime() - worked) / replay;
+    state.counters["seconds"] = ClockTime() - start;
+    state.counters["work"] = (ProcessTime() - worked) / replay;
     state.counters["MiB"] = LargestMiB();
     state.counters["found"] = discovery.causes.size() == effects.size() ? 1.0 : 0.0;
   }

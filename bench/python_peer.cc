@@ -6,15 +6,17 @@
 //   filter          processor seconds of the filters over all signals
 //   simulate        of a run of the bonder
 //   monitor <n>     of the next n ticks of a diagnosis of that machine, taken as linear
+//
+// Seconds are those of this process, as Python's time.process_time.
 
 #include <Eigen/Core>
-#include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
 
+#include "bench/timing.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "support/bonder.h"
@@ -23,19 +25,6 @@ namespace mjdiag {
 namespace {
 
 using nlohmann::json;
-
-/// Of this process [s], as Python's time.process_time.
-template <typename Action>
-double ProcessorSeconds(const Action& action) {
-  const auto now = [] {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  };
-  const double start = now();
-  action();
-  return now() - start;
-}
 
 json Rows(const Eigen::MatrixXd& matrix) {
   json rows = json::array();
@@ -48,7 +37,7 @@ json Rows(const Eigen::MatrixXd& matrix) {
 class Peer {
  public:
   double Simulate() {
-    return ProcessorSeconds([&] { mjdiag::Simulate(machine_, motion_, {}); });
+    return Seconds(ProcessTime, [&] { mjdiag::Simulate(machine_, motion_, {}); });
   }
 
   /// The prefilters of the disturbance residual: their poles at 750 Hz leave a filter
@@ -68,12 +57,12 @@ class Peer {
   }
   double Filter() {
     Eigen::MatrixXd outputs;
-    return ProcessorSeconds([&] { outputs = FilterSignals(bank_, signals_); });
+    return Seconds(ProcessTime, [&] { outputs = FilterSignals(bank_, signals_); });
   }
 
   double Monitor(Eigen::Index ticks) {
     if (!recording_) Watch();
-    return ProcessorSeconds([&] {
+    return Seconds(ProcessTime, [&] {
       for (Eigen::Index i = 0; i < ticks; ++i) {
         const Eigen::Index k = tick_++ % outputs_.cols();
         recording_->Add(Column(outputs_, k), Column(inputs_, k));

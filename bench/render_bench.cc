@@ -14,7 +14,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -60,11 +59,6 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
   std::clock_t processor_start_ = std::clock();
 };
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 /// The bonder, healthy and worn, and what a diagnosis might have said.
 struct Subject {
@@ -212,25 +206,15 @@ Seconds InProcess(const std::string& name) {
 
 void ClipOverBareFrames(benchmark::State& state, const std::string& kind,
                         const std::string& bare) {
-  std::vector<double> over_bare;
-  Seconds clips;
-  Seconds bares;
-  const auto run = [](const std::string& name, Seconds& sum) {
-    const Seconds seconds = InProcess(name);
-    sum.elapsed += seconds.elapsed;
-    sum.processor += seconds.processor;
-    return seconds.elapsed;
-  };
   for (auto _ : state) {
-    const double clip = run(kind, clips);
-    over_bare.push_back(run(bare, bares) / clip);
+    const Seconds clip = InProcess(kind);
+    const Seconds frames = InProcess(bare);
+    state.counters["over_bare"] = frames.elapsed / clip.elapsed;
+    state.counters["clip_frames_per_s"] = kFrames / clip.elapsed;
+    state.counters["bare_frames_per_s"] = kFrames / frames.elapsed;
+    state.counters["clip_cpu_ms"] = 1e3 * clip.processor / kFrames;
+    state.counters["bare_cpu_ms"] = 1e3 * frames.processor / kFrames;
   }
-  const auto frames = static_cast<double>(kFrames * over_bare.size());
-  state.counters["over_bare"] = Median(over_bare);
-  state.counters["clip_frames_per_s"] = frames / clips.elapsed;
-  state.counters["bare_frames_per_s"] = frames / bares.elapsed;
-  state.counters["clip_cpu_ms"] = 1e3 * clips.processor / frames;
-  state.counters["bare_cpu_ms"] = 1e3 * bares.processor / frames;
 }
 
 BENCHMARK_CAPTURE(ClipOverBareFrames, side_by_side, "side_by_side", "bare")

@@ -5,12 +5,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/report/diagnosis_page.h"
@@ -23,12 +22,6 @@ namespace mjdiag {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 void ReportOfADiagnosis(benchmark::State& state) {
   const Machine machine = test::Bonder();
@@ -46,12 +39,12 @@ void ReportOfADiagnosis(benchmark::State& state) {
   const test::TemporaryFolder folder;
   std::vector<double> seconds;
   for (auto _ : state) {
-    const auto start = Clock::now();
+    const double start = ClockTime();
     WritePage(folder.path(), "diagnosis",
               DiagnosisPage(prepared.design, diagnosis.result, diagnosis.log,
                             {"cmd", "record.csv", {}}));
     WriteReport(folder.path());
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    seconds.push_back(ClockTime() - start);
   }
   state.counters["samples"] = static_cast<double>(record.samples());
   state.counters["s_report"] = Median(seconds);

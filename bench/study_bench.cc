@@ -5,12 +5,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/freed_memory.h"
 #include "mjdiag/studies/dataset/plan_run.h"
@@ -18,17 +17,6 @@
 
 namespace mjdiag {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 std::string PlanText(int runs, int seed) {
   return R"(schema = "mjdiag.plan/1"
@@ -75,12 +63,9 @@ void StudyOverBareLoop(benchmark::State& state) {
   int turn = 0;
   for (auto _ : state) {
     const LoadedPlan plan = ParsePlan(PlanText(kRuns, ++turn), MJDIAG_SOURCE_DIR);
-    const auto bare = Clock::now();
-    SimulateAll(plan);
-    const double bare_seconds = SecondsSince(bare);
-    const auto study = Clock::now();
-    RunPlan(plan, {folder / std::to_string(turn)});
-    const double seconds = SecondsSince(study);
+    const double bare_seconds = Seconds(ClockTime, [&] { SimulateAll(plan); });
+    const double seconds =
+        Seconds(ClockTime, [&] { RunPlan(plan, {folder / std::to_string(turn)}); });
     study_seconds += seconds;
     ratios.push_back(bare_seconds / seconds);
     std::filesystem::remove_all(folder / std::to_string(turn));

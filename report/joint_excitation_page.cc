@@ -1,11 +1,10 @@
 #include "mjdiag/report/joint_excitation_page.h"
 
-#include <cmath>
-
 #include "mjdiag/report/excitation_page.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
+
 Table NumberTable(const JointMotionDesign& design) {
   Table table{{{"number", false},
                {"standard deviation, measured motion", true},

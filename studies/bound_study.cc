@@ -7,6 +7,7 @@
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
@@ -143,9 +144,8 @@ std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault) {
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   const auto found = std::find(names.begin(), names.end(), fault);
   if (found == names.end()) {
-    std::string known;
-    for (const auto& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw InputError("study", "there is no fault '" + fault + "'", "one of " + known);
+    throw InputError("study", "there is no fault '" + fault + "'",
+                     "one of " + Listed(names));
   }
   return found - names.begin();
 }

@@ -4,13 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <ctime>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/processor_time.h"
 #include "mjdiag/signals/quantity.h"
 #include "mjdiag/signals/text_file.h"
 #include "mjdiag/watch/event_log.h"
@@ -34,12 +34,6 @@ constexpr double kTakePatience = 0.05;  // s
 /// Over which a load is taken [s].
 constexpr double kLoadOver = 2.0;
 constexpr std::size_t kShownEvents = 50;
-
-double ThreadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 std::string SourceWords(const SourceReport& source) {
   switch (source.state) {
@@ -100,7 +94,7 @@ class LiveWatch::Work final : public OrderedSink {
   void Run(const std::function<bool()>& ended) {
     TickBlock block;
     load_since_ = WallClock();
-    load_seconds_ = ThreadSeconds();
+    load_seconds_ = ThreadTime();
     while (!ended()) {
       const bool last = source_->ended();  // before what it left is taken
       queue_.Take(kTakePatience, block);
@@ -257,7 +251,7 @@ class LiveWatch::Work final : public OrderedSink {
   void UpdateLoad(double now) {
     state_.load.deepest = static_cast<std::int64_t>(queue_.deepest());
     if (now - load_since_ < kLoadOver) return;
-    const double seconds = ThreadSeconds();
+    const double seconds = ThreadTime();
     state_.load.share = (seconds - load_seconds_) / (now - load_since_);
     load_since_ = now;
     load_seconds_ = seconds;

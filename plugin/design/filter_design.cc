@@ -12,6 +12,7 @@
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
@@ -30,10 +31,9 @@ MatrixXd UnknownForces(const Setup& setup, const MechanicalModel& model) {
     const auto& joints = model.coordinates;
     const auto found = std::find(joints.begin(), joints.end(), names[i]);
     if (found == joints.end()) {
-      std::string known;
-      for (const auto& joint : joints) known += (known.empty() ? "" : ", ") + joint;
       throw InputError("setup '" + setup.name + "': diagnosis.unknown_forces",
-                       "there is no joint '" + names[i] + "'", "one of " + known);
+                       "there is no joint '" + names[i] + "'",
+                       "one of " + Listed(joints));
     }
     forces(found - joints.begin(), static_cast<Index>(i)) = 1.0;
   }

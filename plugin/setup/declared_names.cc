@@ -3,14 +3,13 @@
 #include <algorithm>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
 
 std::string OneOf(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list.empty() ? "none, the setup declares none" : "one of " + list;
+  return names.empty() ? "none, the setup declares none" : "one of " + Listed(names);
 }
 
 }  // namespace
