@@ -77,16 +77,35 @@ StudyTable EmptySizes(const Plan& plan, const std::string& title) {
            " and phases of disturbances unknown."}};
 }
 
+using Detectors = std::vector<const Detector*>;
+
+/// How many seeds show the fault to each detector: in one run of each seed.
+std::vector<int> SeenBy(const Plan& plan, const Detectors& detectors,
+                        const std::string& fault, double deviation) {
+  std::vector<std::atomic<int>> seen(detectors.size());
+  const double value = HealthyValue(plan.machine.setup(), fault) + deviation;
+  ParallelFor(plan.seeds.count, [&](int i) {
+    const Record record =
+        plan.Run({{fault, value}}, plan.seeds.first + static_cast<std::uint64_t>(i));
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (detectors[k]->sees(record, fault)) ++seen[k];
+    }
+  });
+  return {seen.begin(), seen.end()};
+}
+
 /// How one detector sees one fault.
+/// @param at_published  by how many seeds at the size of the thesis
 std::vector<Cell> RowOf(const Plan& plan, const Detector& detector,
-                        const std::string& fault, double largest) {
+                        const std::string& fault, double largest,
+                        std::optional<int> at_published) {
   const Setup& setup = plan.machine.setup();
   const double healthy = HealthyValue(setup, fault);
   const SeesFault sees = [&](double deviation, std::uint64_t seed) {
     return detector.sees(plan.Run({{fault, healthy + deviation}}, seed), fault);
   };
   const auto published =
-      PublishedDeviation(plan.machine, plan.machine.setup().Study(plan.study), fault);
+      PublishedDeviation(plan.machine, setup.Study(plan.study), fault);
   const double sd = plan.bound[BoundIndex(plan.machine, fault)];
   std::optional<double> guess;
   if (detector.at_bound) guess = std::copysign(kAboutSeen * sd, largest);
@@ -96,16 +115,16 @@ std::vector<Cell> RowOf(const Plan& plan, const Detector& detector,
   std::vector<Cell> row{
       fault, detector.name,
       published ? DeviationCell(setup, fault, *published) : Cell("undetectable"),
-      published ? PerCent(CountSeen(*published, plan.seeds, sees), seeds) : Cell("-")};
+      at_published ? PerCent(*at_published, seeds) : Cell("-")};
   if (!seen) {
     row.insert(row.end(), {"nothing", "-", "-", "-", "-"});
     return row;
   }
-  row.insert(row.end(), {DeviationCell(setup, fault, *seen),
-                         PerCent(CountSeen(*seen, plan.seeds, sees), seeds),
-                         PerCent(CountSeen(0.5 * *seen, plan.seeds, sees), seeds),
-                         published ? Cell(*published / *seen) : Cell("seen now"),
-                         Cell(std::abs(*seen) / sd)});
+  row.insert(row.end(),
+             {DeviationCell(setup, fault, seen->deviation), PerCent(seen->seeds, seeds),
+              PerCent(CountSeen(0.5 * seen->deviation, plan.seeds, sees), seeds),
+              published ? Cell(*published / seen->deviation) : Cell("seen now"),
+              Cell(std::abs(seen->deviation) / sd)});
   return row;
 }
 
@@ -141,15 +160,24 @@ StudyTable FalseAlarms(const Plan& plan, const StudyOptions& options) {
 /// Sizes, then false alarms.
 std::vector<StudyTable> Detect(const Plan& plan, const std::string& title,
                                const StudyOptions& options) {
-  const auto& largest = plan.machine.setup().Study("largest").values;
+  const Setup& setup = plan.machine.setup();
+  const auto& largest = setup.Study("largest").values;
   GrowingTable sizes(EmptySizes(plan, title), options.row);
   const auto parts = static_cast<double>(largest.size() + 1);
   double done = 0.0;
   for (const auto& [fault, value] : largest) {
+    Detectors detectors;
     for (const Detector& detector : plan.detectors) {
-      if (detector.meant_for && !detector.meant_for(fault)) continue;
-      sizes.Add(RowOf(plan, detector, fault,
-                      value - HealthyValue(plan.machine.setup(), fault)));
+      if (!detector.meant_for || detector.meant_for(fault))
+        detectors.push_back(&detector);
+    }
+    const auto published =
+        PublishedDeviation(plan.machine, setup.Study(plan.study), fault);
+    std::vector<int> seen;
+    if (published) seen = SeenBy(plan, detectors, fault, *published);
+    for (std::size_t k = 0; k < detectors.size(); ++k) {
+      sizes.Add(RowOf(plan, *detectors[k], fault, value - HealthyValue(setup, fault),
+                      published ? std::optional(seen[k]) : std::nullopt));
     }
     done += 1.0 / parts;
     if (options.progress) options.progress(done);

@@ -28,19 +28,21 @@ int CountSeen(double deviation, const SeedsOfASize& seeds, const SeesFault& sees
   return seen;
 }
 
-bool SurelySeen(double deviation, const SeedsOfASize& seeds, const SeesFault& sees) {
+std::optional<int> SurelySeen(double deviation, const SeedsOfASize& seeds,
+                              const SeesFault& sees) {
   const int most = MostMissed(seeds.count);
   std::atomic<int> missed = 0;
   ParallelInOrder(seeds.count, [&](int i) {
     if (missed > most) return;
     if (!sees(deviation, seeds.first + static_cast<std::uint64_t>(i))) ++missed;
   });
-  return missed <= most;
+  if (missed > most) return std::nullopt;
+  return seeds.count - missed;
 }
 
-std::optional<double> SurelySeenSize(double largest, std::optional<double> guess,
-                                     double resolution, const SeedsOfASize& seeds,
-                                     const SeesFault& sees) {
+std::optional<SeenSize> SurelySeenSize(double largest, std::optional<double> guess,
+                                       double resolution, const SeedsOfASize& seeds,
+                                       const SeesFault& sees) {
   constexpr double kStride = 2.0;
   constexpr double kNothing = 1e-12;
   const double sign = std::copysign(1.0, largest);
@@ -50,25 +52,33 @@ std::optional<double> SurelySeenSize(double largest, std::optional<double> guess
       return sees(deviation, seeds.first);
     });
   }
-  double seen = std::min(most, guess ? std::abs(*guess) : most);
-  double unseen = seen;
-  if (SurelySeen(sign * seen, seeds, sees)) {
+  std::optional<SeenSize> seen;
+  double unseen = 0.0;
+  const auto is_seen = [&](double size) {
+    const std::optional<int> count = SurelySeen(sign * size, seeds, sees);
+    if (count) {
+      seen = {sign * size, *count};
+    } else {
+      unseen = size;
+    }
+    return count.has_value();
+  };
+  double size = std::min(most, guess ? std::abs(*guess) : most);
+  if (is_seen(size)) {
     do {
-      seen = unseen;
-      unseen /= kStride;
-    } while (unseen > kNothing * most && SurelySeen(sign * unseen, seeds, sees));
+      size /= kStride;
+    } while (size > kNothing * most && is_seen(size));
+    unseen = size;
   } else {
     do {
-      if (seen == most) return std::nullopt;
-      unseen = seen;
-      seen = std::min(most, seen * kStride);
-    } while (!SurelySeen(sign * seen, seeds, sees));
+      if (size == most) return std::nullopt;
+      size = std::min(most, size * kStride);
+    } while (!is_seen(size));
   }
-  while (seen > resolution * unseen) {
-    const double middle = std::sqrt(seen * unseen);
-    (SurelySeen(sign * middle, seeds, sees) ? seen : unseen) = middle;
+  while (std::abs(seen->deviation) > resolution * unseen) {
+    is_seen(std::sqrt(std::abs(seen->deviation) * unseen));
   }
-  return sign * seen;
+  return seen;
 }
 
 }  // namespace mjdiag

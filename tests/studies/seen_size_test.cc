@@ -20,7 +20,7 @@ TEST(SurelySeenSize, IsWhereAllButTwoOfFortySeedsSeeIt) {
   const SeedsOfASize seeds{40, 1};
   constexpr double kSize = 1e-3 * 1.17;  // seeds 39 and 40 miss it
   EXPECT_EQ(CountSeen(kSize, seeds, Sees), 38);
-  EXPECT_TRUE(SurelySeen(kSize, seeds, Sees));
+  EXPECT_EQ(SurelySeen(kSize, seeds, Sees), 38);
   EXPECT_FALSE(SurelySeen(kSize * 0.999, seeds, Sees));
   for (const double largest : {0.5, -0.5}) {
     for (const auto guess :
@@ -28,8 +28,9 @@ TEST(SurelySeenSize, IsWhereAllButTwoOfFortySeedsSeeIt) {
           std::optional(std::copysign(0.4, largest))}) {
       const auto size = SurelySeenSize(largest, guess, 1.05, seeds, Sees);
       ASSERT_TRUE(size);
-      EXPECT_GE(*size / largest, 0.999 * kSize / 0.5);
-      EXPECT_LE(*size / largest, 1.05 * kSize / 0.5);
+      EXPECT_GE(size->deviation / largest, 0.999 * kSize / 0.5);
+      EXPECT_LE(size->deviation / largest, 1.05 * kSize / 0.5);
+      EXPECT_EQ(size->seeds, CountSeen(size->deviation, seeds, Sees));
     }
   }
 }
