@@ -33,16 +33,8 @@ constexpr Index kAtOnce = 64;
 /// began at rest.
 constexpr Index kLook = 1024;
 constexpr Index kFirstGuess = 128;
-constexpr int kPulledPasses = 6;
-/// At the end of a run, until the estimate is where the twin runs.
-constexpr int kLastPasses = 12;
 /// Standard deviations of what the first order does not tell.
 constexpr double kTooFar = 3.0;
-/// Squared change, in standard deviations with one gain, that the next softer one can
-/// make good: its predictions are not much longer.
-constexpr double kNear = 1000.0;
-/// That no other pass is needed after.
-constexpr double kThere = 0.1;
 
 }  // namespace
 
@@ -212,59 +204,6 @@ bool PredictionErrorEstimator::TryChange() noexcept {
   variance_ = pass_.information().Variance();
   StartOver(segment_.windowed ? pass_.stiffest() : 0, pass_.theta());
   return true;
-}
-
-void PredictionErrorEstimator::RunToTheEnd() noexcept {
-  while (!CaughtUp()) pass_.Step(kept_);
-}
-
-bool PredictionErrorEstimator::Explained() const noexcept {
-  return gain() == 0 && !segment_.windowed && !exhausted_ &&
-         pass_.worst_block() < pass_.surprise().BlockLimit() &&
-         pass_.worst_stretch() < pass_.surprise().RecentLimit();
-}
-
-void PredictionErrorEstimator::ApproachWhole() noexcept {
-  ForgetLostStart();
-  segment_.windowed = true;
-  if (segment_.first.at_rest) {
-    segment_.window = segment_.first;
-  } else if (pass_.twin().linear()) {
-    pass_.StartSettling(kept_, segment_.first.origin, segment_.window);
-  } else {
-    segment_.window = segment_.first;
-    segment_.window.known = segment_.first.known = false;
-  }
-  const Index length = kept_.added() - segment_.window.origin;
-  StartOver(pass_.stiffest(), nominal_);
-  while (true) {
-    for (int i = 0; i < kPulledPasses; ++i) {
-      if (i > 0) GoBack();
-      RunToTheEnd();
-      if (pass_.information().SquaredChange() < kNear) break;
-    }
-    const std::size_t softer = Softer(gain(), length / 2);
-    if (softer == 0) break;
-    Begin(softer, NextTheta());
-  }
-  segment_.windowed = false;
-  Begin(0, NextTheta());
-  RunToTheEnd();
-}
-
-void PredictionErrorEstimator::CatchUp() noexcept {
-  if (!pass_.began()) return;
-  while (!CaughtUp()) ProcessKept();
-  if (following()) return;
-  if (!Explained()) ApproachWhole();
-  for (int i = 0; i < kLastPasses; ++i) {
-    if (pass_.information().SquaredChange() < kThere) break;
-    GoBack();
-    RunToTheEnd();
-  }
-  Retract();
-  Say();
-  exhausted_ = !Explained();
 }
 
 }  // namespace mjdiag

@@ -71,10 +71,10 @@ PredictionErrorEstimator::PredictionErrorEstimator(
   }
   next_ = nominal_;
   variance_ = prior_covariance_.diagonal();
-  work_ = VectorXd::Zero(p);
+  work_ = far_ = nearest_ = VectorXd::Zero(p);
   prior_ = inverse_ = MatrixXd::Identity(p, p);
   segment_.first.state = segment_.first.settling = pass_.twin().MakeState();
-  segment_.window = segment_.first;
+  segment_.window = at_rest_ = segment_.first;
   WidenPrior();
   said_.theta = nominal_;
   said_.variance = variance_;
@@ -132,6 +132,7 @@ void PredictionErrorEstimator::FindStart() noexcept {
   work_ = nominal_;
   if (run_start_.BeganAtRest(pass_.twin(), kept_, work_, pass_.twin().first_tone(),
                              prior_covariance_)) {
+    looked_at_rest_ = true;
     pass_.Begin(segment_.first, nominal_, 0, prior_, nominal_);
   } else {
     StartInMotion();

@@ -188,10 +188,24 @@ class PredictionErrorEstimator {
   void WidenHorizon() noexcept;
   std::size_t Softer(std::size_t gain, Eigen::Index ticks) const noexcept;
 
-  // At the end of a run.
+  /// Passes that are pulled along with one gain.
+  static constexpr int kPulledPasses = 6;
+  /// Squared change, in standard deviations with one gain, that the next softer one can
+  /// make good: its predictions are not much longer.
+  static constexpr double kNear = 1000.0;
+
+  // At the end of a run (whole_run.cc).
   void RunToTheEnd() noexcept;
   bool Explained() const noexcept;
+  /// From nominal, pulled along at first.
   void ApproachWhole() noexcept;
+  /// From where a number of the machine is orders of magnitude off.
+  void ApproachFromFar() noexcept;
+  /// A pass about that theta up to a tick. @return its misfit; infinite where it diverges
+  double MisfitOf(const Eigen::VectorXd& theta, Eigen::Index until) noexcept;
+  /// far_ with one number of the machine orders of magnitude off, that which explains most
+  /// of where it fails.
+  void TryFarNumbers() noexcept;
 
   bool Surprised() const noexcept;
   double Farthest(const Eigen::VectorXd& change) const noexcept;
@@ -212,6 +226,9 @@ class PredictionErrorEstimator {
   KeptReadings kept_;
   RunStart run_start_;
   Segment segment_;
+  /// Of a run that looked as if it began at rest, after it has been taken for one in motion.
+  bool looked_at_rest_ = false;
+  PassStart at_rest_;
   Checkpoints checkpoints_;
   Eigen::Index next_look_;
   Eigen::Index look_ = 0;  // ticks of a pass that is pulled along
@@ -222,7 +239,7 @@ class PredictionErrorEstimator {
   Eigen::MatrixXd prior_;
   Eigen::VectorXd variance_;
   Estimate said_;
-  Eigen::VectorXd work_, next_;
+  Eigen::VectorXd work_, next_, far_, nearest_;
   Eigen::MatrixXd inverse_;
 };
 

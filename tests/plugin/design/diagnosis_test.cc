@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "mjdiag/diagnosis/diagnosis_json.h"
 #include "mjdiag/diagnosis/diagnosis_verdict.h"
 #include "mjdiag/diagnosis/filters_file.h"
@@ -138,6 +141,47 @@ TEST(Diagnose, NamesAFaultThatAppearsATenthOfASecondAfterTheStart) {
     EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
     if (fault.name != "eta_x") continue;
     EXPECT_NEAR(fault.value, 0.7, 5.0 * fault.sd);
+  }
+}
+
+// A resonance that rings a thousand times longer is told by no first order of nominal.
+TEST(Diagnose, NamesWhatIsOrdersOfMagnitudeOff) {
+  const Machine machine = test::Bonder();
+  DiagnosisSource source;
+  source.nominal.linear = true;
+  source.nominal.runs = 3;
+  const PreparedDiagnosis prepared = PrepareDiagnosis(machine, source);
+  using Faults = std::vector<Fault>;
+  for (const Faults& faults : {Faults{{"beta_y", 0.001}}, Faults{{"beta_x", 0.001}},
+                               Faults{{"beta_y", 0.0001}}, Faults{{"beta_y", 0.03}},
+                               Faults{{"beta_x", 0.003}, {"beta_y", 0.001}},
+                               Faults{{"beta_y", 0.002}, {"zeta_x", 1.2}}}) {
+    const Record record =
+        SimulateLinear(machine.With({faults, {}}), DefaultMotion(machine.setup()), {});
+    const DiagnosisResult result = Diagnose(machine, prepared, record).result;
+    EXPECT_LT(result.misfit, 2.0);
+    for (const FaultVerdict& fault : result.faults) {
+      const auto truth = std::ranges::find(faults, fault.name, &Fault::name);
+      EXPECT_EQ(fault.detected, truth != faults.end()) << fault.name;
+      if (truth == faults.end()) continue;
+      EXPECT_NEAR(fault.value, truth->value, 5.0 * fault.sd);
+      EXPECT_LT(fault.sd, 1e-3 * truth->value);
+    }
+  }
+}
+
+// It shows as soon as a start in motion would, and is a machine at rest all the same.
+TEST(Diagnose, NamesADamperOfTheNonlinearMachineThatIsGone) {
+  const Machine machine = test::Bonder({"trajectories.multi.duration=0.6"});
+  const Record record = Simulate(machine.With({{{"beta_y", 0.01}}, {}}),
+                                 DefaultMotion(machine.setup()), {});
+  const DiagnosisResult result =
+      Diagnose(machine, PrepareDiagnosis(machine), record).result;
+  EXPECT_LT(result.misfit, 2.0);
+  for (const FaultVerdict& fault : result.faults) {
+    EXPECT_EQ(fault.detected, fault.name == "beta_y") << fault.name;
+    if (fault.name != "beta_y") continue;
+    EXPECT_NEAR(fault.value, 0.01, 5.0 * fault.sd);
   }
 }
 
