@@ -31,7 +31,7 @@ def line(ratio, entries):
     values = entries[0].values.get(ratio.name)
     target = "" if ratio.target is None else (
         ("at most " if ratio.less_is_better else "at least ") + f"{ratio.target:g}")
-    cells = [f"`{ratio.name}`", ratio.what, ratio.over, target]
+    cells = [f"`{ratio.name}`<br>{ratio.what}, over {ratio.over}", target]
     if values is None:
         cells += ["", ""]
     else:
@@ -50,11 +50,11 @@ def line(ratio, entries):
 def document(entries):
     """Of entries, the latest first."""
     now = entries[0]
-    titles = ["ratio", "what", "over what", "target", f"median, {now.commit}",
-              "the five values"]
+    titles = ["ratio", "target", f"median, {now.commit}", "the five values"]
     titles += [entry.commit for entry in entries[1:SHOWN]]
     text = [HEAD, f"Commit {now.commit}, {now.computer}. A + is a commit with changes. The "
-            "columns after the values are medians of earlier ones, the latest first.\n\n",
+            "columns after the values are medians of earlier ones, the latest first, some of "
+            "other computers.\n\n",
             "| " + " | ".join(titles) + " |\n", "|---" * len(titles) + "|\n"]
     text += [line(ratio, entries) for ratio in ratios.RATIOS]
     return "".join(text) + REASONS
