@@ -87,9 +87,16 @@ void Drift::Solve(const Information& estimate, double t, double rate_sd) noexcep
   scale = remaining.diagonal().cwiseSqrt().cwiseInverse();
   auto factor = factor_.topLeftCorner(n, n);
   factor = scale.asDiagonal() * remaining * scale.asDiagonal();
-  {
-    Eigen::Ref<MatrixXd> in_place = factor;
-    const Eigen::LLT<Eigen::Ref<MatrixXd>> decomposed(in_place);
+  // Rounding of the difference is that of H, which may be far larger.
+  factor.diagonal().array() +=
+      kRidge * H.diagonal().head(n).array() * scale.array().square();
+  Eigen::Ref<MatrixXd> in_place = factor;
+  const Eigen::LLT<Eigen::Ref<MatrixXd>> decomposed(in_place);
+  if (decomposed.info() != Eigen::Success || !scale.allFinite()) {
+    // What a start in motion, not known, and rates tell together is lost in it.
+    rates_.setZero();
+    remaining = H.topLeftCorner(n, n);
+    return;
   }
   solved.array() *= scale.array();
   factor.triangularView<Eigen::Lower>().solveInPlace(solved);

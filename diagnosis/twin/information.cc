@@ -8,13 +8,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-/// What rounding leaves of a direction that others explain.
-constexpr double kRidge = 1e-13;
-
-}  // namespace
-
 MatrixXd CovarianceOf(const MatrixXd& H) {
   const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
   return scale.asDiagonal() * Inverse(scale.asDiagonal() * H * scale.asDiagonal()) *

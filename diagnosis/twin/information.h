@@ -12,6 +12,9 @@
 
 namespace mjdiag {
 
+/// What rounding leaves of a direction that others explain, over the diagonal of H.
+inline constexpr double kRidge = 1e-13;
+
 /// H^-1, of unknowns of any units.
 Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& H);
 
