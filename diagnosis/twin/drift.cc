@@ -8,8 +8,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// Factors of something, so that it can be copied before it is used.
 Drift::Drift(Index p, Index ny, std::vector<Index> drifting)
-    : drifting_(std::move(drifting)), small_(ny) {
+    : drifting_(std::move(drifting)), small_(MatrixXd::Identity(ny, ny)) {
   const auto r = static_cast<Index>(drifting_.size());
   H_r_ = M_ = MatrixXd::Zero(r, r);
   H_x_ = B_ = MatrixXd::Zero(p, r);
