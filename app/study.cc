@@ -15,6 +15,7 @@
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
 #include "mjdiag/studies/bound_study.h"
+#include "mjdiag/studies/calibration_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
 #include "mjdiag/studies/disturbance_study.h"
@@ -81,6 +82,7 @@ const std::map<std::string, Study>& Studies() {
       {"table5", {Nonlinear<true>}},
       {"estimation", {EstimationStudy}},
       {"random-faults", {RandomFaultStudy, Choice::kPlant}},
+      {"calibration", {CalibrationStudy, Choice::kPlant}},
       {"disturbance", {DisturbanceStudy}},
       {"bound", {BoundStudy}},
       {"tolerance", {ToleranceStudy}},

@@ -22,6 +22,9 @@ constexpr double kThere = 0.1;
 constexpr std::array kFarFactors = {1e-3, 1e-2, 0.1, 10.0, 1e2, 1e3};
 /// Ticks in which it shows whether one is better.
 constexpr Index kFarLook = 4096;
+/// Of the misfit, that another pass has to leave for the next one to be worth its time: near
+/// an explanation each squares the error that is left.
+constexpr double kWorthwhile = 0.9;
 /// Numbers that are that far off together.
 constexpr int kFarNumbers = 3;
 
@@ -119,9 +122,12 @@ void PredictionErrorEstimator::ApproachFromFar() noexcept {
     double misfit = MisfitOf(far_, end);
     for (int i = 0; i < kLastPasses && !Explained(); ++i) {
       const double next = MisfitOf(NextTheta(), end);
-      if (!(next < misfit)) break;
-      misfit = next;
-      far_ = pass_.theta0();
+      const bool worth = next < kWorthwhile * misfit;
+      if (next < misfit) {
+        misfit = next;
+        far_ = pass_.theta0();
+      }
+      if (!worth) break;
     }
     if (!(misfit < least)) break;
     least = misfit;
