@@ -168,8 +168,8 @@ std::vector<StudyTable> Detect(const Plan& plan, const std::string& title,
   for (const auto& [fault, value] : largest) {
     Detectors detectors;
     for (const Detector& detector : plan.detectors) {
-      if (!detector.meant_for || detector.meant_for(fault))
-        detectors.push_back(&detector);
+      if (detector.meant_for && !detector.meant_for(fault)) continue;
+      detectors.push_back(&detector);
     }
     const auto published =
         PublishedDeviation(plan.machine, setup.Study(plan.study), fault);

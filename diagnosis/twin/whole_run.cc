@@ -142,6 +142,7 @@ void PredictionErrorEstimator::CatchUp() noexcept {
   if (!pass_.began()) return;
   while (!CaughtUp()) ProcessKept();
   if (following()) return;
+  exhausted_ = false;  // of returns while the machine ran: there is time for more
   if (!Explained()) ApproachWhole();
   if (!Explained()) ApproachFromFar();
   for (int i = 0; i < kLastPasses; ++i) {
