@@ -90,7 +90,7 @@ TEST(Diagnose, IsExactForLargeFaults) {
 
 // Dry friction is unknown beside the faults, and nothing is subtracted.
 TEST(Diagnose, NamesTheFaultsOfTheNonlinearMachineAndNothingElse) {
-  const Machine machine = test::Bonder();
+  const Machine machine = test::Bonder({"trajectories.multi.duration=0.8"});
   const PreparedDiagnosis prepared = PrepareDiagnosis(machine);
   Excitation motion = DefaultMotion(machine.setup());
   const DiagnosedRun run =
