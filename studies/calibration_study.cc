@@ -6,8 +6,10 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/calibrate.h"
 #include "mjdiag/plugin/design/fault_family.h"
-#include "mjdiag/plugin/effects/draw.h"
 #include "mjdiag/signals/decompositions.h"
+#include "mjdiag/signals/listed.h"
+#include "mjdiag/studies/count_cells.h"
+#include "mjdiag/studies/hard_case.h"
 #include "mjdiag/studies/twin_listening.h"
 
 namespace mjdiag {
@@ -20,7 +22,6 @@ constexpr int kJudged = 20;      // that are judged
 /// Size of a fault over that from which on it is named if it is the only one: two or three
 /// standard deviations beyond, which noise takes back once in a hundred times.
 constexpr double kPromised = 1.5;
-constexpr double kSureness = 0.95;
 /// Machines have seeds of runs that are theirs.
 constexpr std::uint64_t kSeedsOfAMachine = 1000;
 
@@ -34,7 +35,7 @@ struct MachineOutcome {
   int false_alarms = 0;  ///< healthy runs in which anything is named
   int faults = 0;        ///< runs with one
   int named = 0;         ///< of them those with that name and no other
-  std::string missed;
+  std::vector<std::string> missed;
   double alarm = 0.0;  ///< deviation from which on the best known one is named
 };
 
@@ -46,7 +47,8 @@ class DrawnMachine {
         motion_(DefaultMotion(nominal.setup())),
         linear_(options.linear),
         seed_(options.seed + kSeedsOfAMachine * static_cast<std::uint64_t>(place)),
-        real_(Draw()) {}
+        factors_(Draw()),
+        real_(nominal.WithNumbers(factors_)) {}
 
   MachineOutcome Run() {
     std::vector<Record> healthy;
@@ -65,19 +67,17 @@ class DrawnMachine {
   }
 
  private:
-  Machine Draw() {
+  NumberFactors Draw() const {
     Random random(seed_);
-    for (const PlantNumber& number : PlantNumbers(nominal_.plant())) {
-      factors_.emplace_back(number,
-                            std::exp(UsualSpread(number.kind) * random.Normal()));
-    }
-    return nominal_.WithNumbers(factors_);
+    return DrawNumbers(nominal_.plant(), random,
+                       [](const mjModel&, const PlantNumber& number) {
+                         return UsualSpread(number.kind);
+                       });
   }
 
   /// Another run.
   Record RecordWith(const std::vector<SizedFault>& faults) {
-    const FaultyMachine faulty = WithFaults(real_, faults, ++seed_);
-    return linear_ ? RunLinear(motion_, faulty) : RunNonlinear(motion_, faulty);
+    return RunOf(motion_, WithFaults(real_, faults, ++seed_), linear_);
   }
 
   /// All together: what the record tells of their common scale is nothing, so that by
@@ -100,7 +100,7 @@ class DrawnMachine {
     const auto n = static_cast<double>(away.size());
     const double squares = Solve(learned.root, away).squaredNorm();
     outcome_.distance = squares / n;
-    outcome_.inside = squares < ChiSquaredQuantile(1.0 - kSureness, n);
+    outcome_.inside = squares < ChiSquaredQuantile(1.0 - kConfidence, n);
   }
 
   void TryFaults(const Machine& calibrated, const Eigen::VectorXd& alarm) {
@@ -120,7 +120,7 @@ class DrawnMachine {
       if (reading.named == expected) {
         ++outcome_.named;
       } else {
-        outcome_.missed += (outcome_.missed.empty() ? "" : ", ") + names[i];
+        outcome_.missed.push_back(names[i]);
       }
     }
   }
@@ -138,10 +138,10 @@ std::vector<Cell> RowOfMachine(int place, const MachineOutcome& outcome) {
   return {static_cast<double>(place + 1),
           outcome.farthest + " " + Cell(100.0 * (outcome.factor - 1.0)).text + " %",
           Cell(outcome.distance),
-          std::to_string(outcome.false_alarms) + " of " + std::to_string(kJudged),
+          CountText(outcome.false_alarms, kJudged),
           Cell(100.0 * outcome.alarm),
-          std::to_string(outcome.named) + " of " + std::to_string(outcome.faults),
-          outcome.missed.empty() ? "-" : outcome.missed};
+          CountText(outcome.named, outcome.faults),
+          outcome.missed.empty() ? "-" : Listed(outcome.missed)};
 }
 
 StudyTable CountsOfMachines(const std::vector<MachineOutcome>& outcomes) {
@@ -156,11 +156,7 @@ StudyTable CountsOfMachines(const std::vector<MachineOutcome>& outcomes) {
       sum += count(outcome);
       all += of(outcome);
     }
-    if (all == 0) return;
-    const auto [low, high] = ProbabilityInterval(all, sum, kSureness);
-    table.rows.push_back({what, std::to_string(sum) + " of " + std::to_string(all),
-                          100.0 * sum / all,
-                          Cell(100.0 * low).text + " to " + Cell(100.0 * high).text});
+    AddCount(table, what, sum, all);
   };
   add(
       "healthy runs in which a fault is named",
@@ -193,8 +189,7 @@ std::vector<StudyTable> CalibrationStudy(const Machine& machine,
             " times as large as the diagnosis says that it has to be, has to be named "
             "and no other beside it.",
         "The distance is that of what was learned from what was drawn, squared, in "
-        "standard "
-        "deviations, over the count of numbers: 1 on average.",
+        "standard deviations, over the count of numbers: 1 on average.",
         "Numbers are drawn with the standard deviations that they have without "
         "measuring: masses and motor constants 1 %, inertias 3 %, mounts 5 %, damping "
         "and dry friction 20 %."}},

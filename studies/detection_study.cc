@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/bound_study.h"
+#include "mjdiag/studies/count_cells.h"
 #include "mjdiag/studies/detector.h"
 #include "mjdiag/studies/run_bound.h"
 #include "mjdiag/studies/seen_size.h"
@@ -38,7 +38,7 @@ struct Plan {
 
   Record Run(const std::vector<SizedFault>& faults, std::uint64_t seed) const {
     const FaultyMachine faulty = WithFaults(machine, faults, seed);
-    return linear ? RunLinear(motion, faulty) : RunNonlinear(motion, faulty);
+    return RunOf(motion, faulty, linear);
   }
 };
 
@@ -58,8 +58,6 @@ Cell DeviationCell(const Setup& setup, const std::string& fault, double deviatio
   cell.text = (deviation > 0.0 ? "+" : "") + Cell(100.0 * deviation).text + " %";
   return cell;
 }
-
-Cell PerCent(int count, int of) { return 100.0 * count / of; }
 
 StudyTable EmptySizes(const Plan& plan, const std::string& title) {
   return {
@@ -95,36 +93,35 @@ std::vector<int> SeenBy(const Plan& plan, const Detectors& detectors,
 }
 
 /// How one detector sees one fault.
-/// @param at_published  by how many seeds at the size of the thesis
+/// @param published  the size of the thesis, if it has one
 std::vector<Cell> RowOf(const Plan& plan, const Detector& detector,
                         const std::string& fault, double largest,
-                        std::optional<int> at_published) {
+                        const std::optional<SeenSize>& published) {
   const Setup& setup = plan.machine.setup();
   const double healthy = HealthyValue(setup, fault);
   const SeesFault sees = [&](double deviation, std::uint64_t seed) {
     return detector.sees(plan.Run({{fault, healthy + deviation}}, seed), fault);
   };
-  const auto published =
-      PublishedDeviation(plan.machine, setup.Study(plan.study), fault);
   const double sd = plan.bound[BoundIndex(plan.machine, fault)];
   std::optional<double> guess;
   if (detector.at_bound) guess = std::copysign(kAboutSeen * sd, largest);
   const auto seen = SurelySeenSize(
       largest, guess, plan.linear ? kResolution : kCoarseResolution, plan.seeds, sees);
   const int seeds = plan.seeds.count;
-  std::vector<Cell> row{
-      fault, detector.name,
-      published ? DeviationCell(setup, fault, *published) : Cell("undetectable"),
-      at_published ? PerCent(*at_published, seeds) : Cell("-")};
+  std::vector<Cell> row{fault, detector.name,
+                        published ? DeviationCell(setup, fault, published->deviation)
+                                  : Cell("undetectable"),
+                        published ? PerCent(published->seeds, seeds) : Cell("-")};
   if (!seen) {
     row.insert(row.end(), {"nothing", "-", "-", "-", "-"});
     return row;
   }
-  row.insert(row.end(),
-             {DeviationCell(setup, fault, seen->deviation), PerCent(seen->seeds, seeds),
-              PerCent(CountSeen(0.5 * seen->deviation, plan.seeds, sees), seeds),
-              published ? Cell(*published / seen->deviation) : Cell("seen now"),
-              Cell(std::abs(seen->deviation) / sd)});
+  row.insert(
+      row.end(),
+      {DeviationCell(setup, fault, seen->deviation), PerCent(seen->seeds, seeds),
+       PerCent(CountSeen(0.5 * seen->deviation, plan.seeds, sees), seeds),
+       published ? Cell(published->deviation / seen->deviation) : Cell("seen now"),
+       Cell(std::abs(seen->deviation) / sd)});
   return row;
 }
 
@@ -149,10 +146,8 @@ StudyTable FalseAlarms(const Plan& plan, const StudyOptions& options) {
       options.row);
   for (std::size_t k = 0; k < alarms.size(); ++k) {
     const int count = alarms[k];
-    const auto [low, high] = ProbabilityInterval(options.runs, count, 0.95);
     table.Add({plan.detectors[k].name, static_cast<double>(count),
-               PerCent(count, options.runs),
-               Cell(100.0 * low).text + " to " + Cell(100.0 * high).text});
+               PerCent(count, options.runs), IntervalCell(count, options.runs)});
   }
   return table.table();
 }
@@ -171,13 +166,17 @@ std::vector<StudyTable> Detect(const Plan& plan, const std::string& title,
       if (detector.meant_for && !detector.meant_for(fault)) continue;
       detectors.push_back(&detector);
     }
-    const auto published =
-        PublishedDeviation(plan.machine, setup.Study(plan.study), fault);
-    std::vector<int> seen;
-    if (published) seen = SeenBy(plan, detectors, fault, *published);
+    std::vector<std::optional<SeenSize>> published(detectors.size());
+    if (const auto size =
+            PublishedDeviation(plan.machine, setup.Study(plan.study), fault)) {
+      const std::vector<int> seeds = SeenBy(plan, detectors, fault, *size);
+      for (std::size_t k = 0; k < seeds.size(); ++k) {
+        published[k] = SeenSize{*size, seeds[k]};
+      }
+    }
     for (std::size_t k = 0; k < detectors.size(); ++k) {
       sizes.Add(RowOf(plan, *detectors[k], fault, value - HealthyValue(setup, fault),
-                      published ? std::optional(seen[k]) : std::nullopt));
+                      published[k]));
     }
     done += 1.0 / parts;
     if (options.progress) options.progress(done);

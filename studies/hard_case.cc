@@ -179,10 +179,12 @@ HardPlan PlanOf(std::uint64_t seed) {
   return {.causes = draw < kOne ? 1 : draw < kOne + kTwo ? 2 : 3};
 }
 
-NumberFactors DrawNumbers(const mjModel& plant, Random& random) {
+NumberFactors DrawNumbers(const mjModel& plant, Random& random,
+                          double (*spread)(const mjModel& plant,
+                                           const PlantNumber& number)) {
   NumberFactors factors;
   for (const PlantNumber& number : PlantNumbers(plant)) {
-    factors.emplace_back(number, std::exp(DoubtOf(plant, number) * random.Normal()));
+    factors.emplace_back(number, std::exp(spread(plant, number) * random.Normal()));
   }
   return factors;
 }

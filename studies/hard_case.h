@@ -52,7 +52,10 @@ inline constexpr double kLeastShown = 200.0;
 inline constexpr double kLeastTold = 50.0;
 
 /// Numbers of a plant as they may be.
-NumberFactors DrawNumbers(const mjModel& plant, Random& random);
+/// @param spread  standard deviation of the logarithm of one
+NumberFactors DrawNumbers(const mjModel& plant, Random& random,
+                          double (*spread)(const mjModel& plant,
+                                           const PlantNumber& number) = DoubtOf);
 
 /// The same seed, the same case. InputError on a machine without a controller, which
 /// follows no motion.

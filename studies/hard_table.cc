@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/signals/median.h"
+#include "mjdiag/studies/count_cells.h"
 #include "mjdiag/studies/hidden_effect.h"
 
 namespace mjdiag {
@@ -52,11 +52,7 @@ class OutcomeCounts {
       ++of;
       count += holds(outcome) ? 1 : 0;
     }
-    if (of == 0) return;
-    const auto [low, high] = ProbabilityInterval(of, count, 0.95);
-    table_.rows.push_back({what, std::to_string(count) + " of " + std::to_string(of),
-                           100.0 * count / of,
-                           Cell(100.0 * low).text + " to " + Cell(100.0 * high).text});
+    AddCount(table_, what, count, of);
   }
   /// Median and largest.
   void AddFigure(const std::string& what, const Which& among,

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "mjdiag/studies/count_cells.h"
 #include "mjdiag/studies/hidden_effect.h"
 #include "mjdiag/studies/hidden_study.h"
 
@@ -39,30 +40,26 @@ void Add(const HiddenOutcome& outcome, Count& count) {
   count.close += outcome.right && outcome.unseen_ratio <= 1.2;
 }
 
-std::string Of(int part, int whole) {
-  return std::to_string(part) + " of " + std::to_string(whole);
-}
-
 StudyTable Summary(const Count& count, int causes) {
   StudyTable table;
   table.title = "How often it is right";
   table.columns = {"figure", "value"};
   if (causes == 0) {
-    table.rows.push_back(
-        {"runs with a claim that something is there", Of(count.claims, count.runs)});
+    table.rows.push_back({"runs with a claim that something is there",
+                          CountText(count.claims, count.runs)});
     return table;
   }
   table.rows.push_back(
-      {"type and site right, and nothing else", Of(count.right, count.runs)});
+      {"type and site right, and nothing else", CountText(count.right, count.runs)});
   table.rows.push_back(
       {"others: the truth given as what the record does not tell from what is named",
-       Of(count.undecided, count.runs)});
+       CountText(count.undecided, count.runs)});
   table.rows.push_back({"of the right ones, parameters inside their 95 % interval",
-                        Of(count.covered, count.parameters)});
+                        CountText(count.covered, count.parameters)});
   table.rows.push_back(
       {"of the right ones, mismatch on unseen motion within 1.2 times "
        "the noise floor",
-       Of(count.close, count.right)});
+       CountText(count.close, count.right)});
   return table;
 }
 
@@ -76,7 +73,7 @@ std::vector<Cell> RowOf(const HiddenOutcome& outcome, std::uint64_t seed,
           : outcome.undecided ? "not told apart"
                               : "no",
           named ? Cell(outcome.answer.causes.front().probability) : Cell("-"),
-          Of(outcome.covered, outcome.parameters),
+          CountText(outcome.covered, outcome.parameters),
           outcome.unseen_ratio,
           seconds};
 }

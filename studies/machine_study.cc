@@ -22,8 +22,9 @@ Record RunLinear(const Excitation& motion, const FaultyMachine& faulty) {
   return SimulateLinear(faulty.machine, motion, faulty.options);
 }
 
-Record RunNonlinear(const Excitation& motion, const FaultyMachine& faulty) {
-  return Simulate(faulty.machine, motion, faulty.options);
+Record RunOf(const Excitation& motion, const FaultyMachine& faulty, bool linear) {
+  return linear ? RunLinear(motion, faulty)
+                : Simulate(faulty.machine, motion, faulty.options);
 }
 
 double HealthyValue(const Setup& setup, const std::string& fault) {

@@ -42,7 +42,8 @@ struct FaultyMachine {
 FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
                          std::uint64_t seed);
 Record RunLinear(const Excitation& motion, const FaultyMachine& faulty);
-Record RunNonlinear(const Excitation& motion, const FaultyMachine& faulty);
+/// Of the linear plant, or the nonlinear one.
+Record RunOf(const Excitation& motion, const FaultyMachine& faulty, bool linear);
 
 /// 0 for a disturbance of the setup, else 1.
 double HealthyValue(const Setup& setup, const std::string& fault);

@@ -8,6 +8,7 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/count_cells.h"
 #include "mjdiag/studies/run_bound.h"
 #include "mjdiag/studies/twin_listening.h"
 
@@ -16,8 +17,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kConfidence = 0.95;
 
 bool AnyFault(const RandomOutcome& run,
               const std::function<bool(const RandomOutcome&, Index)>& holds) {
@@ -114,15 +113,6 @@ StudyTable EmptyRuns(const Machine& machine, bool linear) {
        "diagnosis claims and over the bound. The bound is that of this very record: "
        "all faults, phases of disturbances, dry friction and the state at its start "
        "unknown."}};
-}
-
-/// "190 of 200", and the interval of the probability.
-void AddCount(StudyTable& table, const std::string& what, int count, int of) {
-  if (of == 0) return;
-  const auto [low, high] = ProbabilityInterval(of, count, kConfidence);
-  table.rows.push_back({what, std::to_string(count) + " of " + std::to_string(of),
-                        100.0 * count / of,
-                        Cell(100.0 * low).text + " to " + Cell(100.0 * high).text});
 }
 
 StudyTable Counts(const std::vector<RandomOutcome>& runs) {
@@ -271,7 +261,7 @@ RandomOutcome TryDraw(const Machine& machine, const Excitation& motion,
   const FaultyMachine faulty = WithFaults(machine, draw.faults, draw.seed);
   Record record;
   try {
-    record = linear ? RunLinear(motion, faulty) : RunNonlinear(motion, faulty);
+    record = RunOf(motion, faulty, linear);
   } catch (const NumericalError&) {
     outcome.diverged = true;
     return outcome;

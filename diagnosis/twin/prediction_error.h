@@ -201,7 +201,9 @@ class PredictionErrorEstimator {
   void ApproachWhole() noexcept;
   /// From where a number of the machine is orders of magnitude off.
   void ApproachFromFar() noexcept;
-  /// A pass about that theta up to a tick. @return its misfit; infinite where it diverges
+  /// Of this pass; infinite where it diverges.
+  double Misfit() const noexcept;
+  /// Of a pass about that theta up to a tick.
   double MisfitOf(const Eigen::VectorXd& theta, Eigen::Index until) noexcept;
   /// far_ with one number of the machine orders of magnitude off, that which explains most
   /// of where it fails.
@@ -226,8 +228,8 @@ class PredictionErrorEstimator {
   KeptReadings kept_;
   RunStart run_start_;
   Segment segment_;
-  /// Of a run that looked as if it began at rest, after it has been taken for one in motion.
-  bool looked_at_rest_ = false;
+  bool looked_at_rest_ = false;  // when the run began
+  /// That start, should it have been taken for one in motion since.
   PassStart at_rest_;
   Checkpoints checkpoints_;
   Eigen::Index next_look_;

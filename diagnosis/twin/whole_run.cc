@@ -68,11 +68,15 @@ void PredictionErrorEstimator::ApproachWhole() noexcept {
   RunToTheEnd();
 }
 
+double PredictionErrorEstimator::Misfit() const noexcept {
+  const double misfit = pass_.misfit();
+  return std::isfinite(misfit) ? misfit : std::numeric_limits<double>::infinity();
+}
+
 double PredictionErrorEstimator::MisfitOf(const VectorXd& theta, Index until) noexcept {
   Begin(0, theta);
   while (!CaughtUp() && pass_.seen() < until) pass_.Step(kept_);
-  const double misfit = pass_.misfit();
-  return std::isfinite(misfit) ? misfit : std::numeric_limits<double>::infinity();
+  return Misfit();
 }
 
 void PredictionErrorEstimator::TryFarNumbers() noexcept {
@@ -110,7 +114,7 @@ void PredictionErrorEstimator::ApproachFromFar() noexcept {
   // way, and beside what was found another one.
   const Index end = kept_.added();
   nearest_ = pass_.theta0();
-  const double before = MisfitOf(nearest_, end);
+  const double before = Misfit();
   double least = before;
   // A fault that large shows at once, as a start in motion does.
   const bool rest = looked_at_rest_ && !segment_.first.at_rest && segment_.since == 0 &&

@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 import os
+import pathlib
 import statistics
 import subprocess
 
@@ -19,7 +20,7 @@ def computer():
     cores = len(os.sched_getaffinity(0))
     said = {}
     try:
-        for line in open("/proc/cpuinfo", encoding="utf-8"):
+        for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
             name, _, value = line.partition(":")
             said.setdefault(name.strip(), value.strip())
     except OSError:  # not Linux

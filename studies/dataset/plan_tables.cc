@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/studies/count_cells.h"
 
 namespace mjdiag {
 namespace {
 
-constexpr double kConfidence = 0.95;
 constexpr std::size_t kSizes = 8;        // bins of a size that is drawn
 constexpr std::size_t kMostListed = 16;  // sizes that are listed as they are
 constexpr std::size_t kMostDrawn = 400;  // points of a plot
@@ -41,16 +41,6 @@ std::vector<FinishedRun> FinishedRuns(const PlanOutcome& outcome) {
   return runs;
 }
 
-Cell PerCent(int count, int of) {
-  return of > 0 ? Cell(100.0 * count / of) : Cell("-");
-}
-
-Cell IntervalText(int count, int of) {
-  if (of == 0) return "-";
-  const auto [low, high] = ProbabilityInterval(of, count, kConfidence);
-  return Cell(100.0 * low).text + " to " + Cell(100.0 * high).text;
-}
-
 StudyTable CaseTable(const PlanOutcome& outcome) {
   const StudyPlan& plan = outcome.work->loaded().plan;
   const bool judged = plan.keep.Diagnoses();
@@ -76,7 +66,7 @@ StudyTable CaseTable(const PlanOutcome& outcome) {
     const int of = count.runs - count.diverged;
     table.rows.back().insert(table.rows.back().end(),
                              {Cell(count.detected), PerCent(count.detected, of),
-                              IntervalText(count.detected, of)});
+                              IntervalCell(count.detected, of)});
   }
   if (judged) {
     table.notes.emplace_back(
@@ -148,7 +138,7 @@ std::optional<StudyTable> DetectionTable(const std::vector<FinishedRun>& runs,
   for (const SizeBin& bin : BinSizes(sizes, at)) {
     table.rows.push_back(
         {Cell(bin.low), Cell(bin.high), Cell(bin.runs), PerCent(bin.named, bin.runs),
-         IntervalText(bin.named, bin.runs), PerCent(bin.detected, bin.runs)});
+         IntervalCell(bin.named, bin.runs), PerCent(bin.detected, bin.runs)});
     const auto [low, high] = ProbabilityInterval(bin.runs, bin.named, kConfidence);
     const double size = std::sqrt(std::abs(bin.low) * std::abs(bin.high));
     plot.points.push_back(
@@ -281,7 +271,7 @@ std::vector<StudyTable> ErrorTables(const std::vector<FinishedRun>& runs,
     table.rows.push_back({faults[i], Cell(count), Cell(sum / count),
                           Cell(std::sqrt(square / count)),
                           Cell(std::sqrt(claimed / count)), PerCent(inside, count),
-                          IntervalText(inside, count)});
+                          IntervalCell(inside, count)});
     const bool varies = std::ranges::any_of(runs, [&](const FinishedRun& run) {
       return run.ValueOf(faults[i]).has_value();
     });
