@@ -54,6 +54,7 @@ void PredictionErrorEstimator::StartOver(std::size_t gain,
                                          const VectorXd& theta) noexcept {
   segment_.explained = segment_.surprised = 0;
   segment_.grows = false;
+  segment_.doubted = false;
   segment_.stuck = segment_.same = 0;
   pulled_passes_ = 0;
   look_ = segment_.windowed && segment_.window.at_rest ? kFirstGuess : kLook;
@@ -70,6 +71,12 @@ void PredictionErrorEstimator::Reconsider() noexcept {
   if (Surprised()) return Unexplained();
   if (segment_.windowed) return Approach();
   if (gain() == 0 && pass_.blocks() % kGrowthEvery == 0 && SeesGrowth()) {
+    // About a theta that is far off, what the plant's curvature leaves may look like growth
+    // too: it has to be seen again about a better one.
+    if (!pass_.twin().linear() && !segment_.doubted && WorthGoingBack()) {
+      segment_.doubted = true;
+      return GoBack();
+    }
     segment_.grows = true;
     return Follow();
   }

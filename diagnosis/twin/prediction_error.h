@@ -123,6 +123,7 @@ class PredictionErrorEstimator {
     PassStart window;
     bool windowed = false;       ///< passes begin there
     bool grows = false;          ///< what wears has grown in it
+    bool doubted = false;        ///<   seen once, about a theta that was far off
     int attempts = 0;            ///< of passes that are pulled along
     Eigen::Index explained = 0;  ///< longest horizon so far
     Eigen::Index surprised = 0;  ///< horizon of the last pass

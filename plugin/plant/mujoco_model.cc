@@ -10,6 +10,7 @@
 #include <regex>
 #include <vector>
 
+#include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -153,6 +154,7 @@ ModelPtr LoadModel(const std::filesystem::path& mjcf) {
   std::array<char, 1024> report{};
   ModelPtr model(mj_loadXML(mjcf.c_str(), nullptr, report.data(), report.size()));
   if (!model) throw MjcfError(mjcf, report.data());
+  DropUnusedRows(*model);
   return model;
 }
 

@@ -36,7 +36,17 @@ bool AnyIsInAFluid(const mjModel& model) {
   return model.opt.density > 0.0 || model.opt.viscosity > 0.0;
 }
 
+/// Rows that the constraints of a model in which nothing touches can have at most: equality
+/// constraints six each, friction of joints and tendons one a degree of freedom, limits two.
+int MostRows(const mjModel& model) {
+  return 6 * model.neq + model.nv + 2 * model.njnt + 3 * model.ntendon;
+}
+
 }  // namespace
+
+void DropUnusedRows(mjModel& model) {
+  if (!AnyCanTouch(model)) model.njmax = std::min(model.njmax, MostRows(model));
+}
 
 void DropScenery(mjModel& model) {
   model.nlight = 0;

@@ -108,5 +108,18 @@ TEST(RandomFaultStudy, NamesWhatWasDrawnOnTheLinearPlant) {
   }
 }
 
+// A fault of 1400 times its bound beside one of six: far from it, the plant's curvature
+// fits growth better than chance does.
+TEST(RandomFaultStudy, TakesNoFaultOfTheNonlinearMachineForGrowth) {
+  const Machine machine = test::Bonder();
+  StudyOptions options;
+  options.runs = 2;
+  options.seed = 194;
+  const std::vector<StudyTable> tables = RandomFaultStudy(machine, options);
+  for (const auto& row : tables[0].rows) {
+    EXPECT_EQ(row[2].text, "right") << row[9].text << " named " << row[6].text;
+  }
+}
+
 }  // namespace
 }  // namespace mjdiag
