@@ -109,6 +109,7 @@ VectorXd ThetaOf(const ForceFit& fit) {
 
 /// Of normal equations with what is known of the numbers beside them.
 VectorXd SolveNormal(const MatrixXd& matrix, const VectorXd& right, Index numbers) {
+  if (right.size() == 0) return right;  // nothing is unknown
   constexpr double kRidge = 1e-10;
   MatrixXd with = matrix;
   with.diagonal().head(numbers).array() += 1.0;
