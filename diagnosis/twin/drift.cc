@@ -8,9 +8,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Factors of something, so that it can be copied before it is used.
-Drift::Drift(Index p, Index ny, std::vector<Index> drifting)
-    : drifting_(std::move(drifting)), small_(MatrixXd::Identity(ny, ny)) {
+Drift::Drift(Index p, std::vector<Index> drifting) : drifting_(std::move(drifting)) {
   const auto r = static_cast<Index>(drifting_.size());
   H_r_ = M_ = MatrixXd::Zero(r, r);
   H_x_ = B_ = MatrixXd::Zero(p, r);
@@ -18,8 +16,6 @@ Drift::Drift(Index p, Index ny, std::vector<Index> drifting)
   g_r_ = b_ = rates_ = VectorXd::Zero(r);
   change_ = scale_ = solved_ = VectorXd::Zero(p);
   remaining_ = factor_ = MatrixXd::Zero(p, p);
-  weights_ = MatrixXd::Zero(ny, ny);
-  weighted_ = MatrixXd::Zero(ny, r);
 }
 
 void Drift::Know(const Drift& other) noexcept {
@@ -35,14 +31,10 @@ void Drift::Start() noexcept {
 }
 
 void Drift::Add(const MatrixXd& psi, const MatrixXd& psi_r, const VectorXd& e,
-                const MatrixXd& covariance, Index active) noexcept {
-  small_.compute(covariance);
-  weights_.setIdentity();
-  small_.solveInPlace(weights_);
-  weighted_.noalias() = weights_ * psi_r;
-  H_r_.noalias() += psi_r.transpose() * weighted_;
-  H_x_.topRows(active).noalias() += psi.leftCols(active).transpose() * weighted_;
-  g_r_.noalias() += weighted_.transpose() * e;
+                Index active) noexcept {
+  H_r_.noalias() += psi_r.transpose() * psi_r;
+  H_x_.topRows(active).noalias() += psi.leftCols(active).transpose() * psi_r;
+  g_r_.noalias() += psi_r.transpose() * e;
 }
 
 void Drift::Solve(const Information& estimate, double t, double rate_sd) noexcept {

@@ -4,9 +4,9 @@
 // not there. Beside it, therefore, what the readings say of the rates r at which unknowns
 // grow is added up, theta(t) = theta + r t, without a part in the estimate:
 //
-//   H_r += psi_r^T W psi_r,   H_x += psi^T W psi_r,   g_r += psi_r^T W e
+//   H_r += psi_r^T psi_r,   H_x += psi^T psi_r,   g_r += psi_r^T e
 //
-// with psi_r = d mean(yp) / d r. Where they say that r is not 0, phi = theta + r t, of now,
+// with psi_r = d yp / d r, in units of the noise of e. Where they say that r is not 0, phi = theta + r t, of now,
 // is what remains of the estimate with r unknown,
 //
 //   B = H_x - t H_d,   M = H_r - t (H_x,d + H_x,d^T) + t^2 H_dd + P_r^-1,   b = g_r
@@ -30,16 +30,15 @@ inline constexpr double kRateSpread = 0.1;
 class Drift {
  public:
   /// @param drifting  places of those that may grow among p unknowns
-  Drift(Eigen::Index p, Eigen::Index ny, std::vector<Eigen::Index> drifting);
+  Drift(Eigen::Index p, std::vector<Eigen::Index> drifting);
 
   // Nothing below allocates, locks or throws.
 
   void Know(const Drift& other) noexcept;
   void Start() noexcept;
-  /// One block. @param psi, psi_r  ny x p or more, ny x r
+  /// One block, whitened. @param psi, psi_r  of as many rows as e; p or more columns, and r
   void Add(const Eigen::MatrixXd& psi, const Eigen::MatrixXd& psi_r,
-           const Eigen::VectorXd& e, const Eigen::MatrixXd& covariance,
-           Eigen::Index active) noexcept;
+           const Eigen::VectorXd& e, Eigen::Index active) noexcept;
   /// phi, r and H* after t seconds.
   /// @param estimate  of the same blocks
   /// @param rate_sd   that rates may have [1/s]
@@ -62,8 +61,7 @@ class Drift {
   Eigen::MatrixXd remaining_;
   double gain_ = 0.0;
   // Work space.
-  Eigen::LLT<Eigen::MatrixXd> small_;
-  Eigen::MatrixXd weights_, weighted_, B_, by_, M_, factor_;
+  Eigen::MatrixXd B_, by_, M_, factor_;
   Eigen::VectorXd b_, scale_, solved_;
 };
 

@@ -20,7 +20,7 @@ Information::Information(Index p, Index ny) : small_(MatrixXd::Identity(ny, ny))
   g_ = change_ = scale_ = solution_ = VectorXd::Zero(p);
   variance_ = VectorXd::Ones(p);
   corrected_ = whitened_ = VectorXd::Zero(ny);
-  spread_ = weighted_ = MatrixXd::Zero(p, ny);
+  spread_ = MatrixXd::Zero(p, ny);
   expected_ = MatrixXd::Zero(ny, ny);
 }
 
@@ -62,8 +62,7 @@ void Information::Solve() noexcept {
   change_.head(active_) = scale_.head(active_).cwiseProduct(solution);
 }
 
-double Information::Surprise(const MatrixXd& psi, const VectorXd& e,
-                             const MatrixXd& covariance) noexcept {
+double Information::Surprise(const MatrixXd& psi, const VectorXd& e) noexcept {
   const auto seen = psi.leftCols(active_);
   corrected_ = e;
   corrected_.noalias() -= seen * change_.head(active_);
@@ -72,7 +71,7 @@ double Information::Surprise(const MatrixXd& psi, const VectorXd& e,
   factor_.topLeftCorner(active_, active_)
       .triangularView<Eigen::Lower>()
       .solveInPlace(spread);
-  expected_ = covariance;
+  expected_.setIdentity();
   expected_.noalias() += spread.transpose() * spread;
   small_.compute(expected_);
   whitened_ = corrected_;
@@ -80,16 +79,10 @@ double Information::Surprise(const MatrixXd& psi, const VectorXd& e,
   return corrected_.dot(whitened_) / static_cast<double>(e.size());
 }
 
-void Information::Add(const MatrixXd& psi, const VectorXd& e,
-                      const MatrixXd& covariance) noexcept {
+void Information::Add(const MatrixXd& psi, const VectorXd& e) noexcept {
   const auto seen = psi.leftCols(active_);
-  small_.compute(covariance);
-  expected_.setIdentity();
-  small_.solveInPlace(expected_);
-  auto weighted = weighted_.topRows(active_);
-  weighted.noalias() = seen.transpose() * expected_;
-  H_.topLeftCorner(active_, active_).noalias() += weighted * seen;
-  g_.head(active_).noalias() += weighted * e;
+  H_.topLeftCorner(active_, active_).noalias() += seen.transpose() * seen;
+  g_.head(active_).noalias() += seen.transpose() * e;
   Factorise();
   Solve();
 }

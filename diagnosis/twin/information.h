@@ -1,11 +1,11 @@
 #pragma once
-// Whitened least squares, block by block, about a point theta0: a block with innovation
-// e and sensitivity psi = d mean(yp) / d theta adds
+// Whitened least squares, block by block, about a point theta0: a block with innovations
+// e and sensitivities psi = d yp / d theta of its ticks, in units of their noise, adds
 //
-//   H += psi^T W psi,   g += psi^T W e,   and   theta = theta0 + H^-1 g
+//   H += psi^T psi,   g += psi^T e,   and   theta = theta0 + H^-1 g
 //
-// is the estimate, H^-1 its covariance, W the inverse covariance of e. It begins with
-// what is known beforehand, H = P0^-1, g = P0^-1 (nominal - theta0).
+// is the estimate, H^-1 its covariance. It begins with what is known beforehand, H = P0^-1,
+// g = P0^-1 (nominal - theta0).
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -34,14 +34,13 @@ class Information {
   void Start(Eigen::Index active, const Eigen::MatrixXd& prior,
              const Eigen::VectorXd& away) noexcept;
 
-  /// How surprising a block would be: the mean square of its innovation less what the
-  /// estimate explains, in units of what noise and the uncertainty of the estimate let
-  /// expect. 1 on average where the model is true.
-  /// @param covariance  of e, ny x ny
-  double Surprise(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e,
-                  const Eigen::MatrixXd& covariance) noexcept;
-  void Add(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e,
-           const Eigen::MatrixXd& covariance) noexcept;
+  /// How surprising it would be: the mean square of an innovation less what the estimate
+  /// explains, in units of what noise and the uncertainty of the estimate let expect. 1 on
+  /// average where the model is true.
+  /// @param psi, e  whitened, ny rows
+  double Surprise(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e) noexcept;
+  /// @param psi, e  whitened, any number of rows
+  void Add(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e) noexcept;
 
   /// theta - theta0, p.
   const Eigen::VectorXd& change() const { return change_; }
@@ -72,7 +71,7 @@ class Information {
   Eigen::VectorXd g_, change_, variance_;
   // Work space. The factor is that of H scaled to a unit diagonal, at its last change.
   Eigen::VectorXd scale_, solution_, corrected_, whitened_;
-  Eigen::MatrixXd factor_, inverse_, spread_, weighted_, expected_;
+  Eigen::MatrixXd factor_, inverse_, spread_, expected_;
   Eigen::LLT<Eigen::MatrixXd> small_;
 };
 

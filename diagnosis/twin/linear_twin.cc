@@ -64,7 +64,6 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   const auto p = static_cast<Index>(model_.unknowns.size());
   C_ = MatrixXd::Zero(ny, 2 * nq);
   C_.leftCols(nq) = nominal.b.transpose();
-  mean_ = C_ / static_cast<double>(block);
   place_ = PlacementOf(nominal);
   values_ = VectorXd::Ones(static_cast<Index>(model_.parts.size()));
   M_ = D_ = K_ = left_side_ = nominal.M;
@@ -73,13 +72,13 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   A_step_ = F_ = power_ = base_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_step_ = MatrixXd::Zero(2 * nq, nu);
   pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);
-  row_ = row_next_ = seen_ = MatrixXd::Zero(ny, 2 * nq);
+  row_ = row_next_ = C_;
   pulses_.assign(static_cast<std::size_t>(model_.timing.substeps), pulse_);
   before_ = after_ = MatrixXd::Zero(2 * nq, 2 * nq + nu + 1);
   x_ = constant_ = VectorXd::Zero(2 * nq);
   AddSources();
   S_ = S_next_ = MatrixXd::Zero(2 * nq, p);
-  sensitivity_ = MatrixXd::Zero(ny, p);
+  sensitivity_ = MatrixXd::Zero(seen(), p);
   S_rate_next_ = S_rate_;
   MakeMaps();
 }
@@ -117,7 +116,7 @@ void LinearTwin::AddSources() {
   end_ = VectorXd::Zero(tick_.rows());
   sources_ =
       MatrixXd::Zero(nx, forces + static_cast<Index>(held_.size() + tone_held_.size()));
-  const Index rows = WideRows(nx + outputs());
+  const Index rows = WideRows(seen() + nx);
   left_.assign(static_cast<std::size_t>(block()),
                MatrixXd::Zero(rows, sources_.cols()));
   carry_ = MatrixXd::Zero(rows, nx);
@@ -279,23 +278,25 @@ void LinearTwin::LiftSensitivities() noexcept {
       base_.swap(scratch_);
     }
   }
-  row_ = seen_ = mean_;
-  for (Index j = 1; j < block(); ++j) {
-    row_next_.noalias() = row_ * F_;
-    row_.swap(row_next_);
-    seen_ += row_;
+  const Index ny = outputs();
+  row_ = C_;
+  for (Index i = 0; i < block(); ++i) {
+    if (i > 0) {
+      row_next_.noalias() = row_ * F_;
+      row_.swap(row_next_);
+    }
+    carry_.middleRows(i * ny, ny) = row_;
   }
-  carry_.topRows(nx) = power_;
-  carry_.middleRows(nx, outputs()) = seen_;
-  left_.back().topRows(nx) = sources_;
-  left_.back().middleRows(nx, outputs()).setZero();
-  for (std::size_t j = left_.size() - 1; j > 0; --j) {
-    const auto later = left_[j].topRows(nx);
-    left_[j - 1].topRows(nx).noalias() = F_ * later;
-    // What is carried from the end of tick j - 1 is seen from the next one on.
-    auto seen = left_[j - 1].middleRows(nx, outputs());
-    seen = left_[j].middleRows(nx, outputs());
-    seen.noalias() += mean_ * later;
+  carry_.middleRows(seen(), nx) = power_;
+  left_.back().topRows(seen()).setZero();
+  left_.back().middleRows(seen(), nx) = sources_;
+  for (auto j = static_cast<Index>(left_.size()) - 1; j > 0; --j) {
+    // Of tick j - 1 is seen in every tick what is seen of tick j one later.
+    const MatrixXd& later = left_[static_cast<std::size_t>(j)];
+    MatrixXd& now = left_[static_cast<std::size_t>(j - 1)];
+    now.topRows(seen() - ny) = later.middleRows(ny, seen() - ny);
+    now.middleRows(seen() - ny, ny).noalias() = C_ * later.middleRows(seen(), nx);
+    now.middleRows(seen(), nx).noalias() = F_ * later.middleRows(seen(), nx);
   }
 }
 
@@ -363,26 +364,26 @@ void LinearTwin::Step(std::span<const double> inputs,
 const MatrixXd& LinearTwin::EndBlock() noexcept {
   sensitivity_.setZero();
   S_next_.setZero();
-  const auto carried = block_.topRows(states());
-  const auto seen = block_.middleRows(states(), outputs());
+  const auto of_readings = block_.topRows(seen());
+  const auto at_end = block_.middleRows(seen(), states());
   Index column = 0;
   for (const ModelPart& part : model_.parts) {
     const double value = values_[column];
     for (const Index factor : part.factors) {
-      S_next_.col(factor) += value * carried.col(column);
-      sensitivity_.col(factor) += value * seen.col(column);
+      S_next_.col(factor) += value * at_end.col(column);
+      sensitivity_.col(factor) += value * of_readings.col(column);
     }
     ++column;
   }
   const Index of_tones = 2 * tones_.count();
-  S_next_.middleCols(first_tone(), of_tones) = carried.rightCols(of_tones);
-  sensitivity_.middleCols(first_tone(), of_tones) = seen.rightCols(of_tones);
+  S_next_.middleCols(first_tone(), of_tones) = at_end.rightCols(of_tones);
+  sensitivity_.middleCols(first_tone(), of_tones) = of_readings.rightCols(of_tones);
   // S_next_ and sensitivity_ hold what the forces of the block have left, so far.
   if (drifts_) LiftDrift();
   for (Index i = 0; i < acting(); ++i) {
     WideProduct(carry_, S_.col(i).data(), carried_.data());
-    S_next_.col(i) += carried_.head(states());
-    sensitivity_.col(i) += carried_.segment(states(), outputs());
+    sensitivity_.col(i) += carried_.head(seen());
+    S_next_.col(i) += carried_.segment(seen(), states());
   }
   S_.swap(S_next_);
   block_.setZero();
@@ -397,9 +398,8 @@ void LinearTwin::LiftDrift() noexcept {
   for (Index i = 0; i < S_rate_.cols(); ++i) {
     const Index of = drifting_[static_cast<std::size_t>(i)];
     WideProduct(carry_, S_rate_.col(i).data(), carried_.data());
-    drift_.col(i) =
-        carried_.segment(states(), outputs()) + grown * sensitivity_.col(of);
-    S_rate_next_.col(i) = carried_.head(states()) + grown * S_next_.col(of);
+    drift_.col(i) = carried_.head(seen()) + grown * sensitivity_.col(of);
+    S_rate_next_.col(i) = carried_.segment(seen(), states()) + grown * S_next_.col(of);
   }
   S_rate_.swap(S_rate_next_);
 }

@@ -17,8 +17,7 @@
 // of a number,
 //
 //   S[k+d] = F^d S[k] + sum_j sum_s F^(d-1-j) P_s f[k+j, s]
-//   d mean(yp) = (1/d) sum_j C F^j S[k]
-//              + (1/d) sum_j sum_s sum_(i>j) C F^(i-1-j) P_s f[k+j, s]
+//   d yp[k+i] = C F^i S[k] + sum_(j<i) sum_s C F^(i-1-j) P_s f[k+j, s]
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -97,6 +96,8 @@ class LinearTwin final : public Twin {
   };
   static constexpr Eigen::Index kNoInput = -1;
 
+  /// Rows of the readings of a block.
+  Eigen::Index seen() const { return outputs() * block(); }
   void AddEntries(Eigen::Index number, Motion motion, const Eigen::MatrixXd& part);
   void AddSources();
   void AddTerms();
@@ -114,7 +115,6 @@ class LinearTwin final : public Twin {
 
   UncertainModel model_;
   Eigen::MatrixXd C_;       // ny x 2 nq
-  Eigen::MatrixXd mean_;    // C / d
   Eigen::MatrixXd place_;   // of coordinates by readings, nq x ny
   Eigen::VectorXd values_;  // of the numbers
 
@@ -136,21 +136,21 @@ class LinearTwin final : public Twin {
   // how far in the tick, above the forces of what moves.
   Eigen::MatrixXd before_, after_, tick_;       // tick_ in whole registers
   Eigen::MatrixXd F_, power_, base_, scratch_;  // A - L C, F^d
-  Eigen::MatrixXd row_, row_next_, seen_;       // (1/d) sum_j C F^j
-  Eigen::MatrixXd carry_;                       // F^d above seen_, in whole registers
-  Eigen::VectorXd carried_;                     // carry_ times a column
-  std::vector<Eigen::MatrixXd> pulses_;         // P_s
-  Eigen::MatrixXd pulse_;                       // their sum
-  Eigen::MatrixXd sources_;  // what a unit of each leaves in its tick
-  /// In a tick j of a block: what it moves, F^(d-1-j) P, above what of that the mean of
-  /// the block sees, (2 nq + ny, in whole registers) x sources.
+  Eigen::MatrixXd row_, row_next_;              // C F^i
+  Eigen::MatrixXd carry_;                // all C F^i above F^d, in whole registers
+  Eigen::VectorXd carried_;              // carry_ times a column
+  std::vector<Eigen::MatrixXd> pulses_;  // P_s
+  Eigen::MatrixXd pulse_;                // their sum
+  Eigen::MatrixXd sources_;              // what a unit of each leaves in its tick
+  /// In a tick j of a block: what later ticks see of it, 0 or C F^(i-1-j) P, above what it
+  /// leaves at the end, F^(d-1-j) P, (ny d + 2 nq, in whole registers) x sources.
   std::vector<Eigen::MatrixXd> left_;
 
   // The run.
   Eigen::Index in_block_ = 0;
   Eigen::VectorXd start_, end_;  // of a tick: [x; u; 1], tick_ of it
-  /// What a unit of every number, and tone, has left in a block: at its end, and below
-  /// that in its mean.
+  /// What a unit of every number, and tone, has left in a block: in its readings, and below
+  /// that at its end.
   Eigen::MatrixXd block_;
   /// How strong every source is in a tick, those of tones by their sines and cosines, and
   /// which columns of left_ these are times of, and of block_ they go to.

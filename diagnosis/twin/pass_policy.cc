@@ -22,10 +22,10 @@ constexpr Index kSame = 64;  // ticks
 constexpr int kConfirmed = 1;
 /// A change shows within so many ticks.
 constexpr Index kUnnoticed = 256;
-/// Blocks before the surprise in which the change was there already.
-constexpr Index kNoticed = 2;
-/// Blocks between two looks for growth.
-constexpr Index kGrowthEvery = 64;
+/// Ticks before the surprise in which the change was there already.
+constexpr Index kNoticed = 16;
+/// Ticks between two looks for growth.
+constexpr Index kGrowthEvery = 512;
 /// What is not explained for that long from the first tick on was not at rest there.
 constexpr Index kAtOnce = 64;
 
@@ -70,7 +70,7 @@ void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (Surprised()) return Unexplained();
   if (segment_.windowed) return Approach();
-  if (gain() == 0 && pass_.blocks() % kGrowthEvery == 0 && SeesGrowth()) {
+  if (gain() == 0 && pass_.ticks() % kGrowthEvery == 0 && SeesGrowth()) {
     // About a theta that is far off, what the plant's curvature leaves may look like growth
     // too: it has to be seen again about a better one.
     if (!pass_.twin().linear() && !segment_.doubted && WorthGoingBack()) {
@@ -91,7 +91,7 @@ void PredictionErrorEstimator::Reconsider() noexcept {
 }
 
 void PredictionErrorEstimator::Approach() noexcept {
-  if (pass_.blocks() * pass_.twin().block() < look_) return;
+  if (pass_.ticks() < look_) return;
   if (look_ < kLook) {
     look_ *= 2;
     if (WorthGoingBack()) GoBack();
@@ -194,7 +194,7 @@ bool PredictionErrorEstimator::TryChange() noexcept {
   const Checkpoint* from = LastCheckpoint(pass_.seen() - kUnnoticed);
   if (from == nullptr) return false;
   PassStart& first = segment_.first;
-  segment_.since = pass_.seen() - kNoticed * pass_.twin().block();
+  segment_.since = pass_.seen() - kNoticed;
   segment_.windowed = !pass_.twin().linear();
   segment_.attempts = 0;
   if (pass_.twin().linear()) {

@@ -24,9 +24,9 @@ constexpr double kSure = 5.0;
 constexpr Index kFirstLook = 256;
 /// Ticks that are little more than a joint that has just come loose.
 constexpr Index kBrief = 128;
-/// Blocks between two steps of the walk while it follows: in so many a fault that grows
+/// Ticks between two steps of the walk while it follows: in so many a fault that grows
 /// by a percent an hour moves by less than noise leaves of the best known ones.
-constexpr Index kWalkEvery = 16;
+constexpr Index kWalkEvery = 128;
 /// That a machine which is constant is taken for one that wears, in one look at it.
 constexpr double kNoGrowth = 1e-6;
 /// By chance the misfit is not above it.
@@ -37,7 +37,7 @@ constexpr double kLooksExplained = 2.0;
 constexpr std::size_t kFollowingGain = 1;
 constexpr std::size_t kGrowingGain = 2;
 /// And between two shifts of theta0, which cost more.
-constexpr Index kShiftEvery = 64;
+constexpr Index kShiftEvery = 512;
 
 }  // namespace
 
@@ -60,14 +60,13 @@ PredictionErrorEstimator::PredictionErrorEstimator(
   const auto drifting = static_cast<double>(pass_.twin().drifting().size());
   constant_ = drifting > 0.0 ? ChiSquaredQuantile(kNoGrowth, drifting) : 0.0;
   const auto p = static_cast<Index>(unknowns_.size());
-  const auto block = static_cast<double>(pass_.twin().block());
   nominal_ = walk_ = VectorXd::Zero(p);
   for (Index i = 0; i < p; ++i) {
     const Unknown& unknown = unknowns_[static_cast<std::size_t>(i)];
     nominal_[i] = unknown.nominal;
     if (!unknown.wears) continue;
-    walk_[i] = options_.wear * options_.wear * sample_time * block *
-               static_cast<double>(kWalkEvery);
+    walk_[i] =
+        options_.wear * options_.wear * sample_time * static_cast<double>(kWalkEvery);
   }
   next_ = nominal_;
   variance_ = prior_covariance_.diagonal();
@@ -157,13 +156,13 @@ void PredictionErrorEstimator::ProcessKept() noexcept {
 
 void PredictionErrorEstimator::Say() noexcept {
   const bool same = said_.began && said_.since == segment_.since;
-  const bool brief =
-      !pass_.twin().linear() && pass_.blocks() * pass_.twin().block() < kBrief;
+  const bool brief = !pass_.twin().linear() && pass_.ticks() < kBrief;
   const bool sure = !brief && Bias() < 1.0;
   const bool less =
       gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
-  // While it follows there is nothing finer that could stand.
-  if (pass_.blocks() == 0 || (same && less && !exhausted_ && !following())) return;
+  // While it follows there is nothing finer that could stand, once it has come to now.
+  const bool finest = segment_.grows || (following() && CaughtUp());
+  if (pass_.blocks() == 0 || (same && less && !exhausted_ && !finest)) return;
   said_.began = true;
   said_.sure = sure;
   said_.information.Know(pass_.information());
@@ -190,15 +189,18 @@ void PredictionErrorEstimator::Follow() noexcept {
     exhausted_ = false;
     if (TryChange()) return;
   }
+  // On its way to now it learns of what was constant until then: moves of theta0 about
+  // which little is known yet would leave sensitivities of another machine.
+  if (!segment_.grows && !CaughtUp()) return;
   if (pass_.drifts()) {
     segment_.grows = segment_.grows || SeesGrowth();
     // As a walk of that wear would have it, evenly.
     pass_.TakeDrift(options_.wear / std::sqrt(pass_.drift_time()));
     Say();
   }
-  if (pass_.blocks() % kWalkEvery != 0) return;
+  if (pass_.ticks() % kWalkEvery != 0) return;
   pass_.information().Walk(walk_);
-  if (pass_.blocks() % kShiftEvery != 0) return;
+  if (pass_.ticks() % kShiftEvery != 0) return;
   const std::size_t soft =
       std::min(segment_.grows ? kGrowingGain : kFollowingGain, pass_.stiffest());
   if (gain() < soft) pass_.Soften(soft);

@@ -223,7 +223,7 @@ class PredictionErrorEstimator {
   PredictionErrorOptions options_;
   Eigen::VectorXd nominal_;
   Eigen::MatrixXd prior_covariance_;
-  Eigen::VectorXd walk_;  // of kWalkEvery blocks
+  Eigen::VectorXd walk_;  // of kWalkEvery ticks
   double constant_;       // gain of a drift that a machine without one may show
 
   KeptReadings kept_;

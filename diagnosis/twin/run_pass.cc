@@ -77,8 +77,7 @@ RunInformation RunPass::About(const VectorXd& numbers, std::size_t gain) {
   }
   said.innovations.conservativeResize(Eigen::NoChange, counted);
   said.misfit = pass_.misfit();
-  said.worst_block = std::max(said.worst_block, pass_.worst_block());
-  said.worst_stretch = std::max(said.worst_stretch, pass_.worst_stretch());
+  said.excess = std::max(said.excess, pass_.excess());
   Reduce(said);
   return said;
 }

@@ -43,8 +43,8 @@ bool RunStart::BeganAtRest(Twin& twin, const KeptReadings& kept, VectorXd& theta
     }
     const MatrixXd& psi = twin.EndBlock();
     if (run > 0) continue;
-    // Tones move it in the course of the block only.
-    const auto of_rest = psi.leftCols(first_tone);
+    // At its first tick: tones move it in the course of the block only.
+    const auto of_rest = psi.topLeftCorner(twin.outputs(), first_tone);
     auto weighted = weighted_.topRows(first_tone);
     weighted.noalias() =
         prior.topLeftCorner(first_tone, first_tone) * of_rest.transpose();

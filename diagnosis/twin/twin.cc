@@ -27,7 +27,7 @@ Twin::Twin(const TwinShape& shape, std::vector<TwinGain> gains,
       drifting_(std::move(drifting)),
       S_rate_(
           Eigen::MatrixXd::Zero(shape.states, static_cast<Index>(drifting_.size()))),
-      drift_(Eigen::MatrixXd::Zero(shape.outputs, S_rate_.cols())),
+      drift_(Eigen::MatrixXd::Zero(shape.outputs * shape.block, S_rate_.cols())),
       sample_time_(sample_time),
       shape_(shape),
       gains_(std::move(gains)) {}

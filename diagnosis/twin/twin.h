@@ -8,9 +8,10 @@
 // theta: whatever is not known of the machine (Unknown). L is a constant gain that
 // pulls the model towards the readings: 0 where the model is trusted, else that of the
 // Kalman predictor for a force noise that stands for what it does not know, of which e
-// is the white innovation then. S has the gain in it. Sensitivities are given for means
-// over a block of ticks: averaging white noise over a block loses nothing of what
-// varies slowly, and costs less than every tick by itself.
+// is the white innovation then. S has the gain in it. Sensitivities are those of every
+// tick, given a block of ticks at a time, which costs less. No means will do: in a closed
+// loop noise moves the commands, and these what the rest of a block is sensitive to, so
+// that the mean of the sensitivities goes with that of the innovations.
 //
 // [Ljung83] L. Ljung, T. Soderstrom, "Theory and Practice of Recursive Identification",
 // MIT Press, 1983, chapter 3.
@@ -41,7 +42,7 @@ struct TwinShape {
   Eigen::Index unknowns = 0;
   /// Of the state at the start of the run, in standard deviations of it.
   Eigen::Index start_unknowns = 0;
-  Eigen::Index block = 1;  ///< ticks
+  Eigen::Index block = 1;  ///< d, ticks
   /// How many times faster than a factor what it does to the readings may change: a
   /// resonance gets out of step in as many of its periods as its stiffness changes by
   /// parts, a joint that sticks comes loose at another tick at once.
@@ -113,8 +114,8 @@ class Twin {
   /// @param innovation  e, ny
   virtual void Step(std::span<const double> inputs,
                     const Eigen::VectorXd& innovation) noexcept = 0;
-  /// After the last tick of a block: d mean(yp) / d theta over it, ny x p; at rest the
-  /// columns of the start are left out of account.
+  /// After the last tick of a block: d yp / d theta of its ticks, one below the other,
+  /// ny d x p; at rest the columns of the start are left out of account.
   virtual const Eigen::MatrixXd& EndBlock() noexcept = 0;
   /// theta + change, and the state that goes with it to first order. Between blocks.
   virtual void Shift(const Eigen::VectorXd& change) noexcept = 0;
@@ -124,7 +125,7 @@ class Twin {
 
   /// Their places.
   const std::vector<Eigen::Index>& drifting() const { return drifting_; }
-  /// After EndBlock: d mean(yp) / d rate over the block, ny x drifting.
+  /// After EndBlock: d yp / d rate of its ticks, ny d x drifting.
   const Eigen::MatrixXd& drift() const { return drift_; }
   /// Since it was started [s].
   virtual double drift_time() const noexcept { return drift_time_; }
@@ -162,7 +163,7 @@ class Twin {
   bool drifts_ = true;
   std::vector<Eigen::Index> drifting_;
   Eigen::MatrixXd S_rate_;  // d x / d rate, nx x drifting
-  Eigen::MatrixXd drift_;   // ny x drifting
+  Eigen::MatrixXd drift_;   // ny d x drifting
   double sample_time_;
   double drift_time_ = 0.0;
 

@@ -26,7 +26,7 @@ TwinInCoordinates::TwinInCoordinates(std::unique_ptr<Twin> twin, MatrixXd T,
       twin_(std::move(twin)),
       T_(std::move(T)),
       of_twin_(VectorXd::Zero(T_.rows())),
-      sensitivity_(MatrixXd::Zero(twin_->outputs(), T_.cols())) {}
+      sensitivity_(MatrixXd::Zero(twin_->outputs() * twin_->block(), T_.cols())) {}
 
 void TwinInCoordinates::Start(const VectorXd& z) noexcept {
   of_twin_.noalias() = T_ * z;

@@ -15,22 +15,22 @@ namespace {
 /// While the twin is pulled along, a block that is more surprising counts less, in
 /// inverse proportion: a joint came loose a little sooner than the twin's.
 constexpr double kRobust = 4.0;
-/// Blocks in which a twin that had nearly the state of its machine has it again.
-constexpr Index kResettle = 32;
+/// Ticks in which a twin that had nearly the state of its machine has it again.
+constexpr Index kResettle = 256;
 
 }  // namespace
 
 TwinPass::TwinPass(std::unique_ptr<Twin> twin, double tolerated)
     : twin_(std::move(twin)),
       information_(twin_->unknowns(), twin_->outputs()),
-      drift_(twin_->unknowns(), twin_->outputs(), twin_->drifting()),
-      surprise_(twin_->outputs(), tolerated) {
+      drift_(twin_->unknowns(), twin_->drifting()),
+      surprise_(twin_->outputs(), twin_->block(), tolerated),
+      block_(twin_->outputs(), twin_->block(), twin_->unknowns(),
+             static_cast<Index>(twin_->drifting().size())) {
   theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
-  reading_ = innovation_ = sum_ = VectorXd::Zero(twin_->outputs());
-  covariance_ = twin_->gains().front().covariance;
+  reading_ = innovation_ = VectorXd::Zero(twin_->outputs());
   pull_by_ = since_ = VectorXd::Zero(twin_->outputs());
-  share_ = spacing_ = VectorXd::Ones(twin_->outputs());
-  psi_ = MatrixXd::Zero(twin_->outputs(), twin_->unknowns());
+  spacing_ = VectorXd::Ones(twin_->outputs());
 }
 
 void TwinPass::StartMeasured(const KeptReadings& run, Index tick,
@@ -88,13 +88,11 @@ void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
   information_.Start(twin_->unknowns() - (with_start ? 0 : started), prior, away_);
   surprise_.Start();
   softer_at_ = start.origin;
-  sum_.setZero();
-  share_.setOnes();
+  block_.Start();
   since_.setZero();
   spacing_.setOnes();
-  complete_ = true;
-  in_block_ = blocks_ = 0;
-  squares_ = worst_block_ = worst_stretch_ = 0.0;
+  blocks_ = 0;
+  squares_ = excess_ = 0.0;
 }
 
 void TwinPass::StartInState() noexcept {
@@ -107,19 +105,14 @@ bool TwinPass::Step(const KeptReadings& run) noexcept {
   twin_->Predict(reading_);
   innovation_ = run.outputs(seen_) - reading_;
   twin_->Step(run.inputs(seen_), Pull(run));
+  block_.Add(innovation_, run.outputs(seen_));
   ++seen_;
-  sum_ += innovation_;
-  if (++in_block_ < twin_->block()) return false;
-  in_block_ = 0;
+  if (!block_.full()) return false;
   const MatrixXd& psi = twin_->EndBlock();
-  sum_ /= static_cast<double>(twin_->block());
-  constexpr double kRounding = 1e-9;
   const bool counts = !settling_;
-  if (counts && share_.maxCoeff() > kRounding) Count(psi);
-  sum_.setZero();
-  share_.setOnes();
-  complete_ = true;
-  if (settling_ && seen_ == start_->origin - kResettle * twin_->block()) {
+  if (counts && block_.any()) Count(psi);
+  block_.Start();
+  if (settling_ && seen_ == start_->origin - kResettle) {
     // From here the next pass is there sooner.
     twin_->ReadState(start_->state);
     start_->SettleFrom(seen_, start_->state);
@@ -137,8 +130,6 @@ const VectorXd& TwinPass::Pull(const KeptReadings& run) noexcept {
     since_[i] += 1.0;
     if (std::isnan(run.outputs(seen_)[i])) {
       innovation_[i] = pull_by_[i] = 0.0;
-      share_[i] -= 1.0 / static_cast<double>(twin_->block());
-      complete_ = false;
       continue;
     }
     pull_by_[i] = std::min(since_[i], spacing_[i]) * innovation_[i];
@@ -157,31 +148,19 @@ void TwinPass::Settle() noexcept {
   StartInState();
 }
 
-const MatrixXd& TwinPass::Seen(const MatrixXd& psi) noexcept {
-  constexpr double kRounding = 1e-9;
-  for (Index i = 0; i < share_.size(); ++i) {
-    const double share = share_[i] > kRounding ? share_[i] : 0.0;
-    psi_.row(i) = share * psi.row(i);
-    const double root = share > 0.0 ? std::sqrt(share) : 1.0;
-    covariance_.row(i) *= root;
-    covariance_.col(i) *= root;
-  }
-  return psi_;
-}
-
-void TwinPass::Count(const MatrixXd& whole) noexcept {
-  covariance_ = twin_->gains()[pull_].covariance / static_cast<double>(twin_->block());
-  const MatrixXd& psi = complete_ ? whole : Seen(whole);
-  const double squares = information_.Surprise(psi, sum_, covariance_);
+void TwinPass::Count(const MatrixXd& psi) noexcept {
+  block_.Whiten(psi, information_.active(), drifts_ ? &twin_->drift() : nullptr,
+                twin_->gains()[pull_].covariance);
+  const double squares = information_.Surprise(block_.slow_psi(), block_.slow_e());
   ++blocks_;
   squares_ += squares;
-  if (gain_ > 0) covariance_ *= std::max(1.0, squares / kRobust);
   surprise_.Add(squares);
-  worst_block_ = std::max(worst_block_, squares);
-  worst_stretch_ = std::max(worst_stretch_, surprise_.recent());
-  information_.Add(psi, sum_, covariance_);
-  if (drifts_)
-    drift_.Add(psi, twin_->drift(), sum_, covariance_, information_.active());
+  excess_ = std::max(excess_, surprise_.Excess());
+  if (gain_ > 0 && squares > kRobust) block_.Discount(squares / kRobust);
+  information_.Add(block_.psi(), block_.e());
+  if (drifts_) {
+    drift_.Add(block_.psi(), block_.rates(), block_.e(), information_.active());
+  }
   theta_ = theta0_ + information_.change();
 }
 

@@ -18,6 +18,7 @@
 #include "mjdiag/diagnosis/twin/kept_readings.h"
 #include "mjdiag/diagnosis/twin/surprise.h"
 #include "mjdiag/diagnosis/twin/twin.h"
+#include "mjdiag/diagnosis/twin/whitened_block.h"
 
 namespace mjdiag {
 
@@ -91,6 +92,8 @@ class TwinPass {
   /// The next tick.
   Eigen::Index seen() const { return seen_; }
   Eigen::Index blocks() const { return blocks_; }
+  /// Of these blocks.
+  Eigen::Index ticks() const { return blocks_ * twin_->block(); }
   std::size_t gain() const { return gain_; }
   const Eigen::VectorXd& theta0() const { return theta0_; }
   const Eigen::VectorXd& theta() const { return theta_; }
@@ -107,9 +110,8 @@ class TwinPass {
   double misfit() const {
     return blocks_ > 0 ? squares_ / static_cast<double>(blocks_) : 1.0;
   }
-  /// The largest of a block, and of the mean over recent ones.
-  double worst_block() const { return worst_block_; }
-  double worst_stretch() const { return worst_stretch_; }
+  /// The largest of a block (Surprise::Excess).
+  double excess() const { return excess_; }
 
  private:
   void Settle() noexcept;
@@ -125,30 +127,23 @@ class TwinPass {
   bool settling_ = false;
   Eigen::Index seen_ = 0;
   Eigen::Index blocks_ = 0;
-  Eigen::Index in_block_ = 0;
   double squares_ = 0.0;
-  double worst_block_ = 0.0, worst_stretch_ = 0.0;
+  double excess_ = 0.0;
   Information information_;
   Drift drift_;
   bool drifts_ = false;
   Surprise surprise_;
   Eigen::VectorXd theta0_, theta_, away_;
-  /// Of the readings of a block that were measured: those of the others are 0, and their
-  /// part of the block is missing in what it shows and in its noise.
-  const Eigen::MatrixXd& Seen(const Eigen::MatrixXd& psi) noexcept;
+  WhitenedBlock block_;
 
   /// Innovation with which the twin is pulled: of a reading that comes at every n-th tick n
   /// times what it is, as S takes it that there is one at every tick. One that comes late,
   /// behind a gap, counts as those before it came.
   const Eigen::VectorXd& Pull(const KeptReadings& run) noexcept;
 
-  Eigen::VectorXd reading_, innovation_, pull_by_, sum_;
+  Eigen::VectorXd reading_, innovation_, pull_by_;
   Eigen::VectorXd since_,
-      spacing_;            // ticks since the last reading, and between the last
-  Eigen::VectorXd share_;  // of the block in which a reading was measured
-  bool complete_ = true;
-  Eigen::MatrixXd psi_;
-  Eigen::MatrixXd covariance_;  // of a block's innovation
+      spacing_;  // ticks since the last reading, and between the last
 };
 
 }  // namespace mjdiag

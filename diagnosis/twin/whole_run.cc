@@ -35,9 +35,7 @@ void PredictionErrorEstimator::RunToTheEnd() noexcept {
 }
 
 bool PredictionErrorEstimator::Explained() const noexcept {
-  return gain() == 0 && !segment_.windowed && !exhausted_ &&
-         pass_.worst_block() < pass_.surprise().BlockLimit() &&
-         pass_.worst_stretch() < pass_.surprise().RecentLimit();
+  return gain() == 0 && !segment_.windowed && !exhausted_ && pass_.excess() < 1.0;
 }
 
 void PredictionErrorEstimator::ApproachWhole() noexcept {

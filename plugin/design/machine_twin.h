@@ -17,7 +17,7 @@ namespace mjdiag {
 inline constexpr std::array<double, 5> kTwinBandwidths = {1.25e-4, 4e-4, 1.25e-3, 4e-3,
                                                           1.25e-2};
 
-/// Ticks of a block; what varies faster than it a twin sees by its mean.
+/// Ticks of a block: after each there is another estimate.
 inline constexpr Eigen::Index kTwinBlock = 8;
 
 /// InputError on a machine whose sensors have no noise: it says how sure the twin is of

@@ -113,12 +113,8 @@ void NumberLearner::Learn(std::size_t gain, bool rough) {
 
 double NumberLearner::Excess() const {
   if (diverged_) return std::numeric_limits<double>::infinity();
-  const Surprise limits(gains_.front().covariance.rows());
   double excess = 0.0;
-  for (const RunInformation& said : said_) {
-    excess = std::max({excess, said.worst_block / limits.BlockLimit(),
-                       said.worst_stretch / limits.RecentLimit()});
-  }
+  for (const RunInformation& said : said_) excess = std::max(excess, said.excess);
   return excess;
 }
 

@@ -105,9 +105,10 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
   drive_ = force_ = MatrixXd::Zero(nv, p);
-  read_ = sensitivity_ = sum_ = MatrixXd::Zero(ny, p);
+  read_ = MatrixXd::Zero(ny, p);
+  sensitivity_ = MatrixXd::Zero(ny * block, p);
   drift_force_ = MatrixXd::Zero(nv, S_rate_.cols());
-  drift_read_ = drift_sum_ = drift_;
+  drift_read_ = MatrixXd::Zero(ny, S_rate_.cols());
   UseGain(0);
 }
 
@@ -178,8 +179,8 @@ void PlantTwin::Reset() noexcept {
   mj_resetData(model_.get(), data_.get());
   VectorXd::Map(data_->qpos, start_.size()) = start_;
   S_.setZero();
-  sum_.setZero();
-  drift_sum_.setZero();
+  sensitivity_.setZero();
+  in_block_ = 0;
 }
 
 void PlantTwin::Start(const VectorXd& theta) noexcept {
@@ -304,10 +305,11 @@ void PlantTwin::Step(std::span<const double> inputs,
                      const VectorXd& innovation) noexcept {
   const Index nv = model_->nv;
   read_.leftCols(acting()).noalias() = C_ * S_.topRows(nv).leftCols(acting());
-  sum_.leftCols(acting()) += read_.leftCols(acting());
+  const Index row = in_block_++ * outputs();
+  sensitivity_.middleRows(row, outputs()).leftCols(acting()) = read_.leftCols(acting());
   if (drifts_) {
     drift_read_.noalias() = C_ * S_rate_.topRows(nv);
-    drift_sum_ += drift_read_;
+    drift_.middleRows(row, outputs()) = drift_read_;
   }
   Command(inputs);
   AddTickForces();
@@ -389,10 +391,7 @@ void PlantTwin::Lift(const Map& map, Index count, Index forced, const MatrixXd& 
 }
 
 const MatrixXd& PlantTwin::EndBlock() noexcept {
-  sensitivity_ = sum_ / static_cast<double>(block());
-  sum_.setZero();
-  drift_ = drift_sum_ / static_cast<double>(block());
-  drift_sum_.setZero();
+  in_block_ = 0;
   return sensitivity_;
 }
 

@@ -122,8 +122,9 @@ class PlantTwin final : public Twin {
   Eigen::VectorXd tone_, before_, acceleration_, inertial_;
   Eigen::VectorXd lifted_, by_force_;  // in whole registers
   std::vector<double> outputs_;
-  Eigen::MatrixXd drive_, force_, read_, sensitivity_, sum_;
-  Eigen::MatrixXd drift_force_, drift_read_, drift_sum_;
+  Eigen::Index in_block_ = 0;
+  Eigen::MatrixXd drive_, force_, read_, sensitivity_;
+  Eigen::MatrixXd drift_force_, drift_read_;
 };
 
 }  // namespace mjdiag

@@ -6,7 +6,6 @@
 #include "mjdiag/diagnosis/residuals/cramer_rao.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/error.h"
 
@@ -18,18 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kNumberStep = 1e-3;  // of a number of the plant
-
-/// Means over the blocks of a twin, times the root of their ticks: the noise of a mean is
-/// that of a tick over it.
-MatrixXd OfBlocks(const MatrixXd& sensitivity) {
-  const Index blocks = sensitivity.cols() / kTwinBlock;
-  MatrixXd means(sensitivity.rows(), blocks);
-  for (Index i = 0; i < blocks; ++i) {
-    means.col(i) = sensitivity.middleCols(i * kTwinBlock, kTwinBlock).rowwise().sum() /
-                   std::sqrt(static_cast<double>(kTwinBlock));
-  }
-  return means;
-}
 
 }  // namespace
 
@@ -58,8 +45,7 @@ MotionInformation::MotionInformation(const Machine& machine,
       for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
         const MatrixXd tone =
             ToneOf(source, frequency, phase, machine.rates().tick(), ticks);
-        disturbances_.push_back(
-            OfBlocks(OutputResponse(machine.linear(), timing_, tone)));
+        disturbances_.push_back(OutputResponse(machine.linear(), timing_, tone));
       }
     }
   }
@@ -69,7 +55,7 @@ std::vector<MatrixXd> MotionInformation::Sensitivities(const Record& run, Index 
                                                        Index count) const {
   std::vector<MatrixXd> sensitivities =
       OutputSensitivities(models_, timing_, SamplesOf(run, inputs_));
-  for (MatrixXd& one : sensitivities) one = OfBlocks(one.middleCols(from, count));
+  for (MatrixXd& one : sensitivities) one = one.middleCols(from, count).eval();
   return sensitivities;
 }
 

@@ -2,9 +2,7 @@
 // What a motion tells of the numbers of a machine: the information of Cramer and Rao of
 // its linear model, along the commands of a run,
 //
-//   I = sum_t psi_t^T R^-1 psi_t,   psi_t = d y_t / d theta,   Cov theta^ >= I^-1,
-//
-// y the means over the blocks of ticks that a twin of the machine looks at.
+//   I = sum_t psi_t^T R^-1 psi_t,   psi_t = d y_t / d theta,   Cov theta^ >= I^-1
 //
 // The reference makes the commands through a linear loop, and psi is linear in them: two
 // motions at once tell I_1 + I_2 + 2 I_12, and the mixed part is nothing where they have

@@ -120,6 +120,25 @@ TEST_F(Diagnosis, SaysThatAHealthyMachineIsHealthy) {
   EXPECT_TRUE(document["diagnosis"]["disturbance"]["peaks"].empty());
 }
 
+// Nothing but the noise of its encoders moves it, through its controllers.
+TEST_F(Diagnosis, SaysThatAHealthyMachineThatIsHeldInItsPlaceIsHealthy) {
+  const std::string setup = Changed("setup.toml", "[trajectories.multi]",
+                                    "[trajectories.hold]\n"
+                                    "duration = 10.0\n"
+                                    "period = 0.5\n"
+                                    "moves = [{ at = 0.005, by = { x = 1e-9 } },\n"
+                                    "         { at = 0.030, by = { x = -1e-9 } }]\n\n"
+                                    "[trajectories.multi]");
+  // With the second one a pass is behind when the readings of the start are not kept any
+  // more.
+  for (const char* seed : {"1", "15"}) {
+    const json document =
+        JsonOf("simulate --linear --trajectory hold --diagnose --seed " +
+               std::string(seed) + " --setup " + setup);
+    EXPECT_FALSE(document["diagnosis"]["detected"]) << document["diagnosis"]["faults"];
+  }
+}
+
 TEST_F(Diagnosis, CallsTenfoldNoiseNoiseAndNotATone) {
   const json document =
       JsonOf(std::string("simulate ") + kLinear + "--noise 10 --diagnose --filters " +

@@ -125,13 +125,26 @@ TEST_F(TickJudgeTest, FindsAFaultInARunThatBeginsInMotion) {
   EXPECT_NEAR(Fault("zeta_x").value, 1.2, 5.0 * Fault("zeta_x").sd);
 }
 
+// Its twin sees a hundred thousandth, and no residual does.
 TEST_F(TickJudgeTest, WhatARunInMotionNamesWithoutAnAlarmASecondHasToNameToo) {
-  // From here on a twin takes what is left of its start for stiffer mounts.
-  for (int k = 0; k < 72776; ++k) running_->Tick();
+  running_->Become(machine->With({{{"eta_x", 1.00001}}, {}}));
+  for (int k = 0; k < 1234; ++k) running_->Tick();
+  Watch(2.05);
+  EXPECT_TRUE(Fault("eta_x").detected);
+  running_->Become(*machine);
   Watch(8.0);
   EXPECT_EQ(judge_.runs(), 2);
   EXPECT_EQ(last().kind, VerdictKind::kHealthy) << last().words;
   for (const Finding& look : looks_) EXPECT_NE(look.kind, VerdictKind::kFault);
+}
+
+TEST_F(TickJudgeTest, WhatASecondNamesTooIsNamed) {
+  running_->Become(machine->With({{{"eta_x", 1.00001}}, {}}));
+  for (int k = 0; k < 1234; ++k) running_->Tick();
+  Watch(5.0);
+  EXPECT_EQ(judge_.runs(), 2);
+  EXPECT_EQ(last().kind, VerdictKind::kFault) << last().words;
+  EXPECT_TRUE(Fault("eta_x").detected);
 }
 
 TEST_F(TickJudgeTest, DoesWithoutReadingsThatAreMissing) {

@@ -24,17 +24,15 @@ Information Started() {
   return information;
 }
 
-// H^-1 g with H = I + psi^T W psi, g = psi^T W e.
+// H^-1 g with H = I + psi^T psi, g = psi^T e.
 TEST(Information, AddsABlockAsLeastSquaresDo) {
   MatrixXd psi(kReadings, kUnknowns);
   psi << 1.0, 2.0, 0.0, -1.0, 0.5, 3.0;
   const VectorXd e = Eigen::Vector2d(0.3, -0.7);
-  const MatrixXd covariance = Eigen::Vector2d(2.0, 0.5).asDiagonal();
   Information information = Started();
-  information.Add(psi, e, covariance);
-  const MatrixXd H = MatrixXd::Identity(kUnknowns, kUnknowns) +
-                     psi.transpose() * covariance.inverse() * psi;
-  const VectorXd g = psi.transpose() * covariance.inverse() * e;
+  information.Add(psi, e);
+  const MatrixXd H = MatrixXd::Identity(kUnknowns, kUnknowns) + psi.transpose() * psi;
+  const VectorXd g = psi.transpose() * e;
   EXPECT_TRUE(information.H().isApprox(H, 1e-12));
   EXPECT_TRUE(information.change().isApprox(H.inverse() * g, 1e-11));
   EXPECT_TRUE(information.Variance().isApprox(H.inverse().diagonal(), 1e-11));
@@ -46,7 +44,6 @@ TEST(Information, AddsABlockAsLeastSquaresDo) {
 TEST(Information, IsCopiedBeforeAnythingIsAdded) {
   const MatrixXd psi = MatrixXd::Identity(kReadings, kUnknowns);
   const VectorXd e = VectorXd::Ones(kReadings);
-  const MatrixXd covariance = MatrixXd::Identity(kReadings, kReadings);
   alignas(Information) std::array<std::byte, sizeof(Information)> used;
   used.fill(std::byte{0xbe});
   auto* const fresh = new (used.data()) Information(kUnknowns, kReadings);
@@ -55,8 +52,8 @@ TEST(Information, IsCopiedBeforeAnythingIsAdded) {
   copy.Start(kUnknowns, MatrixXd::Identity(kUnknowns, kUnknowns),
              VectorXd::Zero(kUnknowns));
   Information first = Started();
-  first.Add(psi, e, covariance);
-  copy.Add(psi, e, covariance);
+  first.Add(psi, e);
+  copy.Add(psi, e);
   EXPECT_EQ(copy.change(), first.change());
 }
 

@@ -14,13 +14,12 @@ using Eigen::VectorXd;
 // Longer runs round more: the stage slides away on a spring of 5e6 N/m.
 constexpr Index kTicks = 800;
 
-/// Means of the predicted readings over blocks, stacked, for that theta.
+/// The predicted readings, stacked, for that theta.
 VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
                    MatrixXd* sensitivities = nullptr) {
   const MatrixXd inputs = test::Drive(kTicks);
-  const Index blocks = kTicks / test::kBlock;
-  VectorXd means = VectorXd::Zero(2 * blocks);
-  if (sensitivities != nullptr) sensitivities->resize(2 * blocks, theta.size());
+  VectorXd readings(2 * kTicks);
+  if (sensitivities != nullptr) sensitivities->resize(2 * kTicks, theta.size());
   VectorXd reading(2);
   const VectorXd none = VectorXd::Zero(2);
   if (at_rest) {
@@ -29,15 +28,15 @@ VectorXd Predicted(LinearTwin& twin, const VectorXd& theta, bool at_rest,
     twin.Start(theta, twin.MakeState(), 0);
   }
   for (Index k = 0; k < kTicks; ++k) {
-    const Index block = k / test::kBlock;
     twin.Predict(reading);
-    means.segment(2 * block, 2) += reading / static_cast<double>(test::kBlock);
+    readings.segment(2 * k, 2) = reading;
     twin.Step({inputs.col(k).data(), 2}, none);
     if ((k + 1) % test::kBlock != 0) continue;
     const MatrixXd& of_block = twin.EndBlock();
-    if (sensitivities != nullptr) sensitivities->middleRows(2 * block, 2) = of_block;
+    if (sensitivities == nullptr) continue;
+    sensitivities->middleRows(2 * (k + 1 - test::kBlock), 2 * test::kBlock) = of_block;
   }
-  return means;
+  return readings;
 }
 
 LinearTwin Twin() {

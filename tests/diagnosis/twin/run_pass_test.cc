@@ -51,6 +51,49 @@ TEST(RunPass, FindsTheNumbersOfARunFromRestAndInMidMotion) {
   }
 }
 
+/// Of a stage that is held in its place: with the noise of its encoder the controller of
+/// its motor moves it, and nothing else does.
+test::StageRun Held(std::uint64_t seed) {
+  constexpr double kStiffness = 6.0 * 190.0 * 190.0;  // 30 Hz [N/m]
+  constexpr double kDamping = 6.0 * 1.4 * 190.0;      // [N s/m]
+  const StateSpace plant =
+      TickModel(test::Stage(), test::kTiming.step, test::kTiming.substeps);
+  const VectorXd rest = test::UncertainStage().rest;
+  test::StageRun run;
+  run.inputs = MatrixXd::Zero(2, kTicks);
+  run.outputs = test::WhiteNoise(2, kTicks, test::kNoise, seed);
+  VectorXd x = VectorXd::Zero(plant.A.rows());
+  double before = 0.0;
+  for (Index k = 0; k < kTicks; ++k) {
+    run.outputs.col(k) += plant.C * x;
+    const double y = run.outputs(0, k);
+    run.inputs(0, k) = -kStiffness * y - kDamping * (y - before) / test::kTiming.tick();
+    before = y;
+    x = plant.A * x + plant.B * run.inputs.col(k);
+  }
+  run.outputs.colwise() += rest;
+  return run;
+}
+
+// g^T H^-1 g at the truth is chi-squared with 5 degrees of freedom: the mean of 200 is
+// within 4 sqrt(10 / 200) = 0.9 of 5.
+TEST(RunPass, IsAsSureAsItSaysWhereNoiseMovesTheMachine) {
+  const UncertainModel model = test::UncertainStage();
+  const MatrixXd noise = test::kNoise * test::kNoise * MatrixXd::Identity(2, 2);
+  constexpr int kRuns = 200;
+  double sum = 0.0;
+  for (int i = 0; i < kRuns; ++i) {
+    const test::StageRun run = Held(static_cast<std::uint64_t>(i) + 1);
+    RunPass pass(std::make_unique<LinearTwin>(
+                     model, std::vector<TwinGain>{{MatrixXd::Zero(6, 2), noise, 0}},
+                     test::kBlock),
+                 run.outputs, run.inputs, PriorOf(model.unknowns));
+    const RunInformation said = pass.About(VectorXd::Zero(kNumbers), 0);
+    sum += said.g.dot(CovarianceOf(said.H) * said.g) / kRuns;
+  }
+  EXPECT_NEAR(sum, 5.0, 0.9);
+}
+
 TEST(RunPass, KnowsLessWhereTheStartIsUnknown) {
   const test::StageRun run = test::RunStage({0.02, -0.03, -0.01}, 0.0, 5, kTicks);
   const MatrixXd whole = CovarianceOf(Learn(0, run).second.H);

@@ -29,25 +29,25 @@ class PlantTwinOfTheBonder : public testing::Test {
     inputs_ = SamplesOf(record, ChannelsOf(machine_.channels().actuators));
   }
 
-  /// Means of the predicted readings over blocks, stacked.
+  /// The predicted readings, stacked.
   VectorXd Predicted(const VectorXd& theta, MatrixXd* sensitivities = nullptr) {
-    const Index blocks = inputs_.cols() / kBlock;
-    VectorXd means = VectorXd::Zero(3 * blocks);
-    if (sensitivities != nullptr) sensitivities->resize(3 * blocks, theta.size());
+    const Index ticks = inputs_.cols() / kBlock * kBlock;
+    VectorXd readings(3 * ticks);
+    if (sensitivities != nullptr) sensitivities->resize(3 * ticks, theta.size());
     VectorXd reading(3);
     const VectorXd none = VectorXd::Zero(3);
     twin_.Start(theta);
-    for (Index k = 0; k < blocks * kBlock; ++k) {
+    for (Index k = 0; k < ticks; ++k) {
       twin_.Predict(reading);
-      means.segment(3 * (k / kBlock), 3) += reading / static_cast<double>(kBlock);
+      readings.segment(3 * k, 3) = reading;
       twin_.Step({inputs_.col(k).data(), 3}, none);
       if ((k + 1) % kBlock != 0) continue;
       const MatrixXd& of_block = twin_.EndBlock();
       if (sensitivities != nullptr) {
-        sensitivities->middleRows(3 * (k / kBlock), 3) = of_block;
+        sensitivities->middleRows(3 * (k + 1 - kBlock), 3 * kBlock) = of_block;
       }
     }
-    return means;
+    return readings;
   }
 
   const Machine machine_ = test::Bonder();
@@ -72,11 +72,7 @@ TEST_F(PlantTwinOfTheBonder, HasTheFaultsTheFrictionAndTheTonesAsUnknowns) {
 
 TEST_F(PlantTwinOfTheBonder, PredictsWhatTheSameMachineReads) {
   const VectorXd predicted = Predicted(VectorXd::Zero(twin_.unknowns()));
-  VectorXd measured = VectorXd::Zero(predicted.size());
-  for (Index k = 0; k < predicted.size() / 3 * kBlock; ++k) {
-    measured.segment(3 * (k / kBlock), 3) +=
-        outputs_.col(k) / static_cast<double>(kBlock);
-  }
+  const VectorXd measured = outputs_.reshaped().head(predicted.size());
   EXPECT_LT((predicted - measured).cwiseAbs().maxCoeff(), 1e-12);
 }
 
