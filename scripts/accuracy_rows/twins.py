@@ -37,8 +37,8 @@ def twin_tick(theta, shake):
 
 def twin_sums(reading, current, theta=(0, 0, 0), shake=still):
     """One pass of a twin of the voice coil about `theta`, logarithms of what damper, spring
-    and coil are over what they were: estimate, and information H, from means over blocks of
-    8 ticks (docs/theory.md, Estimation by a twin)."""
+    and coil are over what they were: estimate, and information H, of all ticks of whole
+    blocks of 8 (docs/theory.md, Estimation by a twin)."""
     tick, sd, block = twin_tick(theta, shake), LONG(5e-8), 8
     x, e, psi = np.zeros(8, LONG), [], []
     for y, i in zip(reading, current):
@@ -46,9 +46,8 @@ def twin_sums(reading, current, theta=(0, 0, 0), shake=still):
         psi.append(x[2:5])
         x = shake(tick[:, :8] @ x + tick[:, 8] * LONG(i))
     n = len(e) // block * block
-    e = shake(np.array(e[:n]).reshape(-1, block).mean(axis=1))
-    psi = np.array(psi[:n]).reshape(-1, block, 3).mean(axis=1)
-    weight, prior = block / sd ** 2, LONG(100)  # a standard deviation of 0.1
+    e, psi = shake(np.array(e[:n])), np.array(psi[:n])
+    weight, prior = 1 / sd ** 2, LONG(100)  # a standard deviation of 0.1
     theta = np.array([long_of(t) for t in theta])
     H = mp_of(shake(psi.T @ psi * weight + np.eye(3, dtype=LONG) * prior))
     g = mp_of(shake((psi.T @ e * weight - prior * theta)[:, None]))
@@ -96,7 +95,7 @@ def voice_coil_twin():
                           ("sizes that are seen", "alarm", seen_sizes)):
         exact = of(twin_sums(reading, current)[1])
         rows.append(Row(PART, f"twin of the voice coil: {what}", f"{source}: `{key}`",
-                        "own sums over blocks, in long double", said[key], exact,
+                        "own sums over ticks, in long double", said[key], exact,
                         condition_of(lambda shake, of=of: of(
                             twin_sums(reading, current, shake=shake)[1]), exact), SHAKEN))
     reading, said = diagnosed(1.0)
@@ -115,7 +114,7 @@ def voice_coil_twin():
 
 def bonder_sums(inputs, source, shake=still):
     """Information of seven factors and of sines and cosines of three tones about the healthy
-    bonder, without noise: S^T S over means of blocks, every physics step with the
+    bonder, without noise: S^T S over all ticks of whole blocks of 8, every physics step with the
     sensitivities that docs/theory.md has."""
     said = ask("linearize", "--setup", BONDER)
     M, D, K, Gamma = model_of(said)
@@ -156,9 +155,7 @@ def bonder_sums(inputs, source, shake=still):
                 force[:, i] = -spring @ x[:n]
             S = shake(A1 @ S + push @ force)
             x = shake(after)
-    blocks = len(psi) // 8
-    psi = np.array(psi[:8 * blocks]).reshape(blocks, 8, len(b), -1).mean(axis=1)
-    psi = psi.reshape(-1, faults + 6) * np.sqrt(LONG(8)) / LONG(2e-8)
+    psi = np.array(psi[:len(psi) // 8 * 8]).reshape(-1, faults + 6) / LONG(2e-8)
     # What is known beforehand: 0.1 of a logarithm, and of a magnitude.
     return mp_of(shake(psi.T @ psi + 100 * np.eye(faults + 6, dtype=LONG))), faults
 
