@@ -100,6 +100,11 @@ double FirstCorrection(const Reconfiguration& reconfiguration) {
              : static_cast<double>(first) * reconfiguration.options().sample_time;
 }
 
+/// "-" of what did not come.
+Cell TimeCell(double seconds) {
+  return std::isfinite(seconds) ? Cell(seconds) : Cell("-");
+}
+
 std::string NamesOf(const std::vector<SizedFault>& faults) {
   std::string names;
   for (const SizedFault& fault : faults) {
@@ -190,7 +195,7 @@ StudyTable MidwayTable(const Machine& machine, const TolerancePlan& plan, double
        "first correction [s]", "within 1.1 after [s]", "bump [noise sd]"},
       {},
       {"Errors: tracking error of the last repetition over the healthy one, rms of the "
-       "worst axis. Times count from the fault.",
+       "worst axis. Times count from the fault; \"-\" did not come.",
        "Bump: how much larger than with and without the fault the tracking error is at "
        "any time, in standard deviations of the sensor noise; below 0 it never is."}};
   std::vector<std::vector<SizedFault>> cases;
@@ -209,7 +214,7 @@ StudyTable MidwayTable(const Machine& machine, const TolerancePlan& plan, double
         table.rows.push_back({linear ? "linear" : "nonlinear",
                               teller == Teller::kKnown ? "known" : "twin",
                               NamesOf(faults), run.uncorrected, run.corrected,
-                              run.since, run.recovery, run.bump});
+                              TimeCell(run.since), TimeCell(run.recovery), run.bump});
         if (options.progress) {
           options.progress(0.5 + 0.125 * ++done / static_cast<double>(cases.size()));
         }

@@ -54,7 +54,7 @@ void PredictionErrorEstimator::StartOver(std::size_t gain,
                                          const VectorXd& theta) noexcept {
   segment_.explained = segment_.surprised = 0;
   segment_.grows = false;
-  segment_.doubted = false;
+  segment_.doubted = 0;
   segment_.stuck = segment_.same = 0;
   pulled_passes_ = 0;
   look_ = segment_.windowed && segment_.window.at_rest ? kFirstGuess : kLook;
@@ -70,17 +70,18 @@ void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
 void PredictionErrorEstimator::Reconsider() noexcept {
   if (Surprised()) return Unexplained();
   if (segment_.windowed) return Approach();
-  if (gain() == 0 && pass_.ticks() % kGrowthEvery == 0 && SeesGrowth()) {
-    // About a theta that is far off, what the plant's curvature leaves may look like growth
-    // too: it has to be seen again about a better one.
-    if (!pass_.twin().linear() && !segment_.doubted && WorthGoingBack()) {
-      segment_.doubted = true;
-      return GoBack();
-    }
-    segment_.grows = true;
-    return Follow();
-  }
   const Index horizon = pass_.seen() - now().origin;
+  if (gain() == 0 && pass_.ticks() % kGrowthEvery == 0) {
+    if (!SeesGrowth()) {
+      if (horizon >= segment_.doubted) segment_.doubted = 0;
+    } else if (IsGrowth(horizon)) {
+      segment_.grows = true;
+      return Follow();
+    } else if (segment_.doubted == 0) {
+      segment_.doubted = horizon;
+      if (WorthGoingBack()) return GoBack();
+    }
+  }
   if (Bias() > kTooFar && 4 * horizon > 5 * segment_.explained) {
     segment_.explained = horizon;
     return GoBack();
@@ -88,6 +89,14 @@ void PredictionErrorEstimator::Reconsider() noexcept {
   if (!CaughtUp() || pass_.seen() < next_look_) return;
   next_look_ = kept_.added() + horizon / 2;
   if (WorthGoingBack()) GoBack();
+}
+
+bool PredictionErrorEstimator::IsGrowth(Index horizon) const noexcept {
+  // What the plant's curvature leaves about a theta that is far off, or a joint that came
+  // loose at another tick, may look like growth for a while: it has to be seen again about a
+  // better theta, in twice the time.
+  return pass_.twin().linear() ||
+         (segment_.doubted > 0 && horizon >= 2 * segment_.doubted);
 }
 
 void PredictionErrorEstimator::Approach() noexcept {

@@ -121,10 +121,11 @@ class PredictionErrorEstimator {
     PassStart first;
     /// Of passes over the last readings, with a gain that pulls at first.
     PassStart window;
-    bool windowed = false;       ///< passes begin there
-    bool grows = false;          ///< what wears has grown in it
-    bool doubted = false;        ///<   seen once, about a theta that was far off
-    int attempts = 0;            ///< of passes that are pulled along
+    bool windowed = false;  ///< passes begin there
+    bool grows = false;     ///< what wears has grown in it
+    Eigen::Index doubted =
+        0;             ///<   horizon in which that was seen, and was not believed
+    int attempts = 0;  ///< of passes that are pulled along
     Eigen::Index explained = 0;  ///< longest horizon so far
     Eigen::Index surprised = 0;  ///< horizon of the last pass
     int stuck = 0;               ///< passes without a longer one
@@ -180,6 +181,8 @@ class PredictionErrorEstimator {
   bool TryChange() noexcept;
   /// Whether what this pass has seen is no chance on a machine that is constant.
   bool SeesGrowth() noexcept;
+  /// Whether that is believed.
+  bool IsGrowth(Eigen::Index horizon) const noexcept;
   /// The window becomes the last readings.
   void MoveWindow() noexcept;
   const Checkpoint* LastCheckpoint(Eigen::Index until) const noexcept;
