@@ -47,7 +47,7 @@ class RecordSensitivity {
         block_(block),
         known_(static_cast<Index>(uncertain.unknowns.size())) {}
 
-  /// @param J  (ny blocks) x numbers
+  /// @param J  (ny blocks) x numbers, of zeros: means over the blocks are added
   void Run(const MeasuredRun& record, Eigen::Ref<MatrixXd> J) {
     const Index ny = record.outputs.rows();
     const VectorXd theta = VectorXd::Zero(known_);
@@ -64,7 +64,11 @@ class RecordSensitivity {
       const VectorXd inputs = record.inputs.col(k);
       twin_.Step(std::span<const double>(inputs.data(), inputs.size()), innovation);
       if ((k + 1) % block_ != 0) continue;
-      J.middleRows(ny * (k / block_), ny) = -twin_.EndBlock();
+      const MatrixXd& of_ticks = twin_.EndBlock();
+      auto mean = J.middleRows(ny * (k / block_), ny);
+      for (Index tick = 0; tick < block_; ++tick) {
+        mean -= of_ticks.middleRows(ny * tick, ny) / static_cast<double>(block_);
+      }
     }
   }
 
