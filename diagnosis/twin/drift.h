@@ -6,8 +6,8 @@
 //
 //   H_r += psi_r^T psi_r,   H_x += psi^T psi_r,   g_r += psi_r^T e
 //
-// with psi_r = d yp / d r, in units of the noise of e. Where they say that r is not 0, phi = theta + r t, of now,
-// is what remains of the estimate with r unknown,
+// with psi_r = d yp / d r, in units of the noise of e. Where they say that r is not 0,
+// phi = theta + r t, of now, is what remains of the estimate with r unknown,
 //
 //   B = H_x - t H_d,   M = H_r - t (H_x,d + H_x,d^T) + t^2 H_dd + P_r^-1,   b = g_r
 //   H* = H - B M^-1 B^T,   phi = -H*^-1 B M^-1 b,   r = M^-1 (b - B^T phi)

@@ -72,7 +72,6 @@ LinearTwin::LinearTwin(const UncertainModel& model, std::vector<TwinGain> gains,
   A_step_ = F_ = power_ = base_ = scratch_ = MatrixXd::Zero(2 * nq, 2 * nq);
   B_step_ = MatrixXd::Zero(2 * nq, nu);
   pulse_step_ = pulse_ = MatrixXd::Zero(2 * nq, nq);
-  row_ = row_next_ = C_;
   pulses_.assign(static_cast<std::size_t>(model_.timing.substeps), pulse_);
   before_ = after_ = MatrixXd::Zero(2 * nq, 2 * nq + nu + 1);
   x_ = constant_ = VectorXd::Zero(2 * nq);
@@ -279,13 +278,9 @@ void LinearTwin::LiftSensitivities() noexcept {
     }
   }
   const Index ny = outputs();
-  row_ = C_;
-  for (Index i = 0; i < block(); ++i) {
-    if (i > 0) {
-      row_next_.noalias() = row_ * F_;
-      row_.swap(row_next_);
-    }
-    carry_.middleRows(i * ny, ny) = row_;
+  carry_.topRows(ny) = C_;
+  for (Index i = 1; i < block(); ++i) {
+    carry_.middleRows(i * ny, ny).noalias() = carry_.middleRows((i - 1) * ny, ny) * F_;
   }
   carry_.middleRows(seen(), nx) = power_;
   left_.back().topRows(seen()).setZero();

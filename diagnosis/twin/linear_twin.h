@@ -136,7 +136,6 @@ class LinearTwin final : public Twin {
   // how far in the tick, above the forces of what moves.
   Eigen::MatrixXd before_, after_, tick_;       // tick_ in whole registers
   Eigen::MatrixXd F_, power_, base_, scratch_;  // A - L C, F^d
-  Eigen::MatrixXd row_, row_next_;              // C F^i
   Eigen::MatrixXd carry_;                // all C F^i above F^d, in whole registers
   Eigen::VectorXd carried_;              // carry_ times a column
   std::vector<Eigen::MatrixXd> pulses_;  // P_s

@@ -160,9 +160,8 @@ void PredictionErrorEstimator::Say() noexcept {
   const bool sure = !brief && Bias() < 1.0;
   const bool less =
       gain() > said_.gain || pass_.seen() < said_.until || (said_.sure && !sure);
-  // While it follows there is nothing finer that could stand, once it has come to now.
-  const bool finest = segment_.grows || (following() && CaughtUp());
-  if (pass_.blocks() == 0 || (same && less && !exhausted_ && !finest)) return;
+  // While it follows there is nothing finer that could stand.
+  if (pass_.blocks() == 0 || (same && less && !exhausted_ && !FollowsNow())) return;
   said_.began = true;
   said_.sure = sure;
   said_.information.Know(pass_.information());
@@ -189,9 +188,9 @@ void PredictionErrorEstimator::Follow() noexcept {
     exhausted_ = false;
     if (TryChange()) return;
   }
-  // On its way to now it learns of what was constant until then: moves of theta0 about
-  // which little is known yet would leave sensitivities of another machine.
-  if (!segment_.grows && !CaughtUp()) return;
+  // Moves of theta0 about which little is known yet would leave sensitivities of another
+  // machine.
+  if (!FollowsNow()) return;
   if (pass_.drifts()) {
     segment_.grows = segment_.grows || SeesGrowth();
     // As a walk of that wear would have it, evenly.

@@ -123,9 +123,9 @@ class PredictionErrorEstimator {
     PassStart window;
     bool windowed = false;  ///< passes begin there
     bool grows = false;     ///< what wears has grown in it
-    Eigen::Index doubted =
-        0;             ///<   horizon in which that was seen, and was not believed
-    int attempts = 0;  ///< of passes that are pulled along
+    /// Horizon in which that was seen, and not believed.
+    Eigen::Index doubted = 0;
+    int attempts = 0;            ///< of passes that are pulled along
     Eigen::Index explained = 0;  ///< longest horizon so far
     Eigen::Index surprised = 0;  ///< horizon of the last pass
     int stuck = 0;               ///< passes without a longer one
@@ -153,6 +153,9 @@ class PredictionErrorEstimator {
   PassStart& now() { return segment_.windowed ? segment_.window : segment_.first; }
   std::size_t gain() const { return pass_.gain(); }
   bool CaughtUp() const { return pass_.seen() >= kept_.added(); }
+  /// Follows it where it is now: a pass that is still on its way learns of what was constant
+  /// until then.
+  bool FollowsNow() const { return segment_.grows || (following() && CaughtUp()); }
 
   void FindStart() noexcept;
   /// The run did not begin at rest.

@@ -105,10 +105,8 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
   drive_ = force_ = MatrixXd::Zero(nv, p);
-  read_ = MatrixXd::Zero(ny, p);
   sensitivity_ = MatrixXd::Zero(ny * block, p);
   drift_force_ = MatrixXd::Zero(nv, S_rate_.cols());
-  drift_read_ = MatrixXd::Zero(ny, S_rate_.cols());
   UseGain(0);
 }
 
@@ -304,13 +302,11 @@ void PlantTwin::AddStepForces() noexcept {
 void PlantTwin::Step(std::span<const double> inputs,
                      const VectorXd& innovation) noexcept {
   const Index nv = model_->nv;
-  read_.leftCols(acting()).noalias() = C_ * S_.topRows(nv).leftCols(acting());
   const Index row = in_block_++ * outputs();
-  sensitivity_.middleRows(row, outputs()).leftCols(acting()) = read_.leftCols(acting());
-  if (drifts_) {
-    drift_read_.noalias() = C_ * S_rate_.topRows(nv);
-    drift_.middleRows(row, outputs()) = drift_read_;
-  }
+  auto read = sensitivity_.middleRows(row, outputs()).leftCols(acting());
+  auto drift_read = drift_.middleRows(row, outputs());
+  read.noalias() = C_ * S_.topRows(nv).leftCols(acting());
+  if (drifts_) drift_read.noalias() = C_ * S_rate_.topRows(nv);
   Command(inputs);
   AddTickForces();
   for (int substep = 0; substep < machine_.rates().substeps; ++substep) {
@@ -330,8 +326,8 @@ void PlantTwin::Step(std::span<const double> inputs,
     state_.noalias() = L * innovation;
     VectorXd::Map(data_->qpos, nv) += state_.head(nv);
     VectorXd::Map(data_->qvel, nv) += state_.tail(nv);
-    S_.leftCols(acting()).noalias() -= L * read_.leftCols(acting());
-    if (drifts_) S_rate_.noalias() -= L * drift_read_;
+    S_.leftCols(acting()).noalias() -= L * read;
+    if (drifts_) S_rate_.noalias() -= L * drift_read;
   }
   time_ += machine_.rates().tick();
   drift_time_ += machine_.rates().tick();

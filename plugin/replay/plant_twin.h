@@ -123,8 +123,7 @@ class PlantTwin final : public Twin {
   Eigen::VectorXd lifted_, by_force_;  // in whole registers
   std::vector<double> outputs_;
   Eigen::Index in_block_ = 0;
-  Eigen::MatrixXd drive_, force_, read_, sensitivity_;
-  Eigen::MatrixXd drift_force_, drift_read_;
+  Eigen::MatrixXd drive_, force_, sensitivity_, drift_force_;
 };
 
 }  // namespace mjdiag

@@ -114,8 +114,8 @@ def voice_coil_twin():
 
 def bonder_sums(inputs, source, shake=still):
     """Information of seven factors and of sines and cosines of three tones about the healthy
-    bonder, without noise: S^T S over all ticks of whole blocks of 8, every physics step with the
-    sensitivities that docs/theory.md has."""
+    bonder, without noise: S^T S over all ticks of whole blocks of 8, every physics step with
+    the sensitivities that docs/theory.md has."""
     said = ask("linearize", "--setup", BONDER)
     M, D, K, Gamma = model_of(said)
     n, step = M.rows, mpf(1) / 32000

@@ -1,6 +1,5 @@
 #include "mjdiag/studies/excitation/motion_information.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "mjdiag/diagnosis/residuals/cramer_rao.h"

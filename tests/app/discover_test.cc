@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/command_line.h"
+#include "support/sanitizers.h"
 
 namespace mjdiag {
 namespace {
@@ -21,12 +22,8 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Before something is taken for stuck; a sanitizer makes it seven times slower.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr auto kLongest = std::chrono::minutes(10);
-#else
-constexpr auto kLongest = std::chrono::minutes(1);
-#endif
+/// Before something is taken for stuck.
+constexpr auto kLongest = std::chrono::minutes(test::kSanitized ? 10 : 1);
 
 /// A record of the bonder with two effects that it takes long to find.
 class DiscoverCommand : public ::testing::Test {

@@ -6,17 +6,13 @@
 #include <atomic>
 #include <cstdlib>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define MJDIAG_COUNTS_ALLOCATIONS 0
-#else
-#define MJDIAG_COUNTS_ALLOCATIONS 1
-#endif
+#include "support/sanitizers.h"
 
 namespace mjdiag::test {
 inline std::atomic<long> allocations{0};
 }
 
-#if MJDIAG_COUNTS_ALLOCATIONS
+#if !MJDIAG_SANITIZED
 // Eigen and operator new both end here.
 // NOLINTBEGIN(bugprone-reserved-identifier,misc-definitions-in-headers)
 extern "C" void* __libc_malloc(std::size_t size);
@@ -35,7 +31,7 @@ extern "C" [[gnu::weak]] void* aligned_alloc(std::size_t alignment, std::size_t 
 namespace mjdiag::test {
 
 /// False under a sanitizer, to which malloc belongs.
-inline constexpr bool kCountsAllocations = MJDIAG_COUNTS_ALLOCATIONS;
+inline constexpr bool kCountsAllocations = !kSanitized;
 
 template <typename Function>
 long CountAllocations(const Function& function) {

@@ -35,7 +35,7 @@ struct Bench {
   Instance instance;
 };
 
-#if MJDIAG_COUNTS_ALLOCATIONS
+#if !MJDIAG_SANITIZED
 mjfGeneric counted_callback = nullptr;
 long allocations = 0;
 void CountingCallback(const mjModel* model, mjData* data) {
