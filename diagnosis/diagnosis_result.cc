@@ -13,6 +13,9 @@ namespace {
 
 using Eigen::Index;
 
+/// Outside an interval.
+constexpr double kOutside = 0.05;
+
 std::optional<double> TimeOf(const std::optional<Index>& sample, double sample_time) {
   if (!sample) return std::nullopt;
   return static_cast<double>(*sample) * sample_time;
@@ -38,6 +41,8 @@ TwinReading ReadResiduals(const DiagnosisMonitor& monitor, double noise_ratio) {
                   std::sqrt(noise_ratio * estimate.covariance(i, i)));
     reading.deviation[i] = deviation;
     reading.sd[i] = sd;
+    const double half = TwoSidedNormalQuantile(kOutside) * sd;
+    reading.ci95.push_back({deviation - half, deviation + half});
     reading.named.push_back(std::abs(deviation) > reach * sd && !usual);
   }
   return reading;
@@ -53,18 +58,17 @@ TwinReading ReadFaults(const DiagnosisMonitor& monitor, double noise_ratio) {
 std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
                                 const TwinReading& reading) {
   const std::vector<std::string> names = design.FaultNames();
-  const double half = TwoSidedNormalQuantile(0.05);
   std::vector<FaultVerdict> verdicts;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Index>(i);
     const double deviation = reading.deviation[at];
-    const double value = design.Healthy(at) + deviation;
-    const double sd = reading.sd[at];
+    const double healthy = design.Healthy(at);
+    const Interval& ci95 = reading.ci95[i];
     verdicts.push_back({names[i],
-                        value,
+                        healthy + deviation,
                         deviation,
-                        sd,
-                        {value - half * sd, value + half * sd},
+                        reading.sd[at],
+                        {healthy + ci95.min, healthy + ci95.max},
                         reading.named[i]});
     if (reading.alarm.size() == 0) continue;
     verdicts.back().alarm = reading.alarm[at];

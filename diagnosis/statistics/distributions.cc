@@ -3,6 +3,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
@@ -24,6 +25,7 @@ using Policy = policy::policy<policy::domain_error<policy::ignore_error>,
 using Normal = bm::normal_distribution<double, Policy>;
 using Student = bm::students_t_distribution<double, Policy>;
 using ChiSquared = bm::chi_squared_distribution<double, Policy>;
+using NoncentralChiSquared = bm::non_central_chi_squared_distribution<double, Policy>;
 using FisherF = bm::fisher_f_distribution<double, Policy>;
 using Binomial = bm::binomial_distribution<double, Policy>;
 
@@ -56,6 +58,11 @@ double ChiSquaredQuantile(double probability, double dof) {
 
 double ChiSquaredExceedance(double x, double dof) {
   return bm::cdf(bm::complement(ChiSquared(dof), x));
+}
+
+double NoncentralityOf(double x, double dof, double probability) {
+  if (!(ChiSquaredExceedance(x, dof) < probability)) return 0.0;
+  return NoncentralChiSquared::find_non_centrality(bm::complement(dof, x, probability));
 }
 
 double FQuantile(double probability, double dof1, double dof2) {

@@ -39,6 +39,12 @@ double ChiSquaredQuantile(double probability, double dof);
 /// P(chi-squared > x). @param x  0 or more  @param dof  > 0
 double ChiSquaredExceedance(double x, double dof);
 
+/// The squared means, added up, of `dof` normal variables of variance 1 of which the sum of
+/// squares, a noncentral chi-squared variable, exceeds x with that probability; 0 where it
+/// does so without them.
+/// @param x  0 or more  @param dof  > 0  @param probability  above 0, below 1
+double NoncentralityOf(double x, double dof, double probability);
+
 /// Of Fisher's F: the ratio of two estimates of the same variance or density, each as a
 /// chi-squared variable divided by its degrees of freedom.
 /// @param probability  0 to 1

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/diagnosis/statistics/magnitude_interval.h"
 #include "mjdiag/diagnosis/twin/naming.h"
 #include "mjdiag/signals/decompositions.h"
 
@@ -46,6 +47,13 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
     weights += weight;
   }
   return {std::sqrt(std::max(0.0, squares / weights)), 1.0 / std::sqrt(weights)};
+}
+
+Interval IntervalOf(const TwinFault& fault, double deviation, double sd) {
+  if (fault.tones() > 0)
+    return MagnitudeInterval(deviation, sd, 2 * fault.tones(), kOutside);
+  const double half = TwoSidedNormalQuantile(kOutside) * sd;
+  return {deviation - half, deviation + half};
 }
 
 /// Of the unknowns of those names, one for each. An unknown that is not there has none.
@@ -141,6 +149,7 @@ TwinReading TwinEstimator::Read() const {
   const auto nf = static_cast<Index>(faults_.size());
   TwinReading reading;
   reading.deviation = reading.sd = VectorXd::Zero(nf);
+  reading.ci95.assign(faults_.size(), {});
   reading.named.assign(faults_.size(), false);
   if (!estimator_.began()) return reading;
   const Index active = estimator_.active();
@@ -177,6 +186,7 @@ TwinReading TwinEstimator::Read() const {
     groups.push_back(std::move(group));
     std::tie(reading.deviation[at], reading.sd[at]) =
         DeviationOf(fault, theta, variance);
+    reading.ci95[i] = IntervalOf(fault, reading.deviation[at], reading.sd[at]);
   }
   const VectorXd prior = estimator_.prior().diagonal();
   for (std::size_t i = 0; i < faults_.size(); ++i) {

@@ -7,7 +7,8 @@
 //   gamma^2 = sum_i w_i (s_i^2 + c_i^2 - var s_i - var c_i) / sum_i w_i,
 //   w_i = 2 / (var s_i + var c_i)
 //
-// not below 0, with 1 / sum w_i its variance where it is large against that.
+// not below 0, with 1 / sum w_i its variance where it is large against that, and the
+// interval of magnitude_interval.h.
 
 #include <Eigen/Core>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/diagnosis/statistics/interval.h"
 #include "mjdiag/diagnosis/twin/model_uncertainty.h"
 #include "mjdiag/diagnosis/twin/prediction_error.h"
 
@@ -51,7 +53,9 @@ inline constexpr double kLargestMisfit = 3.0;
 /// other (Bonferroni).
 struct TwinReading {
   Eigen::VectorXd deviation;  ///< from healthy, nf
-  Eigen::VectorXd sd;       ///< nf, larger where the twin does not explain what it sees
+  Eigen::VectorXd sd;  ///< nf, larger where the twin does not explain what it sees
+  /// Between which the deviation lies but for a probability of 5 %, nf.
+  std::vector<Interval> ci95;
   std::vector<bool> named;  ///< nf, see NameFaults
   /// Fault parameters, by place, that act as another one does, or not at all.
   std::vector<Eigen::Index> inseparable;

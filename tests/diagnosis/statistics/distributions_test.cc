@@ -61,6 +61,17 @@ TEST(ChiSquaredExceedance, IsWhatTheQuantileIsExceededWith) {
   }
 }
 
+// By the series of central ones in 40 digits (mpmath 1.2).
+TEST(NoncentralityOf, IsThatOfAVariableWhichExceedsThatMuchSoOften) {
+  ExpectClose(NoncentralityOf(10.0, 2.0, 0.025), 0.82612688028967929, 1e-10);
+  ExpectClose(NoncentralityOf(10.0, 2.0, 0.975), 24.961087055131787, 1e-10);
+  ExpectClose(NoncentralityOf(40.0, 6.0, 0.025), 14.912251793482882, 1e-10);
+  ExpectClose(NoncentralityOf(40.0, 6.0, 0.975), 62.900278374793145, 1e-10);
+  ExpectClose(NoncentralityOf(906.0, 6.0, 0.025), 787.01788829370966, 1e-10);
+  ExpectClose(NoncentralityOf(906.0, 6.0, 0.975), 1022.6702763998000, 1e-10);
+  EXPECT_EQ(NoncentralityOf(7.0, 2.0, 0.025), 0.0);  // central: 0.030
+}
+
 TEST(ChiSquaredQuantile, IsExceededWithThatProbability) {
   ExpectClose(ChiSquaredQuantile(0.05, 1.0), 3.8414588206941285);
   ExpectClose(ChiSquaredQuantile(1e-4, 1.0), 15.136705226623397);

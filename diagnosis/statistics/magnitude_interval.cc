@@ -1,0 +1,24 @@
+#include "mjdiag/diagnosis/statistics/magnitude_interval.h"
+
+#include <cmath>
+
+#include "mjdiag/diagnosis/statistics/distributions.h"
+
+namespace mjdiag {
+
+Interval MagnitudeInterval(double magnitude, double sd, Eigen::Index parts,
+                           double outside) {
+  // From here on normal but for 1 / (2 kLarge) of its standard deviation, the second order
+  // of the root.
+  constexpr double kLarge = 30.0;
+  const double half = TwoSidedNormalQuantile(outside) * sd;
+  if (!(magnitude < kLarge * sd)) return {magnitude - half, magnitude + half};
+  const auto dof = static_cast<double>(parts);
+  const double seen = dof + std::pow(magnitude / sd, 2);
+  const auto end = [&](double probability) {
+    return sd * std::sqrt(NoncentralityOf(seen, dof, probability));
+  };
+  return {end(0.5 * outside), end(1.0 - 0.5 * outside)};
+}
+
+}  // namespace mjdiag
