@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/count_cells.h"
 #include "mjdiag/studies/detector.h"
+#include "mjdiag/studies/looked_at_runs.h"
 #include "mjdiag/studies/run_bound.h"
 #include "mjdiag/studies/seen_size.h"
 
@@ -75,53 +77,70 @@ StudyTable EmptySizes(const Plan& plan, const std::string& title) {
            " and phases of disturbances unknown."}};
 }
 
-using Detectors = std::vector<const Detector*>;
+/// A way of seeing that fault, and the runs that it looks at.
+struct Sight {
+  const Detector& detector;
+  SeesFault sees;
+};
 
-/// How many seeds show the fault to each detector: in one run of each seed.
-std::vector<int> SeenBy(const Plan& plan, const Detectors& detectors,
-                        const std::string& fault, double deviation) {
-  std::vector<std::atomic<int>> seen(detectors.size());
-  const double value = HealthyValue(plan.machine.setup(), fault) + deviation;
-  ParallelFor(plan.seeds.count, [&](int i) {
-    const Record record =
-        plan.Run({{fault, value}}, plan.seeds.first + static_cast<std::uint64_t>(i));
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      if (detectors[k]->sees(record, fault)) ++seen[k];
-    }
-  });
-  return {seen.begin(), seen.end()};
+/// Looking at a run takes a twin longer than making it: what it sees is asked only where
+/// that is wanted. The others share runs.
+std::vector<Sight> SightsOf(const Plan& plan, const std::string& fault) {
+  const double healthy = HealthyValue(plan.machine.setup(), fault);
+  const auto run = [&plan, fault, healthy](double deviation, std::uint64_t seed) {
+    return plan.Run({{fault, healthy + deviation}}, seed);
+  };
+  const auto look = [&fault](const Detector& detector) -> LookedAtRuns::Sees {
+    return [&detector, fault](const Record& record) {
+      return detector.sees(record, fault);
+    };
+  };
+  std::vector<Sight> sights;
+  std::vector<LookedAtRuns::Sees> shared;
+  for (const Detector& detector : plan.detectors) {
+    if (detector.meant_for && !detector.meant_for(fault)) continue;
+    sights.push_back({detector, {}});
+    if (!detector.at_bound) shared.push_back(look(detector));
+  }
+  const auto common = std::make_shared<LookedAtRuns>(run, shared);
+  std::size_t next = 0;
+  for (Sight& sight : sights) {
+    const bool own = sight.detector.at_bound;
+    const auto runs =
+        own ? std::make_shared<LookedAtRuns>(run, std::vector{look(sight.detector)})
+            : common;
+    sight.sees = [runs, way = own ? 0 : next++](double deviation, std::uint64_t seed) {
+      return runs->SeenBy(way, deviation, seed);
+    };
+  }
+  return sights;
 }
 
 /// How one detector sees one fault.
 /// @param published  the size of the thesis, if it has one
-std::vector<Cell> RowOf(const Plan& plan, const Detector& detector,
-                        const std::string& fault, double largest,
-                        const std::optional<SeenSize>& published) {
+std::vector<Cell> RowOf(const Plan& plan, const Sight& sight, const std::string& fault,
+                        double largest, std::optional<double> published) {
+  const auto& [detector, sees] = sight;
   const Setup& setup = plan.machine.setup();
-  const double healthy = HealthyValue(setup, fault);
-  const SeesFault sees = [&](double deviation, std::uint64_t seed) {
-    return detector.sees(plan.Run({{fault, healthy + deviation}}, seed), fault);
-  };
   const double sd = plan.bound[BoundIndex(plan.machine, fault)];
   std::optional<double> guess;
   if (detector.at_bound) guess = std::copysign(kAboutSeen * sd, largest);
-  const auto seen = SurelySeenSize(
-      largest, guess, plan.linear ? kResolution : kCoarseResolution, plan.seeds, sees);
+  const SizeGrid grid(largest, plan.linear ? kResolution : kCoarseResolution);
+  const auto seen = SurelySeenSize(grid, guess, plan.seeds, sees);
   const int seeds = plan.seeds.count;
-  std::vector<Cell> row{fault, detector.name,
-                        published ? DeviationCell(setup, fault, published->deviation)
-                                  : Cell("undetectable"),
-                        published ? PerCent(published->seeds, seeds) : Cell("-")};
+  std::vector<Cell> row{
+      fault, detector.name,
+      published ? DeviationCell(setup, fault, *published) : Cell("undetectable"),
+      published ? PerCent(CountSeen(*published, plan.seeds, sees), seeds) : Cell("-")};
   if (!seen) {
     row.insert(row.end(), {"nothing", "-", "-", "-", "-"});
     return row;
   }
-  row.insert(
-      row.end(),
-      {DeviationCell(setup, fault, seen->deviation), PerCent(seen->seeds, seeds),
-       PerCent(CountSeen(0.5 * seen->deviation, plan.seeds, sees), seeds),
-       published ? Cell(published->deviation / seen->deviation) : Cell("seen now"),
-       Cell(std::abs(seen->deviation) / sd)});
+  row.insert(row.end(),
+             {DeviationCell(setup, fault, seen->deviation), PerCent(seen->seeds, seeds),
+              PerCent(CountSeen(0.5 * seen->deviation, plan.seeds, sees), seeds),
+              published ? Cell(*published / seen->deviation) : Cell("seen now"),
+              Cell(std::abs(seen->deviation) / sd)});
   return row;
 }
 
@@ -161,22 +180,11 @@ std::vector<StudyTable> Detect(const Plan& plan, const std::string& title,
   const auto parts = static_cast<double>(largest.size() + 1);
   double done = 0.0;
   for (const auto& [fault, value] : largest) {
-    Detectors detectors;
-    for (const Detector& detector : plan.detectors) {
-      if (detector.meant_for && !detector.meant_for(fault)) continue;
-      detectors.push_back(&detector);
-    }
-    std::vector<std::optional<SeenSize>> published(detectors.size());
-    if (const auto size =
-            PublishedDeviation(plan.machine, setup.Study(plan.study), fault)) {
-      const std::vector<int> seeds = SeenBy(plan, detectors, fault, *size);
-      for (std::size_t k = 0; k < seeds.size(); ++k) {
-        published[k] = SeenSize{*size, seeds[k]};
-      }
-    }
-    for (std::size_t k = 0; k < detectors.size(); ++k) {
-      sizes.Add(RowOf(plan, *detectors[k], fault, value - HealthyValue(setup, fault),
-                      published[k]));
+    const auto published =
+        PublishedDeviation(plan.machine, setup.Study(plan.study), fault);
+    for (const Sight& sight : SightsOf(plan, fault)) {
+      sizes.Add(
+          RowOf(plan, sight, fault, value - HealthyValue(setup, fault), published));
     }
     done += 1.0 / parts;
     if (options.progress) options.progress(done);

@@ -19,7 +19,8 @@ struct Detector {
   std::function<bool(const Record&)> alarms;
   /// Only of faults for which this holds; none: of all.
   std::function<bool(const std::string& fault)> meant_for;
-  /// It may be at the information bound, and a search begins there.
+  /// It may be at the information bound, and a search begins there; looking at a run takes
+  /// it longer than making one.
   bool at_bound = false;
 };
 

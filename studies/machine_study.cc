@@ -50,18 +50,4 @@ Detection Look(const PreparedDiagnosis& prepared, const Record& record,
   return detection;
 }
 
-std::optional<double> SmallestDeviation(double seen, double resolution,
-                                        const std::function<bool(double)>& detected) {
-  if (!detected(seen)) return std::nullopt;
-  // No sensor of these machines sees a part in 1e12.
-  constexpr double kNothing = 1e-12;
-  double low = std::log(kNothing * std::abs(seen));
-  double high = std::log(std::abs(seen));
-  while (high - low > std::log(resolution)) {
-    const double middle = 0.5 * (low + high);
-    (detected(std::copysign(std::exp(middle), seen)) ? high : low) = middle;
-  }
-  return std::copysign(std::exp(high), seen);
-}
-
 }  // namespace mjdiag

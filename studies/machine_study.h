@@ -64,10 +64,4 @@ struct Detection {
 Detection Look(const PreparedDiagnosis& prepared, const Record& record,
                const std::string& fault);
 
-/// The smallest deviation from healthy, by bisection on its logarithm between `seen`
-/// and nothing, at which `detected` still holds; nullopt if it does not hold at `seen`.
-/// Accurate to a factor of `resolution`.
-std::optional<double> SmallestDeviation(double seen, double resolution,
-                                        const std::function<bool(double)>& detected);
-
 }  // namespace mjdiag

@@ -10,22 +10,6 @@
 namespace mjdiag {
 namespace {
 
-TEST(SmallestDeviation, IsWhereDetectionBegins) {
-  for (const double sign : {1.0, -1.0}) {
-    const auto smallest = SmallestDeviation(sign * 0.5, 1.01, [&](double deviation) {
-      EXPECT_GT(deviation * sign, 0.0);
-      return std::abs(deviation) >= 3e-4;
-    });
-    ASSERT_TRUE(smallest);
-    EXPECT_GE(*smallest * sign, 3e-4);
-    EXPECT_LE(*smallest * sign, 3e-4 * 1.01);
-  }
-}
-
-TEST(SmallestDeviation, IsNoneWhereTheLargestIsNotSeen) {
-  EXPECT_FALSE(SmallestDeviation(0.5, 1.01, [](double) { return false; }));
-}
-
 TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
   const Cell cell(1.23456789e-7);
   EXPECT_EQ(cell.text, "1.235e-07");

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/simulation.h"
