@@ -19,8 +19,8 @@ std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
 
 /// Table 3 (`study` "table3", limits from nominal runs of the nonlinear plant) or Table 5
 /// ("table5", the residuals' baseline of the same motion subtracted): residual, the one
-/// made robust for that fault, spectrum, estimate from residuals, and twin, which is the
-/// same in both.
+/// made robust for that fault, spectrum, estimate from residuals, and in Table 3 the twin,
+/// which would be the same in both.
 std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
                                                 const std::string& study, bool baseline,
                                                 const StudyOptions& options);
