@@ -5,13 +5,16 @@ REASONS = """
 
 Shares are of processor time, by `perf record`, on a computer with AVX-512.
 
-- **A linear twin for 5 % of a tick.** Of a tick of it 26 % are its map and what numbers of
-  the machine push (two kernels that keep registers full), and 15 % carrying sensitivities
-  over a block of 8 ticks. 36 % are the estimate, once a block: the information matrix and its
-  factors (22 %), how surprising the block is (8 %), and rates of wear (6 %), matrices of 13
-  unknowns by 3 readings, too small for kernels; 6 % copies of what it says, 7 % the residuals
-  beside it. If the first 41 % took no time at all, 5.5 % would be left. What remains is
-  an estimate every 8 ticks: longer blocks would halve it, and see a change later.
+- **A linear twin for 5 % of a tick.** Of what it takes a third are its map, what numbers of
+  the machine push, and carrying sensitivities over a block of 8 ticks (kernels that keep
+  registers full), and a twelfth divides readings and sensitivities by their noise. The rest
+  is the estimate, once a block: the information of 24 readings about 13 unknowns, its
+  factors, how surprising the block is, rates of wear, and copies of what it says, in matrices
+  too small for kernels. If the first third took no time at all, 5.7 % would be left. What
+  remains is an estimate every 8 ticks: longer blocks would halve it, and see a change later.
+  While it goes back to learn it makes two ticks in every one, and both weigh every reading by
+  itself: blocks whose readings are averaged before took three fifths of that, and gave
+  estimates up to a sixth above the bound that said they were surer than they were.
 - **A nonlinear twin that learns for 1.5 bare ticks.** While it goes back it makes two ticks of
   the plant in every tick, which are two bare ticks, whatever else is done: 75 % of its time
   are in MuJoCo's steps, 17 % carry sensitivities over these, and 8 % are all else. It follows
