@@ -48,12 +48,15 @@ std::size_t TakePart(double& u, std::size_t count) {
   return part;
 }
 
+/// Without the first the others would not be even: 2^k points that begin with it have one in
+/// every part of 2^-k of an axis (A. B. Owen, "On dropping the first Sobol' point",
+/// arXiv:2008.08051).
 std::vector<double> SobolPoint(int dimensions, std::uint64_t number) {
-  boost::random::sobol sequence(static_cast<std::size_t>(dimensions));
-  // The first point is the corner 0.
-  sequence.discard((number + 1) * static_cast<std::uint64_t>(dimensions));
+  std::vector<double> point(static_cast<std::size_t>(dimensions), 0.0);
+  if (number == 0) return point;  // which Boost leaves out
+  boost::random::sobol sequence(point.size());
+  sequence.discard((number - 1) * static_cast<std::uint64_t>(dimensions));
   constexpr double kUnit = 0x1p-64;
-  std::vector<double> point(static_cast<std::size_t>(dimensions));
   for (double& u : point) u = static_cast<double>(sequence()) * kUnit;
   return point;
 }
