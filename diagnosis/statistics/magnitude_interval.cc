@@ -16,7 +16,8 @@ Interval MagnitudeInterval(double magnitude, double sd, Eigen::Index parts,
   const auto dof = static_cast<double>(parts);
   const double seen = dof + std::pow(magnitude / sd, 2);
   const auto end = [&](double probability) {
-    return sd * std::sqrt(NoncentralityOf(seen, dof, probability));
+    const double root = std::sqrt(NoncentralityOf(seen, dof, probability));
+    return root == 0.0 ? 0.0 : sd * root;  // where nothing is known, too
   };
   return {end(0.5 * outside), end(1.0 - 0.5 * outside)};
 }

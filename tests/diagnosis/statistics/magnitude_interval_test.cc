@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace mjdiag {
@@ -46,6 +47,13 @@ TEST(MagnitudeInterval, IsThatOfANormalEstimateWhereTheMagnitudeIsLarge) {
     EXPECT_NEAR(interval.max, magnitude + 1.95996, 1.2 / 60.0);
   }
   EXPECT_EQ(MagnitudeInterval(1.0, 0.0, 2, 0.05).min, 1.0);
+}
+
+TEST(MagnitudeInterval, IsAllThereIsWhereNothingIsKnown) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const Interval interval = MagnitudeInterval(0.0, kInfinite, 2, 0.05);
+  EXPECT_EQ(interval.min, 0.0);
+  EXPECT_EQ(interval.max, kInfinite);
 }
 
 }  // namespace
