@@ -77,9 +77,9 @@ StudyTable EmptySizes(const Plan& plan, const std::string& title) {
        "The bound is the standard deviation that no estimate can be better than, all "
        "faults" +
            std::string(plan.linear ? "" : ", dry friction") +
-           " and phases of disturbances unknown. Who takes it that no other fault is "
-           "there "
-           "may see one that is nearer to nothing."}};
+           " and phases of disturbances unknown. That of a fault that is known to be "
+           "alone "
+           "is lower."}};
 }
 
 /// A way of seeing that fault, and the runs that it looks at.
