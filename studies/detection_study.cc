@@ -78,8 +78,7 @@ StudyTable EmptySizes(const Plan& plan, const std::string& title) {
        "faults" +
            std::string(plan.linear ? "" : ", dry friction") +
            " and phases of disturbances unknown. That of a fault that is known to be "
-           "alone "
-           "is lower."}};
+           "alone is lower."}};
 }
 
 /// A way of seeing that fault, and the runs that it looks at.
