@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/diagnosis/statistics/magnitude_interval.h"
 #include "mjdiag/diagnosis/twin/naming.h"
 #include "mjdiag/signals/error.h"
 
@@ -41,8 +42,7 @@ TwinReading ReadResiduals(const DiagnosisMonitor& monitor, double noise_ratio) {
                   std::sqrt(noise_ratio * estimate.covariance(i, i)));
     reading.deviation[i] = deviation;
     reading.sd[i] = sd;
-    const double half = TwoSidedNormalQuantile(kOutside) * sd;
-    reading.ci95.push_back({deviation - half, deviation + half});
+    reading.ci95.push_back(NormalInterval(deviation, sd, kOutside));
     reading.named.push_back(std::abs(deviation) > reach * sd && !usual);
   }
   return reading;

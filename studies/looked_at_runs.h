@@ -3,6 +3,7 @@
 // take longer than looking at them, ways that are asked about the same sizes share them.
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>

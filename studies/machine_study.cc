@@ -1,7 +1,5 @@
 #include "mjdiag/studies/machine_study.h"
 
-#include <cmath>
-
 namespace mjdiag {
 FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
                          std::uint64_t seed) {

@@ -6,13 +6,17 @@
 
 namespace mjdiag {
 
+Interval NormalInterval(double estimate, double sd, double outside) {
+  const double half = TwoSidedNormalQuantile(outside) * sd;
+  return {estimate - half, estimate + half};
+}
+
 Interval MagnitudeInterval(double magnitude, double sd, Eigen::Index parts,
                            double outside) {
   // From here on normal but for 1 / (2 kLarge) of its standard deviation, the second order
   // of the root.
   constexpr double kLarge = 30.0;
-  const double half = TwoSidedNormalQuantile(outside) * sd;
-  if (!(magnitude < kLarge * sd)) return {magnitude - half, magnitude + half};
+  if (!(magnitude < kLarge * sd)) return NormalInterval(magnitude, sd, outside);
   const auto dof = static_cast<double>(parts);
   const double seen = dof + std::pow(magnitude / sd, 2);
   const auto end = [&](double probability) {

@@ -11,6 +11,9 @@
 
 namespace mjdiag {
 
+/// Of an estimate with normal errors. @param outside  probability, above 0, below 1
+Interval NormalInterval(double estimate, double sd, double outside);
+
 /// From the largest magnitude that would be exceeded with half of `outside` to the smallest
 /// that would stay below with the other half. The lower end is 0 where no magnitude would do
 /// so. Where less was seen than noise alone leaves on average, the interval is that of the

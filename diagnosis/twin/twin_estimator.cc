@@ -50,10 +50,8 @@ std::pair<double, double> DeviationOf(const TwinFault& fault, const VectorXd& th
 }
 
 Interval IntervalOf(const TwinFault& fault, double deviation, double sd) {
-  if (fault.tones() > 0)
-    return MagnitudeInterval(deviation, sd, 2 * fault.tones(), kOutside);
-  const double half = TwoSidedNormalQuantile(kOutside) * sd;
-  return {deviation - half, deviation + half};
+  if (fault.tones() == 0) return NormalInterval(deviation, sd, kOutside);
+  return MagnitudeInterval(deviation, sd, 2 * fault.tones(), kOutside);
 }
 
 /// Of the unknowns of those names, one for each. An unknown that is not there has none.
