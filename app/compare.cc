@@ -49,8 +49,9 @@ std::string DerivedText(const Comparison& comparison) {
   return "\n" + table.ToString();
 }
 
-/// Of a machine that falls: errors of predictions, and forces that are missing.
+/// Errors of predictions, and forces that are missing.
 std::string FollowedText(const Comparison& comparison) {
+  if (!comparison.deviance) return "";
   const Prediction& prediction = comparison.prediction;
   std::vector<std::string> columns = {"prediction error, rms"};
   for (const double horizon : prediction.horizons) {
@@ -64,13 +65,14 @@ std::string FollowedText(const Comparison& comparison) {
     }
     ahead.Add(row);
   }
-  Table forces({"joint", "missing force, rms", "known to", "up to"});
+  Table forces({"joint", "missing force, rms", "known to", "lasts"});
   for (const MissingForce& force : comparison.missing_force) {
     forces.Add({force.joint, FormatQuantity(force.rms, force.unit),
                 FormatQuantity(force.sd, force.unit),
-                FormatQuantity(force.bandwidth, "Hz")});
+                FormatQuantity(force.memory, "s")});
   }
-  return ahead.ToString() + "\n" + forces.ToString();
+  return "\n" + ahead.ToString() + "\n" + forces.ToString() + "\n-2 ln L " +
+         Short(*comparison.deviance) + "\n";
 }
 
 void Compare(const CompareOptions& options) {
@@ -96,8 +98,9 @@ void Compare(const CompareOptions& options) {
   document["command"] = CommandLine();
   std::string text =
       ComparisonVerdict(comparison) + "\n\n" +
-      (comparison.falls ? FollowedText(comparison)
-                        : ChannelText(comparison) + DerivedText(comparison));
+      (comparison.falls ? std::string()
+                        : ChannelText(comparison) + DerivedText(comparison)) +
+      FollowedText(comparison);
   AddNotes(notes, document, text);
   const RunDescription run{CommandLine(), options.record, {{"mjdiag", MJDIAG_VERSION}}};
   Publish(options.output, "compare", document, text, [&] {

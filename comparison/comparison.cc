@@ -5,10 +5,14 @@
 
 #include "mjdiag/comparison/noise_floor.h"
 #include "mjdiag/plugin/replay/motion_path.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
+
+using Eigen::VectorXd;
+
 namespace {
 
 // Below this the noise of a record cannot be told from its motion.
@@ -115,39 +119,63 @@ Eigen::VectorXd NoiseOf(const Machine& machine, const Record& measured) {
   return sd;
 }
 
+/// Whether the record has all that the filter needs.
+bool CanBeFollowed(const Setup& setup, const Record& measured) {
+  const auto has = [&](const auto& channel) {
+    return measured.Find(channel.channel) != nullptr;
+  };
+  return std::ranges::all_of(setup.channels.sensors, has) &&
+         std::ranges::all_of(setup.channels.actuators, has);
+}
+
 /// What is predicted over one tick.
-Comparison BesideObserver(Comparison result, const Machine& machine,
-                          const Record& measured, const FollowedRun& followed) {
+void PredictATick(const Machine& machine, const Record& measured,
+                  const FilterPath& path, Comparison& result) {
   result.falls = true;
-  result.bandwidth = followed.observer.bandwidth;
   result.measured =
       Select(measured, ChannelsOf(machine.channels().sensors), measured.start_time());
   result.simulated = Record(measured.sample_time(), measured.start_time());
+  // Beside a model that lacks nothing.
+  FilterNoise noise = path.noise;
+  noise.size *= 1e-9;
+  noise.white *= 1e-9;
+  const VectorXd floors = Score(path, noise, 0, path.samples()).variance.cwiseSqrt();
   const auto samples = static_cast<double>(measured.samples());
   Eigen::Index row = 0;
   for (const SensorSetup& sensor : machine.channels().sensors) {
     Channel predicted = measured.At(sensor.channel);
-    predicted.samples -= followed.track.innovations.row(row).transpose();
+    predicted.samples -= path.innovations.row(row).transpose();
     result.simulated.Add(std::move(predicted));
-    const NoiseFloor floor{.rms = followed.observer.innovation_sd[row++],
+    const NoiseFloor floor{.rms = floors[row++],
                            .mismatch_freedom = samples,
                            .floor_freedom = samples};
     result.channels.push_back(MeasureMismatch(result.measured, result.simulated,
                                               sensor.channel, floor, result.options));
   }
-  return result;
 }
 
-/// Of a machine that falls.
-Comparison CompareFalling(const Comparison& frame, const Machine& machine,
-                          const Record& measured) {
-  const FollowedRun followed = FollowLikeliest(
-      machine, ToMeasuredRun(machine.setup(), measured), NoiseOf(machine, measured));
-  Comparison result = BesideObserver(frame, machine, measured, followed);
-  result.prediction = Predict(machine, followed, result.options.skip_samples);
-  result.missing_force = MissingForces(machine, followed.run, followed.observer,
-                                       followed.track.innovations);
-  return result;
+/// Measured beside a free simulation.
+void CompareChannels(const Machine& noisy, const Record& measured,
+                     const Record& simulated, const Excitation& excitation,
+                     const std::vector<std::string>& names, const RunOptions& options,
+                     Comparison& result) {
+  const auto floors = EstimateNoiseFloor(noisy, excitation, simulated, options,
+                                         result.options.skip_samples);
+  const double start = measured.start_time();
+  result.measured = Select(measured, names, start);
+  result.simulated = Select(simulated, names, start);
+  CheckUnits(result.measured, result.simulated);
+  for (const std::string& name : names) {
+    result.channels.push_back(MeasureMismatch(result.measured, result.simulated, name,
+                                              floors.at(name), result.options));
+  }
+  const std::vector<std::string> positions = Positions(result.measured, noisy.setup());
+  result.measured_derived =
+      DeriveChannels(result.measured, positions, noisy.setup().compare);
+  result.simulated_derived =
+      DeriveChannels(result.simulated, positions, noisy.setup().compare);
+  result.derived = MeasureDerived(result.measured_derived, result.simulated_derived,
+                                  result.options.skip_samples);
 }
 
 }  // namespace
@@ -169,11 +197,15 @@ const ChannelMismatch* Comparison::Worst() const {
   return worst == channels.end() ? nullptr : &*worst;
 }
 
-Comparison Compare(const Machine& machine, const Record& measured,
-                   const RunOptions& options) {
-  std::vector<std::string> names;
-  Comparison result = Begin(machine, measured, names);
+namespace {
 
+/// The free simulation, without its channels if the machine falls in it; the error that it
+/// ended with, if any.
+std::optional<NumericalError> SimulateFreely(const Machine& machine,
+                                             const Record& measured,
+                                             const RunOptions& options,
+                                             const std::vector<std::string>& names,
+                                             bool may_leave, Comparison& result) {
   const Machine noisy =
       machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
   const Excitation excitation = Replay(noisy.setup(), measured);
@@ -182,33 +214,48 @@ Comparison Compare(const Machine& machine, const Record& measured,
   Record simulated;
   try {
     simulated = Simulate(noisy, excitation, without_noise);
-  } catch (const NumericalError&) {
-    if (result.closed_loop || !HasLeftRest(machine, measured)) throw;
-    return CompareFalling(result, machine, measured);
+  } catch (const NumericalError& error) {
+    result.falls = true;
+    return error;
   }
-  if (!result.closed_loop && Leaves(measured, simulated, names) &&
-      HasLeftRest(machine, measured)) {
-    return CompareFalling(result, machine, measured);
+  if (!may_leave && !result.closed_loop && Leaves(measured, simulated, names)) {
+    result.falls = true;
+    return std::nullopt;
   }
-  const auto floors = EstimateNoiseFloor(noisy, excitation, simulated, options,
-                                         result.options.skip_samples);
+  CompareChannels(noisy, measured, simulated, excitation, names, options, result);
+  return std::nullopt;
+}
 
-  const double start = measured.start_time();
-  result.measured = Select(measured, names, start);
-  result.simulated = Select(simulated, names, start);
-  CheckUnits(result.measured, result.simulated);
-  for (const std::string& name : names) {
-    result.channels.push_back(MeasureMismatch(result.measured, result.simulated, name,
-                                              floors.at(name), result.options));
+}  // namespace
+
+Comparison Compare(const Machine& machine, const Record& measured,
+                   const RunOptions& options) {
+  std::vector<std::string> names;
+  Comparison result = Begin(machine, measured, names);
+  const bool can_be_followed = CanBeFollowed(machine.setup(), measured);
+  const auto error = SimulateFreely(machine, measured, options, names,
+                                    !can_be_followed, result);
+  if (!can_be_followed) {
+    if (error) throw *error;
+    return result;
   }
-  const std::vector<std::string> positions =
-      Positions(result.measured, machine.setup());
-  result.measured_derived =
-      DeriveChannels(result.measured, positions, machine.setup().compare);
-  result.simulated_derived =
-      DeriveChannels(result.simulated, positions, machine.setup().compare);
-  result.derived = MeasureDerived(result.measured_derived, result.simulated_derived,
-                                  result.options.skip_samples);
+  const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
+  const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
+  result.deviance = path.deviance;
+  result.noise = path.noise;
+  result.prediction = Predict(machine, run, path, result.options.skip_samples);
+  result.missing_force = MissingForces(machine, path);
+  if (result.falls) PredictATick(machine, measured, path, result);
+  return result;
+}
+
+Comparison CompareFree(const Machine& machine, const Record& measured,
+                       const RunOptions& options) {
+  std::vector<std::string> names;
+  Comparison result = Begin(machine, measured, names);
+  const auto error =
+      SimulateFreely(machine, measured, options, names, true, result);
+  if (error) throw *error;
   return result;
 }
 
@@ -226,14 +273,19 @@ bool Falls(const Machine& machine, const Record& measured) {
   }
 }
 
-Comparison CompareFollowed(const Machine& machine, const Changes& changes,
-                           const Record& measured, double bandwidth) {
+FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
+                             const Record& measured) {
   std::vector<std::string> names;
   const Comparison frame = Begin(machine, measured, names);
-  return BesideObserver(
-      frame, machine, measured,
-      FollowAt(machine, changes, ToMeasuredRun(machine.setup(), measured),
-               NoiseOf(machine, measured), bandwidth));
+  const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
+  const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
+  FollowedPair pair{frame, frame};
+  PredictATick(machine, measured, path, pair.before);
+  const Machine changed = machine.With(changes);
+  PredictATick(changed, measured,
+               RunForceFilter(changed, run, path.dofs, path.starts, path.noise),
+               pair.after);
+  return pair;
 }
 
 }  // namespace mjdiag

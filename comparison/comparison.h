@@ -4,6 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,16 @@
 
 namespace mjdiag {
 
-// Driven by its inputs alone a machine may fall that did not when it was measured: a
-// controller held it that nobody wrote down. An open-loop simulation says nothing of the
-// model then. Where it diverges, or a sensor goes further from its measurement than that
-// spans, and the machine has left its rest (motion_path.h), the comparison is one beside an
-// observer that follows the measured motion: how far ahead the model predicts
-// (prediction.h), and the force that it lacks at every joint (missing_force.h). Simulated
-// is then what it predicts from one tick to the next.
+// Of every machine, whether it stands, swings, is held or falls, the filter that follows the
+// measured motion (plugin/replay/force_filter.h) says how far ahead the model predicts
+// (prediction.h), the force that it lacks at every joint (missing_force.h), and how probable
+// the record is beside it: -2 ln L, which orders models of one record.
+//
+// A free simulation stands beside that where the machine does not run away in it. Driven by
+// its inputs alone one may fall that did not when it was measured: a controller held it that
+// nobody wrote down. Where it diverges, or in open loop goes further from its measurement than
+// that spans, it says nothing of the model. Simulated is then what the filter predicts from
+// one tick to the next.
 
 struct Comparison {
   std::string setup;         ///< its name
@@ -37,10 +41,12 @@ struct Comparison {
   std::vector<ChannelMismatch> channels;  ///< sensors, then actuators
   std::vector<DerivedMismatch> derived;
   std::vector<std::string> not_measured;  ///< channels that the record lacks
-  bool falls = false;  ///< as above: what follows is there, derived is not
+  bool falls = false;  ///< as above: no free simulation, and nothing derived
+  /// From here on empty where the record lacks sensors or commands.
   Prediction prediction;
   std::vector<MissingForce> missing_force;
-  double bandwidth = 0.0;  ///< of the observer [Hz]
+  std::optional<double> deviance;  ///< -2 ln L
+  FilterNoise noise;               ///< the most likely one
 
   /// True if any channel exceeds its noise floor.
   bool exceeds_noise() const;
@@ -57,16 +63,22 @@ struct Comparison {
 Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options);
 
-/// Whether a machine falls that is driven with the inputs of the record alone.
-/// InputError as above.
+/// The free simulation alone. NumericalError if it diverges.
+Comparison CompareFree(const Machine& machine, const Record& measured,
+                       const RunOptions& options);
+
+/// Whether a machine falls that is driven with the inputs of the record alone, and has left
+/// its rest (motion_path.h). InputError as above.
 bool Falls(const Machine& machine, const Record& measured);
 
-/// The comparison of a machine that falls.
-/// Of all that has been put into it, `changes` alone is unknown to the observer, which is
-/// that of `machine`: comparisons with and without changes stand beside one another.
-/// Without prediction and missing forces.
-/// @param bandwidth  of the observer [Hz]
-Comparison CompareFollowed(const Machine& machine, const Changes& changes,
-                           const Record& measured, double bandwidth);
+/// What is predicted over one tick, of a machine and of the same with changes, behind the
+/// noise that is most likely beside the first: the two stand beside one another. Without
+/// prediction and missing forces.
+struct FollowedPair {
+  Comparison before;
+  Comparison after;
+};
+FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
+                             const Record& measured);
 
 }  // namespace mjdiag

@@ -25,6 +25,7 @@
 #include "mjdiag/discovery/selection/search.h"
 #include "mjdiag/discovery/unexplained/motion_variables.h"
 #include "mjdiag/discovery/unexplained/unknown_input.h"
+#include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
 
@@ -112,7 +113,8 @@ class Discoverer {
   void NoteFarNumbers();
   void NoteQuietAxes(const ObservedMotion& motion);
   void NoteTwins(std::size_t cause);
-  std::vector<UnknownSignal> UnexplainedIn(const Track& track) const;
+  std::vector<UnknownSignal> UnexplainedIn(const Track& track,
+                                           const Changes& changes) const;
   void FindWhere(const Track& nominal, const Track& final);
   /// What the largest of the forces that nothing explains depends on; asked of all that
   /// the machine does, or of what a curve may be over.
@@ -142,6 +144,8 @@ class Discoverer {
   std::shared_ptr<Work> work_;
   std::vector<Candidate> candidates_;
   DiscoveryProblem problem_;
+  /// Of the machine as given, made when first asked for.
+  mutable std::optional<FilterPath> filter_;
   bool falls_ = false;  ///< without a controller that nobody knows (comparison.h)
   double most_seconds_ = 0.0;  // of this machine, that the budget takes; for people
   double nominal_ = 0.0;  // mean square of the plant as given, behind this observer

@@ -98,9 +98,10 @@ bool Discoverer::LearnCurve(const EvidenceData& data, const FittedModel& base) {
   // So many laws of one variable are the series of another one.
   constexpr std::size_t kSeries = 3;
   const bool is_series = base.causes.size() + kSeries <= present.hypotheses();
-  const Track track = problem_.Follow(ChangesOf(problem_, candidates_, base));
+  const Changes changes = ChangesOf(problem_, candidates_, base);
+  const Track track = problem_.Follow(changes);
   const ObservedMotion motion = problem_.MotionOf(track);
-  const Rest rest = SignatureOf(motion, UnexplainedIn(track), true);
+  const Rest rest = SignatureOf(motion, UnexplainedIn(track, changes), true);
   if (!rest.signature.significant || rest.signature.variable.empty()) return false;
   const Site site{rest.force.site, rest.joint, -1};
   const double spread =

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "mjdiag/discovery/law.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -68,18 +70,24 @@ double Gain(const std::map<std::string, double>& before,
 }
 
 /// The same of a machine that leaves its rest.
-std::vector<UnknownSignal> Named(const std::vector<MissingForce>& forces) {
+std::vector<UnknownSignal> Named(const std::vector<MissingForce>& forces,
+                                 double sample_time) {
   std::vector<UnknownSignal> signals;
   for (const MissingForce& force : forces) {
-    signals.push_back(
-        {force.joint, force.unit, force.value, force.sd, 0, force.bandwidth});
+    // How fast it changes is how far it is told.
+    const Index last = force.value.size() - 1;
+    const double rate = (force.value.tail(last) - force.value.head(last)).norm() /
+                        std::max(force.value.norm(), 1e-300) / sample_time;
+    signals.push_back({force.joint, force.unit, force.value, force.sd, 0,
+                       rate / (2.0 * std::numbers::pi)});
   }
   return signals;
 }
 
 }  // namespace
 
-std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
+std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track,
+                                                     const Changes& changes) const {
   std::vector<std::string> joints = DrivenNames(problem_.machine().linear());
   joints.resize(std::min<std::size_t>(
       joints.size(), static_cast<std::size_t>(problem_.run().outputs.rows())));
@@ -89,8 +97,15 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
     units.emplace_back(machine_.plant().jnt_type[id] == mjJNT_HINGE ? "N m" : "N");
   }
   if (problem_.observer().following) {
-    return Named(MissingForces(problem_.machine(), problem_.run(), problem_.observer(),
-                               track.innovations));
+    const MeasuredRun& run = problem_.run();
+    if (!filter_) {
+      filter_ =
+          FilterLikeliest(problem_.machine(), run, problem_.observer().noise_sd);
+    }
+    const Machine machine = problem_.machine().With(changes);
+    return Named(MissingForces(machine, RunForceFilter(machine, run, filter_->dofs,
+                                                       filter_->starts, filter_->noise)),
+                 run.sample_time);
   }
   return UnexplainedForces(problem_.machine().linear(), problem_.observer(),
                            problem_.step(), machine_.rates().substeps,
@@ -98,9 +113,10 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track) const {
 }
 
 void Discoverer::FindWhere(const Track& nominal, const Track& final) {
-  discovery_.forces_before = UnexplainedIn(nominal);
+  discovery_.forces_before = UnexplainedIn(nominal, {});
   discovery_.forces_after =
-      discovery_.causes.empty() ? discovery_.forces_before : UnexplainedIn(final);
+      discovery_.causes.empty() ? discovery_.forces_before
+                                : UnexplainedIn(final, changes_);
 }
 
 void Discoverer::SignRest(const ObservedMotion& motion) {
@@ -129,10 +145,10 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
   };
   if (at(discovery_.forces_before) == discovery_.forces_before.end()) return plot;
   const std::vector<FittedCause> others = Without(search_.fit().causes, {cause});
-  const auto forces =
-      others.empty() ? discovery_.forces_before
-                     : UnexplainedIn(problem_.Follow(ChangesOf(
-                           problem_, candidates_, {others, search_.fit().numbers})));
+  const Changes rest =
+      ChangesOf(problem_, candidates_, {others, search_.fit().numbers});
+  const auto forces = others.empty() ? discovery_.forces_before
+                                     : UnexplainedIn(problem_.Follow(rest), rest);
   const UnknownSignal& without = *at(forces);
   const VectorXd explained = without.value - at(discovery_.forces_after)->value;
 
@@ -223,8 +239,7 @@ void Discoverer::AddLadder() {
 
 void Discoverer::AddComparisons() {
   work_->Add(2.0 * problem_.RunWork());
-  discovery_.records = ReplayAll(measurements_, changes_, options_.seed,
-                                 falls_ ? problem_.observer().bandwidth : 0.0);
+  discovery_.records = ReplayAll(measurements_, changes_, options_.seed, falls_);
   const Index skip = problem_.skip();
   const Index train = problem_.train();
   const bool one = measurements_.fit.size() == 1;

@@ -13,7 +13,7 @@ namespace mjdiag {
 
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed,
-                                    double bandwidth) {
+                                    bool falls) {
   RunOptions options;
   options.seed = seed;
   std::vector<const MeasuredRecord*> records;
@@ -29,13 +29,17 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
   ParallelFor(2 * static_cast<int>(records.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / 2);
     const auto& [record, machine, name, notes] = *records[i];
-    if (bandwidth > 0.0) {
-      (number % 2 == 0 ? replays[i].before : replays[i].after) = CompareFollowed(
-          machine, number % 2 == 0 ? Changes{} : changes, record, bandwidth);
-    } else if (number % 2 == 0) {
-      replays[i].before = Compare(machine, record, options);
+    const bool is_before = number % 2 == 0;
+    if (falls) {
+      // One filter is behind both.
+      if (!is_before) return;
+      const FollowedPair pair = CompareFollowed(machine, changes, record);
+      replays[i].before = pair.before;
+      replays[i].after = pair.after;
+    } else if (is_before) {
+      replays[i].before = CompareFree(machine, record, options);
     } else {
-      replays[i].after = Compare(machine.With(changes), record, options);
+      replays[i].after = CompareFree(machine.With(changes), record, options);
     }
   });
   return replays;

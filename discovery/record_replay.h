@@ -20,13 +20,12 @@ struct RecordReplay {
   Comparison after;   ///< extended plant
 };
 
-/// Of all records, those that fits saw first. A machine that falls is followed by an
-/// observer instead (CompareFollowed).
-/// @param seed       of the noise floors
-/// @param bandwidth  of that observer [Hz]; 0: the machine does not fall
+/// Of all records, those that fits saw first. A machine that falls is followed by a filter
+/// instead (CompareFollowed).
+/// @param seed  of the noise floors
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed,
-                                    double bandwidth);
+                                    bool falls);
 
 /// Whether the machine falls on any of the records.
 bool AnyFalls(const Measurements& measurements);

@@ -42,12 +42,13 @@ std::string ComparisonHtml(const ComparisonObject& object) {
   Page page(comparison.setup);
   page.SetVerdict(comparison.exceeds_noise() ? Tone::kBad : Tone::kGood,
                   ComparisonVerdict(comparison));
-  if (comparison.falls) {
-    page.AddTable(PredictionTable(comparison));
-    page.AddTable(MissingForceTable(comparison));
-  } else {
+  if (!comparison.falls) {
     page.AddTable(ChannelTable(comparison));
     if (!comparison.derived.empty()) page.AddTable(DerivedTable(comparison));
+  }
+  if (comparison.deviance) {
+    page.AddTable(PredictionTable(comparison));
+    page.AddTable(MissingForceTable(comparison));
   }
   for (const std::string& note : object.notes) page.AddParagraph(note);
   return NotebookHtml(page);
@@ -143,8 +144,7 @@ void BindMissingForce(py::module_& module) {
           "Of every sample, (samples,) [unit].")
       .def_readonly("rms", &MissingForce::rms, "Of value [unit].")
       .def_readonly("sd", &MissingForce::sd, "Standard deviation of its error [unit].")
-      .def_readonly("bandwidth", &MissingForce::bandwidth,
-                    "Up to which it is told [Hz].")
+      .def_readonly("memory", &MissingForce::memory, "How long it lasts [s].")
       .def("__repr__", [](const MissingForce& force) {
         return "<mjdiag.MissingForce: " + force.joint + " " +
                FormatQuantity(force.rms, force.unit) + " rms, known to " +
@@ -154,7 +154,7 @@ void BindMissingForce(py::module_& module) {
 
 using ComparisonClass = py::class_<ComparisonObject>;
 
-/// What there is of a machine that falls when its inputs alone drive it.
+/// What the filter says that follows the motion.
 void BindFollowed(ComparisonClass& comparison) {
   comparison
       .def_property_readonly(
@@ -162,8 +162,8 @@ void BindFollowed(ComparisonClass& comparison) {
           [](const ComparisonObject& object) { return object.comparison.falls; },
           R"(
           Whether the machine does not stay with the measurement when its inputs alone
-          drive it. What it lacks is then told beside an observer: horizons, prediction,
-          missing_force and bandwidth are there, and derived is empty.)")
+          drive it. Channels are then what a filter that follows the motion predicts from
+          one tick to the next, and derived is empty.)")
       .def_property_readonly(
           "horizons",
           [](const ComparisonObject& object) {
@@ -171,20 +171,23 @@ void BindFollowed(ComparisonClass& comparison) {
             return Copy(
                 Eigen::VectorXd(Eigen::VectorXd::Map(all.data(), std::ssize(all))));
           },
-          "How far ahead it predicts, (horizons,) [s]; empty unless it falls.")
+          "How far ahead it predicts, (horizons,) [s].")
       .def_property_readonly("prediction", &PredictionOf,
                              R"(
           Sensor channel -> rms of the error over every horizon, (horizons,), in the unit
           of the channel; inf where a prediction diverges.)")
       .def_property_readonly("missing_force", &MissingForcesOf,
-                             "Joint -> MissingForce; empty unless it falls.")
+                             "Joint -> MissingForce.")
       .def_property_readonly(
-          "bandwidth",
+          "deviance",
           [](const ComparisonObject& object) -> py::object {
-            if (!object.comparison.falls) return py::none();
-            return py::float_(object.comparison.bandwidth);
+            if (!object.comparison.deviance) return py::none();
+            return py::float_(*object.comparison.deviance);
           },
-          "Of the observer [Hz]; None unless it falls.");
+          R"(
+          -2 ln L of the filter that follows the motion: of two models of one record the one
+          with the lower is more probable. None where the record lacks sensors or commands;
+          prediction and missing_force are then empty.)");
 }
 
 }  // namespace

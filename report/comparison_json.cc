@@ -26,9 +26,9 @@ nlohmann::json ToJson(const ChannelMismatch& channel) {
             {"rms", channel.worst.rms}}}};
 }
 
-/// Of a machine that falls.
+/// What the filter says that follows the motion.
 void AddFollowed(const Comparison& comparison, nlohmann::json& document) {
-  document["bandwidth"] = comparison.bandwidth;
+  document["deviance"] = FiniteOrNull(*comparison.deviance);
   document["prediction"]["horizons"] = comparison.prediction.horizons;
   document["prediction"]["rms"] = nlohmann::json::object();
   for (const Prediction::Sensor& sensor : comparison.prediction.sensors) {
@@ -54,8 +54,9 @@ nlohmann::json ToJson(const Comparison& comparison) {
   json["skip_samples"] = comparison.options.skip_samples;
   json["level"] = comparison.options.level;
   json["exceeds_noise"] = comparison.exceeds_noise();
+  json["falls"] = comparison.falls;
   json["channels"] = nlohmann::json::object();
-  if (comparison.falls) AddFollowed(comparison, json);
+  if (comparison.deviance) AddFollowed(comparison, json);
   for (const ChannelMismatch& channel : comparison.channels) {
     json["channels"][channel.name] = ToJson(channel);
   }

@@ -25,10 +25,9 @@ void AddRecordFacts(Page& page, const Comparison& comparison,
       {"Setup", comparison.setup},
       {"Record", run.record},
       {"Replayed", comparison.closed_loop ? "measured reference, in closed loop"
-                   : comparison.falls     ? "measured input, beside an observer of " +
-                                            FormatQuantity(comparison.bandwidth, "Hz") +
-                                            " that follows the motion"
-                                      : "measured input, in open loop"},
+                   : comparison.falls
+                       ? "measured input, beside a filter that follows the motion"
+                       : "measured input, in open loop"},
       {"Length", std::to_string(record.samples()) + " samples at " +
                      FormatQuantity(1.0 / record.sample_time(), "Hz") + ", " +
                      FormatQuantity(record.duration(), "s")},
@@ -58,13 +57,12 @@ void AddDerived(Page& page, const Comparison& comparison) {
   page.AddTable(DerivedTable(comparison));
 }
 
-/// Of a machine that falls.
 void AddFollowed(Page& page, const Comparison& comparison) {
   if (comparison.prediction.sensors.empty()) return;
   page.AddHeading("Prediction");
   page.AddTable(PredictionTable(comparison));
   page.AddParagraph(
-      "The plant runs on with the measured inputs alone, from states that an observer "
+      "The plant runs on with the measured inputs alone, from states that a filter "
       "has found from the readings up to then.");
   page.AddHeading("Missing forces");
   for (const MissingForce& force : comparison.missing_force) {
@@ -233,11 +231,11 @@ Table PredictionTable(const Comparison& comparison) {
 Table MissingForceTable(const Comparison& comparison) {
   Table table;
   table.columns = {
-      {"Joint"}, {"Missing force, rms", true}, {"Known to", true}, {"Up to", true}};
+      {"Joint"}, {"Missing force, rms", true}, {"Known to", true}, {"Lasts", true}};
   for (const MissingForce& force : comparison.missing_force) {
     table.rows.push_back({force.joint, FormatQuantity(force.rms, force.unit),
                           FormatQuantity(force.sd, force.unit),
-                          FormatQuantity(force.bandwidth, "Hz")});
+                          FormatQuantity(force.memory, "s")});
   }
   return table;
 }

@@ -17,9 +17,9 @@ std::string ComparisonVerdict(const Comparison& comparison);
 Table ChannelTable(const Comparison& comparison);
 /// A row for every derived signal.
 Table DerivedTable(const Comparison& comparison);
-/// Of a machine that falls: how far ahead it predicts, a column for every horizon.
+/// How far ahead it predicts, a column for every horizon.
 Table PredictionTable(const Comparison& comparison);
-/// Of a machine that falls: a row for every joint.
+/// A row for every joint.
 Table MissingForceTable(const Comparison& comparison);
 
 /// The whole page.

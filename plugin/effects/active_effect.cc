@@ -55,6 +55,12 @@ void ActiveEffects::Release(mjData& data) noexcept {
   for (const int dof : dofs_) data.qfrc_applied[dof] = 0.0;
 }
 
+void ActiveEffects::Recall(const ActiveEffects& other) noexcept {
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    effects_[i]->Recall(*other.effects_[i]);
+  }
+}
+
 Channels WithNoiseOf(Channels channels, const std::vector<PlacedEffect>& effects) {
   for (const PlacedEffect& placed : effects) {
     for (SensorSetup& sensor : channels.sensors) {

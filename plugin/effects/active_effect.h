@@ -33,6 +33,17 @@ class ActiveEffect {
   /// Changes the bounds of dry friction, when all commands and forces of this step
   /// are known.
   virtual void Bind(const mjModel&, mjData&) noexcept {}
+  /// Takes the memory of another one of the same effect at the same site.
+  virtual void Recall(const ActiveEffect&) noexcept {}
+};
+
+/// An effect with a memory, which its class holds as plain values.
+template <class Self>
+class RememberingEffect : public ActiveEffect {
+ public:
+  void Recall(const ActiveEffect& other) noexcept final {
+    static_cast<Self&>(*this) = static_cast<const Self&>(other);
+  }
 };
 
 /// All active effects of a run.
@@ -53,6 +64,8 @@ class ActiveEffects {
   void Act(const mjModel& model, mjData& data, std::span<const int> off = {}) noexcept;
   /// Takes the forces off again.
   void Release(mjData& data) noexcept;
+  /// Takes the memory of all from another run of the same machine.
+  void Recall(const ActiveEffects& other) noexcept;
 
  private:
   /// The force of all that damps the joints.

@@ -43,10 +43,20 @@ void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,
                       const std::function<void()>& after_step) {
   for (int i = 0; i < substeps_; ++i) {
     mj_step1(&model, &data);
+    if (!held_.empty()) mju_zero(data.qfrc_applied, static_cast<int>(model.nv));
     OnStep(model, data, control);
+    if (!held_.empty()) {
+      mju_addTo(data.qfrc_applied, held_.data(), static_cast<int>(model.nv));
+    }
     mj_step2(&model, &data);
     if (after_step) after_step();
   }
+}
+
+void Stepper::Recall(const Stepper& other) noexcept {
+  effects_.Recall(other.effects_);
+  ticks_ = other.ticks_;
+  substep_ = other.substep_;
 }
 
 void Stepper::Release(mjData& data) noexcept {

@@ -57,6 +57,16 @@ class Stepper {
   /// Sets the actuators and the forces of effects to zero.
   void Release(mjData& data) noexcept;
 
+  /// From now on these generalised forces act beside all others, in Advance. nv [N, N m]
+  void Hold(std::span<const double> forces) { held_.assign(forces.begin(), forces.end()); }
+  /// What effects of the sensors make of readings, at a tick since the start.
+  void Distort(std::span<double> outputs, std::int64_t tick) noexcept {
+    effects_.Distort(outputs, static_cast<double>(tick) * tick_);
+  }
+  /// Goes on as another one of the same machine would: the tick that it is at, and what
+  /// its effects remember.
+  void Recall(const Stepper& other) noexcept;
+
  private:
   ActiveEffects effects_;
   double tick_;  // [s]
@@ -68,6 +78,7 @@ class Stepper {
   std::vector<int> off_;
   std::vector<double> outputs_;
   std::vector<double> inputs_;
+  std::vector<double> held_;  // empty: none
 };
 
 /// A plant about to run.

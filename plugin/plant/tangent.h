@@ -26,10 +26,15 @@
 
 namespace mjdiag {
 
-/// x' = A x + B f over a control tick, x = [q; v], f a force on every joint, held.
+/// First order of a control tick, x' = A x + B f, y = C x + D f: of deviations x = [q; v;
+/// act] in tangent coordinates from where the machine is, with forces f on every degree of
+/// freedom that are held over the tick. Readings of positions and velocities are those at
+/// its start; of accelerations and forces, which alone have D, those at its end.
 struct TickTangent {
-  Eigen::MatrixXd A;  ///< 2 nv x 2 nv
-  Eigen::MatrixXd B;  ///< 2 nv x nv
+  Eigen::MatrixXd A;    ///< ns x ns, ns = 2 nv + na
+  Eigen::MatrixXd B;    ///< ns x nv
+  Eigen::MatrixXd C{};  ///< ny x ns; empty where nobody has asked for it
+  Eigen::MatrixXd D{};  ///< ny x nv
 };
 
 /// Spring of the joint of every degree of freedom, nv.

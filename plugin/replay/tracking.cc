@@ -6,11 +6,11 @@
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
-#include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/tangent.h"
 #include "mjdiag/plugin/replay/motion_path.h"
+#include "mjdiag/plugin/replay/recorded_inputs.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/plugin/setup/measured_channel.h"
@@ -32,42 +32,6 @@ Eigen::MatrixXd MeasuredBy(const std::vector<Element>& elements,
   }
   return SamplesOf(measured, ChannelsOf(elements));
 }
-
-/// Gives what was recorded, and keeps what the machine reads.
-class RecordedInputs final : public TickControl {
- public:
-  RecordedInputs(const Machine& machine, const MeasuredRun& run)
-      : run_(run), reading_(run.outputs.rows()) {
-    Index i = 0;
-    for (const ActuatorSetup& actuator : machine.channels().actuators) {
-      courses_.emplace_back(actuator.hold, run.inputs.row(i++).transpose(),
-                            machine.rates().substeps);
-    }
-  }
-
-  void Tick(std::span<const double> outputs,
-            std::span<double> inputs) noexcept override {
-    std::copy(outputs.begin(), outputs.end(), reading_.begin());
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      inputs[i] = run_.inputs(static_cast<Index>(i), tick_);
-    }
-    ++tick_;
-  }
-  double Above(std::size_t actuator, int substep) const noexcept override {
-    return courses_[actuator].Above(tick_ - 1, substep);
-  }
-  bool IsOn(std::size_t actuator) const noexcept override {
-    return run_.on.size() == 0 ||
-           run_.on(static_cast<Index>(actuator), tick_ - 1) != 0.0;
-  }
-  const VectorXd& reading() const { return reading_; }
-
- private:
-  const MeasuredRun& run_;
-  VectorXd reading_;
-  std::vector<InputCourse> courses_;
-  Index tick_ = 0;
-};
 
 /// Called before every record, after every physics step and every tick. With any of them
 /// records are followed one after the other.
@@ -293,8 +257,7 @@ VectorXd MeasuredRun::Time() const {
   return time;
 }
 
-MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
-  const Index first = run.records[record].sample;
+MeasuredRun Excerpt(const MeasuredRun& run, Index first, Index samples) {
   MeasuredRun part;
   part.sample_time = run.sample_time;
   part.outputs = run.outputs.middleCols(first, samples);
@@ -303,6 +266,12 @@ MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
   if (run.measured.size() > 0) part.measured = run.measured.middleCols(first, samples);
   if (run.counted.size() > 0) part.counted = run.counted.middleCols(first, samples);
   if (run.driven.size() > 0) part.driven = run.driven.segment(first, samples);
+  return part;
+}
+
+MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
+  const Index first = run.records[record].sample;
+  MeasuredRun part = Excerpt(run, first, samples);
   part.records.clear();
   for (const RecordStart& start : run.records) {
     if (start.sample < first || start.sample >= first + samples) continue;

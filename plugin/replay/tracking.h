@@ -70,6 +70,8 @@ struct MeasuredRun {
 
 /// Some samples of a run, from the start of a record on.
 MeasuredRun Part(const MeasuredRun& run, std::size_t record, Eigen::Index samples);
+/// Some samples of a run, of one record, as a record of its own that begins in motion.
+MeasuredRun Excerpt(const MeasuredRun& run, Eigen::Index first, Eigen::Index samples);
 /// All of them, one after the other. Of the same channels and sample time.
 MeasuredRun Joined(const std::vector<MeasuredRun>& runs);
 

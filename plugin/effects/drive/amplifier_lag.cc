@@ -9,7 +9,7 @@
 namespace mjdiag {
 namespace {
 
-class LowPass final : public ActiveEffect {
+class LowPass final : public RememberingEffect<LowPass> {
  public:
   LowPass(const mjModel& model, int actuator, double time_constant)
       : actuator_(actuator) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLongest = 0.1;  // [s]
 
-class DelayLine final : public ActiveEffect {
+class DelayLine final : public RememberingEffect<DelayLine> {
  public:
   DelayLine(const mjModel& model, int actuator, double delay) : actuator_(actuator) {
     const double steps = delay / model.opt.timestep;

@@ -24,7 +24,7 @@
 namespace mjdiag {
 namespace {
 
-class BoucWenForce final : public ActiveEffect {
+class BoucWenForce final : public RememberingEffect<BoucWenForce> {
  public:
   BoucWenForce(int dof, const EffectValues& values)
       : stiffness_(values[0]),

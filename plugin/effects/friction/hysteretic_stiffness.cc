@@ -10,7 +10,7 @@
 namespace mjdiag {
 namespace {
 
-class SpringWithMemory final : public ActiveEffect {
+class SpringWithMemory final : public RememberingEffect<SpringWithMemory> {
  public:
   SpringWithMemory(const JointOf& joint, const EffectValues& values)
       : stiffness_(values[0]), loss_(values[1]), follower_(values[2]), joint_(joint) {}

@@ -64,7 +64,7 @@ class Bristles {
   double z_ = 0.0;  // [m]
 };
 
-class BristleForce final : public ActiveEffect {
+class BristleForce final : public RememberingEffect<BristleForce> {
  public:
   BristleForce(const mjModel& model, int dof, const EffectValues& values)
       : bristles_(values), dof_(dof) {

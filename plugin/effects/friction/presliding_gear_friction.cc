@@ -27,7 +27,7 @@
 namespace mjdiag {
 namespace {
 
-class Teeth final : public ActiveEffect {
+class Teeth final : public RememberingEffect<Teeth> {
  public:
   Teeth(const mjModel& model, int dof, const EffectValues& values)
       : average_(0.5 * (values[0] + values[1])),

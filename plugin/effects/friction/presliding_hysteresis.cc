@@ -10,7 +10,7 @@
 namespace mjdiag {
 namespace {
 
-class Presliding final : public ActiveEffect {
+class Presliding final : public RememberingEffect<Presliding> {
  public:
   Presliding(int dof, const EffectValues& values)
       : stiffness_(values[1]),

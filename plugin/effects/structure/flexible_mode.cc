@@ -16,7 +16,7 @@
 namespace mjdiag {
 namespace {
 
-class Appendage final : public ActiveEffect {
+class Appendage final : public RememberingEffect<Appendage> {
  public:
   Appendage(const JointOf& joint, const EffectValues& values)
       : mass_(values[0]), joint_(joint) {

@@ -1,0 +1,31 @@
+#pragma once
+// The state of any MuJoCo model, x = (q, v, act), and its tangent coordinates: a deviation
+// is dx = [dq; dv; dact] of 2 nv + na numbers, dq that of mj_differentiatePos, in which
+// quaternions have three.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+
+namespace mjdiag {
+
+struct PlantState {
+  Eigen::VectorXd position;    ///< nq
+  Eigen::VectorXd velocity;    ///< nv
+  Eigen::VectorXd activation;  ///< na
+};
+
+/// 2 nv + na
+Eigen::Index TangentSize(const mjModel& model);
+
+PlantState StateOf(const mjModel& model, const mjData& data);
+void SetState(const mjModel& model, const PlantState& state, mjData& data);
+
+/// `from` plus the deviation `dx`, which may have more numbers behind.
+PlantState Moved(const mjModel& model, const PlantState& from,
+                 const Eigen::VectorXd& dx);
+/// to - from in tangent coordinates, 2 nv + na.
+Eigen::VectorXd Deviation(const mjModel& model, const PlantState& from,
+                          const PlantState& to);
+
+}  // namespace mjdiag

@@ -1,0 +1,124 @@
+#include "mjdiag/plugin/machine/tick_differences.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kStep = 1e-6;
+
+/// Whether a degree of freedom is a length.
+bool IsLength(const mjModel& model, Index dof) {
+  const int joint = model.dof_jntid[dof];
+  const int type = model.jnt_type[joint];
+  return type == mjJNT_SLIDE ||
+         (type == mjJNT_FREE && dof - model.jnt_dofadr[joint] < 3);
+}
+
+VectorXd StateSteps(const mjModel& model) {
+  VectorXd steps = VectorXd::Constant(TangentSize(model), kStep);
+  const double extent = std::clamp(model.stat.extent, 1e-3, 1e3);
+  for (Index dof = 0; dof < model.nv; ++dof) {
+    if (!IsLength(model, dof)) continue;
+    steps[dof] *= extent;
+    steps[model.nv + dof] *= extent;
+  }
+  return steps;
+}
+
+/// Inertia of every degree of freedom where the model is drawn.
+VectorXd Inertia(const mjModel& model) {
+  const DataPtr data = MakeData(model);
+  mj_forward(&model, data.get());
+  Eigen::Matrix<double, -1, -1, Eigen::RowMajor> mass(model.nv, model.nv);
+  mj_fullM(&model, mass.data(), data->qM);
+  return mass.diagonal();
+}
+
+struct Outcome {
+  PlantState state;
+  VectorXd reading;
+};
+
+Outcome Checked(const TickMap::Result& result) {
+  if (result.diverged) {
+    throw NumericalError("replay: a tick beside the measured motion diverges");
+  }
+  return {result.state, result.reading};
+}
+
+}  // namespace
+
+std::vector<Index> AllDofs(const mjModel& model) {
+  std::vector<Index> dofs(static_cast<std::size_t>(model.nv));
+  std::iota(dofs.begin(), dofs.end(), Index{0});
+  return dofs;
+}
+
+TickDifferences::TickDifferences(TickMap& map, double tick, std::vector<Index> dofs)
+    : map_(map),
+      dofs_(std::move(dofs)),
+      steps_(StateSteps(map.model())),
+      force_steps_(Inertia(map.model())
+                       .cwiseProduct(steps_.segment(map.model().nv, map.model().nv)) /
+                   tick) {}
+
+TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
+                                std::int64_t tick, TickControl& control) {
+  const Index ns = steps_.size();
+  const Index nv = force_steps_.size();
+  TickTangent tangent{MatrixXd(ns, ns), MatrixXd::Zero(ns, nv),
+                      MatrixXd(map_.sensors(), ns),
+                      MatrixXd::Zero(map_.sensors(), nv)};
+  for (Index i = 0; i < ns; ++i) Column(from, forces, tick, control, i, tangent);
+  for (const Index dof : dofs_) ForceColumn(from, forces, tick, control, dof, tangent);
+  return tangent;
+}
+
+void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
+                              std::int64_t tick, TickControl& control,
+                              std::span<const Index> dofs, TickTangent& tangent) {
+  for (const Index dof : dofs) {
+    Column(from, forces, tick, control, dof, tangent);
+    Column(from, forces, tick, control, force_steps_.size() + dof, tangent);
+  }
+}
+
+void TickDifferences::Column(const PlantState& from, const VectorXd& forces,
+                             std::int64_t tick, TickControl& control, Index state,
+                             TickTangent& tangent) {
+  const double h = steps_[state];
+  VectorXd dx = VectorXd::Zero(steps_.size());
+  dx[state] = h;
+  const mjModel& model = map_.model();
+  const Outcome above =
+      Checked(map_.Probe(Moved(model, from, dx), forces, tick, control));
+  const Outcome below =
+      Checked(map_.Probe(Moved(model, from, -dx), forces, tick, control));
+  tangent.A.col(state) = Deviation(model, below.state, above.state) / (2.0 * h);
+  tangent.C.col(state) = (above.reading - below.reading) / (2.0 * h);
+}
+
+void TickDifferences::ForceColumn(const PlantState& from, const VectorXd& forces,
+                                  std::int64_t tick, TickControl& control, Index dof,
+                                  TickTangent& tangent) {
+  const double h = force_steps_[dof];
+  VectorXd moved = forces;
+  moved[dof] += h;
+  const Outcome above = Checked(map_.Probe(from, moved, tick, control));
+  moved[dof] -= 2.0 * h;
+  const Outcome below = Checked(map_.Probe(from, moved, tick, control));
+  tangent.B.col(dof) = Deviation(map_.model(), below.state, above.state) / (2.0 * h);
+  tangent.D.col(dof) = (above.reading - below.reading) / (2.0 * h);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,49 @@
+#pragma once
+// The tangent of a control tick of any model, by central differences of the tick itself
+// (tick_map.h): effects, constraints, contacts and activations are in it. Steps are 1e-6 of
+// what the model is sized in: of a metre times its extent, of a radian, of that a second, and
+// the force that makes this velocity in a tick. Truncation and rounding are then both about
+// 1e-10. Where a joint sticks by dry friction a tick that ends it at rest has a tangent that
+// says so: steps are larger than the zone in which MuJoCo's friction is a damper, and smaller
+// than what friction stops in a tick.
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/plant/tangent.h"
+
+namespace mjdiag {
+
+/// 0 .. nv - 1
+std::vector<Eigen::Index> AllDofs(const mjModel& model);
+
+class TickDifferences {
+ public:
+  /// @param map   has to outlive it
+  /// @param dofs  those with columns in B and D; the others are 0
+  TickDifferences(TickMap& map, double tick, std::vector<Eigen::Index> dofs);
+
+  /// About the Run that was the last one. NumericalError if a tick beside it diverges.
+  TickTangent Of(const PlantState& from, const Eigen::VectorXd& forces,
+                 std::int64_t tick, TickControl& control);
+  /// Computes columns q and v of some degrees of freedom anew.
+  void Refresh(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
+               TickControl& control, std::span<const Eigen::Index> dofs,
+               TickTangent& tangent);
+
+ private:
+  void Column(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
+              TickControl& control, Eigen::Index state, TickTangent& tangent);
+  void ForceColumn(const PlantState& from, const Eigen::VectorXd& forces,
+                   std::int64_t tick, TickControl& control, Eigen::Index dof,
+                   TickTangent& tangent);
+
+  TickMap& map_;
+  std::vector<Eigen::Index> dofs_;
+  Eigen::VectorXd steps_;        // of the state
+  Eigen::VectorXd force_steps_;  // of every degree of freedom
+};
+
+}  // namespace mjdiag

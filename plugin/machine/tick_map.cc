@@ -1,0 +1,127 @@
+#include "mjdiag/plugin/machine/tick_map.h"
+
+#include <algorithm>
+
+#include "mjdiag/plugin/plant/scenery.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Differences of ticks are taken: the constraint forces have to be the solution up to
+/// rounding, and not what iterations from the last step come to.
+void SolveExactly(mjModel& model) {
+  model.opt.solver = mjSOL_NEWTON;
+  model.opt.tolerance = 1e-14;
+  model.opt.iterations = std::max(model.opt.iterations, 30);
+  model.opt.disableflags |= mjDSBL_WARMSTART;
+}
+
+void Mix(std::uint64_t& hash, std::uint64_t value) {
+  hash = (hash ^ value) * 0x100000001b3ULL;  // FNV-1a
+}
+
+}  // namespace
+
+/// The control, and what the sensors read.
+class TickMap::Listener final : public TickControl {
+ public:
+  Listener(TickControl& control, VectorXd& reading)
+      : control_(control), reading_(reading) {}
+  void Tick(std::span<const double> outputs,
+            std::span<double> inputs) noexcept override {
+    std::copy(outputs.begin(), outputs.end(), reading_.begin());
+    control_.Tick(outputs, inputs);
+  }
+  double Above(std::size_t actuator, int substep) const noexcept override {
+    return control_.Above(actuator, substep);
+  }
+  bool IsOn(std::size_t actuator) const noexcept override {
+    return control_.IsOn(actuator);
+  }
+
+ private:
+  TickControl& control_;
+  VectorXd& reading_;
+};
+
+TickMap::TickMap(const Machine& machine)
+    : tick_(machine.rates().tick()),
+      model_(CopyModel(machine.plant())),
+      stepper_(machine),
+      before_(machine),
+      probe_(machine),
+      addresses_(machine.sensor_addresses()) {
+  DropScenery(*model_);
+  SolveExactly(*model_);
+  data_ = MakeData(*model_);
+  for (const SensorSetup& sensor : machine.channels().sensors) {
+    const int id = FindElement(*model_, mjOBJ_SENSOR, sensor.element);
+    late_.push_back(model_->sensor_needstage[id] == mjSTAGE_ACC);
+  }
+  last_.reading = VectorXd::Zero(sensors());
+  probed_.reading = last_.reading;
+}
+
+const TickMap::Result& TickMap::Run(const PlantState& from, const VectorXd& forces,
+                                    std::int64_t tick, TickControl& control) {
+  before_.Recall(stepper_);
+  Advance(stepper_, from, forces, tick, control, last_);
+  return last_;
+}
+
+const TickMap::Result& TickMap::Probe(const PlantState& from, const VectorXd& forces,
+                                      std::int64_t tick, TickControl& control) {
+  probe_.Recall(before_);
+  Advance(probe_, from, forces, tick, control, probed_);
+  return probed_;
+}
+
+void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& forces,
+                      std::int64_t tick, TickControl& control, Result& result) {
+  SetState(*model_, from, *data_);
+  data_->time = static_cast<double>(tick) * tick_;
+  stepper.Hold({forces.data(), static_cast<std::size_t>(forces.size())});
+  Listener listener(control, result.reading);
+  result.pattern = 0xcbf29ce484222325ULL;
+  stepper.Advance(*model_, *data_, listener, [&] {
+    for (int row = 0; row < data_->nefc; ++row) {
+      Mix(result.pattern, static_cast<std::uint64_t>(data_->efc_type[row]));
+      Mix(result.pattern, static_cast<std::uint64_t>(data_->efc_id[row]));
+      // Which way a joint slides makes no difference to its first order.
+      const int state = data_->efc_state[row];
+      const bool slides =
+          state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
+      Mix(result.pattern, slides ? 100 : static_cast<std::uint64_t>(state));
+    }
+    for (const int motor : stepper.off()) {
+      Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
+    }
+  });
+  for (std::size_t i = 0; i < late_.size(); ++i) {
+    if (!late_[i]) continue;
+    result.reading[static_cast<Index>(i)] = data_->sensordata[addresses_[i]];
+  }
+  result.state = StateOf(*model_, *data_);
+  result.diverged = HasDiverged(*data_);
+  if (result.diverged) mj_resetData(model_.get(), data_.get());
+}
+
+VectorXd TickMap::Read(const PlantState& at, std::int64_t tick) {
+  SetState(*model_, at, *data_);
+  mj_fwdPosition(model_.get(), data_.get());
+  mj_sensorPos(model_.get(), data_.get());
+  mj_fwdVelocity(model_.get(), data_.get());
+  mj_sensorVel(model_.get(), data_.get());
+  VectorXd reading(sensors());
+  for (std::size_t i = 0; i < late_.size(); ++i) {
+    reading[static_cast<Index>(i)] = late_[i] ? 0.0 : data_->sensordata[addresses_[i]];
+  }
+  stepper_.Distort({reading.data(), static_cast<std::size_t>(reading.size())}, tick);
+  return reading;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,77 @@
+#pragma once
+// A control tick of a machine as a function,
+//
+//   (x, f, u) -> (x', y, y'),
+//
+// x the state of any MuJoCo model (plant_state.h), f generalised forces that are held over
+// the tick beside all others, u the commands of a TickControl. y is what the sensors read at
+// its start, those that MuJoCo computes from positions and velocities; y' what sensors of
+// accelerations and forces read at its end, of its last physics step: a controller that
+// reads those at a tick reads what the machine did until then.
+//
+// Effects with a memory go on from one Run to the next; Probe leaves their memory as it is.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/machine/plant_state.h"
+#include "mjdiag/plugin/machine/stepper.h"
+
+namespace mjdiag {
+
+class TickMap {
+ public:
+  struct Result {
+    PlantState state;         ///< x'
+    Eigen::VectorXd reading;  ///< ny: y, and y' of sensors that read at the end
+    /// Of what decides by switching: constraints that are active and how, in every
+    /// physics step, and actuators that are off.
+    std::uint64_t pattern = 0;
+    bool diverged = false;
+  };
+
+  explicit TickMap(const Machine& machine);
+
+  const mjModel& model() const { return *model_; }
+  Eigen::Index sensors() const { return static_cast<Eigen::Index>(late_.size()); }
+  /// Whether a sensor reads at the end of a tick what happened in it.
+  bool ReadsAtEnd(Eigen::Index sensor) const {
+    return late_[static_cast<std::size_t>(sensor)];
+  }
+
+  /// Of the last Run.
+  const Result& last() const { return last_; }
+
+  /// Tick `tick` since the start of a record. The control is asked for that tick.
+  /// @param forces  nv [N, N m]
+  const Result& Run(const PlantState& from, const Eigen::VectorXd& forces,
+                    std::int64_t tick, TickControl& control);
+  /// The same from what effects remembered before the last Run.
+  const Result& Probe(const PlantState& from, const Eigen::VectorXd& forces,
+                      std::int64_t tick, TickControl& control);
+  /// What the sensors read at the start of a tick, without one. Those of its end: 0.
+  Eigen::VectorXd Read(const PlantState& at, std::int64_t tick);
+
+ private:
+  class Listener;
+  void Advance(Stepper& stepper, const PlantState& from,
+               const Eigen::VectorXd& forces, std::int64_t tick, TickControl& control,
+               Result& result);
+
+  double tick_;  // [s]
+  ModelPtr model_;
+  DataPtr data_;
+  Stepper stepper_;  // as it goes on
+  Stepper before_;   // as it was before the last Run
+  Stepper probe_;
+  std::vector<int> addresses_;
+  std::vector<bool> late_;
+  Result last_;   // of Run
+  Result probed_;
+};
+
+}  // namespace mjdiag

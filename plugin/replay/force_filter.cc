@@ -1,0 +1,282 @@
+#include "mjdiag/plugin/replay/force_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/replay/force_kalman.h"
+#include "mjdiag/plugin/replay/recorded_inputs.h"
+#include "mjdiag/plugin/replay/tangent_course.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+bool Counts(const MeasuredRun& run, Index sensor, Index sample) {
+  return run.Counted().size() == 0 || run.Counted()(sensor, sample);
+}
+
+/// One record into its columns of the path.
+class RecordFilter {
+ public:
+  RecordFilter(const Machine& machine, const MeasuredRun& run, std::size_t record,
+               FilterPath& path)
+      : machine_(machine),
+        run_(run),
+        first_(run.records[record].sample),
+        samples_(run.SamplesOf(record)),
+        start_(path.starts[record]),
+        path_(path),
+        map_(machine),
+        course_(machine, map_, path.dofs),
+        inputs_(machine, run),
+        kalman_(path.dofs, path.noise, path.sample_time),
+        applied_(VectorXd::Zero(machine.plant().nv)) {}
+
+  void Run();
+  std::vector<TickTangent> TakeTangents() { return std::move(course_.tangents); }
+  double deviance() const { return deviance_; }
+
+ private:
+  /// Readings of the start of tick k, or of the end of the one before it.
+  void Take(Index k, bool late);
+  /// The innovation of a sensor that is expected to read that.
+  void Innovate(Index sensor, Index k, double read) {
+    const double expected = read + path_.speeds(sensor, k) * clock_;
+    path_.innovations(sensor, k) =
+        path_.counts(sensor, k) ? run_.outputs(sensor, k) - expected : 0.0;
+  }
+  const TickMap::Result& Tick(Index k);
+
+  const Machine& machine_;
+  const MeasuredRun& run_;
+  Index first_;
+  Index samples_;
+  const FilterStart& start_;
+  FilterPath& path_;
+  TickMap map_;
+  TangentCourse course_;
+  RecordedInputs inputs_;
+  ForceKalman kalman_;
+  VectorXd applied_;  // nv
+  PlantState state_;
+  VectorXd latent_;  // nf
+  double clock_ = 0.0;
+  double deviance_ = 0.0;
+};
+
+void RecordFilter::Take(Index k, bool late) {
+  kalman_.z.setZero();
+  for (Index i = 0; i < map_.sensors(); ++i) {
+    if (map_.ReadsAtEnd(i) != late || !path_.counts(i, k)) continue;
+    deviance_ += kalman_.Take(i, late, path_.innovations(i, k), path_.speeds(i, k));
+  }
+}
+
+const TickMap::Result& RecordFilter::Tick(Index k) {
+  for (std::size_t j = 0; j < path_.dofs.size(); ++j) {
+    applied_[path_.dofs[j]] = latent_[static_cast<Index>(j)];
+  }
+  inputs_.StayAt(first_ + k);
+  return map_.Run(state_, applied_, k, inputs_);
+}
+
+void RecordFilter::Run() {
+  const mjModel& model = map_.model();
+  const Index ns = TangentSize(model);
+  const Index nf = path_.dof_count();
+  state_ = start_.state;
+  latent_ = VectorXd::Zero(nf);
+  kalman_.Start(start_.sd);
+  std::size_t tangent = 0;
+  for (Index k = 0; k < samples_; ++k) {
+    const Index at = first_ + k;
+    if (k == 0) {
+      Tick(0);
+      tangent = course_.Next(state_, applied_, 0, inputs_);
+    }
+    kalman_.MoveTo(course_.tangents[tangent]);
+    const VectorXd read = map_.Read(state_, k);
+    for (Index i = 0; i < map_.sensors(); ++i) {
+      if (map_.ReadsAtEnd(i)) continue;
+      Innovate(i, at, read[i]);
+    }
+    Take(at, false);
+    path_.pulled.col(at) = kalman_.z;
+    state_ = Moved(model, state_, kalman_.z);
+    latent_ += kalman_.z.segment(ns, nf);
+    clock_ += kalman_.z[ns + nf];
+
+    const TickMap::Result& ticked = Tick(k);
+    if (ticked.diverged) {
+      throw NumericalError(
+          "replay: diverged at " +
+          std::to_string(static_cast<double>(k) * path_.sample_time) + " s");
+    }
+    PlantState next = ticked.state;
+    const VectorXd ended = ticked.reading;
+    tangent = course_.Next(state_, applied_, k, inputs_);
+    path_.of_tick[static_cast<std::size_t>(at)] = tangent;
+    kalman_.MoveTo(course_.tangents[tangent]);
+    if (k + 1 < samples_) {
+      for (Index i = 0; i < map_.sensors(); ++i) {
+        if (!map_.ReadsAtEnd(i)) continue;
+        Innovate(i, at + 1, ended[i]);
+      }
+      Take(at + 1, true);
+    } else {
+      kalman_.z.setZero();
+    }
+    path_.pulled_late.col(at) = kalman_.z;
+    latent_ += kalman_.z.segment(ns, nf);
+    clock_ += kalman_.z[ns + nf];
+    path_.states[static_cast<std::size_t>(at)] = Moved(model, state_, kalman_.z);
+    path_.forces.col(at) = latent_;
+    path_.clock[at] = clock_;
+    // What the readings of the end say of the state goes through the tick to first order.
+    kalman_.Advance();
+    state_ = Moved(model, next, kalman_.z.head(ns));
+    latent_ = latent_.cwiseProduct(kalman_.rho().head(nf));
+    clock_ *= kalman_.rho()[nf];
+  }
+}
+
+/// Rates of readings by central differences over 20 ms.
+MatrixXd SpeedsOf(const MeasuredRun& run) {
+  constexpr double kSide = 0.01;  // [s]
+  const auto side =
+      std::max<Index>(1, static_cast<Index>(std::lround(kSide / run.sample_time)));
+  MatrixXd speeds(run.outputs.rows(), run.samples());
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    const Index begin = run.records[r].sample;
+    const Index end = begin + run.SamplesOf(r);
+    for (Index k = begin; k < end; ++k) {
+      const Index a = std::max(begin, k - side);
+      const Index b = std::min(end - 1, k + side);
+      speeds.col(k) = (run.outputs.col(b) - run.outputs.col(a)) /
+                      (run.sample_time * static_cast<double>(std::max<Index>(1, b - a)));
+    }
+  }
+  return speeds;
+}
+
+}  // namespace
+
+FilterPath RunForceFilter(const Machine& machine, const MeasuredRun& run,
+                     const std::vector<Index>& dofs,
+                     const std::vector<FilterStart>& starts, const FilterNoise& noise) {
+  FilterPath path;
+  path.sample_time = run.sample_time;
+  path.dofs = dofs;
+  path.starts = starts;
+  path.noise = noise;
+  const Index ny = run.outputs.rows();
+  const Index samples = run.samples();
+  const auto nf = static_cast<Index>(dofs.size());
+  const Index n = TangentSize(machine.plant()) + nf + 1;
+  path.of_tick.resize(static_cast<std::size_t>(samples));
+  path.states.resize(static_cast<std::size_t>(samples));
+  path.forces.resize(nf, samples);
+  path.clock.resize(samples);
+  path.innovations = MatrixXd::Zero(ny, samples);
+  path.speeds = SpeedsOf(run);
+  path.pulled.resize(n, samples);
+  path.pulled_late.resize(n, samples);
+  path.counts.resize(ny, samples);
+  for (Index k = 0; k < samples; ++k) {
+    for (Index i = 0; i < ny; ++i) path.counts(i, k) = Counts(run, i, k);
+  }
+  const std::size_t records = run.records.size();
+  std::vector<double> deviances(records);
+  std::vector<std::vector<TickTangent>> tangents(records);
+  ParallelFor(static_cast<int>(records), [&](int number) {
+    const auto r = static_cast<std::size_t>(number);
+    RecordFilter filter(machine, run, r, path);
+    filter.Run();
+    deviances[r] = filter.deviance();
+    tangents[r] = filter.TakeTangents();
+  });
+  for (std::size_t r = 0; r < records; ++r) {
+    const Index first = run.records[r].sample;
+    path.first.push_back(first);
+    for (Index k = first; k < first + run.SamplesOf(r); ++k) {
+      path.of_tick[static_cast<std::size_t>(k)] += path.tangents.size();
+    }
+    std::ranges::move(tangents[r], std::back_inserter(path.tangents));
+    path.deviance += deviances[r];
+  }
+  for (std::size_t i = 0; i < machine.channels().sensors.size(); ++i) {
+    const int id = FindElement(machine.plant(), mjOBJ_SENSOR,
+                               machine.channels().sensors[i].element);
+    path.late.push_back(machine.plant().sensor_needstage[id] == mjSTAGE_ACC);
+  }
+  return path;
+}
+
+ReadingScores Score(const FilterPath& path, const FilterNoise& noise, Index first,
+                    Index count, std::vector<FilterGains>* gains) {
+  const Index nf = path.dof_count();
+  const Index n = path.pulled.rows();
+  const Index ny = path.sensors();
+  ForceKalman kalman(path.dofs, noise, path.sample_time);
+  const ForceKalman along(path.dofs, path.noise, path.sample_time);
+  const VectorXd forgets = kalman.rho() - along.rho();
+  // The record that the samples are of.
+  const auto record = static_cast<std::size_t>(
+      std::ranges::upper_bound(path.first, first) - path.first.begin() - 1);
+  kalman.Start(path.starts[record].sd);
+  if (gains != nullptr) gains->assign(static_cast<std::size_t>(count), {});
+  ReadingScores scores{VectorXd::Zero(ny), VectorXd::Zero(ny)};
+  VectorXd taken = VectorXd::Zero(ny);
+  FilterGains* kept = nullptr;
+  const auto take = [&](Index sensor, bool late, Index k) {
+    if (path.late[static_cast<std::size_t>(sensor)] != late) return;
+    if (!path.counts(sensor, k)) return;
+    scores.deviance[sensor] += kalman.Take(sensor, late, path.innovations(sensor, k),
+                                           path.speeds(sensor, k));
+    scores.variance[sensor] += std::log(kalman.variance);
+    taken[sensor] += 1.0;
+    if (kept == nullptr) return;
+    kept->K.col(sensor) = kalman.gain;
+    kept->S[sensor] = kalman.variance;
+    kept->e[sensor] = kalman.last_innovation;
+  };
+  for (Index k = first; k < first + count; ++k) {
+    if (gains != nullptr) {
+      kept = &(*gains)[static_cast<std::size_t>(k - first)];
+      kept->K = MatrixXd::Zero(n, ny);
+      kept->S = VectorXd::Ones(ny);
+      kept->e = VectorXd::Zero(ny);
+      kept->P = kalman.P.bottomRows(nf + 1);
+      // The path's own force before the readings, and what the filter adds to it.
+      kept->force = path.forces.col(k) + (kalman.z - path.pulled.col(k) -
+                                          path.pulled_late.col(k))
+                                             .segment(n - nf - 1, nf);
+    }
+    kalman.MoveTo(path.At(k));
+    for (Index i = 0; i < ny; ++i) take(i, false, k);
+    kalman.z -= path.pulled.col(k);
+    if (k + 1 < first + count) {
+      for (Index i = 0; i < ny; ++i) take(i, true, k + 1);
+    }
+    kalman.z -= path.pulled_late.col(k);
+    kalman.Advance();
+    // The path forgot by its own memory.
+    kalman.z.segment(n - nf - 1, nf) +=
+        forgets.head(nf).cwiseProduct(path.forces.col(k));
+    kalman.z[n - 1] += forgets[nf] * path.clock[k];
+  }
+  scores.variance =
+      (scores.variance.array() / taken.array().max(1.0)).exp();
+  return scores;
+}
+
+}  // namespace mjdiag

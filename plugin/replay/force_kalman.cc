@@ -1,0 +1,156 @@
+#include "mjdiag/plugin/replay/force_kalman.h"
+
+#include <utility>
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Readings further off count linearly (P. J. Huber, "Robust Estimation of a Location
+// Parameter", Ann. Math. Statist. 35, 1964): beyond 4 standard deviations noise is seen
+// once in 16,000 readings.
+constexpr double kCorner = 4.0;
+// Of the variances in a tick: a filter that remembers ten thousand ticks is then within a
+// thousandth of its end.
+constexpr double kAtItsEnd = 1e-7;
+
+/// Columns of some degrees of freedom, and a last one of zeros for the clock.
+MatrixXd ForcesOf(const MatrixXd& all, const std::vector<Index>& dofs) {
+  const auto nf = static_cast<Index>(dofs.size());
+  MatrixXd forces = MatrixXd::Zero(all.rows(), nf + 1);
+  forces.leftCols(nf) = all(Eigen::indexing::all, dofs);
+  return forces;
+}
+
+VectorXd With(const VectorXd& forces, double clock) {
+  VectorXd all(forces.size() + 1);
+  all << forces, clock;
+  return all;
+}
+
+}  // namespace
+
+ForceKalman::ForceKalman(const std::vector<Index>& dofs, const FilterNoise& noise,
+                         double sample_time)
+    : dofs_(dofs), noise_(noise) {
+  const VectorXd decay =
+      sample_time * With(noise.memory, noise.clock_memory).cwiseInverse();
+  rho_ = (-decay.array()).exp();
+  variance_ = With(noise.size, noise.clock).cwiseAbs2();
+  // 1 - rho^2 without cancellation where the memory is long.
+  renewal_ = -(-2.0 * decay.array()).expm1() * variance_.array();
+}
+
+void ForceKalman::Start(const VectorXd& sd) {
+  const Index n = sd.size() + rho_.size();
+  z = VectorXd::Zero(n);
+  P = MatrixXd::Zero(n, n);
+  P.diagonal() << sd.cwiseAbs2(), variance_;
+  c_.resize(n);
+  gains_ = MatrixXd::Zero(n, noise_.reading.size());
+  variances_ = VectorXd::Zero(noise_.reading.size());
+  taken_.clear();
+  taken_before_.clear();
+  before_ = P.diagonal();
+  steady_ = false;
+  moved_ = true;
+}
+
+void ForceKalman::MoveTo(const TickTangent& tangent) {
+  if (tangent_ == &tangent) return;
+  tangent_ = &tangent;
+  steady_ = false;
+  moved_ = true;
+  B_ = ForcesOf(tangent.B, dofs_);
+  D_ = ForcesOf(tangent.D, dofs_);
+  const auto forces = B_.leftCols(noise_.white.size());
+  Q_.noalias() = forces * noise_.white.cwiseAbs2().asDiagonal() * forces.transpose();
+}
+
+double ForceKalman::Take(Index sensor, bool late, double innovation, double speed) {
+  const Index nf = rho_.size();
+  const Index ns = z.size() - nf;
+  c_.head(ns) = tangent_->C.row(sensor).transpose();
+  double R = noise_.reading[sensor] * noise_.reading[sensor];
+  if (late) {
+    c_.tail(nf) = D_.row(sensor).transpose();
+    R += D_.row(sensor)
+             .head(noise_.white.size())
+             .cwiseProduct(noise_.white.transpose())
+             .squaredNorm();
+  } else {
+    c_.tail(nf).setZero();
+  }
+  // A clock that is off by nothing that shows is left out, and the gains stay.
+  constexpr double kShows = 1e-6;
+  const bool clock_shows =
+      std::pow(noise_.clock * speed, 2) > kShows * noise_.reading[sensor] *
+                                              noise_.reading[sensor];
+  c_[ns + nf - 1] = clock_shows ? speed : 0.0;
+  if (clock_shows) Unsettle();
+  taken_.push_back(sensor);
+  const bool known = steady_ && taken_.size() <= taken_before_.size() &&
+                     taken_before_[taken_.size() - 1] == sensor;
+  if (!known) Unsettle();
+  if (!known) Pc_.noalias() = P * c_;
+  const double S = known ? variances_[sensor] : c_.dot(Pc_) + R;
+  const double e = innovation - c_.dot(z);
+  const double square = e * e / S;
+  const bool cut = square > kCorner * kCorner;
+  const double cost =
+      cut ? 2.0 * kCorner * std::sqrt(square) - kCorner * kCorner : square;
+  variance = cut ? S * square / (kCorner * kCorner) : S;
+  last_innovation = e;
+  if (known) {
+    gain = gains_.col(sensor) * (S / variance);
+    z += e * gain;
+    return std::log(S) + cost;
+  }
+  gain = Pc_ / variance;
+  z += e * gain;
+  P.noalias() -= gain * Pc_.transpose();
+  if (cut) Unsettle();
+  gains_.col(sensor) = Pc_ / S;
+  variances_[sensor] = S;
+  return std::log(S) + cost;
+}
+
+void ForceKalman::Unsettle() {
+  steady_ = false;
+  moved_ = true;
+}
+
+void ForceKalman::Advance() {
+  const Index nf = rho_.size();
+  const Index ns = z.size() - nf;
+  const MatrixXd& A = tangent_->A;
+  z.head(ns) = (A * z.head(ns) + B_ * z.tail(nf)).eval();
+  z.tail(nf).array() *= rho_.array();
+  const bool same = taken_ == taken_before_;
+  std::swap(taken_, taken_before_);
+  taken_.clear();
+  if (!same) Unsettle();
+  if (steady_) return;
+  top_.noalias() = A * P.topRows(ns);
+  top_.noalias() += B_ * P.bottomRows(nf);
+  auto states = P.topLeftCorner(ns, ns);
+  states.noalias() = top_.leftCols(ns) * A.transpose();
+  states.noalias() += top_.rightCols(nf) * B_.transpose();
+  states += Q_;
+  states = (0.5 * (states + states.transpose())).eval();
+  P.topRightCorner(ns, nf) = top_.rightCols(nf) * rho_.asDiagonal();
+  P.bottomLeftCorner(nf, ns) = P.topRightCorner(ns, nf).transpose();
+  auto forces = P.bottomRightCorner(nf, nf);
+  forces = (rho_.asDiagonal() * forces * rho_.asDiagonal()).eval();
+  forces.diagonal() += renewal_;
+  const VectorXd now = P.diagonal();
+  steady_ = !moved_ && ((now - before_).cwiseAbs().array() <= kAtItsEnd * now.array()).all();
+  before_ = now;
+  moved_ = false;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,356 @@
+#include "mjdiag/plugin/replay/noise_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/plugin/machine/tick_differences.h"
+#include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/replay/recorded_inputs.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Stretches of a run on which likelihoods are compared.
+struct Windows {
+  std::vector<std::pair<Index, Index>> of;  // first sample, count
+};
+
+/// @param first  sample at which every record begins
+Windows RecordsOf(const std::vector<Index>& first, Index samples) {
+  Windows all;
+  for (std::size_t r = 0; r < first.size(); ++r) {
+    const Index end = r + 1 < first.size() ? first[r + 1] : samples;
+    all.of.emplace_back(first[r], end - first[r]);
+  }
+  return all;
+}
+Windows AllOf(const FilterPath& path) { return RecordsOf(path.first, path.samples()); }
+
+/// Pieces of every record, evenly spread.
+Windows SomeOf(const Windows& all, Index samples) {
+  constexpr Index kSamples = 4000;
+  constexpr Index kPieces = 4;
+  if (samples <= kSamples) return all;
+  Windows some;
+  for (const auto& [first, count] : all.of) {
+    const Index piece =
+        std::max<Index>(100, kSamples * count / samples / kPieces);
+    if (piece * kPieces >= count) {
+      some.of.emplace_back(first, count);
+      continue;
+    }
+    for (Index i = 0; i < kPieces; ++i) {
+      some.of.emplace_back(first + (count - piece) * i / (kPieces - 1), piece);
+    }
+  }
+  return some;
+}
+
+/// Of every sensor.
+VectorXd DeviancesOn(const FilterPath& path, const FilterNoise& noise,
+                     const Windows& windows) {
+  VectorXd sum = VectorXd::Zero(path.sensors());
+  for (const auto& [first, count] : windows.of) {
+    sum += Score(path, noise, first, count).deviance;
+  }
+  if (!sum.allFinite()) sum.setConstant(std::numeric_limits<double>::infinity());
+  return sum;
+}
+
+/// The sensor that shows each latent force best, and the force that moves its reading by
+/// its noise in a tick.
+struct Shown {
+  std::vector<Index> by;
+  VectorXd unit;  // nf
+};
+
+Shown ShownBy(const TickTangent& tangent, const std::vector<Index>& dofs,
+              const VectorXd& reading_sd) {
+  const MatrixXd seen =
+      reading_sd.cwiseInverse().asDiagonal() * (tangent.C * tangent.B + tangent.D);
+  Shown shown{{}, VectorXd(static_cast<Index>(dofs.size()))};
+  for (std::size_t j = 0; j < dofs.size(); ++j) {
+    Index best = 0;
+    const double most = seen.col(dofs[j]).cwiseAbs().maxCoeff(&best);
+    shown.by.push_back(best);
+    shown.unit[static_cast<Index>(j)] = 1.0 / std::max(most, 1e-300);
+  }
+  return shown;
+}
+
+/// A point of the search, and -2 ln L there of every sensor.
+struct Point {
+  VectorXd x;
+  VectorXd deviances;
+  double deviance() const { return deviances.sum(); }
+};
+
+/// Logarithms of a noise within bounds: size, memory, white (nf each), readings, clock and
+/// its memory.
+class NoiseSearch {
+ public:
+  NoiseSearch(const FilterPath& path, const VectorXd& reading_sd)
+      : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
+    const double tick = path.sample_time;
+    const double duration = tick * static_cast<double>(path.samples());
+    const Shown shown = ShownBy(path.tangents.front(), path.dofs, reading_sd);
+    unit_ = shown.unit;
+    // A size of nothing is as good as one that no record of that length would show.
+    const VectorXd tiny = (1e-12 * unit_).array().log();
+    const VectorXd huge = (1e9 * unit_).array().log();
+    lower_.resize(3 * nf_ + ny_ + 2);
+    upper_.resize(lower_.size());
+    lower_ << tiny, VectorXd::Constant(nf_, std::log(2.0 * tick)), tiny,
+        (0.5 * reading_sd).array().log().matrix(), std::log(1e-6 * tick),
+        std::log(0.1 * tick);
+    // A clock that is off for longer than ten ticks is a delay.
+    upper_ << huge, VectorXd::Constant(nf_, std::log(100.0 * duration)), huge,
+        (100.0 * reading_sd).array().log().matrix(), std::log(tick),
+        std::log(10.0 * tick);
+    const auto joints = [&](double size, double memory, double white) {
+      std::vector<std::pair<VectorXd, Index>> parts;
+      for (Index j = 0; j < nf_; ++j) {
+        VectorXd direction = VectorXd::Zero(lower_.size());
+        direction[j] = size;
+        direction[nf_ + j] = memory;
+        direction[2 * nf_ + j] = white;
+        parts.emplace_back(direction, shown.by[static_cast<std::size_t>(j)]);
+      }
+      kinds_.push_back(std::move(parts));
+    };
+    if (nf_ > 0) {
+      joints(1.0, 0.0, 0.0);
+      joints(0.5, 1.0, 0.0);  // the walk is the same
+      joints(0.0, 1.0, 0.0);
+      joints(0.0, 0.0, 1.0);
+    }
+    kinds_.emplace_back();
+    for (Index i = 0; i < ny_; ++i) {
+      kinds_.back().emplace_back(VectorXd::Unit(lower_.size(), 3 * nf_ + i), i);
+    }
+    for (Index i = 0; i < 2; ++i) {
+      kinds_.push_back(
+          {{VectorXd::Unit(lower_.size(), 3 * nf_ + ny_ + i), Index{-1}}});
+    }
+  }
+
+  /// Forces that, as long as they last, move readings by their noise.
+  FilterNoise Slow(FilterNoise noise) const {
+    const double tick = path_.sample_time;
+    const double duration = tick * static_cast<double>(path_.samples());
+    noise.memory.setConstant(std::max(0.1 * duration, 4.0 * tick));
+    const double ticks = noise.memory[0] / tick;
+    noise.size = unit_ / (ticks * ticks);
+    noise.white = unit_ / (ticks * std::sqrt(ticks));
+    return noise;
+  }
+
+  FilterNoise NoiseOf(const VectorXd& x) const {
+    FilterNoise noise;
+    noise.size = x.head(nf_).array().exp();
+    noise.memory = x.segment(nf_, nf_).array().exp();
+    noise.white = x.segment(2 * nf_, nf_).array().exp();
+    noise.reading = x.segment(3 * nf_, ny_).array().exp();
+    noise.clock = std::exp(x[3 * nf_ + ny_]);
+    noise.clock_memory = std::exp(x[3 * nf_ + ny_ + 1]);
+    return noise;
+  }
+  Point At(const FilterNoise& noise, const Windows& windows) const {
+    VectorXd x(lower_.size());
+    x << noise.size.array().log().matrix(), noise.memory.array().log().matrix(),
+        noise.white.array().log().matrix(), noise.reading.array().log().matrix(),
+        std::log(noise.clock), std::log(noise.clock_memory);
+    return Evaluate(x, windows);
+  }
+  Point Evaluate(const VectorXd& x, const Windows& windows) const {
+    Point point{x.cwiseMax(lower_).cwiseMin(upper_), {}};
+    point.deviances = DeviancesOn(path_, NoiseOf(point.x), windows);
+    return point;
+  }
+
+  /// By steps that shrink by half from `step` to `last`, natural logarithms.
+  void Descend(const Windows& windows, double step, double last, Point& best) const {
+    for (; step >= last; step *= 0.5) {
+      constexpr int kRounds = 4;
+      for (int round = 0; round < kRounds; ++round) {
+        bool moved = false;
+        for (const auto& kind : kinds_) moved |= Move(windows, kind, step, best);
+        if (!moved) break;
+      }
+    }
+  }
+
+ private:
+  /// Directions with the sensor that judges each; -1: all.
+  using Kind = std::vector<std::pair<VectorXd, Index>>;
+
+  bool Move(const Windows& windows, const Kind& kind, double step, Point& best) const {
+    VectorXd all = VectorXd::Zero(best.x.size());
+    for (const auto& [direction, sensor] : kind) all += direction;
+    Point tried[2];
+    ParallelFor(2, [&](int i) {
+      tried[i] = Evaluate(best.x + (i == 0 ? step : -step) * all, windows);
+    });
+    VectorXd each = VectorXd::Zero(best.x.size());
+    for (const auto& [direction, sensor] : kind) {
+      const auto of = [sensor](const Point& point) {
+        return sensor < 0 ? point.deviance() : point.deviances[sensor];
+      };
+      const double least = std::min(of(tried[0]), of(tried[1]));
+      if (!(least < of(best))) continue;
+      each += (of(tried[0]) == least ? step : -step) * direction;
+    }
+    bool moved = false;
+    const VectorXd before = best.x;
+    // Less is noise of the search.
+    constexpr double kGain = 0.1;
+    const auto take = [&](Point& point) {
+      if (!(point.deviance() < best.deviance() - kGain)) return;
+      best = std::move(point);
+      moved = true;
+    };
+    if (kind.size() > 1 && !each.isZero(0.0)) {
+      Point mixed = Evaluate(best.x + each, windows);
+      take(mixed);
+    }
+    if (!moved) take(tried[tried[1].deviance() < tried[0].deviance() ? 1 : 0]);
+    if (!moved) return false;
+    // On as long as it helps.
+    const VectorXd on = best.x - before;
+    constexpr int kFurther = 6;
+    for (int i = 0; i < kFurther && !on.isZero(0.0); ++i) {
+      moved = false;
+      Point further = Evaluate(best.x + on, windows);
+      take(further);
+      if (!moved) break;
+    }
+    return true;
+  }
+
+  const FilterPath& path_;
+  Index nf_;
+  Index ny_;
+  VectorXd unit_;
+  VectorXd lower_, upper_;
+  std::vector<Kind> kinds_;
+};
+
+}  // namespace
+
+FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
+                           const std::vector<Index>& dofs,
+                           const std::vector<FilterStart>& starts,
+                           const VectorXd& reading_sd) {
+  TickMap map(machine);
+  RecordedInputs inputs(machine, run);
+  const VectorXd none = VectorXd::Zero(machine.plant().nv);
+  inputs.StayAt(run.records.front().sample);
+  map.Run(starts.front().state, none, 0, inputs);
+  const TickTangent tangent = TickDifferences(map, run.sample_time, dofs)
+                                  .Of(starts.front().state, none, 0, inputs);
+  const VectorXd unit = ShownBy(tangent, dofs, reading_sd).unit;
+  FilterNoise noise;
+  noise.reading = reading_sd;
+  noise.clock = 1e-3 * run.sample_time;
+  noise.clock_memory = run.sample_time;
+  const auto nf = static_cast<Index>(dofs.size());
+  noise.size.resize(nf);
+  noise.memory = VectorXd::Constant(nf, std::max(0.02, 4.0 * run.sample_time));
+  noise.white.resize(nf);
+  for (Index j = 0; j < nf; ++j) {
+    // As large as what makes the usual accelerations.
+    double most = unit[j];
+    const double inertia =
+        1.0 / std::max(tangent.B(machine.plant().nv + dofs[static_cast<std::size_t>(j)],
+                                 dofs[static_cast<std::size_t>(j)]) /
+                           run.sample_time,
+                       1e-300);
+    const double speed =
+        starts.front().sd[machine.plant().nv + dofs[static_cast<std::size_t>(j)]];
+    most = std::max(most, inertia * speed / 0.02);
+    noise.size[j] = most;
+    noise.white[j] = 0.1 * most;
+  }
+  return noise;
+}
+
+FilterNoise FitNoise(const FilterPath& path, const VectorXd& reading_sd) {
+  const NoiseSearch search(path, reading_sd);
+  const Windows some = SomeOf(AllOf(path), path.samples());
+  const double eight = std::log(8.0);
+  Point best = search.At(path.noise, some);
+  search.Descend(some, 2.0 * eight, 0.4 * eight, best);
+  Point other = search.At(search.Slow(path.noise), some);
+  search.Descend(some, 2.0 * eight, 0.4 * eight, other);
+  if (other.deviance() < best.deviance()) best = std::move(other);
+  const Windows all = AllOf(path);
+  if (all.of != some.of) {
+    search.Descend(some, 0.25 * eight, 0.2 * eight, best);
+    best = search.Evaluate(best.x, all);
+  }
+  search.Descend(all, 0.25 * eight, 0.05 * eight, best);
+  return search.NoiseOf(best.x);
+}
+
+namespace {
+
+/// Pieces of a run, each a record of its own.
+MeasuredRun PiecesOf(const MeasuredRun& run) {
+  std::vector<Index> starts;
+  for (const RecordStart& record : run.records) starts.push_back(record.sample);
+  std::vector<MeasuredRun> pieces;
+  for (const auto& [first, count] : SomeOf(RecordsOf(starts, run.samples()), run.samples()).of) {
+    pieces.push_back(Excerpt(run, first, count));
+  }
+  return Joined(pieces);
+}
+
+}  // namespace
+
+FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
+                           const VectorXd& reading_sd) {
+  const std::vector<Index> dofs = LatentDofs(machine, run);
+  // Pieces tell the noise as well as all of a run.
+  const MeasuredRun pieces = PiecesOf(run);
+  std::vector<FilterStart> starts = FilterStarts(machine, pieces, reading_sd);
+  const FilterNoise fast =
+      FollowingNoise(machine, pieces, dofs, starts, reading_sd);
+  // A path that was followed fast sticks and slips with its noise: behind a slow filter it
+  // says little, so that both are followed by the machine itself.
+  std::optional<FilterPath> best;
+  for (const bool is_slow : {false, true}) {
+    try {
+      FilterPath path = RunForceFilter(machine, pieces, dofs, starts, fast);
+      if (is_slow) {
+        path = RunForceFilter(machine, pieces, dofs, starts,
+                         NoiseSearch(path, reading_sd).Slow(fast));
+      }
+      constexpr int kRounds = 2;
+      for (int round = 0; round < kRounds; ++round) {
+        path = RunForceFilter(machine, pieces, dofs, starts, FitNoise(path, reading_sd));
+        if (!best || path.deviance < best->deviance) best = path;
+      }
+    } catch (const NumericalError&) {
+      // Slow beside a machine that does not stay with the run.
+      if (!is_slow) throw;
+    }
+  }
+  starts = FilterStarts(machine, run, reading_sd);
+  const FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
+  FilterPath refined =
+      RunForceFilter(machine, run, dofs, starts, FitNoise(path, reading_sd));
+  return refined.deviance < path.deviance ? refined : path;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,39 @@
+#pragma once
+// The most likely noise of a machine beside a run (filter_noise.h). What a model lacks is
+// noise of the model, and its intensity an unknown like any other: -2 ln L (force_filter.h)
+// is least where the latent forces are as large as what is missing, and as lasting
+// [Kristensen 2004]. Slow laws and a slow latent force explain each other, so that the search
+// starts twice, from all slow and from all fast.
+//
+// Searched are logarithms, a kind of noise at a time (sizes, memories, both along the same
+// random walk, white forces, readings, the clock), by steps of 8 down to 1.4: every joint goes
+// the way that its own sensor likes best, all at once, if the whole likes that, too. On four
+// thousand samples in four pieces first, then on all of the run.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/plugin/replay/force_filter.h"
+
+namespace mjdiag {
+
+/// Noise behind which the filter follows a run whatever the machine lacks: forces as large
+/// as what drives the joints.
+/// @param reading_sd  of every sensor, by itself
+FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
+                           const std::vector<Eigen::Index>& dofs,
+                           const std::vector<FilterStart>& starts,
+                           const Eigen::VectorXd& reading_sd);
+
+/// The most likely one along a path that FollowingNoise, or a fit, has made.
+/// @param reading_sd  of every sensor by itself: what a fit finds is between a half of it
+///                    and a hundred times
+FilterNoise FitNoise(const FilterPath& path, const Eigen::VectorXd& reading_sd);
+
+/// The path of a run with its most likely noise: followed, fitted, followed behind what was
+/// found, twice.
+/// NumericalError as RunForceFilter.
+FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
+                           const Eigen::VectorXd& reading_sd);
+
+}  // namespace mjdiag

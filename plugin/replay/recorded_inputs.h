@@ -1,0 +1,41 @@
+#pragma once
+// Drives a machine with what was recorded, from any tick on.
+
+#include <span>
+#include <vector>
+
+#include "mjdiag/plugin/machine/input_course.h"
+#include "mjdiag/plugin/machine/stepper.h"
+#include "mjdiag/plugin/replay/tracking.h"
+
+namespace mjdiag {
+
+class RecordedInputs final : public TickControl {
+ public:
+  /// The run has to outlive it.
+  RecordedInputs(const Machine& machine, const MeasuredRun& run);
+
+  /// The next tick is that sample of the run.
+  void Begin(Eigen::Index sample) { tick_ = sample; }
+  /// Every tick is that sample of the run, until told otherwise.
+  void StayAt(Eigen::Index sample) {
+    tick_ = sample;
+    goes_on_ = false;
+  }
+  void Tick(std::span<const double> outputs,
+            std::span<double> inputs) noexcept override;
+  double Above(std::size_t actuator, int substep) const noexcept override;
+  bool IsOn(std::size_t actuator) const noexcept override;
+  /// What the machine read at the last tick.
+  const Eigen::VectorXd& reading() const { return reading_; }
+
+ private:
+  const MeasuredRun& run_;
+  Eigen::VectorXd reading_;
+  std::vector<InputCourse> courses_;
+  Eigen::Index tick_ = 0;
+  Eigen::Index now_ = 0;
+  bool goes_on_ = true;
+};
+
+}  // namespace mjdiag

@@ -1,0 +1,101 @@
+#include "mjdiag/plugin/replay/tangent_course.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjdiag/plugin/effects/effect.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+
+namespace {
+
+constexpr double kStretchTime = 0.01;  // [s]
+
+/// Of two tangents, of positions and velocities each by itself, which have units of their
+/// own.
+bool AreAlike(const TickTangent& a, const TickTangent& b) {
+  constexpr double kAlike = 1e-3;
+  const Index nv = a.B.cols();
+  const auto close = [](const auto& one, const auto& other) {
+    return (one - other).norm() <= kAlike * one.norm();
+  };
+  const Index ns = a.A.rows();
+  const Index begins[] = {0, nv, 2 * nv, ns};
+  for (int i = 0; i < 3; ++i) {
+    const Index rows = begins[i + 1] - begins[i];
+    for (int j = 0; j < 3; ++j) {
+      const Index columns = begins[j + 1] - begins[j];
+      if (!close(a.A.block(begins[i], begins[j], rows, columns),
+                 b.A.block(begins[i], begins[j], rows, columns))) {
+        return false;
+      }
+    }
+    if (!close(a.B.middleRows(begins[i], rows), b.B.middleRows(begins[i], rows))) {
+      return false;
+    }
+  }
+  for (Index i = 0; i < a.C.rows(); ++i) {
+    if (!close(a.C.row(i), b.C.row(i)) || !close(a.D.row(i), b.D.row(i))) return false;
+  }
+  return true;
+}
+
+/// Where effects push: their forces may change within less than a stretch.
+std::vector<Index> DofsWithEffects(const Machine& machine) {
+  std::vector<Index> dofs;
+  for (const PlacedEffect& placed : machine.effects()) {
+    if (placed.effect->element() != mjOBJ_JOINT) continue;
+    const int joint = FindElement(machine.plant(), mjOBJ_JOINT, placed.site);
+    const Index dof = machine.plant().jnt_dofadr[joint];
+    if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);
+  }
+  return dofs;
+}
+
+}  // namespace
+
+TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
+                             const std::vector<Index>& dofs)
+    : map_(map),
+      differences_(map, machine.rates().tick(), dofs),
+      restless_(DofsWithEffects(machine)),
+      shortest_(std::max<std::int64_t>(
+          1, std::lround(kStretchTime * machine.rates().control))),
+      stretch_(shortest_) {}
+
+std::size_t TangentCourse::Next(const PlantState& from, const Eigen::VectorXd& forces,
+                                std::int64_t tick, TickControl& control) {
+  const std::uint64_t pattern = map_.last().pattern;
+  constexpr std::int64_t kLongest = 16;
+  if (tangents.empty() || tick < begun_ || tick - begun_ >= stretch_) {
+    begun_ = tick;
+    const auto known = known_.find(pattern);
+    if (known == known_.end()) {
+      known_.clear();
+    } else {
+      TickTangent here = differences_.Of(from, forces, tick, control);
+      if (AreAlike(here, tangents[known->second])) {
+        stretch_ = std::min(2 * stretch_, kLongest * shortest_);
+      } else {
+        stretch_ = shortest_;
+        known_.clear();
+        tangents.push_back(std::move(here));
+        known_[pattern] = tangents.size() - 1;
+      }
+    }
+  }
+  if (const auto known = known_.find(pattern); known != known_.end()) {
+    if (restless_.empty()) return known->second;
+    TickTangent here = tangents[known->second];
+    differences_.Refresh(from, forces, tick, control, restless_, here);
+    tangents.push_back(std::move(here));
+    return tangents.size() - 1;
+  }
+  tangents.push_back(differences_.Of(from, forces, tick, control));
+  known_[pattern] = tangents.size() - 1;
+  return tangents.size() - 1;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,38 @@
+#pragma once
+// The tangents of a run's ticks, taken where they change (force_filter.h). One that differs
+// from the one before it by less than a thousandth, which is a thousandth of what an estimate
+// is off by, is the same; where it stays the same it is asked for more seldom.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/machine/tick_differences.h"
+
+namespace mjdiag {
+
+class TangentCourse {
+ public:
+  /// @param map   has to outlive it
+  /// @param dofs  those with latent forces
+  TangentCourse(const Machine& machine, TickMap& map,
+                const std::vector<Eigen::Index>& dofs);
+
+  /// Place in `tangents` of the tangent of the map's last Run.
+  std::size_t Next(const PlantState& from, const Eigen::VectorXd& forces,
+                   std::int64_t tick, TickControl& control);
+  std::vector<TickTangent> tangents;
+
+ private:
+  TickMap& map_;
+  TickDifferences differences_;
+  std::vector<Eigen::Index> restless_;  // degrees of freedom with effects
+  std::int64_t shortest_;               // stretch, in ticks
+  std::int64_t stretch_;
+  std::int64_t begun_ = 0;
+  std::map<std::uint64_t, std::size_t> known_;  // by pattern, in the stretch
+};
+
+}  // namespace mjdiag

@@ -1,0 +1,170 @@
+#include "mjdiag/plugin/machine/tick_differences.h"
+
+#include <gtest/gtest.h>
+
+#include "support/any_machine.h"
+#include "support/bonder.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class HeldInput final : public TickControl {
+ public:
+  explicit HeldInput(double value) : value_(value) {}
+  void Tick(std::span<const double>, std::span<double> inputs) noexcept override {
+    std::ranges::fill(inputs, value_);
+  }
+
+ private:
+  double value_;
+};
+
+/// Somewhere in motion.
+PlantState SomeState(const mjModel& model) {
+  PlantState state{VectorXd::Map(model.qpos0, model.nq), VectorXd(model.nv),
+                   VectorXd::Constant(model.na, 0.3)};
+  VectorXd dx = VectorXd::Zero(TangentSize(model));
+  for (Index i = 0; i < model.nv; ++i) {
+    dx[i] = 0.02 + 0.01 * static_cast<double>(i);
+    state.velocity[i] = 0.1 - 0.07 * static_cast<double>(i % 3);
+  }
+  return Moved(model, state, dx);
+}
+
+TickTangent TangentAt(const Machine& machine, const PlantState& state, double input) {
+  TickMap map(machine);
+  HeldInput control(input);
+  const VectorXd none = VectorXd::Zero(machine.plant().nv);
+  map.Run(state, none, 0, control);
+  return TickDifferences(map, machine.rates().tick(), AllDofs(machine.plant()))
+      .Of(state, none, 0, control);
+}
+
+using RowMajor = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
+
+/// MuJoCo's own, of one physics step.
+struct OfMuJoCo {
+  RowMajor A, C;
+};
+
+OfMuJoCo StepOfMuJoCo(const mjModel& plant, const PlantState& state, double input) {
+  const ModelPtr model = CopyModel(plant);
+  model->opt.solver = mjSOL_NEWTON;
+  model->opt.tolerance = 1e-14;
+  model->opt.iterations = 100;
+  const DataPtr data = MakeData(*model);
+  SetState(*model, state, *data);
+  std::fill_n(data->ctrl, model->nu, input);
+  const Index ns = TangentSize(*model);
+  OfMuJoCo step{RowMajor(ns, ns), RowMajor(model->nsensordata, ns)};
+  mjd_transitionFD(model.get(), data.get(), 1e-6, 1, step.A.data(), nullptr,
+                   step.C.data(), nullptr);
+  return step;
+}
+
+double Relative(const MatrixXd& a, const MatrixXd& b) {
+  return (a - b).norm() / std::max(b.norm(), 1e-12);
+}
+
+class EveryKind : public ::testing::TestWithParam<test::AnyKind> {};
+
+TEST_P(EveryKind, HasTheTangentOfMuJoCosOwnStep) {
+  const Machine machine = test::MachineOf(GetParam());
+  const mjModel& model = machine.plant();
+  const PlantState state = SomeState(model);
+  const TickTangent tangent = TangentAt(machine, state, 0.4);
+  const OfMuJoCo step = StepOfMuJoCo(model, state, 0.4);
+  EXPECT_LT(Relative(tangent.A, step.A), 1e-6);
+  // A setup reads the first component.
+  EXPECT_LT(Relative(tangent.C, step.C.topRows(1)), 1e-6);
+}
+
+TEST_P(EveryKind, MovesAsItsTangentSays) {
+  const Machine machine = test::MachineOf(GetParam());
+  const mjModel& model = machine.plant();
+  const PlantState state = SomeState(model);
+  const TickTangent tangent = TangentAt(machine, state, 0.4);
+  TickMap map(machine);
+  HeldInput control(0.4);
+  VectorXd dx(TangentSize(model));
+  for (Index i = 0; i < dx.size(); ++i) dx[i] = i % 2 == 0 ? 3e-5 : -2e-5;
+  VectorXd force(model.nv);
+  for (Index i = 0; i < model.nv; ++i) force[i] = 1e-3 * static_cast<double>(i + 1);
+  const VectorXd none = VectorXd::Zero(model.nv);
+  const PlantState there = map.Run(state, none, 0, control).state;
+  const PlantState moved =
+      map.Run(Moved(model, state, dx), force, 0, control).state;
+  const VectorXd expected = tangent.A * dx + tangent.B * force;
+  EXPECT_LT((Deviation(model, there, moved) - expected).norm(),
+            2e-3 * expected.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, EveryKind, ::testing::ValuesIn(test::kEveryKind), [](const auto& of) {
+      std::string name = of.param.name;
+      std::erase_if(name, [](char c) { return std::isalnum(c) == 0; });
+      return name;
+    });
+
+// The exact linear map of a tick of several steps, at rest and without friction that
+// sticks.
+TEST(TickDifferences, AreTheExactTickOfTheLinearBonder) {
+  const Machine bonder(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383",
+                                 {"physics.static_friction=false"}));
+  const mjModel& model = bonder.plant();
+  PlantState rest{bonder.rest(), VectorXd::Zero(model.nv), VectorXd(0)};
+  const TickTangent tangent = TangentAt(bonder, rest, 0.0);
+  const StateSpace tick =
+      TickModel(bonder.linear(), bonder.rates().step(), bonder.rates().substeps);
+  // Coordinates of 1e8 N/m beside some of 1 N m/rad: differences of ticks carry the
+  // rounding of the largest.
+  EXPECT_LT(Relative(tangent.A, tick.A), 1e-6);
+  EXPECT_LT(Relative(tangent.C, tick.C), 1e-6);
+}
+
+TEST(TickMap, ReadsForcesAtTheEndOfTheTickThatTheyMove) {
+  const Machine machine = test::MachineOf(
+      R"(<mujoco><option timestep="0.001"/><worldbody><body>
+      <joint name="j" type="slide" axis="1 0 0"/>
+      <inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body></worldbody>
+      <actuator><motor name="u" joint="j" gear="3"/></actuator>
+      <sensor><jointpos name="q" joint="j"/><actuatorfrc name="f" actuator="u"/></sensor>
+      </mujoco>)",
+      "[rates]\ncontrol = 1000.0\n[sensors.q]\nelement = \"q\"\nunit = \"m\"\n"
+      "[sensors.f]\nelement = \"f\"\nunit = \"N\"\n"
+      "[actuators.u]\nelement = \"u\"\nunit = \"N\"\n");
+  TickMap map(machine);
+  HeldInput control(1.5);
+  const PlantState still{VectorXd::Zero(1), VectorXd::Zero(1), VectorXd(0)};
+  const TickMap::Result& tick = map.Run(still, VectorXd::Zero(1), 0, control);
+  EXPECT_FALSE(map.ReadsAtEnd(0));
+  EXPECT_TRUE(map.ReadsAtEnd(1));
+  EXPECT_DOUBLE_EQ(tick.reading[1], 1.5);
+  EXPECT_DOUBLE_EQ(tick.state.velocity[0], 3.0 * 1.5 / 2.0 * 0.001);
+}
+
+// Presliding goes on from one run to the next, and probes leave it where it was.
+TEST(TickMap, ProbesFromWhatEffectsRememberedBefore) {
+  const Machine machine = test::MachineOf(test::kEveryKind[0])
+                              .With({{}, {ParseEffect("presliding_hysteresis@j:"
+                                                      "force=0.5,stiffness=500")}});
+  TickMap map(machine);
+  HeldInput control(0.0);
+  const VectorXd none = VectorXd::Zero(1);
+  PlantState state{VectorXd::Zero(1), VectorXd::Constant(1, 0.5), VectorXd(0)};
+  for (int k = 0; k < 5; ++k) state = map.Run(state, none, k, control).state;
+  const PlantState from = state;
+  const PlantState to = map.Run(from, none, 5, control).state;
+  map.Probe(Moved(map.model(), from, VectorXd::Constant(2, 0.1)), none, 5, control);
+  EXPECT_EQ(map.Probe(from, none, 5, control).state.velocity[0], to.velocity[0]);
+  // It is what the sixth tick does, and not the first.
+  TickMap fresh(machine);
+  EXPECT_NE(fresh.Run(from, none, 5, control).state.velocity[0], to.velocity[0]);
+}
+
+}  // namespace
+}  // namespace mjdiag
