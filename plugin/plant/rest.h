@@ -1,0 +1,39 @@
+#pragma once
+// Where a plant comes to rest.
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+
+namespace mjdiag {
+
+/// A configuration, and whether the plant stays in it without input.
+struct Pose {
+  Eigen::VectorXd qpos;  ///< nq
+  bool rests = false;    ///< all forces balance there
+  /// Generalised force that would hold it, nv [N, N m]; 0 where it rests.
+  Eigen::VectorXd holding_force;
+  bool stable = false;  ///< it comes back after a small push, or stays where pushed to
+};
+
+/// Where a plant settles from the configuration that its MJCF draws (qpos0), controls and
+/// activations 0, static friction left out. It goes downhill in steps of the implicit
+/// Euler rule of overdamped motion,
+///
+///   (K + mu W) dq = f(q),   W = diag M,   K = -df/dq,
+///
+/// f the forces of a plant that does not accelerate, those of equalities, limits and
+/// contacts too (plant_forces.h), mu such that no step is longer than what it has been
+/// right about, and 0 at the end, which is Newton's method. Coordinates that nothing
+/// pulls at stay where they are. A plant that is drawn balanced is pushed off.
+///
+/// Where nothing rests (free fall, a joint that is driven on and on) it is the
+/// configuration as drawn, with what would hold it: a search of 400 steps ends so, too.
+/// A contact holds what presses; what only its friction holds creeps in MuJoCo, and is
+/// not at rest.
+Pose FindRest(const mjModel& model);
+
+/// What a plant does in a configuration without input.
+Pose PoseAt(const mjModel& model, const Eigen::VectorXd& qpos);
+
+}  // namespace mjdiag
