@@ -21,7 +21,7 @@ namespace mjdiag {
 struct Machine::Derived {
   std::once_flag rest_once;
   std::once_flag linear_once;
-  Pose rest;
+  RestPose rest;
   MechanicalModel linear;
 };
 
@@ -99,7 +99,7 @@ std::vector<PlacedEffect> Machine::effects() const {
   return all;
 }
 
-const Pose& Machine::rest_pose() const& {
+const RestPose& Machine::rest_pose() const& {
   std::call_once(derived_->rest_once, [this] { derived_->rest = FindRest(*plant_); });
   return derived_->rest;
 }

@@ -49,7 +49,7 @@ class Machine {
 
   /// Where it settles without input, else how it is drawn (FindRest), found when first
   /// asked for.
-  const Pose& rest_pose() const&;
+  const RestPose& rest_pose() const&;
   /// The configuration of it, nq: where runs begin.
   const Eigen::VectorXd& rest() const& { return rest_pose().qpos; }
   Eigen::VectorXd rest() const&& { return std::as_const(*this).rest(); }

@@ -56,7 +56,7 @@ bool IsStable(const MechanicalModel& model) {
   const StateSpace system = UnitMassStateSpace(model, 1.0);
   const Eigen::VectorXcd poles = EigenDecomposition(system.A).values;
   const double fastest = poles.cwiseAbs().maxCoeff();
-  return poles.real().maxCoeff() <= std::max(1e-5, 1e-6 * fastest);
+  return poles.real().maxCoeff() <= std::max(1e-3, 1e-6 * fastest);
 }
 
 std::vector<std::string> NotesOn(const mjModel& model, const Channels& channels) {

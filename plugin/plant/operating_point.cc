@@ -96,7 +96,7 @@ void Set(const mjModel& model, const OperatingPoint& point, mjData& data) {
 }
 
 OperatingPoint HeldAt(const mjModel& model, const Channels& channels,
-                      const Pose& pose) {
+                      const RestPose& pose) {
   PlantForces forces(model, pose.qpos);
   if (pose.rests) {
     OperatingPoint point = PointOf(model, forces.data());

@@ -27,7 +27,8 @@ struct OperatingPoint {
 /// actuator channels if they can, all others 0, and not against their limits; else by
 /// forces on the joints, actuators 0. What equalities, limits and contacts that press can
 /// carry, they carry: forces are those on independent coordinates (MakeIndependent).
-OperatingPoint HeldAt(const mjModel& model, const Channels& channels, const Pose& pose);
+OperatingPoint HeldAt(const mjModel& model, const Channels& channels,
+                      const RestPose& pose);
 
 /// A moment of a motion, with the inputs of that moment; what is missing in the forces
 /// is applied, on independent coordinates. Activations are those that the inputs lead to.

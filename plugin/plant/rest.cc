@@ -46,7 +46,7 @@ class RestSearch {
     }
   }
 
-  Pose Find() {
+  RestPose Find() {
     std::optional<VectorXd> balanced;
     VectorXd from = drawn_;
     constexpr int kPushes = 5;
@@ -64,7 +64,7 @@ class RestSearch {
     return At(drawn_);
   }
 
-  Pose At(const VectorXd& qpos) {
+  RestPose At(const VectorXd& qpos) {
     const VectorXd force = ForceAt(qpos);
     const Slope slope = SlopeAt(qpos);
     const bool stable = slope.symmetric.values[0] >= Falls(slope);
@@ -208,12 +208,12 @@ class RestSearch {
 
 }  // namespace
 
-Pose FindRest(const mjModel& model) {
+RestPose FindRest(const mjModel& model) {
   if (model.nv == 0) return {VectorXd::Map(model.qpos0, model.nq), true, {}, true};
   return RestSearch(model).Find();
 }
 
-Pose PoseAt(const mjModel& model, const VectorXd& qpos) {
+RestPose PoseAt(const mjModel& model, const VectorXd& qpos) {
   if (model.nv == 0) return {qpos, true, {}, true};
   return RestSearch(model).At(qpos);
 }

@@ -8,7 +8,7 @@
 namespace mjdiag {
 
 /// A configuration, and whether the plant stays in it without input.
-struct Pose {
+struct RestPose {
   Eigen::VectorXd qpos;  ///< nq
   bool rests = false;    ///< all forces balance there
   /// Generalised force that would hold it, nv [N, N m]; 0 where it rests.
@@ -31,9 +31,9 @@ struct Pose {
 /// configuration as drawn, with what would hold it: a search of 400 steps ends so, too.
 /// A contact holds what presses; what only its friction holds creeps in MuJoCo, and is
 /// not at rest.
-Pose FindRest(const mjModel& model);
+RestPose FindRest(const mjModel& model);
 
 /// What a plant does in a configuration without input.
-Pose PoseAt(const mjModel& model, const Eigen::VectorXd& qpos);
+RestPose PoseAt(const mjModel& model, const Eigen::VectorXd& qpos);
 
 }  // namespace mjdiag

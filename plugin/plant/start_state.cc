@@ -229,14 +229,15 @@ VectorXd StartPosition(const Channels& channels, const mjModel& model,
   StartSearch search(placed, model, target);
   VectorXd best = search.From(rest);
   VectorXd far = search.Far(best);
-  // Where the readings change with no joint, as the height of an arm that hangs, a
-  // search that goes downhill stays.
+  // Where no joint changes the readings, as the height of an arm that hangs, a search that
+  // goes downhill stays. Noise is nearer than that.
   constexpr int kOthers = 10;
+  constexpr double kNear = 0.05;
   std::mt19937 generator;  // the same every time
-  for (int i = 0; i < kOthers && !(far.maxCoeff() <= 1.0); ++i) {
+  for (int i = 0; i < kOthers && !(far.maxCoeff() <= kNear); ++i) {
     const VectorXd other = search.From(Elsewhere(model, rest, generator));
     const VectorXd other_far = search.Far(other);
-    if (!(other_far.maxCoeff() < far.maxCoeff())) continue;
+    if (!(other_far.maxCoeff() < 0.5 * far.maxCoeff())) continue;
     best = other;
     far = other_far;
   }

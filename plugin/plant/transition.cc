@@ -37,16 +37,43 @@ ModelPtr WithExactConstraints(const mjModel& model) {
   return exact;
 }
 
+constexpr double kPerturbation = 1e-6;
+
+/// What sensors read at once of the controls: that of mjd_transitionFD has the wrong sign.
+MatrixXd Feedthrough(const mjModel& model, mjData& data) {
+  const auto read = [&](int actuator, double by) -> Eigen::VectorXd {
+    const double control = data.ctrl[actuator];
+    data.ctrl[actuator] = control + by;
+    mj_forward(&model, &data);
+    data.ctrl[actuator] = control;
+    return Eigen::VectorXd::Map(data.sensordata, model.nsensordata);
+  };
+  MatrixXd D(model.nsensordata, model.nu);
+  for (int actuator = 0; actuator < model.nu; ++actuator) {
+    double up = kPerturbation;
+    double down = kPerturbation;
+    if (model.actuator_ctrllimited[actuator] != 0) {
+      // At the end of its range to the inside, as mjd_transitionFD does.
+      const mjtNum* range = RowOf(model.actuator_ctrlrange, 2, actuator);
+      if (data.ctrl[actuator] + up > range[1]) up = 0.0;
+      if (data.ctrl[actuator] - down < range[0]) down = 0.0;
+    }
+    const Eigen::VectorXd difference = read(actuator, up) - read(actuator, -down);
+    D.col(actuator) = up + down > 0.0 ? (difference / (up + down)).eval()
+                                      : Eigen::VectorXd::Zero(difference.size()).eval();
+  }
+  mj_forward(&model, &data);
+  return D;
+}
+
 /// One physics step, all actuators and all sensor data of the model.
 StateSpace StepByFiniteDifferences(const mjModel& model, mjData& data) {
-  constexpr double kPerturbation = 1e-6;
   const Eigen::Index states = 2 * model.nv + model.na;
-  RowMajor A(states, states), B(states, model.nu), C(model.nsensordata, states),
-      D(model.nsensordata, model.nu);
+  RowMajor A(states, states), B(states, model.nu), C(model.nsensordata, states);
   // The third matrix is C, whatever the comments in MuJoCo's header say.
   mjd_transitionFD(&model, &data, kPerturbation, 1, A.data(), B.data(), C.data(),
-                   D.data());
-  return {A, B, C, D, model.opt.timestep};
+                   nullptr);
+  return {A, B, C, Feedthrough(model, data), model.opt.timestep};
 }
 
 StateSpace OfChannels(const StateSpace& all, const std::vector<int>& sensors,
