@@ -61,6 +61,7 @@ class RestSearch {
       from = Displaced(model_, *rest, PushOff(slope));
     }
     if (balanced) return {*balanced, true, NoForce(), false};
+    if (const auto rest = SettleInMotion()) return {*rest, true, NoForce(), true};
     return At(drawn_);
   }
 
@@ -194,6 +195,53 @@ class RestSearch {
       if (longest < 1e-14) return std::nullopt;
     }
     return std::nullopt;
+  }
+
+  /// Moves as MuJoCo does, in a thick fluid, until it rests or creeps. For what falls on
+  /// something in many ways, and what only the friction of contacts holds.
+  std::optional<VectorXd> SettleInMotion() {
+    constexpr int kMostMoves = 8000;
+    constexpr double kFluid = 10.0;   // 1/s
+    constexpr double kStill = 1e-4;   // 1/s, of what is far
+    constexpr double kCreeps = 2e-3;  // the same
+    const ModelPtr fluid = CopyModel(model_);
+    fluid->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+    for (int dof = 0; dof < model_.nv; ++dof) {
+      fluid->dof_damping[dof] += kFluid / (unit_[dof] * unit_[dof]);
+    }
+    const DataPtr data = MakeData(*fluid);
+    VectorXd::Map(data->qpos, model_.nq) = drawn_;
+    const auto speed = [&] {
+      return VectorXd::Map(data->qvel, model_.nv)
+          .cwiseQuotient(reach_)
+          .cwiseAbs()
+          .maxCoeff();
+    };
+    // mj_step without the control callback.
+    const auto run = [&](const mjModel& in, int moves) {
+      for (int i = 0; i < moves; ++i) {
+        mj_fwdPosition(&in, data.get());
+        mj_fwdVelocity(&in, data.get());
+        mj_fwdActuation(&in, data.get());
+        mj_fwdAcceleration(&in, data.get());
+        mj_fwdConstraint(&in, data.get());
+        mj_Euler(&in, data.get());
+      }
+    };
+    constexpr int kMoves = 200;
+    for (int i = 0; i < kMostMoves; i += kMoves) {
+      run(*fluid, kMoves);
+      if (!(speed() > kStill)) break;
+    }
+    const VectorXd here = VectorXd::Map(data->qpos, model_.nq);
+    if (data->nefc == 0 || !here.allFinite()) return std::nullopt;
+    steps_ = 0;
+    if (const auto rest = Settle(here)) return rest;
+    // Without the fluid, it would go on.
+    std::copy_n(model_.dof_damping, model_.nv, fluid->dof_damping);
+    run(*fluid, 5 * kMoves);
+    if (!(speed() < kCreeps)) return std::nullopt;
+    return VectorXd::Map(data->qpos, model_.nq);
   }
 
   const mjModel& model_;
