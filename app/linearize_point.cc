@@ -139,6 +139,7 @@ nlohmann::json PointJson(const Machine& machine, const NamedPoint& named, bool s
                          {"rests", point.rests},
                          {"stable", stable},
                          {"holding_force", CoordinateJson(plant, point.holding_force)},
+                         {"applied_force", CoordinateJson(plant, point.applied_force)},
                          {"inputs", inputs}};
   if (!point.velocity.isZero(0.0)) {
     json["velocity"] = CoordinateJson(plant, point.velocity);
@@ -157,8 +158,13 @@ std::string PlaceText(const Machine& machine, const NamedPoint& named, bool stab
   } else {
     text = "about " + named.place;
   }
-  if (!point.rests && !Named(plant, point.holding_force).empty()) {
-    text += (point.velocity.isZero(0.0) ? ", held by " : ", under ") +
+  const bool moves = !point.velocity.isZero(0.0);
+  // What rounding leaves of a force that actuators make is none.
+  const bool applied = point.applied_force.norm() > 1e-6 * point.holding_force.norm();
+  if (moves && applied) {
+    text += ", where the model lacks " + Forces(plant, point.applied_force);
+  } else if (!moves && !point.rests && !Named(plant, point.holding_force).empty()) {
+    text += (applied ? ", held by " : ", held by its actuators with ") +
             Forces(plant, point.holding_force);
   }
   if (!stable) text += "\nthe pose is not stable: left alone, the machine leaves it";

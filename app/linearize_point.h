@@ -22,7 +22,8 @@ NamedPoint FindPoint(const Machine& machine, const std::string& at,
                      std::vector<std::string>& notes);
 
 /// `about` of the document: at, pose {joint}, rests, stable, holding_force {coordinate},
-/// inputs {channel}, of a motion velocity {coordinate}.
+/// the part of it that no actuator makes in applied_force (of a moment of a record what
+/// the model lacks there), inputs {channel}, of a motion velocity {coordinate}.
 nlohmann::json PointJson(const Machine& machine, const NamedPoint& named, bool stable);
 
 /// One line: where it is, what holds it, and whether it falls from there.
