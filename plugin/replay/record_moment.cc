@@ -108,9 +108,9 @@ void AddVelocities(const Machine& machine, const Readings& readings,
 OperatingPoint MomentOf(const Machine& machine, const Record& record, double time) {
   const double end = record.start_time() + record.duration();
   if (!(time >= record.start_time() && time <= end)) {
-    throw InputError(
-        "time " + std::to_string(time) + " s", "is not in the record",
-        std::to_string(record.start_time()) + " to " + std::to_string(end) + " s");
+    throw InputError("record", "has no sample at " + std::to_string(time) + " s",
+                     "a time from " + std::to_string(record.start_time()) + " to " +
+                         std::to_string(end) + " s");
   }
   const Channels& channels = machine.channels();
   const mjModel& plant = machine.plant();

@@ -74,7 +74,9 @@ TEST_F(LinearizeCommand, SaysWhatHoldsItAndThatItFallsAtAKeyframe) {
   EXPECT_NEAR(about["holding_force"]["hinge"], -9.81 * 0.2 * std::cos(1.0), 1e-9);
   EXPECT_NEAR(about["inputs"]["tau"], -9.81 * 0.2 * std::cos(1.0), 1e-9);
   const std::string text = Run("--at keyframe:raised").out;
-  EXPECT_NE(text.find("held by -1.06 N m at hinge"), std::string::npos) << text;
+  EXPECT_NE(text.find("held by its actuators with -1.06 N m at hinge"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("not stable"), std::string::npos) << text;
 }
 
@@ -92,6 +94,9 @@ TEST_F(LinearizeCommand, FindsTheMotionOfAMomentOfARecord) {
   EXPECT_NEAR(document["about"]["velocity"]["hinge"], 1.2, 1e-3);
   EXPECT_NEAR(document["K"][0][0], 9.81 * 0.2 * std::sin(0.94), 1e-4);
   EXPECT_NEAR(document["about"]["inputs"]["tau"], 0.5, 1e-9);
+  // I q'' + d q' - m g l cos q = tau + what is missing.
+  EXPECT_NEAR(document["about"]["applied_force"]["hinge"],
+              0.05 * -2.0 + 0.1 * 1.2 - 9.81 * 0.2 * std::cos(0.94) - 0.5, 2e-3);
 }
 
 TEST_F(LinearizeCommand, NamesWhatIsNoPlace) {
