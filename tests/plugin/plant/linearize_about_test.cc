@@ -23,8 +23,11 @@ Channels WithChannels(const std::vector<std::string>& actuators,
                       const std::vector<SensorSetup>& sensors) {
   Channels channels;
   channels.sensors = sensors;
-  for (const std::string& name : actuators)
-    channels.actuators.push_back({name, name, "N"});
+  for (const std::string& name : actuators) {
+    ActuatorSetup actuator;
+    actuator.channel = actuator.element = name;
+    channels.actuators.push_back(actuator);
+  }
   return channels;
 }
 
