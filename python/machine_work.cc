@@ -221,12 +221,11 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
               throw InputError("linearize", "effects are not linear",
                                "a machine with fault parameters only");
             }
-            const Machine& machine = object.machine();
+            const Machine& own = object.machine();
             const OperatingPoint rest =
-                HeldAt(machine.plant(), machine.channels(), machine.rest_pose());
-            return LinearObject{
-                LinearizeAbout(machine.plant(), machine.channels(), rest).model,
-                object.setup().rates};
+                HeldAt(own.plant(), own.channels(), own.rest_pose());
+            return LinearObject{LinearizeAbout(own.plant(), own.channels(), rest).model,
+                                object.setup().rates};
           },
           R"(
           The machine about its rest, else held as it is drawn: a LinearModel, in

@@ -184,6 +184,19 @@ TEST(Rest, OfABoxThatIsDrawnInTheAirIsOnTheFloor) {
   EXPECT_LT(AccelerationAt(*plant, rest.qpos), 1e-6);
 }
 
+TEST(Rest, OfABoxOnASlopeIsHeldByFrictionIfThereIsEnough) {
+  const auto box_on_slope = [](const std::string& friction) {
+    return SmallPlant(R"(<default><geom friction=")" + friction + R"( 0.005 0.0001"/>
+      </default><worldbody><geom type="plane" size="5 5 .1" euler="0 0.2 0"/>
+      <body pos="0 0 0.06" euler="0 0.2 0"><freejoint/>
+        <geom type="box" size="0.1 0.1 0.05" mass="1"/></body></worldbody>)");
+  };
+  EXPECT_TRUE(FindRest(*box_on_slope("0.8")).rests);
+  const RestPose slides = FindRest(*box_on_slope("0.05"));
+  EXPECT_FALSE(slides.rests);
+  EXPECT_NEAR(slides.holding_force[2], 9.81, 1e-9);
+}
+
 TEST(Rest, OfTiedSlidesIsWhereTheEqualityHoldsThem) {
   // One of them hangs on a spring, the other one moves half as much.
   const ModelPtr plant = SmallPlant(R"(<worldbody>
