@@ -3,18 +3,19 @@
 #include "mjdiag/plugin/plant/linearize.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 
 #include "app/command.h"
 #include "app/exit_status.h"
 #include "app/format.h"
+#include "app/linearize_compare.h"
+#include "app/linearize_point.h"
 #include "app/output.h"
 #include "app/subject.h"
 #include "mjdiag/diagnosis/json_matrix.h"
 #include "mjdiag/plugin/plant/transition.h"
 #include "mjdiag/plugin/runtime/closed_loop.h"
-#include "mjdiag/plugin/setup/chain_file.h"
-#include "mjdiag/plugin/setup/published_relation_file.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
@@ -25,20 +26,10 @@ namespace {
 struct LinearizeOptions {
   MachineOptions machine;
   OutputOptions output;
+  std::string at = "rest";
   bool compare = false;
   bool published = false;
 };
-
-// Agreement that the two models are held to, relative Frobenius norms.
-constexpr double kMatrixTolerance = 1e-9;
-constexpr double kTickTolerance = 1e-8;
-// One unit in the last printed digit.
-constexpr double kPrintedHalfUlps = 2.0;
-
-double RelativeDifference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  const double scale = b.norm();
-  return scale > 0.0 ? (a - b).norm() / scale : a.norm();
-}
 
 nlohmann::json ModelJson(const MechanicalModel& model) {
   nlohmann::json modes = nlohmann::json::array();
@@ -75,121 +66,56 @@ std::string ModeTable(const MechanicalModel& model) {
   return table.ToString();
 }
 
-void AddMatrixRows(Table& table, const std::string& symbol,
-                   const std::vector<std::string>& rows,
-                   const std::vector<std::string>& columns,
-                   const Eigen::MatrixXd& extracted, const Eigen::MatrixXd& analytic) {
-  const double negligible = 1e-12 * analytic.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < extracted.rows(); ++i) {
-    for (Eigen::Index j = 0; j < extracted.cols(); ++j) {
-      const double a = extracted(i, j);
-      const double b = analytic(i, j);
-      const bool mirrored = symbol.size() == 1 && symbol != "b" && j < i;
-      if (mirrored || (std::abs(a) <= negligible && std::abs(b) <= negligible))
-        continue;
-      table.Add({symbol + "(" + rows[static_cast<std::size_t>(i)] + ", " +
-                     columns[static_cast<std::size_t>(j)] + ")",
-                 Short(a), Short(b), Short(a - b)});
+nlohmann::json StateSpaceJson(const StateSpace& system) {
+  return {{"A", MatrixJson(system.A)},
+          {"B", MatrixJson(system.B)},
+          {"C", MatrixJson(system.C)},
+          {"D", MatrixJson(system.D)},
+          {"sample_time", system.sample_time}};
+}
+
+/// How coordinates that constraints tie follow the others.
+nlohmann::json TiesJson(const Linearization& linear) {
+  nlohmann::json ties = nlohmann::json::object();
+  for (std::size_t i = 0; i < linear.dependent.size(); ++i) {
+    nlohmann::json row = nlohmann::json::object();
+    for (std::size_t j = 0; j < linear.model.coordinates.size(); ++j) {
+      const double slope =
+          linear.ties(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      if (slope != 0.0) row[linear.model.coordinates[j]] = slope;
     }
+    ties[linear.dependent[i]] = row;
   }
+  return ties;
 }
 
-std::string SideBySide(const MechanicalModel& extracted,
-                       const MechanicalModel& analytic) {
-  Table table({"entry", "MuJoCo", "analytic", "difference"});
-  const auto& q = extracted.coordinates;
-  AddMatrixRows(table, "M", q, q, extracted.M, analytic.M);
-  AddMatrixRows(table, "D", q, q, extracted.D, analytic.D);
-  AddMatrixRows(table, "K", q, q, extracted.K, analytic.K);
-  AddMatrixRows(table, "Gamma", q, extracted.inputs, extracted.Gamma, analytic.Gamma);
-  AddMatrixRows(table, "b", q, extracted.outputs, extracted.b, analytic.b);
-  return table.ToString();
-}
-
-StateSpace Tick(const Machine& machine) {
-  const Rates& rates = machine.rates();
-  return TickModel(machine.linear(), rates.step(), rates.substeps);
-}
-
-double TickDifference(const Machine& machine) {
-  const StateSpace exact = Tick(machine);
-  const StateSpace differences = TickByFiniteDifferences(
-      machine.plant(), machine.channels(), machine.rates().substeps);
-  return std::max({RelativeDifference(exact.A, differences.A),
-                   RelativeDifference(exact.B, differences.B),
-                   RelativeDifference(exact.C, differences.C)});
-}
-
-void RequireSameChannels(const MechanicalModel& extracted,
-                         const MechanicalModel& analytic, const std::string& file) {
-  if (extracted.coordinates != analytic.coordinates ||
-      extracted.inputs != analytic.inputs || extracted.outputs != analytic.outputs) {
-    throw InputError(file, "joints, actuators or sensors differ from the plant's",
-                     "the same names in the same order");
-  }
-}
-
-struct Answer {
+std::string Joined(const std::vector<std::string>& names) {
   std::string text;
-  bool good = true;
-};
-
-Answer CompareWithAnalytic(const Machine& machine, nlohmann::json& document) {
-  const MechanicalModel& extracted = machine.linear();
-  if (!machine.setup().analytic) {
-    throw InputError("--compare", "the setup has no analytic model",
-                     "a key 'analytic' in setup.toml");
-  }
-  const MechanicalModel analytic =
-      Linearize(ReadLinearChain(*machine.setup().analytic));
-  RequireSameChannels(extracted, analytic, machine.setup().analytic->string());
-  const nlohmann::json difference = {
-      {"M", RelativeDifference(extracted.M, analytic.M)},
-      {"D", RelativeDifference(extracted.D, analytic.D)},
-      {"K", RelativeDifference(extracted.K, analytic.K)},
-      {"Gamma", RelativeDifference(extracted.Gamma, analytic.Gamma)},
-      {"b", RelativeDifference(extracted.b, analytic.b)},
-      {"tick", TickDifference(machine)}};
-  document["difference"] = difference;
-
-  Answer answer;
-  answer.text = SideBySide(extracted, analytic) + "\n";
-  Table table({"matrix", "relative difference", "at most"});
-  for (const auto& [name, value] : difference.items()) {
-    const double limit = name == "tick" ? kTickTolerance : kMatrixTolerance;
-    table.Add({name, Short(value), Short(limit)});
-    answer.good = answer.good && value.get<double>() <= limit;
-  }
-  answer.text += table.ToString() +
-                 "tick: the exact discrete map of a control tick against "
-                 "mjd_transitionFD\n";
-  return answer;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
 }
 
-Answer ComparePublished(const Machine& machine, nlohmann::json& document) {
-  if (!machine.setup().published) {
-    throw InputError("--published", "the setup has no published parity relation",
-                     "a key 'published' in setup.toml");
+std::string TiesText(const Linearization& linear) {
+  if (linear.dependent.empty()) return "";
+  return "\nindependent coordinates: " + Joined(linear.model.coordinates) +
+         "; constraints tie " + Joined(linear.dependent);
+}
+
+/// The plant that the controllers see. The exact map where there is one: a tree of slides
+/// and hinges at rest whose Euler steps take all of its damping implicitly.
+StateSpace PlantTick(const Machine& machine, const NamedPoint& named,
+                     const Linearization& linear, const Transition& transition) {
+  const mjModel& plant = machine.plant();
+  const bool scalar =
+      std::all_of(plant.jnt_type, plant.jnt_type + plant.njnt,
+                  [](int type) { return type == mjJNT_SLIDE || type == mjJNT_HINGE; });
+  const Eigen::VectorXd damping = Eigen::VectorXd::Map(plant.dof_damping, plant.nv);
+  if (!scalar || !named.point.rests || plant.na > 0 || !linear.dependent.empty() ||
+      !(linear.model.D - Eigen::MatrixXd(damping.asDiagonal()))
+           .isZero(1e-12 * damping.norm())) {
+    return transition.tick;
   }
-  const PublishedRelationComparison comparison = ComparePublishedRelation(
-      machine.linear(), ReadPublishedRelation(*machine.setup().published));
-  nlohmann::json coefficients = nlohmann::json::array();
-  Table table({"coefficient", "printed", "computed", "half units of the last digit"});
-  for (const CoefficientComparison& c : comparison.coefficients) {
-    coefficients.push_back({{"channel", c.channel},
-                            {"power", c.power},
-                            {"printed", c.printed},
-                            {"computed", c.computed}});
-    table.Add({c.channel + " s^" + std::to_string(c.power), Short(c.printed),
-               Short(c.computed), Short(c.half_ulps)});
-  }
-  document["published"] = {{"worst_half_ulp", comparison.worst_half_ulp},
-                           {"coefficients", coefficients}};
-  return {table.ToString() + "worst of " +
-              std::to_string(comparison.coefficients.size()) +
-              " coefficients: " + Short(comparison.worst_half_ulp) +
-              " half units of the last printed digit\n",
-          comparison.worst_half_ulp <= kPrintedHalfUlps};
+  return TickModel(linear.model, machine.rates().step(), machine.rates().substeps);
 }
 
 void Linearize(const LinearizeOptions& options) {
@@ -201,18 +127,33 @@ void Linearize(const LinearizeOptions& options) {
                      "effects, disturbances and late faults are not linear",
                      "fault parameters of the plant only");
   }
-  const MechanicalModel& extracted = machine.linear();
+  std::vector<std::string> notes;
+  const NamedPoint named = FindPoint(machine, options.at, notes);
+  const Linearization linear =
+      LinearizeAbout(machine.plant(), machine.channels(), named.point);
+  const Transition transition = TransitionAbout(machine.plant(), machine.channels(),
+                                                named.point, machine.rates().substeps);
+  notes.insert(notes.end(), linear.notes.begin(), linear.notes.end());
 
-  nlohmann::json document = ModelJson(extracted);
+  nlohmann::json document = ModelJson(linear.model);
   document.update(ToJson(subject));
   document["schema"] = "mjdiag.linearize/1";
   document["command"] = CommandLine();
   document["setup"] = machine.setup().name;
-  std::string text =
-      machine.setup().name + ", " + Describe(subject) + "\n\n" + ModeTable(extracted);
+  document["about"] = PointJson(machine, named, linear.stable);
+  if (!linear.dependent.empty()) {
+    document["independent"] = linear.model.coordinates;
+    document["dependent"] = TiesJson(linear);
+  }
+  document["states"] = StateNames(machine.plant());
+  document["step"] = StateSpaceJson(transition.step);
+  document["tick"] = StateSpaceJson(transition.tick);
+  std::string text = machine.setup().name + ", " + Describe(subject) + "\n" +
+                     PlaceText(machine, named, linear.stable) + TiesText(linear) +
+                     "\n\n" + ModeTable(linear.model);
   if (!machine.setup().control.axes.empty()) {
-    const double radius =
-        SpectralRadius(ClosedLoopMatrix(Tick(machine), machine.setup()));
+    const double radius = SpectralRadius(ClosedLoopMatrix(
+        PlantTick(machine, named, linear, transition), machine.setup()));
     document["closed_loop"] = {{"largest_eigenvalue", radius}};
     text += "\nclosed loop: largest eigenvalue " + Short(radius) +
             (radius < 1.0 ? ", stable\n" : ", unstable\n");
@@ -226,6 +167,7 @@ void Linearize(const LinearizeOptions& options) {
     text += "\n" + answer.text;
     good = good && answer.good;
   }
+  AddNotes(notes, document, text);
   PrepareOutput(options.output);
   Publish(options.output, "linearize", document, text);
   if (!good) throw NegativeAnswer();
@@ -236,9 +178,14 @@ void Linearize(const LinearizeOptions& options) {
 void AddLinearize(CLI::App& app) {
   auto options = std::make_shared<LinearizeOptions>();
   CLI::App* command = app.add_subcommand(
-      "linearize", "M, D, K, Gamma, b and the modes about the static equilibrium");
+      "linearize",
+      "M, D, K, Gamma, b, the modes, and A, B, C, D of a step and a control tick");
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
+  command->add_option("--at", options->at,
+                      "Where: rest, start (as the MJCF draws it), keyframe:NAME or "
+                      "RECORD@TIME [s] (default: rest; the pose drawn where nothing "
+                      "rests, held)");
   command->add_flag(
       "--compare", options->compare,
       "Against the setup's analytic model and MuJoCo's finite differences; "

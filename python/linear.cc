@@ -46,7 +46,7 @@ void BindLinear(py::module_& module) {
   py::class_<LinearObject>(module, "LinearModel",
                            R"(
                            M q'' + D q' + K q = Gamma u, y = b.T q: a machine about its
-                           static equilibrium, q the deviations of its n joints, u its m
+                           rest, q the deviations of its n coordinates, u its m
                            inputs, y its p outputs, in SI units. Matrices are read-only
                            views.)")
       .def_property_readonly("M", &MatrixOf<&MechanicalModel::M>,
@@ -62,7 +62,7 @@ void BindLinear(py::module_& module) {
       .def_property_readonly(
           "coordinates",
           [](const LinearObject& linear) { return linear.model.coordinates; },
-          "Names of the n joints.")
+          "Names of the n coordinates.")
       .def_property_readonly(
           "inputs", [](const LinearObject& linear) { return linear.model.inputs; },
           "Names of the m actuator channels.")
@@ -81,7 +81,7 @@ void BindLinear(py::module_& module) {
           scipy.signal takes it: scipy.signal.dlsim(linear.state_space(), u).)")
       .def("__repr__", [](const LinearObject& linear) {
         return "<mjdiag.LinearModel: " +
-               std::to_string(linear.model.coordinates.size()) + " joints, " +
+               std::to_string(linear.model.coordinates.size()) + " coordinates, " +
                std::to_string(linear.model.inputs.size()) + " inputs, " +
                std::to_string(linear.model.outputs.size()) + " outputs>";
       });

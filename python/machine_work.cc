@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/signals/error.h"
 #include "python/arrays.h"
 #include "python/linear.h"
@@ -220,11 +221,16 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
               throw InputError("linearize", "effects are not linear",
                                "a machine with fault parameters only");
             }
-            return LinearObject{object.machine().linear(), object.setup().rates};
+            const Machine& own = object.machine();
+            const OperatingPoint rest =
+                HeldAt(own.plant(), own.channels(), own.rest_pose());
+            return LinearObject{LinearizeAbout(own.plant(), own.channels(), rest).model,
+                                object.setup().rates};
           },
           R"(
-          The machine about its static equilibrium: a LinearModel. InputError for one
-          that was given effects.)");
+          The machine about its rest, else held as it is drawn: a LinearModel, in
+          independent coordinates where constraints tie others. InputError for one that
+          was given effects.)");
 }
 
 }  // namespace mjdiag::python

@@ -54,6 +54,7 @@ StateSpace EulerStep(const MechanicalModel& model, double step) {
 }  // namespace
 
 std::vector<Mode> Modes(const MechanicalModel& model) {
+  if (model.M.rows() == 0) return {};
   const Index nq = model.M.rows();
   const double time_unit = FastTimeUnit(model);
   const EigenPairs eigen = EigenDecomposition(UnitMassStateSpace(model, time_unit).A);

@@ -21,7 +21,7 @@ namespace mjdiag {
 struct Machine::Derived {
   std::once_flag rest_once;
   std::once_flag linear_once;
-  Eigen::VectorXd rest;
+  RestPose rest;
   MechanicalModel linear;
 };
 
@@ -99,15 +99,16 @@ std::vector<PlacedEffect> Machine::effects() const {
   return all;
 }
 
-const Eigen::VectorXd& Machine::rest() const& {
-  std::call_once(derived_->rest_once,
-                 [this] { derived_->rest = StaticEquilibrium(*plant_); });
+const RestPose& Machine::rest_pose() const& {
+  std::call_once(derived_->rest_once, [this] { derived_->rest = FindRest(*plant_); });
   return derived_->rest;
 }
 
 const MechanicalModel& Machine::linear() const& {
-  std::call_once(derived_->linear_once,
-                 [this] { derived_->linear = Linearize(*plant_, channels(), rest()); });
+  std::call_once(derived_->linear_once, [this] {
+    RequireScalarJoints(*plant_, channels());
+    derived_->linear = Linearize(*plant_, channels(), rest());
+  });
   return derived_->linear;
 }
 

@@ -18,6 +18,7 @@
 #include "mjdiag/diagnosis/model/mechanical_model.h"
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/plant/fault.h"
+#include "mjdiag/plugin/plant/rest.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
@@ -46,11 +47,14 @@ class Machine {
   /// All that act: those that the MJCF carries, then those of the changes.
   std::vector<PlacedEffect> effects() const;
 
-  /// Joint positions at rest without input (StaticEquilibrium), found when first asked
-  /// for. NumericalError as there.
-  const Eigen::VectorXd& rest() const&;
+  /// Where it settles without input, else how it is drawn (FindRest), found when first
+  /// asked for.
+  const RestPose& rest_pose() const&;
+  /// The configuration of it, nq: where runs begin.
+  const Eigen::VectorXd& rest() const& { return rest_pose().qpos; }
   Eigen::VectorXd rest() const&& { return std::as_const(*this).rest(); }
-  /// M, D, K, Gamma and b about the rest (Linearize), found when first asked for.
+  /// M, D, K, Gamma and b about it, as if no constraint acted (Linearize), found when
+  /// first asked for. InputError as RequireScalarJoints.
   const MechanicalModel& linear() const&;
   MechanicalModel linear() const&& { return std::as_const(*this).linear(); }
 

@@ -18,10 +18,17 @@ Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
 Eigen::VectorXd SensorReadings(const Channels& channels, const mjModel& model,
                                const Eigen::VectorXd& qpos, mjData& data);
 
-/// Joint positions at rest: the static equilibrium `rest`, moved so that the named
-/// sensors read `start`. Of all ways to move there the one that strains the springs least is
-/// taken: dq = W b (b^T W b)^-1 dy with W = 1 / (1 + k) per joint. NumericalError if
-/// the sensors cannot read that.
+/// The configuration in which the named sensors read `start`, from `rest` (nq) on. Those
+/// that read positions count, in the order of what is surer:
+///
+///   1. equality constraints hold: c(q) = 0;
+///   2. of the ways to move that they allow, those on which the readings are met best,
+///      min sum ((y_i - g_i(q)) / sigma_i)^2, by the noise and the resolution of each
+///      sensor: several encoders of one joint need not agree;
+///   3. of these the one that strains springs least: min sum (1 + k_j) dq_j^2.
+///
+/// NumericalError names the sensor whose reading the machine cannot come near, by more than
+/// a tenth of a radian or of its size.
 Eigen::VectorXd StartPosition(const Channels& channels, const mjModel& model,
                               const Eigen::VectorXd& rest,
                               const std::map<std::string, double>& start);

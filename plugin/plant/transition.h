@@ -1,18 +1,34 @@
 #pragma once
-// The linear map of one control tick by finite differences of MuJoCo's own integrator:
-// slower and less accurate than TickModel, and independent of it.
+// The linear map of a physics step and of a control tick of any plant, as MuJoCo's own
+// integrator has it.
 
 #include <mujoco/mujoco.h>
 
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/plant/operating_point.h"
 #include "mjdiag/plugin/setup/setup.h"
 #include "mjdiag/signals/state_space.h"
 
 namespace mjdiag {
 
-/// mjd_transitionFD of one physics step about the static equilibrium, with static
-/// friction off, applied `substeps` times. x = [q; v], u and y are the channels. Takes the control callback off meanwhile: not to be called while
-/// simulations run in other threads.
-StateSpace TickByFiniteDifferences(const mjModel& model, const Channels& channels,
-                                   int substeps);
+/// x+ = A x + B u, y = C x + D u of deviations x = [q; v; act] in tangent coordinates, u and y
+/// of the channels. Sensors are read where the step or the tick begins; u is held.
+struct Transition {
+  StateSpace step;
+  StateSpace tick;
+};
+
+/// By central differences (mjd_transitionFD), static friction left out, constraints solved
+/// to rounding. Of a motion the steps of a tick are those along it. A sensor that reads
+/// accelerations or forces has D. Takes the control callback off meanwhile: not to be
+/// called while simulations run in other threads.
+Transition TransitionAbout(const mjModel& model, const Channels& channels,
+                           const OperatingPoint& point, int substeps);
+
+/// Names of x: "<coordinate>" of the positions, "<coordinate>'" of the velocities,
+/// "<actuator>.act" of the activations.
+std::vector<std::string> StateNames(const mjModel& model);
 
 }  // namespace mjdiag

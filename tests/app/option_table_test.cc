@@ -80,7 +80,8 @@ const std::map<std::string, Rows>& Table() {
                             {"--diagnose", Same("--diagnose=false")},
                             {"--tolerate", Same("--tolerate=false")}}},
       {"linearize", kMachine + kOutput +
-                        Rows{{"--compare", Same("--compare=false")},
+                        Rows{{"--at", Same("--at rest")},
+                             {"--compare", Same("--compare=false")},
                              {"--published", Same("--published=false")}}},
       {"design", kMachine + kDiagnosis + kOutput + kReport +
                      Rows{{"--linear", Same("--linear=false")},
