@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -74,7 +75,10 @@ class RecordCheck {
     if (simulated_) CheckAgainstPlant(machine_, measured_, *simulated_);
     if (simulated_ && !from_readings) SimulateNominal(true);
     for (const SensorSetup& sensor : setup().channels.sensors) CheckSaturation(sensor);
-    if (simulated_) CheckClocks(setup(), measured_, *simulated_);
+    if (simulated_) {
+      std::ranges::copy(CheckClocks(machine_, measured_, *simulated_),
+                        std::back_inserter(notes_));
+    }
     return notes_;
   }
 

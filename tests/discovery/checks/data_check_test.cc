@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "discovery/checks/checked_machine.h"
-#include "mjdiag/discovery/checks/clock_drift.h"
+#include "mjdiag/discovery/checks/lag_trend.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/gaussian_noise.h"
