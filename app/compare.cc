@@ -76,7 +76,7 @@ std::string FollowedText(const Comparison& comparison) {
 void Compare(const CompareOptions& options) {
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = NotesOn(subject.nominal);
   const Record measured = ReadMeasured(subject.setup(), options.record, notes);
   if (options.open_loop) {
     subject.machine =

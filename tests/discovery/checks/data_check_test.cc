@@ -120,7 +120,7 @@ TEST_F(EmpsRecord, ThatHoldsOrLacksSamplesPassesWithoutThem) {
     x[1234] = std::nan("");
   });
   const Measurements measurements = MeasurementsOf(subject_->machine, record, nullptr);
-  const auto& [marked, machine, name, notes] = measurements.fit.front();
+  const auto& [marked, machine, name, notes, own_plant] = measurements.fit.front();
   const SampleMask& measured = marked.At("q").measured;
   ASSERT_EQ(measured.size(), record.samples());
   EXPECT_EQ(record.samples() - measured.count(), 6 + 39 + 1);
