@@ -114,7 +114,9 @@ void AddCompare(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "compare", "What the simulation gets wrong on a measured record");
   AddMachineOptions(*command, options->machine);
-  command->add_option("--record", options->record, "Measured record, CSV or MAT")
+  command
+      ->add_option("--record", options->record,
+                   "Measured record: CSV, JSON, HDF5 or MAT")
       ->required();
   command->add_flag(
       "--open-loop", options->open_loop,

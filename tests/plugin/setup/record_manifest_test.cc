@@ -50,7 +50,8 @@ TEST(RecordManifest, RefusesWhatItCannotMean) {
               AllOf(HasSubstr("role: is \"test\""), HasSubstr("validation")));
   EXPECT_THAT(
       Refusal("[[record]]\nfile = \"a.csv\"\nset = { \"plant\" = \"b.xml\" }\n"),
-      AllOf(HasSubstr("set: changes 'plant'"), HasSubstr("`plant` names another plant")));
+      AllOf(HasSubstr("set: changes 'plant'"),
+            HasSubstr("`plant` names another plant")));
   EXPECT_THAT(Refusal("[[record]]\nfile = \"a.csv\"\n[[record]]\nfile = \"a.csv\"\n"),
               HasSubstr("named twice"));
   EXPECT_THAT(Refusal("[[record]]\nfile = \"a.csv\"\ngain = 3\n"), HasSubstr("gain"));
