@@ -78,7 +78,7 @@ std::string FollowedText(const Comparison& comparison) {
 void Compare(const CompareOptions& options) {
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = NotesOn(subject.nominal);
   const Record measured = ReadMeasured(subject.setup(), options.record, notes);
   if (options.open_loop) {
     subject.machine =
@@ -117,7 +117,9 @@ void AddCompare(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "compare", "What the simulation gets wrong on a measured record");
   AddMachineOptions(*command, options->machine);
-  command->add_option("--record", options->record, "Measured record, CSV or MAT")
+  command
+      ->add_option("--record", options->record,
+                   "Measured record: CSV, JSON, HDF5 or MAT")
       ->required();
   command->add_flag(
       "--open-loop", options->open_loop,

@@ -1,7 +1,9 @@
 // mjdiag discover: the cause of what the simulation gets wrong, the extended plant and
 // what it gains.
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -90,6 +92,7 @@ void Discover(const DiscoverCommand& command) {
   PrepareOutput(command.output);
   const Interrupt interrupt;
   Discovery discovery = RunDiscovery(machine, command, measurements);
+  std::ranges::copy(NotesOn(machine), std::back_inserter(discovery.notes));
 
   HoldFiles();
   const std::string record = Names(measurements.fit);
@@ -110,6 +113,9 @@ void Discover(const DiscoverCommand& command) {
   Publish(command.output, "discovery", document, text, [&] {
     return NamedPage{"discovery", DiscoveryPage(discovery, run)};
   });
+  if (run.extended_plant.empty()) {
+    RemoveExtendedPlant(command.output.folder, command.machine.setup);
+  }
   Interrupt::ThrowIfWished();
   if (discovery.verdict == DiscoveryVerdict::kUnexplained) throw NegativeAnswer{};
 }

@@ -57,4 +57,20 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
       .string();
 }
 
+void RemoveExtendedPlant(const std::string& folder, const std::string& setup) {
+  namespace fs = std::filesystem;
+  const fs::path extended = fs::path(folder) / "extended";
+  const fs::path given =
+      fs::is_directory(setup) ? setup : fs::path(setup).parent_path();
+  std::error_code none;
+  if (!fs::exists(extended / "plant.xml", none) ||
+      !fs::exists(extended / "setup.toml", none) ||
+      fs::equivalent(extended, given, none)) {
+    return;
+  }
+  for (const char* file : {"plant.xml", "setup.toml"})
+    fs::remove(extended / file, none);
+  fs::remove(extended, none);  // where nothing else is in it
+}
+
 }  // namespace mjdiag::app

@@ -17,4 +17,8 @@ std::string Describe(const Discovery& discovery);
 std::string WriteExtendedPlant(const std::string& folder, const std::string& setup,
                                const Machine& machine, const Discovery& discovery);
 
+/// Takes the extended plant of an earlier run out of the folder of one that has none, unless
+/// it is the plant that was given.
+void RemoveExtendedPlant(const std::string& folder, const std::string& setup);
+
 }  // namespace mjdiag::app

@@ -139,9 +139,10 @@ void AddExcite(CLI::App& app) {
                       "Fault parameter, or number of the plant (mass@x_stage), that is "
                       "wanted; may be given more than once; all fault parameters "
                       "without it");
-  command->add_option("--record", options->record,
-                      "Measured record, CSV or MAT, of a machine without controllers, "
-                      "which others are held against");
+  command->add_option(
+      "--record", options->record,
+      "Measured record: CSV, JSON, HDF5 or MAT, of a machine without controllers, "
+      "which others are held against");
   command->add_option(
       "--limit", options->limits,
       "Limits of an axis or joint in the place of what that motion does: "

@@ -8,8 +8,9 @@
 namespace mjdiag::app {
 
 void AddMeasurementOptions(CLI::App& command, MeasurementOptions& options) {
-  command.add_option("--record", options.records,
-                     "Measured record, CSV or MAT; may be given more than once");
+  command.add_option(
+      "--record", options.records,
+      "Measured record: CSV, JSON, HDF5 or MAT; may be given more than once");
   command.add_option(
       "--validation", options.validations,
       "Record of another motion, to which nothing is fitted; may be given "

@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/format.h"
+#include "app/interrupt.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
@@ -194,7 +195,21 @@ DiagnosisOverlay DiagnosisOf(const RenderOptions& options, const Machine& machin
   return OverlayOf(machine, Prepare(machine, source, motion), record, runs.size() - 1);
 }
 
+/// Of records, as of a simulation: as long as that from where the clip begins.
+void LimitDuration(const std::vector<TitledRecord>& runs, double duration,
+                   PictureOptions& picture) {
+  if (runs.empty() || !(duration > 0.0)) return;
+  double begin = runs.front().record.start_time();
+  for (const TitledRecord& run : runs) begin = std::max(begin, run.record.start_time());
+  const Record& first = runs.front().record;
+  const double end = picture.begin.value_or(begin) + duration;
+  if (end < first.start_time() + first.duration()) {
+    picture.end = std::min(end, picture.end.value_or(end));
+  }
+}
+
 void Render(RenderOptions options) {
+  const Interrupt interrupt;  // what is half written is taken away again
   const Subject subject = LoadSubject(options.machine);
   const Machine& machine = subject.nominal;
   for (const std::string& text : options.amplify) {
@@ -204,6 +219,7 @@ void Render(RenderOptions options) {
   const std::vector<TitledRecord> titled =
       options.records.empty() ? std::vector<TitledRecord>()
                               : ReadRuns(machine, options.records, notes);
+  LimitDuration(titled, options.motion.duration, options.clip.picture);
   PrepareOutput(options.output);
   CheckPicture(machine.plant(), options.clip.picture);
   const std::vector<TitledRecord> records =
@@ -211,6 +227,7 @@ void Render(RenderOptions options) {
   std::vector<ClipRun> runs;
   runs.reserve(records.size());
   for (const TitledRecord& run : records) runs.push_back({run.title, &run.record});
+  Interrupt::ThrowIfWished();
   if (options.diagnose) {
     options.clip.picture.diagnosis = DiagnosisOf(options, machine, records);
   }
@@ -239,7 +256,10 @@ void Render(RenderOptions options) {
     ClipSummary summary;
     {
       ProgressBar bar("rendering");
-      options.clip.progress = [&bar](double fraction) { bar.Show(fraction); };
+      options.clip.progress = [&bar](double fraction) {
+        Interrupt::ThrowIfWished();
+        bar.Show(fraction);
+      };
       summary = RenderClip(machine.plant(), runs, options.clip, folder / "clip.mp4");
     }
     document["clip"] = "clip.mp4";

@@ -72,7 +72,7 @@ void Simulate(const SimulateOptions& options) {
     return Stream(subject, options.motion, options.stream);
   }
   subject.options.log_joints = options.log_joints;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = NotesOn(subject.nominal);
   const Excitation excitation = MakeExcitation(subject.setup(), options.motion, notes);
   PrepareOutput(options.output);
 

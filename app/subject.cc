@@ -8,6 +8,7 @@
 
 #include "app/format.h"
 #include "app/progress.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
@@ -231,6 +232,22 @@ nlohmann::json ToJson(const Subject& subject) {
                        {"parameters", NamedValues(effect)}});
   }
   return {{"faults", faults}, {"effects", effects}};
+}
+
+std::vector<std::string> NotesOn(const Machine& machine) {
+  std::string names;
+  int count = 0;
+  const mjModel& plant = machine.plant();
+  for (int id = 0; id < plant.nu; ++id) {
+    const std::vector<int>& driven = machine.actuator_addresses();
+    if (std::ranges::find(driven, id) != driven.end()) continue;
+    names +=
+        (count++ == 0 ? "'" : ", '") + ElementName(plant, mjOBJ_ACTUATOR, id) + "'";
+  }
+  if (count == 0) return {};
+  return {(count == 1 ? "actuator " : "actuators ") + names +
+          (count == 1 ? " of the plant is 0" : " of the plant are 0") +
+          " all the time: no [actuators] of the setup gives an input"};
 }
 
 }  // namespace mjdiag::app

@@ -43,6 +43,10 @@ struct Subject {
   }
 };
 
+/// What one should know about the machine of a setup: which actuators of its plant are 0
+/// because the setup names none of their inputs.
+std::vector<std::string> NotesOn(const Machine& machine);
+
 /// Accepts finite numbers in least .. most only; CLI11's own ranges let NaN pass.
 CLI::Validator Within(double least, double most);
 

@@ -53,9 +53,9 @@ if("studies" IN_LIST mjdiag_parts)
   mjdiag_library(mjdiag::opencv_ml_library BUILD_HEADER opencv2/ml.hpp SUFFIXES opencv4
                  LIBRARIES opencv_ml opencv_core)
 endif()
-# HDF5 writes data sets, where it is: mjdiag_has_hdf5 says so. A package that was built with
-# it asks for its libraries.
-if("studies" IN_LIST mjdiag_parts)
+# HDF5 reads logs and writes data sets, where it is: mjdiag_has_hdf5 says so. A package that
+# was built with it asks for its libraries.
+if("signals" IN_LIST mjdiag_parts)
   set(required)
   if(mjdiag_building AND DEFINED MJDIAG_HDF5 AND NOT MJDIAG_HDF5 STREQUAL "AUTO")
     set(required REQUIRED)

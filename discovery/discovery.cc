@@ -19,6 +19,7 @@
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/verdict.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -48,6 +49,18 @@ DiscoveryProblem Discoverer::Pose(double bandwidth) const {
 void Discoverer::MeasureNominal() {
   nominal_ =
       MeanSquare(problem_, problem_.Residual({}), problem_.skip(), problem_.train());
+}
+
+/// What is missing along a motion that leaves the rest is balanced on one plant.
+void RequireOnePlant(const Measurements& measurements) {
+  for (const auto* records : {&measurements.fit, &measurements.unseen}) {
+    for (const MeasuredRecord& one : *records) {
+      if (!one.own_plant) continue;
+      throw InputError(one.name,
+                       "has a plant of its own, and the machine leaves its rest in it",
+                       "records of one load at a time of such a machine");
+    }
+  }
 }
 
 /// How long the budget is on this machine, for people: by the time of one run of the plant
@@ -247,6 +260,7 @@ Discovery Discoverer::Run() {
   discovery_.train_share = static_cast<double>(problem_.train()) /
                            static_cast<double>(problem_.run().samples());
   discovery_.sample_time = machine_.rates().tick();
+  if (problem_.observer().following) RequireOnePlant(measurements_);
   falls_ = problem_.observer().following && AnyFalls(measurements_);
   BoundByRecord(candidates_, machine_, problem_.MotionOf(problem_.Nominal()));
   MeasureNominal();

@@ -16,10 +16,11 @@ namespace mjdiag {
 struct MeasuredRecord {
   Record record;
   /// The machine as it was during the record: controllers with other gains, for example.
-  /// Its plant, its rates and its channels are those of all records.
+  /// Its rates and its channels are those of all records.
   Machine machine;
   std::string name{};                ///< of its file
   std::vector<std::string> notes{};  ///< of how the file became the record
+  bool own_plant = false;            ///< loaded otherwise than the others
 };
 
 struct Measurements {
@@ -30,7 +31,8 @@ struct Measurements {
 };
 
 /// Of a list of records: what each of them sets comes behind `overrides` of the setup.
-/// InputError as ReadSetup and ReadRecord.
+/// InputError as ReadSetup and ReadRecord, and on a plant of its own with other joints,
+/// actuators or sensors.
 Measurements ReadMeasurements(const Machine& nominal,
                               const std::filesystem::path& setup,
                               const std::vector<std::string>& overrides,

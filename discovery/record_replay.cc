@@ -28,7 +28,7 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
   add(measurements.unseen, false);
   ParallelFor(2 * static_cast<int>(records.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / 2);
-    const auto& [record, machine, name, notes] = *records[i];
+    const auto& [record, machine, name, notes, own_plant] = *records[i];
     const bool is_before = number % 2 == 0;
     if (falls) {
       // One filter is behind both.
@@ -65,7 +65,7 @@ Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
   Eigen::MatrixXd errors(static_cast<Eigen::Index>(channels.sensors.size()), samples);
   ParallelFor(static_cast<int>(records.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    const auto& [record, machine, name, notes] = records[i];
+    const auto& [record, machine, name, notes, own_plant] = records[i];
     RunOptions quiet;
     quiet.noise_scale = 0.0;
     const Record simulated =
@@ -87,7 +87,7 @@ double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& change
   try {
     const Eigen::MatrixXd errors = FreeErrors(records, changes);
     Eigen::Index first = 0;
-    for (const auto& [record, machine, name, notes] : records) {
+    for (const auto& [record, machine, name, notes, own_plant] : records) {
       const Eigen::Index skip = machine.setup().compare.skip_samples;
       const Eigen::Index n = record.samples() - skip;
       for (Eigen::Index i = 0; i < errors.rows(); ++i) {
@@ -113,7 +113,7 @@ double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& change
 std::map<std::string, double> MeanReplayErrors(
     const std::vector<MeasuredRecord>& records, const Changes& changes) {
   std::map<std::string, double> mean;
-  for (const auto& [record, machine, name, notes] : records) {
+  for (const auto& [record, machine, name, notes, own_plant] : records) {
     for (const auto& [signal, error] : ReplayErrors(machine, changes, record)) {
       mean[signal] += error / static_cast<double>(records.size());
     }

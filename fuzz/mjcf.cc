@@ -8,7 +8,7 @@
 
 #include "fuzz/target.h"
 #include "mjdiag/discovery/extension/mjcf_files.h"
-#include "mjdiag/discovery/extension/xml_text.h"
+#include "mjdiag/plugin/setup/xml_text.h"
 
 namespace mjdiag::fuzz {
 namespace {

@@ -184,7 +184,7 @@ void BindMachine(py::module_& module) {
            <effect>@<site>:<name>=<value>,... (docs/effects.md). InputError.)")
       .def("read", &ReadFor, py::arg("path"),
            R"(
-           A measured file, CSV or MAT, as a Record of this machine: columns as [record]
+           A measured file, CSV, JSON, HDF5 or MAT, as a Record of this machine: columns as [record]
            of the setup says, on the grid of the control tick; what is missing is marked
            as not measured. What was done is said in warnings. InputError.)");
   machine.def(

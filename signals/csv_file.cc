@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mjdiag/signals/column_name.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
 
@@ -19,16 +20,6 @@ using Eigen::Index;
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kNotChosen = std::numeric_limits<std::size_t>::max();
-
-std::string_view TrimCell(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) {
-    text.remove_suffix(1);
-  }
-  return text;
-}
 
 bool IsBlank(std::string_view text) {
   return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
@@ -63,7 +54,7 @@ std::string_view TakeCell(std::string_view& rest, char separator) {
 }
 
 std::string_view Unquote(std::string_view cell) {
-  cell = TrimCell(cell);
+  cell = TrimBlanks(cell);
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
     cell = cell.substr(1, cell.size() - 2);
   }
@@ -71,7 +62,7 @@ std::string_view Unquote(std::string_view cell) {
 }
 
 std::string UnquoteHeader(std::string_view cell) {
-  std::string header(TrimCell(Unquote(cell)));
+  std::string header(TrimBlanks(Unquote(cell)));
   for (std::size_t at = header.find("\"\""); at != std::string::npos;
        at = header.find("\"\"", at + 1)) {
     header.erase(at, 1);
@@ -100,21 +91,6 @@ char FindSeparator(std::string_view header) {
   return ',';
 }
 
-/// "x [m]" or "x (m)" -> name x, unit m.
-SourceColumn ParseHeader(std::string_view cell) {
-  SourceColumn column{UnquoteHeader(cell), {}, std::nullopt};
-  const std::string_view header = column.header;
-  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
-    const std::size_t at = header.rfind(open);
-    if (!header.ends_with(close) || at == std::string_view::npos || at == 0) continue;
-    column.unit = TrimCell(header.substr(at + 1, header.size() - at - 2));
-    column.name = TrimCell(header.substr(0, at));
-    return column;
-  }
-  column.name = column.header;
-  return column;
-}
-
 /// None if the cell is not exactly one finite number.
 std::optional<double> ParseCell(std::string_view cell) {
   cell = Unquote(cell);
@@ -127,7 +103,7 @@ std::optional<double> ParseCell(std::string_view cell) {
 bool IsMissing(std::string_view cell) {
   constexpr std::array<std::string_view, 9> kNothing{
       "", "nan", "na", "n/a", "null", "none", "-", "inf", "infinity"};
-  std::string text(TrimCell(Unquote(cell)));
+  std::string text(TrimBlanks(Unquote(cell)));
   std::ranges::transform(text, text.begin(), [](unsigned char c) {
     return static_cast<char>(std::tolower(c));
   });
@@ -163,7 +139,7 @@ class CsvSource : public RecordSource {
     std::size_t line_number = header_line_;
     while (!rest.empty()) {
       const std::string_view line = TakeLine(rest, line_number);
-      if (TrimCell(line).empty()) continue;
+      if (TrimBlanks(line).empty()) continue;
       if (missing == MissingCells::kNan && IsBlank(rest) && !lines_.empty() &&
           SplitCells(line, separator_).size() < columns_.size()) {
         break;  // cut off while it was written
@@ -189,10 +165,10 @@ class CsvSource : public RecordSource {
   void ReadHeader() {
     std::string_view line;
     while (!body_.empty() &&
-           (TrimCell(line).empty() || TrimCell(line).starts_with('#'))) {
+           (TrimBlanks(line).empty() || TrimBlanks(line).starts_with('#'))) {
       line = TakeLine(body_, header_line_);
     }
-    if (TrimCell(line).empty() || TrimCell(line).starts_with('#')) {
+    if (TrimBlanks(line).empty() || TrimBlanks(line).starts_with('#')) {
       throw InputError(file_, "has comments only", "a header row and rows of numbers");
     }
     separator_ = FindSeparator(line);
@@ -201,7 +177,7 @@ class CsvSource : public RecordSource {
         throw InputError(file_ + ": line " + std::to_string(header_line_),
                          "a number in the header row", "names of columns");
       }
-      columns_.push_back(ParseHeader(cell));
+      columns_.push_back(ParseColumnHeader(UnquoteHeader(cell)));
     }
   }
 
@@ -218,7 +194,8 @@ class CsvSource : public RecordSource {
         number = std::numeric_limits<double>::quiet_NaN();
       }
       if (!number) {
-        throw InputError(Place(column, row), "\"" + std::string(TrimCell(cell)) + "\"",
+        throw InputError(Place(column, row),
+                         "\"" + std::string(TrimBlanks(cell)) + "\"",
                          "a finite number");
       }
       values[slots[column]][row] = *number;

@@ -2,8 +2,9 @@
 // Records as text: a header row `time [s],x [m],"a, b [N]"`, then one row a sample.
 //
 // Read: separated by comma, semicolon or tab (whichever the header row uses), LF or
-// CRLF, units in square brackets or parentheses, quoted headers and cells, comment
-// lines that begin with # before the header, blank lines anywhere, a byte-order mark.
+// CRLF, units in square brackets or parentheses (column_name.h), quoted headers and cells,
+// comment lines that begin with # before the header, blank lines anywhere, a byte-order
+// mark.
 
 #include <filesystem>
 #include <memory>

@@ -39,7 +39,7 @@ std::vector<Level> LevelsOf(const VectorXd& x) {
 class Quanta {
  public:
   Quanta(const std::vector<Level>& levels, double resolution)
-      : resolution_(resolution) {
+      : resolution_(std::max(resolution, StepBetweenRepeats(levels))) {
     for (std::size_t i = 1; i < levels.size(); ++i) {
       const double step = std::abs(levels[i].value - levels[i - 1].value);
       const int decade = DecadeOf(levels[i].value);
@@ -58,6 +58,25 @@ class Quanta {
   }
 
  private:
+  /// An encoder behind a filter has values between its steps, but rests on them: the
+  /// smallest step from one value that repeats to the next that does, where enough do to
+  /// tell; else 0.
+  static double StepBetweenRepeats(const std::vector<Level>& levels) {
+    constexpr std::size_t kLeast = 20;
+    double smallest = std::numeric_limits<double>::infinity();
+    const Level* last = nullptr;
+    std::size_t count = 0;
+    for (const Level& level : levels) {
+      if (!level.Repeats()) continue;
+      if (last != nullptr && last->value != level.value) {
+        smallest = std::min(smallest, std::abs(level.value - last->value));
+      }
+      last = &level;
+      ++count;
+    }
+    return count >= kLeast && std::isfinite(smallest) ? smallest : 0.0;
+  }
+
   static int DecadeOf(double value) {
     return value == 0.0 ? -400
                         : static_cast<int>(std::floor(std::log10(std::abs(value))));
@@ -149,6 +168,10 @@ bool Reading::MovesOn(std::size_t i, std::size_t next) const {
   const double after = rate(next, to);
   const double step = levels_[next].value - levels_[i].value;
   if (before * step <= 0.0 || after * step <= 0.0) return false;
+  // Noise about a rest goes up and down.
+  for (std::size_t k = from + 1; k <= to; ++k) {
+    if (Step(k) * step < 0.0) return false;
+  }
   const double slower = std::min(std::abs(before), std::abs(after));
   const double way = slower * (times_[levels_[next].first - 1] - Begin(i));
   return way >= kSteps * Quantum(i) && std::abs(step) >= kNoLess * way;
@@ -189,7 +212,11 @@ std::vector<std::size_t> Reading::Held() const {
       ++steps;
     }
   }
-  if (held.size() <= steps) held.clear();
+  // As many by chance, and their scatter.
+  const double by_chance = static_cast<double>(steps);
+  if (static_cast<double>(held.size()) <= by_chance + 2.0 * std::sqrt(by_chance)) {
+    held.clear();
+  }
   for (std::size_t i = 0; i + 1 < levels_.size(); ++i) {
     if (Jumps(i)) held.push_back(i);
   }

@@ -4,13 +4,14 @@
 //
 // A machine that rests and a coarse encoder repeat values, too. What tells them apart, by
 // the steps q of the reading (its resolution, or the smallest step that it takes at values
-// of that size):
+// of that size, or from one value that repeats to the next that does: encoders behind
+// filters have values in between):
 //
 //   beat    values change at every n-th sample and at no others, by 3 q and more: a
 //           sensor of 1 / n of the rate, moving or not
-//   motion  before and after the repeats the reading moves the same way, so fast that it
-//           would have gone 3 q on meanwhile, and then it has gone that way: what had
-//           rested would not
+//   motion  before and after the repeats the reading moves the same way at every change,
+//           so fast that it would have gone 3 q on meanwhile, and then it has gone that
+//           way: what had rested would not
 //   jump    5 equal values or more, then a step of 3 q and more that is 3 times every
 //           step around, of a reading that moves that way
 //

@@ -4,7 +4,9 @@
 // channel's name for every variable (MATLAB's names allow no dot, for example).
 //
 // Read: version 5 (also compressed, either byte order) and 7.3; files of others need
-// neither `units` nor `names`. A vector may be a row or a column of any numeric class.
+// neither `units` nor `names`. A vector may be a row or a column of any numeric class. The
+// columns of a matrix, along whose longer dimension the samples are, are columns of their
+// own (column_name.h), and so are the fields of a struct, "log/q".
 
 #include <filesystem>
 #include <memory>

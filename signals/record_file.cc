@@ -8,6 +8,9 @@
 
 #include "mjdiag/signals/csv_file.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/foreign_format.h"
+#include "mjdiag/signals/hdf5_file.h"
+#include "mjdiag/signals/json_file.h"
 #include "mjdiag/signals/mat_container.h"
 #include "mjdiag/signals/mat_file.h"
 #include "mjdiag/signals/record_source.h"
@@ -31,13 +34,17 @@ struct Selection {
 
 std::unique_ptr<RecordSource> Open(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored) && DetectMatVersion(file)) {
-    return OpenMat(file);
+  if (std::filesystem::is_regular_file(file, ignored)) {
+    if (DetectMatVersion(file)) return OpenMat(file);
+    if (IsHdf5(file)) return OpenHdf5(file);
   }
   std::string text = ReadTextFile(file);
+  RefuseForeignFormat(file, text);
   if (text.find('\0') != std::string::npos) {
-    throw InputError(file.string(), "unknown format", "CSV or MAT version 5 or 7.3");
+    throw InputError(file.string(), "unknown format",
+                     "CSV, JSON, HDF5 or MAT version 5 or 7.3");
   }
+  if (LooksLikeJson(text)) return OpenJson(file, text);
   return OpenCsv(file, std::move(text));
 }
 
@@ -79,10 +86,13 @@ class Selector {
         spec.unit.empty() ? fallback : spec.unit);
   }
 
+  /// But what is no series beside the time: texts, gains, names.
   void ChooseAll() {
+    const auto times = source_.columns()[selection_.columns.front()].samples;
     for (std::size_t i = 0; i < source_.columns().size(); ++i) {
       const SourceColumn& column = source_.columns()[i];
       if (i == selection_.columns.front() || column.name.empty()) continue;
+      if (times && column.samples && 2 * *column.samples <= *times) continue;
       Add(i, column.name, column.unit.value_or("1"));
     }
   }

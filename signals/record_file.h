@@ -1,7 +1,8 @@
 #pragma once
 // Records in files. CSV has a header row `time [s],x [m],u_x [N]` (csv_file.h); MAT
 // (v5, v7.3) has one variable a channel and a struct `units` with the same field names
-// (mat_file.h). Units of a foreign file may come from the column map.
+// (mat_file.h). Logs in JSON (json_file.h) and HDF5 (hdf5_file.h) are read as well. Units
+// of a foreign file may come from the column map.
 
 #include <filesystem>
 #include <optional>
@@ -19,7 +20,7 @@ enum class RecordFormat { kCsv, kMat5, kMat73 };
 /// Where a channel lies in a foreign file.
 struct ColumnSpec {
   std::string channel;  ///< name in the Record
-  std::string column;   ///< column header (without unit) or MAT variable
+  std::string column;   ///< header (without unit), dataset or variable
   /// Unit of the numbers in the file, converted to SI; goes before what the file says.
   /// Empty: the file's; a file without one holds pure numbers, and seconds.
   std::string unit = {};

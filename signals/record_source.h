@@ -17,6 +17,8 @@ struct SourceColumn {
   std::string header;               ///< as it stands in the file
   std::string name;                 ///< without the unit
   std::optional<std::string> unit;  ///< as it stands in the file, if it does
+  /// Where the file says it before it is read; else the samples of all columns are as many.
+  std::optional<Eigen::Index> samples = std::nullopt;
 };
 
 /// What becomes of cells that are empty or not finite.

@@ -1,200 +1,137 @@
 #include "mjdiag/discovery/checks/clock_drift.h"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <string>
-#include <utility>
-#include <vector>
+#include <optional>
 
-#include "mjdiag/diagnosis/statistics/distributions.h"
-#include "mjdiag/signals/decompositions.h"
+#include "mjdiag/discovery/checks/fitted_run.h"
+#include "mjdiag/discovery/checks/lag_trend.h"
+#include "mjdiag/discovery/checks/nominal_run.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kWindows = 10;
-constexpr Index kSpan = 4;  // samples of a difference
-constexpr double kSmallestDrift = 0.5;
-
-struct WindowLag {
-  double time = 0.0;    ///< of the middle, -1/2 .. 1/2 of the record
-  double lag = 0.0;     ///< [samples]
-  double weight = 0.0;  ///< sum (ds/dk)^2
-  double period = 0.0;  ///< 1 / mean frequency [samples / rad]
+/// Two channels whose clocks are held against each other.
+struct ClockPair {
+  std::string reading;
+  std::string other;  ///< channel whose lag is held against it; empty: none has any
+  std::string other_words;
+  std::vector<std::string> acting;  ///< channels that act on the machine
 };
 
-VectorXd Differences(const VectorXd& x) {
-  return x.tail(x.size() - kSpan) - x.head(x.size() - kSpan);
-}
+std::string InQuotes(const std::string& name) { return "'" + name + "'"; }
 
-/// x and dx/dk at `at`, by the cubic of Catmull and Rom through four samples.
-std::pair<double, double> Between(const VectorXd& x, double at) {
-  const double inside = std::clamp(at, 1.0, static_cast<double>(x.size()) - 2.001);
-  const auto k = static_cast<Index>(inside);
-  const double t = inside - static_cast<double>(k);
-  const double a = x[k - 1];
-  const double b = x[k];
-  const double c = x[k + 1];
-  const double d = x[k + 2];
-  const double c1 = 0.5 * (c - a);
-  const double c2 = a - 2.5 * b + 2.0 * c - 0.5 * d;
-  const double c3 = 0.5 * (d - a) + 1.5 * (b - c);
-  return {b + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + t * 3.0 * c3)};
-}
-
-std::optional<WindowLag> FindLag(const VectorXd& m, const VectorXd& s, Index first,
-                                 Index count) {
-  constexpr int kRounds = 8;
-  constexpr double kLike = 0.8;  // share of the variance that s explains
-  const VectorXd measured = m.segment(first, count);
-  MatrixXd design(count, 4);
-  design.col(0).setOnes();
-  design.col(1).setLinSpaced(-1.0, 1.0);
-  const double farthest = 0.25 * static_cast<double>(count);
-  WindowLag window;
-  double like = 0.0;
-  for (int round = 0; round < kRounds; ++round) {
-    for (Index k = 0; k < count; ++k) {
-      const auto [value, derivative] =
-          Between(s, static_cast<double>(first + k) - window.lag);
-      design(k, 2) = value;
-      design(k, 3) = derivative;
+std::vector<ClockPair> ClockPairsOf(const Setup& setup) {
+  std::vector<ClockPair> pairs;
+  if (setup.control.axes.empty()) {
+    std::vector<std::string> inputs;
+    for (const ActuatorSetup& actuator : setup.channels.actuators) {
+      inputs.push_back(actuator.channel);
     }
-    const VectorXd about =
-        design.col(2).array() - design.col(2).mean();  // a rest has nothing to shift
-    window.weight = design.col(3).squaredNorm();
-    if (!(about.squaredNorm() > 0.0) || !(window.weight > 0.0)) return std::nullopt;
-    window.period = std::sqrt(about.squaredNorm() / window.weight);
-    const VectorXd solution = LeastSquares(design, measured);
-    const VectorXd trend = design.leftCols(2) * solution.head(2);
-    const double rest = (measured - design * solution).squaredNorm();
-    const double all = (measured - trend).squaredNorm();
-    if (!(all > 0.0) || !(solution[2] > 0.0)) return std::nullopt;
-    like = 1.0 - rest / all;
-    const double step = -solution[3] / solution[2];
-    window.lag += step;
-    if (!(std::abs(window.lag) < farthest)) return std::nullopt;
-    if (std::abs(step) < 1e-3) break;
+    const std::string words =
+        inputs.size() == 1 ? InQuotes(inputs.front()) : "the inputs";
+    for (const SensorSetup& sensor : setup.channels.sensors) {
+      pairs.push_back({sensor.channel, "", words, inputs});
+    }
+    return pairs;
   }
-  if (like < kLike) return std::nullopt;
-  return window;
+  for (const AxisSetup& axis : setup.control.axes) {
+    const std::string reference = axis.name + "_ref";
+    const std::vector<std::string> acting{reference, axis.actuator};
+    pairs.push_back({axis.sensor, axis.actuator, InQuotes(axis.actuator), acting});
+    // An input that the model gets too wrong leaves the reference as the other clock.
+    pairs.push_back({axis.sensor, "", InQuotes(reference), acting});
+  }
+  return pairs;
 }
 
-/// A trend without scatter has no degrees of freedom, and needs none.
-double SignificantT(double freedom) {
-  constexpr double kLevel = 1e-3;
-  return StudentQuantile(0.5 * kLevel, std::max(freedom, 1.0));
-}
+class ClockCheck {
+ public:
+  ClockCheck(const Machine& machine, const Record& measured, const Record& simulated)
+      : machine_(machine), measured_(measured), simulated_(simulated) {}
 
-void RefuseDrift(const std::string& a, const std::string& b, double drift) {
-  if (drift == 0.0) return;
-  char size[32];
-  std::snprintf(size, sizeof size, "%.1f", std::abs(drift));
-  throw InputError(
-      "record",
-      "clocks of " + a + " and " + b + " drift by " + size + " samples over the record",
-      "channels that are sampled together");
-}
+  std::vector<std::string> Check() {
+    for (const ClockPair& pair : ClockPairsOf(machine_.setup())) Judge(pair);
+    return std::move(notes_);
+  }
+
+ private:
+  VectorXd Counted(const Record& record, const std::string& channel) const {
+    return CountedSamples(machine_.setup(), record, channel);
+  }
+
+  LagWindows WindowsOf(const ClockPair& pair) const {
+    LagWindows windows{};
+    for (const std::string& channel : pair.acting) {
+      const LagWindows active = ActiveWindows(Counted(measured_, channel));
+      for (std::size_t w = 0; w < windows.size(); ++w) windows[w] |= active[w];
+    }
+    return windows;
+  }
+
+  /// Drift behind a simulated record [samples]; 0: none that counts, nothing: it cannot be
+  /// told.
+  std::optional<double> DriftOf(const ClockPair& pair, const Record& simulated,
+                                const LagWindows& windows) const {
+    const auto trend = [&](const std::string& channel) {
+      return FindLagTrend(Counted(measured_, channel), Counted(simulated, channel),
+                          windows);
+    };
+    const std::optional<LagTrend> reading = trend(pair.reading);
+    if (!reading) return std::nullopt;
+    if (pair.other.empty()) return ClockDrift(*reading, LagTrend{});
+    const std::optional<LagTrend> other = trend(pair.other);
+    if (!other) return std::nullopt;
+    return ClockDrift(*reading, *other);
+  }
+
+  void Judge(const ClockPair& pair) {
+    LagWindows all{};
+    all.fill(true);
+    const double drift = DriftOf(pair, simulated_, all).value_or(0.0);
+    if (drift == 0.0) return;
+    const LagWindows acting = WindowsOf(pair);
+    const std::optional<double> while_acting = DriftOf(pair, simulated_, acting);
+    if (!while_acting) {
+      notes_.push_back(
+          "whether the clocks of " + InQuotes(pair.reading) + " and " +
+          pair.other_words + " drift is not checked: by " + Samples(drift) +
+          " over the record, or a frequency is off, and nothing acts on the "
+          "machine for long enough to tell");
+      return;
+    }
+    if (*while_acting == 0.0) return;
+    if (!fitted_) fitted_ = FittedRun(machine_, measured_, simulated_);
+    const double left = DriftOf(pair, *fitted_, acting).value_or(0.0);
+    if (left == 0.0) return;
+    throw InputError("record",
+                     "clocks of " + InQuotes(pair.reading) + " and " +
+                         pair.other_words + " drift by " + Samples(left) +
+                         " over the record",
+                     "channels that are sampled together");
+  }
+
+  static std::string Samples(double drift) {
+    char size[48];
+    std::snprintf(size, sizeof size, "%.1f samples", std::abs(drift));
+    return size;
+  }
+
+  const Machine& machine_;
+  const Record& measured_;
+  const Record& simulated_;
+  std::optional<Record> fitted_;
+  std::vector<std::string> notes_;
+};
 
 }  // namespace
 
-std::optional<LagTrend> FindLagTrend(const VectorXd& measured,
-                                     const VectorXd& simulated) {
-  const VectorXd m = Differences(measured);
-  const VectorXd s = Differences(simulated);
-  const Index count = m.size() / kWindows;
-  std::vector<WindowLag> windows;
-  for (Index w = 0; w < kWindows; ++w) {
-    std::optional<WindowLag> window = FindLag(m, s, w * count, count);
-    if (!window) continue;
-    window->time = (static_cast<double>(w) + 0.5) / static_cast<double>(kWindows) - 0.5;
-    windows.push_back(*window);
-  }
-  // Windows of even motion say little, and that little is noise.
-  double most = 0.0;
-  for (const WindowLag& window : windows) most = std::max(most, window.weight);
-  std::erase_if(windows, [&](const WindowLag& w) { return w.weight < 0.02 * most; });
-  constexpr double kReach = 0.55;  // of the record, between the outer windows
-  if (windows.size() < 3 || windows.back().time - windows.front().time < kReach) {
-    return std::nullopt;
-  }
-
-  constexpr double kVaries = 1.25;
-  const auto [shortest, longest] = std::ranges::minmax(
-      windows, {}, [](const WindowLag& window) { return window.period; });
-  const Index unknowns = longest.period > kVaries * shortest.period ? 3 : 2;
-  const auto n = static_cast<Index>(windows.size());
-  if (n <= unknowns) return std::nullopt;
-  MatrixXd design(n, unknowns);
-  VectorXd lag(n);
-  for (Index i = 0; i < n; ++i) {
-    const WindowLag& window = windows[static_cast<std::size_t>(i)];
-    const double root = std::sqrt(window.weight / most);
-    design(i, 0) = root;
-    design(i, 1) = root * window.time;
-    if (unknowns == 3) design(i, 2) = root * window.period / longest.period;
-    lag[i] = root * window.lag;
-  }
-  const VectorXd solution = LeastSquares(design, lag);
-  LagTrend trend;
-  trend.drift = solution[1];
-  trend.freedom = static_cast<double>(n - unknowns);
-  const double variance = (lag - design * solution).squaredNorm() / trend.freedom;
-  const MatrixXd covariance = (design.transpose() * design)
-                                  .ldlt()
-                                  .solve(MatrixXd::Identity(unknowns, unknowns));
-  trend.sd = std::sqrt(variance * std::max(covariance(1, 1), 0.0));
-  if (!std::isfinite(trend.drift) || !std::isfinite(trend.sd)) return std::nullopt;
-  return trend;
-}
-
-double ClockDrift(const LagTrend& a, const LagTrend& b) {
-  const double drift = a.drift - b.drift;
-  const double sd = std::hypot(a.sd, b.sd);
-  // The poorer known of the two decides, if it matters.
-  const double freedom = a.sd > b.sd ? a.freedom : b.freedom;
-  const bool counts =
-      std::abs(drift) > kSmallestDrift && std::abs(drift) > SignificantT(freedom) * sd;
-  return counts ? drift : 0.0;
-}
-
-void CheckClocks(const Setup& setup, const Record& measured, const Record& simulated) {
-  const auto trend = [&](const std::string& channel) {
-    const VectorXd& samples = measured.At(channel).samples;
-    const Index counted = samples.size() - setup.compare.skip_samples;
-    return FindLagTrend(samples.tail(counted),
-                        simulated.At(channel).samples.tail(counted));
-  };
-  const auto quoted = [](const std::string& name) { return "'" + name + "'"; };
-  if (setup.control.axes.empty()) {
-    const std::string inputs = setup.channels.actuators.size() == 1
-                                   ? quoted(setup.channels.actuators.front().channel)
-                                   : "the inputs";
-    for (const SensorSetup& sensor : setup.channels.sensors) {
-      const std::optional<LagTrend> reading = trend(sensor.channel);
-      if (!reading) continue;
-      RefuseDrift(quoted(sensor.channel), inputs, ClockDrift(*reading, LagTrend{}));
-    }
-    return;
-  }
-  for (const AxisSetup& axis : setup.control.axes) {
-    const std::optional<LagTrend> reading = trend(axis.sensor);
-    if (!reading) continue;
-    if (const std::optional<LagTrend> input = trend(axis.actuator)) {
-      RefuseDrift(quoted(axis.sensor), quoted(axis.actuator),
-                  ClockDrift(*reading, *input));
-    }
-    // An input that the model gets too wrong leaves the reference as the other clock.
-    RefuseDrift(quoted(axis.sensor), quoted(axis.name + "_ref"),
-                ClockDrift(*reading, LagTrend{}));
-  }
+std::vector<std::string> CheckClocks(const Machine& machine, const Record& measured,
+                                     const Record& simulated) {
+  return ClockCheck(machine, measured, simulated).Check();
 }
 
 }  // namespace mjdiag

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -74,7 +75,10 @@ class RecordCheck {
     if (simulated_) CheckAgainstPlant(machine_, measured_, *simulated_);
     if (simulated_ && !from_readings) SimulateNominal(true);
     for (const SensorSetup& sensor : setup().channels.sensors) CheckSaturation(sensor);
-    if (simulated_) CheckClocks(setup(), measured_, *simulated_);
+    if (simulated_) {
+      std::ranges::copy(CheckClocks(machine_, measured_, *simulated_),
+                        std::back_inserter(notes_));
+    }
     return notes_;
   }
 
@@ -229,6 +233,31 @@ bool IsCutOff(const VectorXd& x, const Repeats& run, double step) {
   return steady(run.first, -1) && steady(run.end() - 1, 1);
 }
 
+/// Whether the reading never leaves the noise or the steps that it has at rest.
+bool StandsStill(const VectorXd& x) {
+  constexpr double kSteps = 8.0;
+  std::vector<double> steps;
+  for (Index k = 1; k < x.size(); ++k) {
+    if (x[k] != x[k - 1]) steps.push_back(std::abs(x[k] - x[k - 1]));
+  }
+  if (steps.empty()) return true;
+  const auto middle = steps.begin() + std::ssize(steps) / 2;
+  std::nth_element(steps.begin(), middle, steps.end());
+  return Range(x) <= kSteps * *middle;
+}
+
+/// Samples in runs of five equal ones and more at other values than its extremes: of a
+/// sensor that repeats wherever it rests.
+Index RepeatsInside(const VectorXd& x) {
+  constexpr Index kLeast = 5;
+  Index total = 0;
+  for (const Repeats& run : RepeatsIn(x, kLeast)) {
+    if (x[run.first] == x.minCoeff() || x[run.first] == x.maxCoeff()) continue;
+    total += run.count;
+  }
+  return total;
+}
+
 void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   constexpr Index kLeast = 10;
   constexpr double kShare = 0.005;
@@ -236,7 +265,8 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   // What was not measured is not judged: of a slow sensor every value would be held.
   if (measured_.At(sensor.channel).measured.size() > 0) return;
   const VectorXd x = Reading(sensor.channel);
-  if (Range(x) == 0.0) return;
+  if (StandsStill(x)) return;
+  const Index inside = RepeatsInside(x);
   const VectorXd* expected = Expected(sensor);
   const double step = std::max(SmallestStep(x), sensor.resolution);
   const std::vector<Repeats> runs = RepeatsIn(x, kLeast);
@@ -256,7 +286,8 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
     }
     if (static_cast<double>(total) <= kShare * static_cast<double>(x.size())) continue;
     // An arm that friction holds rests where its reference moves on.
-    if (!(should_move && cut_off) && !IsNoisy(x, step)) continue;
+    const bool loses_noise = inside < total && IsNoisy(x, step);
+    if (!(should_move && cut_off) && !loses_noise) continue;
     throw InputError("record",
                      "saturated: " + Quoted(sensor.channel) + " sits at exactly " +
                          Digits(extreme) + " " + sensor.unit + " for " +

@@ -18,8 +18,8 @@
 // In open loop readings are held against the nominal plant under the measured input.
 // Beside other resonances a machine moves against its model at some frequencies; one
 // whose sign is flipped does at all, by the same factor (Likeness::broad). A plant that
-// is not stable, or that half of the input moves in another way, has no sign: chance
-// says which way it falls.
+// is not stable, or that half of the input moves in another way, as an arm does that falls
+// for want of friction and controllers, has neither size nor sign: chance says where it is.
 
 #include <mujoco/mujoco.h>
 

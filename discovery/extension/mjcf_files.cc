@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mjdiag/discovery/extension/xml_text.h"
+#include "mjdiag/plugin/setup/xml_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "mjdiag/discovery/extension/text_changes.h"
+#include "mjdiag/plugin/setup/text_changes.h"
 #include "mjdiag/plugin/setup/toml_library.h"
 
 namespace mjdiag {

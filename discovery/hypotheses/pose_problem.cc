@@ -13,6 +13,7 @@
 #include "mjdiag/plugin/replay/motion_path.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
+#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
@@ -89,10 +90,10 @@ Observer Pose(const Machine& machine, const MeasuredRun& run, double hertz,
   for (const double first = hertz;; hertz *= kFaster) {
     // One that was asked for may be faster.
     if (hertz > std::max(first, fastest)) {
-      throw NumericalError(
-          "replay: no observer keeps the plant beside the record; is it the machine "
-          "that "
-          "was measured, and in which units?");
+      throw NumericalError("replay: no observer of up to " +
+                           FormatQuantity(fastest, "Hz") +
+                           " keeps the plant within 1 % of the record: readings of a "
+                           "higher rate would, or a plant that lacks less");
     }
     const auto design = [&](const Eigen::MatrixXd& innovations) {
       VectorXd noise = SensorNoise(machine.channels(), run, innovations);

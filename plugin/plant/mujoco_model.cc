@@ -10,6 +10,7 @@
 #include <regex>
 #include <vector>
 
+#include "mjdiag/plugin/plant/newer_mjcf.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
 
@@ -138,13 +139,23 @@ int Count(const mjModel& model, mjtObj kind) {
   }
 }
 
+/// What a model is to have of a kind of which it has none.
+std::string ExpectedOf(const mjModel& model, mjtObj kind) {
+  if (model.nu > 0 || model.nsensor > 0) {
+    return std::string("one <") + mju_type2Str(kind) + "> in its MJCF";
+  }
+  return "an MJCF with <actuator> and <sensor>, of which a URDF has none: `mjdiag "
+         "init` "
+         "writes one";
+}
+
 std::string NamesOf(const mjModel& model, mjtObj kind) {
   std::string names;
   for (int id = 0; id < Count(model, kind); ++id) {
     if (!names.empty()) names += ", ";
     names += ElementName(model, kind, id);
   }
-  return names.empty() ? "none" : names;
+  return names;
 }
 
 }  // namespace
@@ -153,7 +164,14 @@ ModelPtr LoadModel(const std::filesystem::path& mjcf) {
   InstallHandlers();
   std::array<char, 1024> report{};
   ModelPtr model(mj_loadXML(mjcf.c_str(), nullptr, report.data(), report.size()));
-  if (!model) throw MjcfError(mjcf, report.data());
+  if (!model) {
+    if (const std::string words = DescribeNewer(NewerThanThisMujoco(mjcf));
+        !words.empty()) {
+      throw InputError(mjcf.string(), words,
+                       "a model for it, with what stands behind the colons");
+    }
+    throw MjcfError(mjcf, report.data());
+  }
   DropUnusedRows(*model);
   return model;
 }
@@ -169,9 +187,13 @@ DataPtr MakeData(const mjModel& model) { return DataPtr(mj_makeData(&model)); }
 int FindElement(const mjModel& model, mjtObj kind, const std::string& name) {
   const int id = mj_name2id(&model, kind, name.c_str());
   if (id >= 0) return id;
-  throw InputError(model.names,
-                   std::string("no ") + mju_type2Str(kind) + " named \"" + name + "\"",
-                   "one of " + NamesOf(model, kind));
+  const std::string sort = mju_type2Str(kind);
+  const std::string missing = "no " + sort + " named \"" + name + "\"";
+  if (Count(model, kind) == 0) {
+    throw InputError(model.names, missing + ", and no " + sort + " at all",
+                     ExpectedOf(model, kind));
+  }
+  throw InputError(model.names, missing, "one of " + NamesOf(model, kind));
 }
 
 std::string ElementName(const mjModel& model, mjtObj kind, int id) {

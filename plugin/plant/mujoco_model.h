@@ -20,15 +20,16 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// Loads and compiles an MJCF file. InputError with file and line of what MuJoCo
-/// rejects. From then on errors inside MuJoCo (mju_error) throw NumericalError instead
+/// Loads and compiles an MJCF file, or a URDF as MuJoCo reads it: without actuators and
+/// sensors. InputError with file and line of what MuJoCo rejects, or with all that a newer
+/// MuJoCo would have known (newer_mjcf.h). From then on errors inside MuJoCo (mju_error) throw NumericalError instead
 /// of ending the process, and its warnings are neither printed nor logged.
 ModelPtr LoadModel(const std::filesystem::path& mjcf);
 ModelPtr CopyModel(const mjModel& model);
 DataPtr MakeData(const mjModel& model);
 
 /// mj_name2id that fails with InputError("<model>: no <kind> named ..., expected one of
-/// ...") instead of returning -1.
+/// ...") instead of returning -1; where there are none, it says so.
 int FindElement(const mjModel& model, mjtObj kind, const std::string& name);
 /// Where row `row` of an array of mjModel or mjData begins, of `width` numbers each.
 template <typename Number>

@@ -146,6 +146,13 @@ void RecordFollower::Follow(const Watch& watch, Track& track) {
   }
 }
 
+/// The machine of a record with those changes, in the steps of the others.
+Machine DuringRecord(const RecordStart& record, const Machine& nominal,
+                     const Machine& changed, const Changes& changes) {
+  if (!record.machine) return changed;
+  return record.machine->WithSubsteps(nominal.rates().substeps).With(changes);
+}
+
 Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& run,
              const Observer& observer, bool states, const Watch& watch) {
   const Machine machine = nominal.With(changes);
@@ -160,7 +167,8 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
     const auto i = static_cast<std::size_t>(number);
     if (watch.record) watch.record();
     const MeasuredRun record = Part(run, i, run.SamplesOf(i));
-    RecordFollower(machine, record, observer, i, run.records[i].sample)
+    const Machine during = DuringRecord(run.records[i], nominal, machine, changes);
+    RecordFollower(during, record, observer, i, run.records[i].sample)
         .Follow(watch, track);
   };
   const auto records = static_cast<int>(run.records.size());
@@ -275,7 +283,7 @@ MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
   part.records.clear();
   for (const RecordStart& start : run.records) {
     if (start.sample < first || start.sample >= first + samples) continue;
-    part.records.push_back({start.sample - first, start.readings});
+    part.records.push_back({start.sample - first, start.readings, start.machine});
   }
   return part;
 }
@@ -308,7 +316,7 @@ MeasuredRun Joined(const std::vector<MeasuredRun>& runs) {
     }
     if (run.driven.size() > 0) all.driven.segment(first, run.samples()) = run.driven;
     for (const RecordStart& start : run.records) {
-      all.records.push_back({first + start.sample, start.readings});
+      all.records.push_back({first + start.sample, start.readings, start.machine});
     }
     first += run.samples();
   }

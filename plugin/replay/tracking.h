@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ void ChooseSolver(mjModel& model);
 struct RecordStart {
   Eigen::Index sample = 0;
   std::map<std::string, double> readings{};  ///< at rest before its first sample
+  /// As it was during the record, with another load for example; none: that of the run.
+  std::shared_ptr<const Machine> machine{};
 };
 
 /// What of measured records the replay needs, in the setup's order: one after the other,

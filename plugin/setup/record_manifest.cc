@@ -15,9 +15,8 @@ void CheckOverrides(const TomlTable& table, const std::vector<std::string>& over
   for (const std::string& text : overrides) {
     if (std::ranges::none_of(kAllowed,
                              [&](auto prefix) { return text.starts_with(prefix); })) {
-      table.Fail(
-          "set", "changes '" + text.substr(0, text.find('=')) + "'",
-          "keys under axes, record or compare; the plant is that of all records");
+      table.Fail("set", "changes '" + text.substr(0, text.find('=')) + "'",
+                 "keys under axes, record or compare; `plant` names another plant");
     }
   }
 }
@@ -34,7 +33,7 @@ std::vector<ManifestRecord> ReadRecordManifest(const std::filesystem::path& mani
       table.Fail("role", "is \"" + role + "\"", "\"fit\" or \"validation\"");
     }
     ManifestRecord record{folder / table.Text("file"), role == "fit",
-                          table.Overrides("set")};
+                          table.Overrides("set"), table.Text("plant", "")};
     CheckOverrides(table, record.overrides);
     if (std::ranges::count(records, record.file, &ManifestRecord::file) > 0) {
       table.Fail("file", "is named twice", "every record once");

@@ -5,8 +5,10 @@
 //   file = "slow_kp100.csv"     # in the folder of the data
 //   role = "fit"                # or "validation": nothing is fitted to it
 //   set = { "axes.q.drive_gain" = 0.2 }   # keys of the setup, for this record
+//   plant = "with_2kg.xml"      # another load, beside the setup's own plant
 //
 // What may be set is what does not change the plant: keys under axes, record and compare.
+// Another plant has the joints, sensors and actuators of the setup's own.
 
 #include <filesystem>
 #include <string>
@@ -18,6 +20,7 @@ struct ManifestRecord {
   std::filesystem::path file;
   bool fit = true;
   std::vector<std::string> overrides{};  ///< "key.path=value", for ReadSetup
+  std::string plant{};  ///< its MJCF, relative to the setup; empty: that of the setup
 };
 
 /// @param folder  of the records

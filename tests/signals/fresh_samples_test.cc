@@ -58,6 +58,29 @@ TEST(FreshSamples, AreAllOfANoisyCoarseReading) {
   EXPECT_EQ(Repeats(Coarse(fast + noise), kStep), 0);
 }
 
+// Between its steps the filter leaves what is written with more digits.
+TEST(FreshSamples, AreAllOfAnEncoderBehindAFilterThatHardlyMoves) {
+  const VectorXd slow = Times().unaryExpr([](double t) {
+    return 0.2 + 0.05 * std::sin(2.0 * t) + 0.3 * std::max(0.0, t - 3.0);
+  });
+  VectorXd x = Coarse(slow);
+  double filtered = x[0];
+  for (double& value : x) {
+    filtered += 0.8 * (value - filtered);
+    value = 1e-8 * std::round(1e8 * filtered);
+  }
+  EXPECT_EQ(Repeats(x), 0);
+}
+
+TEST(FreshSamples, AreAllOfAReadingThatStandsStillInItsNoise) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const VectorXd noise = GaussianNoise(kSamples, 1e-5, seed);
+    const VectorXd x =
+        noise.unaryExpr([](double e) { return 1e-6 * std::round(1e6 * (0.3 + e)); });
+    EXPECT_EQ(Repeats(x), 0) << seed;
+  }
+}
+
 TEST(FreshSamples, AreNotTheRepeatsOfAReadingInMotion) {
   for (const bool coarse : {false, true}) {
     const VectorXd x = coarse ? Coarse(Motion()) : Motion();

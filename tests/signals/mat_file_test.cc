@@ -40,6 +40,17 @@ class ForeignMat {
   void AddVector(const char* name, const std::vector<double>& data) {
     Add(name, MAT_C_DOUBLE, MAT_T_DOUBLE, data.size(), 1, data, MAT_COMPRESSION_ZLIB);
   }
+  /// A struct with one field.
+  void AddStruct(const char* name, const char* field, std::vector<double> data) {
+    std::array<std::size_t, 2> one{1, 1};
+    std::array<std::size_t, 2> dims{data.size(), 1};
+    matvar_t* variable = Mat_VarCreateStruct(name, 2, one.data(), &field, 1);
+    Mat_VarSetStructFieldByName(variable, field, 0,
+                                Mat_VarCreate(nullptr, MAT_C_DOUBLE, MAT_T_DOUBLE, 2,
+                                              dims.data(), data.data(), 0));
+    EXPECT_EQ(Mat_VarWrite(file_, variable, MAT_COMPRESSION_NONE), 0);
+    Mat_VarFree(variable);
+  }
 
  private:
   mat_t* file_;
@@ -80,6 +91,33 @@ TEST(MatFile, ReadsVectorsOfOtherPrograms) {
   }
 }
 
+TEST(MatFile, HasTheColumnsOfMatricesAndTheFieldsOfStructs) {
+  const test::TemporaryFolder folder;
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    const auto file = folder / ("columns" + std::to_string(version) + ".mat");
+    {
+      ForeignMat mat(file, version);
+      mat.AddVector("time", {0.0, 0.5, 1.0});
+      mat.Add<double>("q", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, 2, {1, 2, 3, 4, 5, 6});
+      mat.Add<double>("along", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 3, {1, 4, 2, 5, 3, 6});
+      mat.AddVector("gain", {3.0});
+      mat.Add<char>("note", MAT_C_CHAR, MAT_T_UTF8, 1, 3, {'a', 'b', 'c'});
+      mat.AddStruct("log", "u", {7.0, 8.0, 9.0});
+    }
+    ColumnMap map;
+    map.columns = {{"a", "q[0]"}, {"b", "q:1"}, {"c", "along[1]"}, {"d", "log/u"}};
+    const Record record = ReadRecord(file, map);
+    EXPECT_EQ(record.At("a").samples, Eigen::Vector3d(1.0, 2.0, 3.0));
+    EXPECT_EQ(record.At("b").samples, Eigen::Vector3d(4.0, 5.0, 6.0));
+    EXPECT_EQ(record.At("c").samples, Eigen::Vector3d(4.0, 5.0, 6.0));
+    EXPECT_EQ(record.At("d").samples, Eigen::Vector3d(7.0, 8.0, 9.0));
+    const Record all = ReadRecord(file);
+    EXPECT_NE(all.Find("q[1]"), nullptr);
+    EXPECT_EQ(all.Find("gain"), nullptr) << "no series";
+    EXPECT_EQ(all.Find("note"), nullptr);
+  }
+}
+
 TEST(MatFile, SaysWhichVariableIsWrong) {
   const test::TemporaryFolder folder;
   const auto file = folder / "r.mat";
@@ -98,8 +136,9 @@ TEST(MatFile, SaysWhichVariableIsWrong) {
     map.columns = {{"x", variable, "m", false}};
     return Error(file, map);
   };
-  EXPECT_EQ(error("matrix"),
-            "r.mat: variable \"matrix\": an array of 3 x 2; expected a real vector");
+  EXPECT_EQ(
+      error("matrix[0]"),
+      "r.mat: variable \"matrix:0\": 3 samples; expected 4 as variable \"time\" has");
   EXPECT_EQ(error("text"), "r.mat: variable \"text\": text; expected a real vector");
   EXPECT_EQ(error("short"),
             R"(r.mat: variable "short": 2 samples; expected 4 as variable "time" has)");

@@ -127,6 +127,23 @@ class CsvRecord : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(CsvRecord, TakesAnIndexInBracketsForNoUnit) {
+  const Record record = Read(
+      "time,q[0],q[1] [deg],q(2),q [3],ratio [1],x [mm]\n0,1,180,3,4,5,6\n1,1,180,3,"
+      "4,5,6\n");
+  std::vector<std::pair<std::string, std::string>> channels;
+  for (const Channel& channel : record.channels()) {
+    channels.emplace_back(channel.name, channel.unit);
+  }
+  EXPECT_THAT(channels, testing::ElementsAre(
+                            testing::Pair("q[0]", "1"), testing::Pair("q[1]", "rad"),
+                            testing::Pair("q(2)", "1"), testing::Pair("q [3]", "1"),
+                            testing::Pair("ratio", "1"), testing::Pair("x", "m")));
+  ColumnMap map;
+  map.columns = {{"first", "q[0]", "rad"}};
+  EXPECT_EQ(Read("time,q[0]\n0,1\n1,2\n", map).At("first").unit, "rad");
+}
+
 TEST_F(CsvRecord, ReadsTheDialectsOfOtherPrograms) {
   const std::pair<const char*, const char*> dialects[] = {
       {"comma", "time [s],x [m]\n0,1\n0.5,-2e0\n"},

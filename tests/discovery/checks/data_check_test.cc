@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "discovery/checks/checked_machine.h"
-#include "mjdiag/discovery/checks/clock_drift.h"
+#include "mjdiag/discovery/checks/lag_trend.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/signals/record_file.h"
 #include "support/gaussian_noise.h"
@@ -27,6 +27,7 @@ using Subject = test::CheckedMachine;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -119,7 +120,7 @@ TEST_F(EmpsRecord, ThatHoldsOrLacksSamplesPassesWithoutThem) {
     x[1234] = std::nan("");
   });
   const Measurements measurements = MeasurementsOf(subject_->machine, record, nullptr);
-  const auto& [marked, machine, name, notes] = measurements.fit.front();
+  const auto& [marked, machine, name, notes, own_plant] = measurements.fit.front();
   const SampleMask& measured = marked.At("q").measured;
   ASSERT_EQ(measured.size(), record.samples());
   EXPECT_EQ(record.samples() - measured.count(), 6 + 39 + 1);
@@ -184,6 +185,36 @@ TEST_F(EmpsRecord, ThatLosesItsNoiseAtTheEndOfTheStrokeIsRefused) {
   const Record record =
       WithChanged(*record_, "q", [&](VectorXd& x) { x = x.cwiseMin(limit); });
   EXPECT_THAT(subject_->Refusal(record), HasSubstr("saturated: 'q'"));
+}
+
+// Noise of the motion, and an encoder whose step is larger than that, behind a filter.
+TEST(RestingRecord, ThatRepeatsWhereverItRestsIsNotSaturated) {
+  const Subject subject("emps");
+  const Record record = WithChanged(subject.Run(), "q", [](VectorXd& x) {
+    constexpr double kStep = 1.5e-6;
+    const VectorXd noise = GaussianNoise(x.size(), 2e-8, 4);
+    double filtered = x[0];
+    for (Index k = 0; k < x.size(); ++k) {
+      const double before = filtered;
+      filtered += 0.7 * (kStep * std::round(x[k] / kStep) - filtered);
+      const bool moves = std::abs(filtered - before) > 0.1 * kStep;
+      x[k] = 1e-10 * std::round(1e10 * (filtered + (moves ? noise[k] : 0.0)));
+    }
+  });
+  EXPECT_THAT(subject.Check(record), IsEmpty());
+}
+
+TEST(RestingRecord, OfAJointThatStandsStillIsNotSaturated) {
+  const Subject subject("emps");
+  for (const double step : {1e-4, 1e-7}) {
+    const Record record = WithChanged(subject.Run(), "q", [&](VectorXd& x) {
+      const VectorXd noise = GaussianNoise(x.size(), 0.4 * step, 4);
+      for (Index k = 0; k < x.size(); ++k) {
+        x[k] = 0.1 + step * std::round(noise[k] / step);
+      }
+    });
+    EXPECT_THAT(subject.Refusal(record), Not(HasSubstr("saturated"))) << step;
+  }
 }
 
 TEST_F(EmpsRecord, WithDriftingClocksIsRefused) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 
+#include "mjdiag/plugin/plant/newer_mjcf.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
 #include "support/message_of.h"
@@ -56,6 +57,64 @@ TEST(LoadModel, TurnsErrorsInsideMujocoIntoExceptions) {
   const ModelPtr model = LoadModel(kBonder);
   EXPECT_THAT(MessageOf<NumericalError>([] { mju_error("stack overflow"); }),
               HasSubstr("MuJoCo: stack overflow"));
+}
+
+TEST(LoadModel, ListsAllThatANewerMujocoWouldKnow) {
+  const test::TemporaryFolder folder;
+  folder.Write("parts.xml", "<mujoco><default><position kv=\"1\"/></default></mujoco>");
+  const std::string file = folder.Write("newer.xml", R"(<mujoco>
+  <option integrator="implicitfast"/>
+  <include file="parts.xml"/>
+  <worldbody>
+    <frame pos="0 0 1">
+      <body gravcomp="1">
+        <joint name="j" range="-1 1" actuatorfrcrange="-1 1"/>
+        <geom size="1" colour="red"/>
+      </body>
+    </frame>
+    <body><joint range="-1 1" actuatorfrcrange="-2 2"/><geom size="1"/></body>
+  </worldbody>
+  <actuator><position joint="j" inheritrange="1"/></actuator>
+</mujoco>)");
+  const std::string error = MessageOf<InputError>([&] { LoadModel(file); });
+  EXPECT_THAT(error, HasSubstr("written for MuJoCo 3.1.3 or newer; this one, 2.2.2"));
+  for (const char* item :
+       {"option integrator=\"implicitfast\" (line 2, 2.3.3): implicit;",
+        "position kv (line 1 of parts.xml, 3.1.0): <general biastype",
+        "<frame> (line 5, 3.1.0): ", "body gravcomp (line 6, 2.3.1): ",
+        "joint actuatorfrcrange (line 7, 3.0.0): forcerange of its actuators;",
+        "geom colour (line 8, misspelt, or newer still)",
+        "position inheritrange (line 13, 3.1.3): ctrlrange",
+        "range without limited (line 7, 3.0.0): <compiler autolimits=\"true\"/>"}) {
+    EXPECT_THAT(error, HasSubstr(item));
+  }
+  EXPECT_THAT(error, Not(HasSubstr("\n")));
+  EXPECT_THAT(error, Not(HasSubstr("line 11"))) << "each once";
+}
+
+TEST(LoadModel, ReadsAUrdfWhoseActuatorsAreMissing) {
+  const test::TemporaryFolder folder;
+  const ModelPtr model = LoadModel(folder.Write("arm.urdf", R"(<robot name="arm">
+  <link name="base"/>
+  <link name="l1"><inertial><mass value="1"/><origin xyz="0 0 0.1"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="l1"/>
+    <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="10" velocity="1"/></joint>
+</robot>)"));
+  EXPECT_EQ(model->njnt, 1);
+  EXPECT_EQ(
+      MessageOf<InputError>([&] { FindElement(*model, mjOBJ_SENSOR, "q"); }),
+      "arm: no sensor named \"q\", and no sensor at all; expected an MJCF with "
+      "<actuator> and <sensor>, of which a URDF has none: `mjdiag init` writes one");
+}
+
+// Whatever a model of this MuJoCo has, the table does not call newer.
+TEST(NewerThanThisMujoco, HasNothingOfPlantsThatLoad) {
+  for (const char* plant : {"ab383", "emps", "panda", "servo", "voice_coil"}) {
+    const auto newer = NewerThanThisMujoco(std::string(MJDIAG_SOURCE_DIR) + "/mjcf/" +
+                                           plant + "/plant.xml");
+    EXPECT_TRUE(newer.empty()) << plant << ": " << newer.front().words;
+  }
 }
 
 TEST(FindElement, FindsWhatIsThere) {

@@ -31,6 +31,7 @@ set = { "axes.q.feedback.numerator" = [100.0, 2.5], "axes.q.drive_gain" = 0.25 }
 [[record]]
 file = "b.csv"
 role = "validation"
+plant = "loaded.xml"
 )");
   ASSERT_EQ(records.size(), 2u);
   EXPECT_EQ(records[0].file, "data/a.csv");
@@ -39,6 +40,8 @@ role = "validation"
               ElementsAre("axes.q.drive_gain=0.25",
                           "axes.q.feedback.numerator=[ 100.0, 2.5 ]"));
   EXPECT_FALSE(records[1].fit);
+  EXPECT_EQ(records[0].plant, "");
+  EXPECT_EQ(records[1].plant, "loaded.xml");
   EXPECT_THAT(records[1].overrides, ElementsAre());
 }
 
@@ -47,7 +50,8 @@ TEST(RecordManifest, RefusesWhatItCannotMean) {
               AllOf(HasSubstr("role: is \"test\""), HasSubstr("validation")));
   EXPECT_THAT(
       Refusal("[[record]]\nfile = \"a.csv\"\nset = { \"plant\" = \"b.xml\" }\n"),
-      AllOf(HasSubstr("set: changes 'plant'"), HasSubstr("under axes")));
+      AllOf(HasSubstr("set: changes 'plant'"),
+            HasSubstr("`plant` names another plant")));
   EXPECT_THAT(Refusal("[[record]]\nfile = \"a.csv\"\n[[record]]\nfile = \"a.csv\"\n"),
               HasSubstr("named twice"));
   EXPECT_THAT(Refusal("[[record]]\nfile = \"a.csv\"\ngain = 3\n"), HasSubstr("gain"));

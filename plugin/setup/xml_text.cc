@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/extension/xml_text.h"
+#include "mjdiag/plugin/setup/xml_text.h"
 
 #include <algorithm>
 #include <array>

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mjdiag/discovery/extension/text_changes.h"
+#include "mjdiag/plugin/setup/text_changes.h"
 
 namespace mjdiag {
 
