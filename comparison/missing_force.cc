@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "mjdiag/comparison/mismatch.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
 #include "mjdiag/plugin/replay/force_smoother.h"
 
 namespace mjdiag {
@@ -16,24 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFastest = 32.0;  // times the bandwidth of the motion
-
-/// The joint of a degree of freedom, with its coordinate where there are several.
-std::string CoordinateName(const mjModel& plant, Index dof) {
-  const int joint = plant.dof_jntid[dof];
-  const std::string name = ElementName(plant, mjOBJ_JOINT, joint);
-  const Index place = dof - plant.jnt_dofadr[joint];
-  static constexpr const char* kFree[] = {".x", ".y", ".z", ".rx", ".ry", ".rz"};
-  if (plant.jnt_type[joint] == mjJNT_FREE) return name + kFree[place];
-  if (plant.jnt_type[joint] == mjJNT_BALL) return name + kFree[3 + place];
-  return name;
-}
-
-bool Turns(const mjModel& plant, Index dof) {
-  const int joint = plant.dof_jntid[dof];
-  const int type = plant.jnt_type[joint];
-  return type == mjJNT_HINGE || type == mjJNT_BALL ||
-         (type == mjJNT_FREE && dof - plant.jnt_dofadr[joint] >= 3);
-}
 
 /// Changes of every row in a tick, over 20 ms to each side.
 MatrixXd ChangesOf(const MatrixXd& rows, double tick) {
@@ -77,13 +59,14 @@ double FastestForce(const MeasuredRun& run) {
 
 std::vector<MissingForce> MissingForces(const Machine& machine, const FilterPath& path) {
   const SmoothedForces smoothed = SmoothForces(path);
+  const std::vector<std::string> names = CoordinateNames(machine.plant());
   std::vector<MissingForce> forces;
   for (std::size_t j = 0; j < path.dofs.size(); ++j) {
     const auto row = static_cast<Index>(j);
     const Index dof = path.dofs[j];
     MissingForce force;
-    force.joint = CoordinateName(machine.plant(), dof);
-    force.unit = Turns(machine.plant(), dof) ? "N m" : "N";
+    force.joint = names[static_cast<std::size_t>(dof)];
+    force.unit = IsLength(machine.plant(), static_cast<int>(dof)) ? "N" : "N m";
     force.value = smoothed.value.row(row).transpose();
     force.rms = Rms(force.value);
     force.sd = smoothed.sd[row];

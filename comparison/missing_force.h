@@ -14,7 +14,7 @@
 namespace mjdiag {
 
 struct MissingForce {
-  std::string joint;      ///< "<joint>.<coordinate>" of a free or ball joint
+  std::string joint;      ///< or coordinate of one (tangent_coordinates.h)
   std::string unit;       ///< "N" or "N m"
   Eigen::VectorXd value;  ///< of every sample
   double rms = 0.0;       ///< of value

@@ -1,5 +1,7 @@
 #include "mjdiag/plugin/machine/plant_state.h"
 
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
@@ -19,18 +21,15 @@ void SetState(const mjModel& model, const PlantState& state, mjData& data) {
 }
 
 PlantState Moved(const mjModel& model, const PlantState& from, const VectorXd& dx) {
-  PlantState to = from;
-  mj_integratePos(&model, to.position.data(), dx.data(), 1.0);
-  to.velocity += dx.segment(model.nv, model.nv);
-  to.activation += dx.segment(2 * model.nv, model.na);
-  return to;
+  return {Displaced(model, from.position, dx.head(model.nv)),
+          from.velocity + dx.segment(model.nv, model.nv),
+          from.activation + dx.segment(2 * model.nv, model.na)};
 }
 
 VectorXd Deviation(const mjModel& model, const PlantState& from, const PlantState& to) {
   VectorXd dx(TangentSize(model));
-  mj_differentiatePos(&model, dx.data(), 1.0, from.position.data(), to.position.data());
-  dx.segment(model.nv, model.nv) = to.velocity - from.velocity;
-  dx.tail(model.na) = to.activation - from.activation;
+  dx << Displacement(model, from.position, to.position), to.velocity - from.velocity,
+      to.activation - from.activation;
   return dx;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
-// The state of any MuJoCo model, x = (q, v, act), and its tangent coordinates: a deviation
-// is dx = [dq; dv; dact] of 2 nv + na numbers, dq that of mj_differentiatePos, in which
-// quaternions have three.
+// The state of any MuJoCo model, x = (q, v, act), and deviations from it, dx = [dq; dv; dact]
+// of 2 nv + na numbers, dq in tangent coordinates (tangent_coordinates.h).
 
 #include <mujoco/mujoco.h>
 

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -16,18 +17,10 @@ namespace {
 
 constexpr double kStep = 1e-6;
 
-/// Whether a degree of freedom is a length.
-bool IsLength(const mjModel& model, Index dof) {
-  const int joint = model.dof_jntid[dof];
-  const int type = model.jnt_type[joint];
-  return type == mjJNT_SLIDE ||
-         (type == mjJNT_FREE && dof - model.jnt_dofadr[joint] < 3);
-}
-
 VectorXd StateSteps(const mjModel& model) {
   VectorXd steps = VectorXd::Constant(TangentSize(model), kStep);
   const double extent = std::clamp(model.stat.extent, 1e-3, 1e3);
-  for (Index dof = 0; dof < model.nv; ++dof) {
+  for (int dof = 0; dof < model.nv; ++dof) {
     if (!IsLength(model, dof)) continue;
     steps[dof] *= extent;
     steps[model.nv + dof] *= extent;

@@ -21,15 +21,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Where the machine is without input: at rest if it rests anywhere, else as it is drawn.
-VectorXd PoseOf(const Machine& machine) {
-  try {
-    return machine.rest();
-  } catch (const std::runtime_error&) {
-    return VectorXd::Map(machine.plant().qpos0, machine.plant().nq);
-  }
-}
-
 VectorXd PositionAt(const Machine& machine, const MeasuredRun& run, Index sample) {
   std::map<std::string, double> readings;
   for (Index i = 0; i < run.outputs.rows(); ++i) {
@@ -37,11 +28,11 @@ VectorXd PositionAt(const Machine& machine, const MeasuredRun& run, Index sample
     readings[machine.channels().sensors[static_cast<std::size_t>(i)].channel] =
         run.outputs(i, sample);
   }
-  const VectorXd pose = PoseOf(machine);
   try {
-    return StartPosition(machine.channels(), machine.plant(), pose, readings);
-  } catch (const std::runtime_error&) {
-    return pose;
+    return StartPosition(machine.channels(), machine.plant(), machine.rest(), readings);
+  } catch (const NumericalError&) {
+    // No configuration reads that: the filter finds its way from the rest.
+    return machine.rest();
   }
 }
 
