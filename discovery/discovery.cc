@@ -51,6 +51,8 @@ void Discoverer::MeasureNominal() {
       MeanSquare(problem_, problem_.Residual({}), problem_.skip(), problem_.train());
 }
 
+namespace {
+
 /// What is missing along a motion that leaves the rest is balanced on one plant.
 void RequireOnePlant(const Measurements& measurements) {
   for (const auto* records : {&measurements.fit, &measurements.unseen}) {
@@ -62,6 +64,8 @@ void RequireOnePlant(const Measurements& measurements) {
     }
   }
 }
+
+}  // namespace
 
 /// How long the budget is on this machine, for people: by the time of one run of the plant
 /// as it is given. The work that is counted knows nothing of it.

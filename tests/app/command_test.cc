@@ -161,5 +161,51 @@ TEST(Command, RenderWritesAClip) {
   EXPECT_GT(std::filesystem::file_size(folder.path() / "clip.mp4"), 1000u);
 }
 
+TEST(Command, RenderOfARecordLastsAsLongAsItIsAsked) {
+  const TemporaryFolder folder;
+  const std::string out = "'" + folder.path().string() + "'";
+  ASSERT_EQ(
+      RunCommand("simulate --setup mjcf/voice_coil --duration 2 --out " + out).status,
+      0);
+  const json document = JsonOf(
+      "render --setup mjcf/voice_coil --record " + out +
+      "/record.csv --duration 0.2 --speed 0.5 --width 320 --height 240 --out " + out);
+  EXPECT_EQ(document["frames"], 13);  // 0.4 s of 30 a second, and the first
+}
+
+TEST(Command, SaysWhichActuatorsNothingDrives) {
+  const TemporaryFolder folder;
+  folder.Write("plant.xml", R"(<mujoco><option timestep="0.001" integrator="Euler"/>
+  <worldbody><body><joint name="j" type="slide" stiffness="100" damping="1"/>
+    <geom size="0.1" mass="1"/></body></worldbody>
+  <actuator><motor name="m" joint="j"/><motor name="brake" joint="j"/></actuator>
+  <sensor><jointpos name="s" joint="j"/></sensor></mujoco>)");
+  folder.Write("setup.toml", R"(schema = "mjdiag.setup/1"
+name = "two motors"
+plant = "plant.xml"
+[rates]
+control = 1000.0
+substeps = 1
+[sensors.x]
+element = "s"
+unit = "m"
+noise_sd = 1e-6
+[actuators.u]
+element = "m"
+unit = "N"
+)");
+  std::string record = "time [s],u [N],x [m]\n";
+  for (int k = 0; k < 400; ++k) {
+    record += std::to_string(k * 0.001) + "," + std::to_string(k / 100 % 2) + ",0\n";
+  }
+  folder.Write("record.csv", record);
+  const std::string at = "'" + folder.path().string() + "'";
+  const json document =
+      JsonOf("compare --setup " + at + " --record " + at + "/record.csv");
+  EXPECT_EQ(document["notes"].back(),
+            "actuator 'brake' of the plant is 0 all the time: no [actuators] of the "
+            "setup gives an input");
+}
+
 }  // namespace
 }  // namespace mjdiag
