@@ -14,9 +14,9 @@ namespace {
 // Parameter", Ann. Math. Statist. 35, 1964): beyond 4 standard deviations noise is seen
 // once in 16,000 readings.
 constexpr double kCorner = 4.0;
-// Of the variances in a tick: a filter that remembers ten thousand ticks is then within a
+// Of the variances in a tick: a filter that remembers a thousand ticks is then within a
 // thousandth of its end.
-constexpr double kAtItsEnd = 1e-7;
+constexpr double kAtItsEnd = 1e-6;
 
 /// Columns of some degrees of freedom, and a last one of zeros for the clock.
 MatrixXd ForcesOf(const MatrixXd& all, const std::vector<Index>& dofs) {

@@ -39,7 +39,7 @@ Windows AllOf(const FilterPath& path) { return RecordsOf(path.first, path.sample
 
 /// Pieces of every record, evenly spread.
 Windows SomeOf(const Windows& all, Index samples) {
-  constexpr Index kSamples = 4000;
+  constexpr Index kSamples = 2400;
   constexpr Index kPieces = 4;
   if (samples <= kSamples) return all;
   Windows some;
@@ -179,10 +179,10 @@ class NoiseSearch {
     return point;
   }
 
-  /// By steps that shrink by half from `step` to `last`, natural logarithms.
+  /// By steps that shrink by a third from `step` to `last`, natural logarithms.
   void Descend(const Windows& windows, double step, double last, Point& best) const {
-    for (; step >= last; step *= 0.5) {
-      constexpr int kRounds = 4;
+    for (; step >= last; step /= 3.0) {
+      constexpr int kRounds = 3;
       for (int round = 0; round < kRounds; ++round) {
         bool moved = false;
         for (const auto& kind : kinds_) moved |= Move(windows, kind, step, best);
@@ -195,47 +195,45 @@ class NoiseSearch {
   /// Directions with the sensor that judges each; -1: all.
   using Kind = std::vector<std::pair<VectorXd, Index>>;
 
+  /// To where the parabola through -2 ln L at -1, 0 and 1 is least, two steps at most.
+  static double LeastOf(double before, double here, double after) {
+    constexpr double kMost = 2.0;
+    const double bend = before - 2.0 * here + after;
+    const double slope = 0.5 * (after - before);
+    if (!(bend > 0.0)) {
+      if (std::min(before, after) >= here) return 0.0;
+      return after < before ? 1.0 : -1.0;
+    }
+    return std::clamp(-slope / bend, -kMost, kMost);
+  }
+
   bool Move(const Windows& windows, const Kind& kind, double step, Point& best) const {
     VectorXd all = VectorXd::Zero(best.x.size());
-    for (const auto& [direction, sensor] : kind) all += direction;
+    for (const auto& [direction, sensor] : kind) all += step * direction;
     Point tried[2];
     ParallelFor(2, [&](int i) {
-      tried[i] = Evaluate(best.x + (i == 0 ? step : -step) * all, windows);
+      tried[i] = Evaluate(best.x + (i == 0 ? 1.0 : -1.0) * all, windows);
     });
     VectorXd each = VectorXd::Zero(best.x.size());
     for (const auto& [direction, sensor] : kind) {
       const auto of = [sensor](const Point& point) {
         return sensor < 0 ? point.deviance() : point.deviances[sensor];
       };
-      const double least = std::min(of(tried[0]), of(tried[1]));
-      if (!(least < of(best))) continue;
-      each += (of(tried[0]) == least ? step : -step) * direction;
+      each += LeastOf(of(tried[1]), of(best), of(tried[0])) * step * direction;
     }
-    bool moved = false;
-    const VectorXd before = best.x;
     // Less is noise of the search.
-    constexpr double kGain = 0.1;
+    constexpr double kGain = 0.2;
+    const double before = best.deviance();
     const auto take = [&](Point& point) {
-      if (!(point.deviance() < best.deviance() - kGain)) return;
-      best = std::move(point);
-      moved = true;
+      if (point.deviance() < best.deviance()) best = std::move(point);
     };
-    if (kind.size() > 1 && !each.isZero(0.0)) {
+    if (!each.isZero(0.0)) {
       Point mixed = Evaluate(best.x + each, windows);
       take(mixed);
     }
-    if (!moved) take(tried[tried[1].deviance() < tried[0].deviance() ? 1 : 0]);
-    if (!moved) return false;
-    // On as long as it helps.
-    const VectorXd on = best.x - before;
-    constexpr int kFurther = 6;
-    for (int i = 0; i < kFurther && !on.isZero(0.0); ++i) {
-      moved = false;
-      Point further = Evaluate(best.x + on, windows);
-      take(further);
-      if (!moved) break;
-    }
-    return true;
+    take(tried[0]);
+    take(tried[1]);
+    return best.deviance() < before - kGain;
   }
 
   const FilterPath& path_;
@@ -285,21 +283,30 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
   return noise;
 }
 
+namespace {
+
+constexpr double kCoarse = 4.2;  // natural logarithm: a factor of 64
+constexpr double kFine = 0.4;
+
+/// The most likely noise along a path, from its own on.
+FilterNoise Refined(const FilterPath& path, const VectorXd& reading_sd, double step) {
+  const NoiseSearch search(path, reading_sd);
+  const Windows all = AllOf(path);
+  Point best = search.At(path.noise, all);
+  search.Descend(all, step, kFine / 3.0, best);
+  return search.NoiseOf(best.x);
+}
+
+}  // namespace
+
 FilterNoise FitNoise(const FilterPath& path, const VectorXd& reading_sd) {
   const NoiseSearch search(path, reading_sd);
   const Windows some = SomeOf(AllOf(path), path.samples());
-  const double eight = std::log(8.0);
   Point best = search.At(path.noise, some);
-  search.Descend(some, 2.0 * eight, 0.4 * eight, best);
+  search.Descend(some, kCoarse, kFine, best);
   Point other = search.At(search.Slow(path.noise), some);
-  search.Descend(some, 2.0 * eight, 0.4 * eight, other);
+  search.Descend(some, kCoarse, kFine, other);
   if (other.deviance() < best.deviance()) best = std::move(other);
-  const Windows all = AllOf(path);
-  if (all.of != some.of) {
-    search.Descend(some, 0.25 * eight, 0.2 * eight, best);
-    best = search.Evaluate(best.x, all);
-  }
-  search.Descend(all, 0.25 * eight, 0.05 * eight, best);
   return search.NoiseOf(best.x);
 }
 
@@ -329,27 +336,23 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   // A path that was followed fast sticks and slips with its noise: behind a slow filter it
   // says little, so that both are followed by the machine itself.
   std::optional<FilterPath> best;
-  for (const bool is_slow : {false, true}) {
-    try {
-      FilterPath path = RunForceFilter(machine, pieces, dofs, starts, fast);
-      if (is_slow) {
-        path = RunForceFilter(machine, pieces, dofs, starts,
-                         NoiseSearch(path, reading_sd).Slow(fast));
-      }
-      constexpr int kRounds = 2;
-      for (int round = 0; round < kRounds; ++round) {
-        path = RunForceFilter(machine, pieces, dofs, starts, FitNoise(path, reading_sd));
-        if (!best || path.deviance < best->deviance) best = path;
-      }
-    } catch (const NumericalError&) {
-      // Slow beside a machine that does not stay with the run.
-      if (!is_slow) throw;
-    }
+  const auto follow = [&](const FilterNoise& noise) {
+    FilterPath path = RunForceFilter(machine, pieces, dofs, starts, noise);
+    if (!best || path.deviance < best->deviance) best = path;
+    return path;
+  };
+  const FilterPath first = follow(fast);
+  follow(Refined(follow(FitNoise(first, reading_sd)), reading_sd, kFine));
+  try {
+    const FilterPath slow = follow(NoiseSearch(first, reading_sd).Slow(fast));
+    follow(Refined(follow(Refined(slow, reading_sd, kCoarse)), reading_sd, kFine));
+  } catch (const NumericalError&) {
+    // Beside a machine that does not stay with the run.
   }
   starts = FilterStarts(machine, run, reading_sd);
   const FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
-  FilterPath refined =
-      RunForceFilter(machine, run, dofs, starts, FitNoise(path, reading_sd));
+  FilterPath refined = RunForceFilter(machine, run, dofs, starts,
+                                      Refined(path, reading_sd, kFine));
   return refined.deviance < path.deviance ? refined : path;
 }
 

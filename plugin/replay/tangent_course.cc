@@ -62,39 +62,32 @@ TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
       differences_(map, machine.rates().tick(), dofs),
       restless_(DofsWithEffects(machine)),
       shortest_(std::max<std::int64_t>(
-          1, std::lround(kStretchTime * machine.rates().control))),
-      stretch_(shortest_) {}
+          1, std::lround(kStretchTime * machine.rates().control))) {}
 
 std::size_t TangentCourse::Next(const PlantState& from, const Eigen::VectorXd& forces,
                                 std::int64_t tick, TickControl& control) {
-  const std::uint64_t pattern = map_.last().pattern;
-  constexpr std::int64_t kLongest = 16;
-  if (tangents.empty() || tick < begun_ || tick - begun_ >= stretch_) {
-    begun_ = tick;
-    const auto known = known_.find(pattern);
-    if (known == known_.end()) {
-      known_.clear();
+  constexpr std::int64_t kLongest = 16;  // stretches
+  if (tick < last_) known_.clear();
+  last_ = tick;
+  const auto [entry, is_new] =
+      known_.try_emplace(map_.last().pattern, Known{0, tick, shortest_});
+  Known& known = entry->second;
+  if (is_new || tick - known.since >= known.stretch) {
+    TickTangent here = differences_.Of(from, forces, tick, control);
+    known.since = tick;
+    if (!is_new && AreAlike(here, tangents[known.place])) {
+      known.stretch = std::min(2 * known.stretch, kLongest * shortest_);
     } else {
-      TickTangent here = differences_.Of(from, forces, tick, control);
-      if (AreAlike(here, tangents[known->second])) {
-        stretch_ = std::min(2 * stretch_, kLongest * shortest_);
-      } else {
-        stretch_ = shortest_;
-        known_.clear();
-        tangents.push_back(std::move(here));
-        known_[pattern] = tangents.size() - 1;
-      }
+      known.stretch = shortest_;
+      known.place = tangents.size();
+      tangents.push_back(std::move(here));
+      return known.place;
     }
   }
-  if (const auto known = known_.find(pattern); known != known_.end()) {
-    if (restless_.empty()) return known->second;
-    TickTangent here = tangents[known->second];
-    differences_.Refresh(from, forces, tick, control, restless_, here);
-    tangents.push_back(std::move(here));
-    return tangents.size() - 1;
-  }
-  tangents.push_back(differences_.Of(from, forces, tick, control));
-  known_[pattern] = tangents.size() - 1;
+  if (restless_.empty()) return known.place;
+  TickTangent here = tangents[known.place];
+  differences_.Refresh(from, forces, tick, control, restless_, here);
+  tangents.push_back(std::move(here));
   return tangents.size() - 1;
 }
 

@@ -30,9 +30,14 @@ class TangentCourse {
   TickDifferences differences_;
   std::vector<Eigen::Index> restless_;  // degrees of freedom with effects
   std::int64_t shortest_;               // stretch, in ticks
-  std::int64_t stretch_;
-  std::int64_t begun_ = 0;
-  std::map<std::uint64_t, std::size_t> known_;  // by pattern, in the stretch
+  std::int64_t last_ = 0;               // tick
+  /// A tangent, from when on it is taken to hold, and for how long.
+  struct Known {
+    std::size_t place = 0;
+    std::int64_t since = 0;
+    std::int64_t stretch = 0;
+  };
+  std::map<std::uint64_t, Known> known_;  // by pattern
 };
 
 }  // namespace mjdiag
