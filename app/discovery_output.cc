@@ -60,8 +60,8 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
 void RemoveExtendedPlant(const std::string& folder, const std::string& setup) {
   namespace fs = std::filesystem;
   const fs::path extended = fs::path(folder) / "extended";
-  const fs::path given =
-      fs::is_directory(setup) ? setup : fs::path(setup).parent_path();
+  fs::path given = setup;
+  if (!fs::is_directory(given)) given = given.parent_path();
   std::error_code none;
   if (!fs::exists(extended / "plant.xml", none) ||
       !fs::exists(extended / "setup.toml", none) ||
