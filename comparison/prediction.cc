@@ -60,6 +60,7 @@ class Forecast {
   Forecast(const Machine& machine, const MeasuredRun& run, Index start)
       : run_(run),
         start_(start),
+        tick_(run.TickOf(start)),
         map_(machine),
         inputs_(machine, run),
         none_(VectorXd::Zero(machine.plant().nv)) {}
@@ -72,7 +73,7 @@ class Forecast {
     for (Index k = 0; k <= horizons.back(); ++k) {
       inputs_.StayAt(start_ + k);
       if (!diverged) {
-        const TickMap::Result& tick = map_.Run(state, none_, k, inputs_);
+        const TickMap::Result& tick = map_.Run(state, none_, tick_ + k, inputs_);
         diverged = tick.diverged;
         state = tick.state;
       }
@@ -96,6 +97,7 @@ class Forecast {
  private:
   const MeasuredRun& run_;
   Index start_;
+  Index tick_;
   TickMap map_;
   RecordedInputs inputs_;
   VectorXd none_;

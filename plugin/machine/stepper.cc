@@ -2,10 +2,18 @@
 
 #include <algorithm>
 
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/start_state.h"
 
 namespace mjdiag {
+
+void ReadForces(const mjModel& model, mjData& data) noexcept {
+  mj_fwdActuation(&model, &data);
+  mj_fwdAcceleration(&model, &data);
+  mj_fwdConstraint(&model, &data);
+  mj_sensorAcc(&model, &data);
+}
 
 Stepper::Stepper(const Machine& machine)
     : effects_(machine.channels(), machine.plant(), machine.effects()),
@@ -16,11 +24,17 @@ Stepper::Stepper(const Machine& machine)
       outputs_(sensors_.size()),
       inputs_(actuators_.size()) {
   off_.reserve(actuators_.size());
+  for (const SensorSetup& sensor : machine.channels().sensors) {
+    const int id = FindElement(machine.plant(), mjOBJ_SENSOR, sensor.element);
+    reads_forces_ |= machine.plant().sensor_needstage[id] == mjSTAGE_ACC;
+  }
 }
 
 void Stepper::OnStep(const mjModel& model, mjData& data,
                      TickControl& control) noexcept {
   if (substep_ == 0) {
+    // MuJoCo has those of the step before.
+    if (reads_forces_) ReadForces(model, data);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       outputs_[i] = data.sensordata[sensors_[i]];
     }

@@ -1,7 +1,8 @@
 #pragma once
 // A control tick of the nonlinear machine, physics step by physics step: at the first
 // one the sensors are read and the actuator signals decided, which hold for the tick;
-// effects act in every one.
+// effects act in every one. Sensors of accelerations and forces read what acts there under
+// the signals of the tick before.
 //
 // The same steps are taken inside MuJoCo's control callback, where a caller's mj_step
 // drives (OnStep), and by Advance, which takes a whole tick by itself.
@@ -39,6 +40,10 @@ class TickControl {
   virtual bool IsOn(std::size_t /*actuator*/) const noexcept { return true; }
 };
 
+/// Has the sensors of accelerations and forces read what acts now, after positions and
+/// velocities.
+void ReadForces(const mjModel& model, mjData& data) noexcept;
+
 class Stepper {
  public:
   /// InputError as CheckEffect.
@@ -73,6 +78,7 @@ class Stepper {
   int substeps_;
   int substep_ = 0;
   std::int64_t ticks_ = 0;
+  bool reads_forces_ = false;   // or accelerations
   std::vector<int> sensors_;    // addresses
   std::vector<int> actuators_;  // addresses
   std::vector<int> off_;

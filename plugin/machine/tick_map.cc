@@ -61,6 +61,7 @@ TickMap::TickMap(const Machine& machine)
   for (const SensorSetup& sensor : machine.channels().sensors) {
     const int id = FindElement(*model_, mjOBJ_SENSOR, sensor.element);
     late_.push_back(model_->sensor_needstage[id] == mjSTAGE_ACC);
+    reads_at_end_ |= late_.back();
   }
   last_.reading = VectorXd::Zero(sensors());
   probed_.reading = last_.reading;
@@ -101,6 +102,10 @@ void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& 
       Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
     }
   });
+  if (reads_at_end_) {
+    mj_step1(model_.get(), data_.get());
+    ReadForces(*model_, *data_);
+  }
   for (std::size_t i = 0; i < late_.size(); ++i) {
     if (!late_[i]) continue;
     result.reading[static_cast<Index>(i)] = data_->sensordata[addresses_[i]];

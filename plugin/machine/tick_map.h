@@ -6,8 +6,8 @@
 // x the state of any MuJoCo model (plant_state.h), f generalised forces that are held over
 // the tick beside all others, u the commands of a TickControl. y is what the sensors read at
 // its start, those that MuJoCo computes from positions and velocities; y' what sensors of
-// accelerations and forces read at its end, of its last physics step: a controller that
-// reads those at a tick reads what the machine did until then.
+// accelerations and forces read at its end, under the commands of the tick: a controller that
+// reads those at a tick reads what the one before has made.
 //
 // Effects with a memory go on from one Run to the next; Probe leaves their memory as it is.
 
@@ -70,6 +70,7 @@ class TickMap {
   Stepper probe_;
   std::vector<int> addresses_;
   std::vector<bool> late_;
+  bool reads_at_end_ = false;
   Result last_;   // of Run
   Result probed_;
 };

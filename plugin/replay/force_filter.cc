@@ -32,6 +32,7 @@ class RecordFilter {
       : machine_(machine),
         run_(run),
         first_(run.records[record].sample),
+        clock_begins_(run.TickOf(first_)),
         samples_(run.SamplesOf(record)),
         start_(path.starts[record]),
         path_(path),
@@ -59,6 +60,7 @@ class RecordFilter {
   const Machine& machine_;
   const MeasuredRun& run_;
   Index first_;
+  Index clock_begins_;  // tick
   Index samples_;
   const FilterStart& start_;
   FilterPath& path_;
@@ -86,7 +88,7 @@ const TickMap::Result& RecordFilter::Tick(Index k) {
     applied_[path_.dofs[j]] = latent_[static_cast<Index>(j)];
   }
   inputs_.StayAt(first_ + k);
-  return map_.Run(state_, applied_, k, inputs_);
+  return map_.Run(state_, applied_, clock_begins_ + k, inputs_);
 }
 
 void RecordFilter::Run() {
@@ -101,10 +103,10 @@ void RecordFilter::Run() {
     const Index at = first_ + k;
     if (k == 0) {
       Tick(0);
-      tangent = course_.Next(state_, applied_, 0, inputs_);
+      tangent = course_.Next(state_, applied_, clock_begins_, inputs_);
     }
     kalman_.MoveTo(course_.tangents[tangent]);
-    const VectorXd read = map_.Read(state_, k);
+    const VectorXd read = map_.Read(state_, clock_begins_ + k);
     for (Index i = 0; i < map_.sensors(); ++i) {
       if (map_.ReadsAtEnd(i)) continue;
       Innovate(i, at, read[i]);
@@ -123,7 +125,7 @@ void RecordFilter::Run() {
     }
     PlantState next = ticked.state;
     const VectorXd ended = ticked.reading;
-    tangent = course_.Next(state_, applied_, k, inputs_);
+    tangent = course_.Next(state_, applied_, clock_begins_ + k, inputs_);
     path_.of_tick[static_cast<std::size_t>(at)] = tangent;
     kalman_.MoveTo(course_.tangents[tangent]);
     if (k + 1 < samples_) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -139,9 +140,11 @@ class NoiseSearch {
     for (Index i = 0; i < ny_; ++i) {
       kinds_.back().emplace_back(VectorXd::Unit(lower_.size(), 3 * nf_ + i), i);
     }
-    for (Index i = 0; i < 2; ++i) {
-      kinds_.push_back(
-          {{VectorXd::Unit(lower_.size(), 3 * nf_ + ny_ + i), Index{-1}}});
+    for (const auto& [size, memory] :
+         {std::pair(1.0, 0.0), std::pair(0.5, 1.0), std::pair(0.0, 1.0)}) {
+      VectorXd clock = VectorXd::Zero(lower_.size());
+      clock.tail(2) << size, memory;
+      kinds_.push_back({{clock, Index{-1}}});
     }
   }
 
@@ -286,6 +289,7 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
 namespace {
 
 constexpr double kCoarse = 4.2;  // natural logarithm: a factor of 64
+constexpr double kMedium = 1.2;
 constexpr double kFine = 0.4;
 
 /// The most likely noise along a path, from its own on.
@@ -335,6 +339,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
       FollowingNoise(machine, pieces, dofs, starts, reading_sd);
   // A path that was followed fast sticks and slips with its noise: behind a slow filter it
   // says little, so that both are followed by the machine itself.
+  // Where one does not stay with the run another one may.
   std::optional<FilterPath> best;
   const auto follow = [&](const FilterNoise& noise) {
     FilterPath path = RunForceFilter(machine, pieces, dofs, starts, noise);
@@ -342,18 +347,32 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
     return path;
   };
   const FilterPath first = follow(fast);
-  follow(Refined(follow(FitNoise(first, reading_sd)), reading_sd, kFine));
-  try {
+  const auto refine = [&](const std::function<FilterNoise()>& begin) {
+    try {
+      follow(Refined(follow(begin()), reading_sd, kFine));
+    } catch (const NumericalError&) {
+    }
+  };
+  refine([&] { return FitNoise(first, reading_sd); });
+  refine([&] {
     const FilterPath slow = follow(NoiseSearch(first, reading_sd).Slow(fast));
-    follow(Refined(follow(Refined(slow, reading_sd, kCoarse)), reading_sd, kFine));
-  } catch (const NumericalError&) {
-    // Beside a machine that does not stay with the run.
-  }
+    return Refined(slow, reading_sd, kCoarse);
+  });
   starts = FilterStarts(machine, run, reading_sd);
-  const FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
-  FilterPath refined = RunForceFilter(machine, run, dofs, starts,
-                                      Refined(path, reading_sd, kFine));
-  return refined.deviance < path.deviance ? refined : path;
+  const FilterPath path = [&] {
+    try {
+      return RunForceFilter(machine, run, dofs, starts, best->noise);
+    } catch (const NumericalError&) {
+      return RunForceFilter(machine, run, dofs, starts, fast);
+    }
+  }();
+  try {
+    FilterPath refined = RunForceFilter(machine, run, dofs, starts,
+                                        Refined(path, reading_sd, kMedium));
+    if (refined.deviance < path.deviance) return refined;
+  } catch (const NumericalError&) {
+  }
+  return path;
 }
 
 }  // namespace mjdiag

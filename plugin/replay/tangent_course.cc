@@ -46,7 +46,9 @@ bool AreAlike(const TickTangent& a, const TickTangent& b) {
 std::vector<Index> DofsWithEffects(const Machine& machine) {
   std::vector<Index> dofs;
   for (const PlacedEffect& placed : machine.effects()) {
-    if (placed.effect->element() != mjOBJ_JOINT) continue;
+    const bool pushes = placed.effect->element() == mjOBJ_JOINT &&
+                        placed.effect->form() == Form::kNumeric;
+    if (!pushes) continue;
     const int joint = FindElement(machine.plant(), mjOBJ_JOINT, placed.site);
     const Index dof = machine.plant().jnt_dofadr[joint];
     if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);

@@ -215,6 +215,17 @@ Index MeasuredRun::SamplesOf(std::size_t record) const {
   return end - records[record].sample;
 }
 
+std::size_t MeasuredRun::RecordOf(Index sample) const {
+  const auto next =
+      std::ranges::upper_bound(records, sample, {}, &RecordStart::sample);
+  return static_cast<std::size_t>(next - records.begin() - 1);
+}
+
+Index MeasuredRun::TickOf(Index sample) const {
+  const RecordStart& record = records[RecordOf(sample)];
+  return record.ticks_before + sample - record.sample;
+}
+
 void MeasuredRun::Discount(Index samples) {
   if (driven.size() == 0) return;
   counted = measured;
@@ -274,6 +285,8 @@ MeasuredRun Excerpt(const MeasuredRun& run, Index first, Index samples) {
   if (run.measured.size() > 0) part.measured = run.measured.middleCols(first, samples);
   if (run.counted.size() > 0) part.counted = run.counted.middleCols(first, samples);
   if (run.driven.size() > 0) part.driven = run.driven.segment(first, samples);
+  const RecordStart& record = run.records[run.RecordOf(first)];
+  part.records = {{0, {}, record.machine, run.TickOf(first)}};
   return part;
 }
 
@@ -283,7 +296,8 @@ MeasuredRun Part(const MeasuredRun& run, std::size_t record, Index samples) {
   part.records.clear();
   for (const RecordStart& start : run.records) {
     if (start.sample < first || start.sample >= first + samples) continue;
-    part.records.push_back({start.sample - first, start.readings, start.machine});
+    part.records.push_back(start);
+    part.records.back().sample -= first;
   }
   return part;
 }
@@ -316,7 +330,8 @@ MeasuredRun Joined(const std::vector<MeasuredRun>& runs) {
     }
     if (run.driven.size() > 0) all.driven.segment(first, run.samples()) = run.driven;
     for (const RecordStart& start : run.records) {
-      all.records.push_back({first + start.sample, start.readings, start.machine});
+      all.records.push_back(start);
+      all.records.back().sample += first;
     }
     first += run.samples();
   }

@@ -29,6 +29,8 @@ struct RecordStart {
   std::map<std::string, double> readings{};  ///< at rest before its first sample
   /// As it was during the record, with another load for example; none: that of the run.
   std::shared_ptr<const Machine> machine{};
+  /// Ticks that its clock has run before: what goes with time goes on.
+  Eigen::Index ticks_before = 0;
 };
 
 /// What of measured records the replay needs, in the setup's order: one after the other,
@@ -52,6 +54,10 @@ struct MeasuredRun {
   Eigen::Index samples() const { return outputs.cols(); }
   /// Of a record.
   Eigen::Index SamplesOf(std::size_t record) const;
+  /// Which record a sample is of.
+  std::size_t RecordOf(Eigen::Index sample) const;
+  /// Ticks of the clock of its record before a sample.
+  Eigen::Index TickOf(Eigen::Index sample) const;
   /// [s] since the start of the record of every sample.
   Eigen::VectorXd Time() const;
   /// Leaves what comes behind inputs that are a guess out of what counts, so many samples

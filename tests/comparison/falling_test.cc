@@ -53,12 +53,26 @@ TEST(CompareFalling, LeavesAMachineWithAControllerInItsLoop) {
   EXPECT_FALSE(Compare(stage.machine, stage.Measure({}), {}).falls);
 }
 
-// It drifts away, but does not leave what it is at rest.
-TEST(CompareFalling, LeavesAStageThatDriftsInOpenLoop) {
+// It drifts away without leaving what it is at rest: what it is off by then says nothing, but
+// the force does.
+TEST(CompareFalling, FindsWhatAStageLacksThatDriftsInOpenLoop) {
   const test::Stage stage;
   const Machine open = stage.machine.WithSetup(WithoutControllers(stage.setup()));
-  EXPECT_FALSE(
-      Compare(open, stage.Measure({"coulomb_friction@load:force=20"}), {}).falls);
+  const Comparison comparison =
+      Compare(open, stage.Measure({"coulomb_friction@load:force=20"}), {});
+  EXPECT_TRUE(comparison.falls);
+  ASSERT_EQ(comparison.missing_force.size(), 1U);
+  EXPECT_NEAR(comparison.missing_force[0].rms, 20.0, 4.0);
+}
+
+// And where nothing is missing it says so, beside a free simulation.
+TEST(CompareFalling, FindsNothingMissingFromTheTrueStage) {
+  const test::Stage stage;
+  const Comparison comparison = Compare(stage.machine, stage.Measure({}), {});
+  EXPECT_FALSE(comparison.falls);
+  ASSERT_EQ(comparison.missing_force.size(), 1U);
+  EXPECT_LT(comparison.missing_force[0].rms, 0.5);
+  EXPECT_TRUE(comparison.deviance.has_value());
 }
 
 }  // namespace
