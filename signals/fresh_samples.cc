@@ -214,7 +214,8 @@ std::vector<std::size_t> Reading::Held() const {
   }
   // As many by chance, and their scatter.
   const double by_chance = static_cast<double>(steps);
-  if (static_cast<double>(held.size()) <= by_chance + 2.0 * std::sqrt(by_chance)) {
+  if (static_cast<double>(held.size()) <=
+      by_chance + 2.0 * std::sqrt(by_chance + 1.0)) {
     held.clear();
   }
   for (std::size_t i = 0; i + 1 < levels_.size(); ++i) {

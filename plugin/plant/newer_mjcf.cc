@@ -25,7 +25,7 @@ struct SchemaNode {
   std::vector<std::unique_ptr<SchemaNode>> children;
 
   const SchemaNode* Child(std::string_view tag) const {
-    // The world is a body; bodies and classes of defaults hold more of their kind.
+    // Bodies and classes of defaults hold more of their kind.
     if (tag == "worldbody") tag = "body";
     if ((tag == "body" || tag == "default") && tag == name) return this;
     for (const auto& child : children) {
@@ -36,7 +36,7 @@ struct SchemaNode {
 };
 
 /// Of what MuJoCo prints: an element a line, three spaces a level, "name (how often)" and
-/// its attributes, which go on in lines of their own.
+/// its attributes, which go on in lines of their own. The world is "(world)body".
 std::unique_ptr<SchemaNode> ReadSchema() {
   constexpr std::size_t kIndent = 3;
   std::vector<char> buffer(1U << 18);
@@ -51,10 +51,11 @@ std::unique_ptr<SchemaNode> ReadSchema() {
     if (indent == std::string::npos) continue;
     std::istringstream words(line);
     std::string word;
-    if (const std::size_t bracket = line.find(" (");
+    if (const std::size_t bracket = line.rfind(" (");
         bracket != std::string::npos && line.find(')', bracket) == bracket + 3) {
       auto node = std::make_unique<SchemaNode>();
       words >> node->name >> word;
+      if (node->name == "(world)body") node->name = "body";
       open.resize(std::min(open.size(), indent / kIndent + 1));
       open.back()->children.push_back(std::move(node));
       open.push_back(open.back()->children.back().get());
