@@ -146,9 +146,8 @@ void PredictATick(const Machine& machine, const Record& measured,
     Channel predicted = measured.At(sensor.channel);
     predicted.samples -= path.innovations.row(row).transpose();
     result.simulated.Add(std::move(predicted));
-    const NoiseFloor floor{.rms = floors[row++],
-                           .mismatch_freedom = samples,
-                           .floor_freedom = samples};
+    const NoiseFloor floor{
+        .rms = floors[row++], .mismatch_freedom = samples, .floor_freedom = samples};
     result.channels.push_back(MeasureMismatch(result.measured, result.simulated,
                                               sensor.channel, floor, result.options));
   }
@@ -233,8 +232,8 @@ Comparison Compare(const Machine& machine, const Record& measured,
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
   const bool can_be_followed = CanBeFollowed(machine.setup(), measured);
-  const auto error = SimulateFreely(machine, measured, options, names,
-                                    !can_be_followed, result);
+  const auto error =
+      SimulateFreely(machine, measured, options, names, !can_be_followed, result);
   if (!can_be_followed) {
     if (error) throw *error;
     return result;
@@ -253,8 +252,7 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
                        const RunOptions& options) {
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
-  const auto error =
-      SimulateFreely(machine, measured, options, names, true, result);
+  const auto error = SimulateFreely(machine, measured, options, names, true, result);
   if (error) throw *error;
   return result;
 }

@@ -57,7 +57,8 @@ double FastestForce(const MeasuredRun& run) {
   return kFastest * MotionBandwidth(run) / (2.0 * std::numbers::pi * run.sample_time);
 }
 
-std::vector<MissingForce> MissingForces(const Machine& machine, const FilterPath& path) {
+std::vector<MissingForce> MissingForces(const Machine& machine,
+                                        const FilterPath& path) {
   const SmoothedForces smoothed = SmoothForces(path);
   const std::vector<std::string> names = CoordinateNames(machine.plant());
   std::vector<MissingForce> forces;

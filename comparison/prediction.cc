@@ -36,8 +36,7 @@ std::vector<Index> Horizons(const MeasuredRun& run) {
 /// Moments from which the longest horizon is in the same record.
 std::vector<Index> Starts(const MeasuredRun& run, Index longest, Index skip) {
   std::vector<Index> starts;
-  const Index most =
-      std::clamp<Index>(kLengths * run.samples() / longest, 1, kStarts);
+  const Index most = std::clamp<Index>(kLengths * run.samples() / longest, 1, kStarts);
   const Index every = std::max<Index>(1, run.samples() / most);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
@@ -128,11 +127,11 @@ Prediction Predict(const Machine& machine, const MeasuredRun& run,
   }
   for (Index c = 0; c < ny; ++c) {
     const SensorSetup& sensor = machine.channels().sensors[static_cast<std::size_t>(c)];
-    prediction.sensors.push_back({sensor.channel, sensor.unit,
-                                  (sum.squares.row(c).array() /
-                                   sum.counts.row(c).array().max(1.0))
-                                      .sqrt()
-                                      .transpose()});
+    prediction.sensors.push_back(
+        {sensor.channel, sensor.unit,
+         (sum.squares.row(c).array() / sum.counts.row(c).array().max(1.0))
+             .sqrt()
+             .transpose()});
   }
   return prediction;
 }

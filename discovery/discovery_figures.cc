@@ -99,13 +99,13 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track,
   if (problem_.observer().following) {
     const MeasuredRun& run = problem_.run();
     if (!filter_) {
-      filter_ =
-          FilterLikeliest(problem_.machine(), run, problem_.observer().noise_sd);
+      filter_ = FilterLikeliest(problem_.machine(), run, problem_.observer().noise_sd);
     }
     const Machine machine = problem_.machine().With(changes);
-    return Named(MissingForces(machine, RunForceFilter(machine, run, filter_->dofs,
-                                                       filter_->starts, filter_->noise)),
-                 run.sample_time);
+    return Named(
+        MissingForces(machine, RunForceFilter(machine, run, filter_->dofs,
+                                              filter_->starts, filter_->noise)),
+        run.sample_time);
   }
   return UnexplainedForces(problem_.machine().linear(), problem_.observer(),
                            problem_.step(), machine_.rates().substeps,
@@ -114,9 +114,8 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track,
 
 void Discoverer::FindWhere(const Track& nominal, const Track& final) {
   discovery_.forces_before = UnexplainedIn(nominal, {});
-  discovery_.forces_after =
-      discovery_.causes.empty() ? discovery_.forces_before
-                                : UnexplainedIn(final, changes_);
+  discovery_.forces_after = discovery_.causes.empty() ? discovery_.forces_before
+                                                      : UnexplainedIn(final, changes_);
 }
 
 void Discoverer::SignRest(const ObservedMotion& motion) {

@@ -63,7 +63,9 @@ class Stepper {
   void Release(mjData& data) noexcept;
 
   /// From now on these generalised forces act beside all others, in Advance. nv [N, N m]
-  void Hold(std::span<const double> forces) { held_.assign(forces.begin(), forces.end()); }
+  void Hold(std::span<const double> forces) {
+    held_.assign(forces.begin(), forces.end());
+  }
   /// What effects of the sensors make of readings, at a tick since the start.
   void Distort(std::span<double> outputs, std::int64_t tick) noexcept {
     effects_.Distort(outputs, static_cast<double>(tick) * tick_);

@@ -70,8 +70,7 @@ TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
   const Index ns = steps_.size();
   const Index nv = force_steps_.size();
   TickTangent tangent{MatrixXd(ns, ns), MatrixXd::Zero(ns, nv),
-                      MatrixXd(map_.sensors(), ns),
-                      MatrixXd::Zero(map_.sensors(), nv)};
+                      MatrixXd(map_.sensors(), ns), MatrixXd::Zero(map_.sensors(), nv)};
   for (Index i = 0; i < ns; ++i) Column(from, forces, tick, control, i, tangent);
   for (const Index dof : dofs_) ForceColumn(from, forces, tick, control, dof, tangent);
   return tangent;

@@ -58,9 +58,8 @@ class TickMap {
 
  private:
   class Listener;
-  void Advance(Stepper& stepper, const PlantState& from,
-               const Eigen::VectorXd& forces, std::int64_t tick, TickControl& control,
-               Result& result);
+  void Advance(Stepper& stepper, const PlantState& from, const Eigen::VectorXd& forces,
+               std::int64_t tick, TickControl& control, Result& result);
 
   double tick_;  // [s]
   ModelPtr model_;
@@ -71,7 +70,7 @@ class TickMap {
   std::vector<int> addresses_;
   std::vector<bool> late_;
   bool reads_at_end_ = false;
-  Result last_;   // of Run
+  Result last_;  // of Run
   Result probed_;
 };
 

@@ -64,8 +64,8 @@ Rate FirstRate(const VectorXd& readings, double sd, double sample_time) {
 
 /// Root mean squares of the readings' rates over a run, over 20 ms.
 VectorXd TypicalRates(const MeasuredRun& run) {
-  const auto over = std::max<Index>(
-      1, static_cast<Index>(std::lround(0.02 / run.sample_time)));
+  const auto over =
+      std::max<Index>(1, static_cast<Index>(std::lround(0.02 / run.sample_time)));
   VectorXd squares = VectorXd::Zero(run.outputs.rows());
   double count = 0.0;
   for (std::size_t r = 0; r < run.records.size(); ++r) {
@@ -147,8 +147,7 @@ std::vector<Index> LatentDofs(const Machine& machine, const MeasuredRun& run) {
   TickMap map(machine);
   RecordedInputs inputs(machine, run);
   const PlantState state = StillAt(machine, run, 0);
-  const TickTangent tangent =
-      TangentAt(map, inputs, state, 0, machine.rates().tick());
+  const TickTangent tangent = TangentAt(map, inputs, state, 0, machine.rates().tick());
   const mjModel& model = map.model();
   // What a force that lasts two ticks does to the readings, of each sensor in its own size.
   MatrixXd seen = tangent.C * (tangent.A * tangent.B + tangent.B) + tangent.D;
@@ -190,8 +189,8 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
     MatrixXd seen = tangent.C.leftCols(nv);
     for (Index i = 0; i < seen.rows(); ++i) {
       // A rate of a velocity or of a force says nothing of velocities.
-      const bool position = tangent.C.row(i).segment(nv, nv).isZero(0.0) &&
-                            !map.ReadsAtEnd(i);
+      const bool position =
+          tangent.C.row(i).segment(nv, nv).isZero(0.0) && !map.ReadsAtEnd(i);
       if (!position) seen.row(i).setZero();
     }
     // Of all motions that give such readings that which strains the springs least.
@@ -202,8 +201,8 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
     const VectorXd scale = reading_sd.cwiseInverse();
     const MatrixXd weighted =
         scale.asDiagonal() * seen * weight.cwiseSqrt().asDiagonal();
-    const MatrixXd place = weight.cwiseSqrt().asDiagonal() * PseudoInverse(weighted) *
-                           scale.asDiagonal();
+    const MatrixXd place =
+        weight.cwiseSqrt().asDiagonal() * PseudoInverse(weighted) * scale.asDiagonal();
     VectorXd rate(seen.rows());
     VectorXd rate_sd(seen.rows());
     for (Index i = 0; i < seen.rows(); ++i) {
@@ -217,7 +216,8 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
 
     const VectorXd mass = MassAt(model, start.state).diagonal();
     constexpr double kKnownTo = 10.0;  // times the noise of the readings
-    VectorXd position = kKnownTo * (place.cwiseAbs2() * reading_sd.cwiseAbs2()).cwiseSqrt();
+    VectorXd position =
+        kKnownTo * (place.cwiseAbs2() * reading_sd.cwiseAbs2()).cwiseSqrt();
     VectorXd speed = (place.cwiseAbs2() * rate_sd.cwiseAbs2()).cwiseSqrt();
     // Of the usual motion: its energy, and the force that makes it within 20 ms.
     const VectorXd usual = (place * rates).cwiseAbs();
@@ -238,8 +238,7 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
     const double command =
         run.inputs.size() > 0 ? run.inputs.cwiseAbs().maxCoeff() : 1.0;
     start.sd.resize(TangentSize(model));
-    start.sd << position, speed,
-        VectorXd::Constant(model.na, std::max(1e-3, command));
+    start.sd << position, speed, VectorXd::Constant(model.na, std::max(1e-3, command));
     starts.push_back(std::move(start));
   }
   return starts;

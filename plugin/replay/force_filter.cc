@@ -119,9 +119,9 @@ void RecordFilter::Run() {
 
     const TickMap::Result& ticked = Tick(k);
     if (ticked.diverged) {
-      throw NumericalError(
-          "replay: diverged at " +
-          std::to_string(static_cast<double>(k) * path_.sample_time) + " s");
+      throw NumericalError("replay: diverged at " +
+                           std::to_string(static_cast<double>(k) * path_.sample_time) +
+                           " s");
     }
     PlantState next = ticked.state;
     const VectorXd ended = ticked.reading;
@@ -163,8 +163,9 @@ MatrixXd SpeedsOf(const MeasuredRun& run) {
     for (Index k = begin; k < end; ++k) {
       const Index a = std::max(begin, k - side);
       const Index b = std::min(end - 1, k + side);
-      speeds.col(k) = (run.outputs.col(b) - run.outputs.col(a)) /
-                      (run.sample_time * static_cast<double>(std::max<Index>(1, b - a)));
+      speeds.col(k) =
+          (run.outputs.col(b) - run.outputs.col(a)) /
+          (run.sample_time * static_cast<double>(std::max<Index>(1, b - a)));
     }
   }
   return speeds;
@@ -173,8 +174,9 @@ MatrixXd SpeedsOf(const MeasuredRun& run) {
 }  // namespace
 
 FilterPath RunForceFilter(const Machine& machine, const MeasuredRun& run,
-                     const std::vector<Index>& dofs,
-                     const std::vector<FilterStart>& starts, const FilterNoise& noise) {
+                          const std::vector<Index>& dofs,
+                          const std::vector<FilterStart>& starts,
+                          const FilterNoise& noise) {
   FilterPath path;
   path.sample_time = run.sample_time;
   path.dofs = dofs;
@@ -242,8 +244,8 @@ ReadingScores Score(const FilterPath& path, const FilterNoise& noise, Index firs
   const auto take = [&](Index sensor, bool late, Index k) {
     if (path.late[static_cast<std::size_t>(sensor)] != late) return;
     if (!path.counts(sensor, k)) return;
-    scores.deviance[sensor] += kalman.Take(sensor, late, path.innovations(sensor, k),
-                                           path.speeds(sensor, k));
+    scores.deviance[sensor] +=
+        kalman.Take(sensor, late, path.innovations(sensor, k), path.speeds(sensor, k));
     scores.variance[sensor] += std::log(kalman.variance);
     taken[sensor] += 1.0;
     if (kept == nullptr) return;
@@ -259,9 +261,9 @@ ReadingScores Score(const FilterPath& path, const FilterNoise& noise, Index firs
       kept->e = VectorXd::Zero(ny);
       kept->P = kalman.P.bottomRows(nf + 1);
       // The path's own force before the readings, and what the filter adds to it.
-      kept->force = path.forces.col(k) + (kalman.z - path.pulled.col(k) -
-                                          path.pulled_late.col(k))
-                                             .segment(n - nf - 1, nf);
+      kept->force =
+          path.forces.col(k) + (kalman.z - path.pulled.col(k) - path.pulled_late.col(k))
+                                   .segment(n - nf - 1, nf);
     }
     kalman.MoveTo(path.At(k));
     for (Index i = 0; i < ny; ++i) take(i, false, k);
@@ -276,8 +278,7 @@ ReadingScores Score(const FilterPath& path, const FilterNoise& noise, Index firs
         forgets.head(nf).cwiseProduct(path.forces.col(k));
     kalman.z[n - 1] += forgets[nf] * path.clock[k];
   }
-  scores.variance =
-      (scores.variance.array() / taken.array().max(1.0)).exp();
+  scores.variance = (scores.variance.array() / taken.array().max(1.0)).exp();
   return scores;
 }
 

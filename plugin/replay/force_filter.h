@@ -46,20 +46,20 @@ struct FilterPath {
   std::vector<Eigen::Index> dofs;  ///< those with a latent force, nf
   std::vector<bool> late;          ///< sensors that read at the end of a tick, ny
   std::vector<TickTangent> tangents;
-  std::vector<std::size_t> of_tick;        ///< the tangent of every tick
-  std::vector<Eigen::Index> first;         ///< sample at which every record begins
-  std::vector<FilterStart> starts;         ///< of every record
-  std::vector<PlantState> states;          ///< after the readings of a tick, of every tick
-  Eigen::MatrixXd forces;                  ///< w there, nf x samples
-  Eigen::MatrixXd innovations;             ///< ny x samples, 0 where nothing was measured
-  Eigen::MatrixXd speeds;                  ///< of readings, ny x samples [unit / s]
-  Eigen::VectorXd clock;                   ///< t there [s]
+  std::vector<std::size_t> of_tick;  ///< the tangent of every tick
+  std::vector<Eigen::Index> first;   ///< sample at which every record begins
+  std::vector<FilterStart> starts;   ///< of every record
+  std::vector<PlantState> states;    ///< after the readings of a tick, of every tick
+  Eigen::MatrixXd forces;            ///< w there, nf x samples
+  Eigen::MatrixXd innovations;       ///< ny x samples, 0 where nothing was measured
+  Eigen::MatrixXd speeds;            ///< of readings, ny x samples [unit / s]
+  Eigen::VectorXd clock;             ///< t there [s]
   /// [x; w; t] was pulled by, in the tick: by readings at its start, and then by those of
   /// its end. (ns + nf + 1) x samples
   Eigen::MatrixXd pulled, pulled_late;
-  Eigen::ArrayXX<bool> counts;             ///< readings that count, ny x samples
-  FilterNoise noise;                       ///< with which it was found
-  double deviance = 0.0;                   ///< -2 ln L
+  Eigen::ArrayXX<bool> counts;  ///< readings that count, ny x samples
+  FilterNoise noise;            ///< with which it was found
+  double deviance = 0.0;        ///< -2 ln L
 
   Eigen::Index samples() const { return innovations.cols(); }
   Eigen::Index sensors() const { return innovations.rows(); }
@@ -81,8 +81,9 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
 /// The run beside the machine, its records side by side.
 /// NumericalError if the machine diverges.
 FilterPath RunForceFilter(const Machine& machine, const MeasuredRun& run,
-                     const std::vector<Eigen::Index>& dofs,
-                     const std::vector<FilterStart>& starts, const FilterNoise& noise);
+                          const std::vector<Eigen::Index>& dofs,
+                          const std::vector<FilterStart>& starts,
+                          const FilterNoise& noise);
 
 /// What a linear pass over a path keeps of every tick, for a smoother; in the order in which
 /// readings were taken.

@@ -87,9 +87,8 @@ double ForceKalman::Take(Index sensor, bool late, double innovation, double spee
   }
   // A clock that is off by nothing that shows is left out, and the gains stay.
   constexpr double kShows = 1e-6;
-  const bool clock_shows =
-      std::pow(noise_.clock * speed, 2) > kShows * noise_.reading[sensor] *
-                                              noise_.reading[sensor];
+  const bool clock_shows = std::pow(noise_.clock * speed, 2) >
+                           kShows * noise_.reading[sensor] * noise_.reading[sensor];
   c_[ns + nf - 1] = clock_shows ? speed : 0.0;
   if (clock_shows) Unsettle();
   taken_.push_back(sensor);
@@ -148,7 +147,8 @@ void ForceKalman::Advance() {
   forces = (rho_.asDiagonal() * forces * rho_.asDiagonal()).eval();
   forces.diagonal() += renewal_;
   const VectorXd now = P.diagonal();
-  steady_ = !moved_ && ((now - before_).cwiseAbs().array() <= kAtItsEnd * now.array()).all();
+  steady_ =
+      !moved_ && ((now - before_).cwiseAbs().array() <= kAtItsEnd * now.array()).all();
   before_ = now;
   moved_ = false;
 }

@@ -37,7 +37,7 @@ class ForceKalman {
   Eigen::MatrixXd P;
   /// Of the last reading that was taken.
   Eigen::VectorXd gain;
-  double variance = 0.0;          ///< S, larger where the reading was cut
+  double variance = 0.0;  ///< S, larger where the reading was cut
   double last_innovation = 0.0;
 
   /// Of the latent forces, and of the clock behind them: nf + 1.
@@ -52,13 +52,13 @@ class ForceKalman {
   Eigen::VectorXd variance_;  // stationary, of [w; t]
   Eigen::VectorXd renewal_;   // of it what is new in a tick
   const TickTangent* tangent_ = nullptr;
-  Eigen::MatrixXd B_, D_;     // of the latent forces and of the clock, which has none
-  Eigen::MatrixXd Q_;         // of the white forces, ns x ns
+  Eigen::MatrixXd B_, D_;  // of the latent forces and of the clock, which has none
+  Eigen::MatrixXd Q_;      // of the white forces, ns x ns
   Eigen::MatrixXd top_;
   Eigen::VectorXd c_, Pc_;
   /// Whether P is what it was a tick ago, and the readings of a tick with their gains then.
   bool steady_ = false;
-  bool moved_ = true;  // tangent, or what was read, since the last tick
+  bool moved_ = true;       // tangent, or what was read, since the last tick
   Eigen::VectorXd before_;  // diagonal of P
   std::vector<Eigen::Index> taken_, taken_before_;
   Eigen::MatrixXd gains_;

@@ -55,9 +55,8 @@ void BackwardPass::ThroughTick(Index k) {
     F.col(ns + j).head(ns) = tangent.B.col(path_.dofs[static_cast<std::size_t>(j)]);
   }
   F.diagonal().tail(nf_ + 1) = rho_;
-  smoothed_.value.col(k) =
-      path_.noise.white.cwiseAbs2().cwiseProduct(
-          F.block(0, ns, ns, nf_).transpose() * r_.head(ns));
+  smoothed_.value.col(k) = path_.noise.white.cwiseAbs2().cwiseProduct(
+      F.block(0, ns, ns, nf_).transpose() * r_.head(ns));
   r_ = (F.transpose() * r_).eval();
   W_ = (F.transpose() * (W_ * F)).eval();
 }

@@ -45,8 +45,7 @@ Windows SomeOf(const Windows& all, Index samples) {
   if (samples <= kSamples) return all;
   Windows some;
   for (const auto& [first, count] : all.of) {
-    const Index piece =
-        std::max<Index>(100, kSamples * count / samples / kPieces);
+    const Index piece = std::max<Index>(100, kSamples * count / samples / kPieces);
     if (piece * kPieces >= count) {
       some.of.emplace_back(first, count);
       continue;
@@ -321,7 +320,8 @@ MeasuredRun PiecesOf(const MeasuredRun& run) {
   std::vector<Index> starts;
   for (const RecordStart& record : run.records) starts.push_back(record.sample);
   std::vector<MeasuredRun> pieces;
-  for (const auto& [first, count] : SomeOf(RecordsOf(starts, run.samples()), run.samples()).of) {
+  for (const auto& [first, count] :
+       SomeOf(RecordsOf(starts, run.samples()), run.samples()).of) {
     pieces.push_back(Excerpt(run, first, count));
   }
   return Joined(pieces);
@@ -335,8 +335,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   // Pieces tell the noise as well as all of a run.
   const MeasuredRun pieces = PiecesOf(run);
   std::vector<FilterStart> starts = FilterStarts(machine, pieces, reading_sd);
-  const FilterNoise fast =
-      FollowingNoise(machine, pieces, dofs, starts, reading_sd);
+  const FilterNoise fast = FollowingNoise(machine, pieces, dofs, starts, reading_sd);
   // A path that was followed fast sticks and slips with its noise: behind a slow filter it
   // says little, so that both are followed by the machine itself.
   // Where one does not stay with the run another one may.
@@ -367,8 +366,8 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
     }
   }();
   try {
-    FilterPath refined = RunForceFilter(machine, run, dofs, starts,
-                                        Refined(path, reading_sd, kMedium));
+    FilterPath refined =
+        RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, kMedium));
     if (refined.deviance < path.deviance) return refined;
   } catch (const NumericalError&) {
   }

@@ -30,8 +30,7 @@ double RecordedInputs::Above(std::size_t actuator, int substep) const noexcept {
 }
 
 bool RecordedInputs::IsOn(std::size_t actuator) const noexcept {
-  return run_.on.size() == 0 ||
-         run_.on(static_cast<Index>(actuator), now_) != 0.0;
+  return run_.on.size() == 0 || run_.on(static_cast<Index>(actuator), now_) != 0.0;
 }
 
 }  // namespace mjdiag

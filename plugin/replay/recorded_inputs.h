@@ -1,5 +1,5 @@
 #pragma once
-// Drives a machine with what was recorded, from any tick on.
+// Drives a machine with what was recorded, sample by sample or at any one of them.
 
 #include <span>
 #include <vector>
@@ -15,8 +15,6 @@ class RecordedInputs final : public TickControl {
   /// The run has to outlive it.
   RecordedInputs(const Machine& machine, const MeasuredRun& run);
 
-  /// The next tick is that sample of the run.
-  void Begin(Eigen::Index sample) { tick_ = sample; }
   /// Every tick is that sample of the run, until told otherwise.
   void StayAt(Eigen::Index sample) {
     tick_ = sample;

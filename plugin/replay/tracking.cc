@@ -216,8 +216,7 @@ Index MeasuredRun::SamplesOf(std::size_t record) const {
 }
 
 std::size_t MeasuredRun::RecordOf(Index sample) const {
-  const auto next =
-      std::ranges::upper_bound(records, sample, {}, &RecordStart::sample);
+  const auto next = std::ranges::upper_bound(records, sample, {}, &RecordStart::sample);
   return static_cast<std::size_t>(next - records.begin() - 1);
 }
 

@@ -13,9 +13,9 @@ namespace mjdiag::test {
 inline Machine MachineOf(const std::string& plant, const std::string& setup) {
   const TemporaryFolder folder;
   folder.Write("plant.xml", plant);
-  folder.Write("setup.toml",
-               "schema = \"mjdiag.setup/1\"\nname = \"Any\"\nplant = \"plant.xml\"\n" +
-                   setup);
+  folder.Write(
+      "setup.toml",
+      "schema = \"mjdiag.setup/1\"\nname = \"Any\"\nplant = \"plant.xml\"\n" + setup);
   return Machine(ReadSetup(folder.path().string()));
 }
 

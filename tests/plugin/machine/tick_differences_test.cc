@@ -96,25 +96,24 @@ TEST_P(EveryKind, MovesAsItsTangentSays) {
   for (Index i = 0; i < model.nv; ++i) force[i] = 1e-3 * static_cast<double>(i + 1);
   const VectorXd none = VectorXd::Zero(model.nv);
   const PlantState there = map.Run(state, none, 0, control).state;
-  const PlantState moved =
-      map.Run(Moved(model, state, dx), force, 0, control).state;
+  const PlantState moved = map.Run(Moved(model, state, dx), force, 0, control).state;
   const VectorXd expected = tangent.A * dx + tangent.B * force;
-  EXPECT_LT((Deviation(model, there, moved) - expected).norm(),
-            2e-3 * expected.norm());
+  EXPECT_LT((Deviation(model, there, moved) - expected).norm(), 2e-3 * expected.norm());
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Models, EveryKind, ::testing::ValuesIn(test::kEveryKind), [](const auto& of) {
-      std::string name = of.param.name;
-      std::erase_if(name, [](char c) { return std::isalnum(c) == 0; });
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Models, EveryKind, ::testing::ValuesIn(test::kEveryKind),
+                         [](const auto& of) {
+                           std::string name = of.param.name;
+                           std::erase_if(name,
+                                         [](char c) { return std::isalnum(c) == 0; });
+                           return name;
+                         });
 
 // The exact linear map of a tick of several steps, at rest and without friction that
 // sticks.
 TEST(TickDifferences, AreTheExactTickOfTheLinearBonder) {
-  const Machine bonder(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383",
-                                 {"physics.static_friction=false"}));
+  const Machine bonder(
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383", {"physics.static_friction=false"}));
   const mjModel& model = bonder.plant();
   PlantState rest{bonder.rest(), VectorXd::Zero(model.nv), VectorXd(0)};
   const TickTangent tangent = TangentAt(bonder, rest, 0.0);
@@ -150,8 +149,9 @@ TEST(TickMap, ReadsForcesAtTheEndOfTheTickThatTheyMove) {
 // Presliding goes on from one run to the next, and probes leave it where it was.
 TEST(TickMap, ProbesFromWhatEffectsRememberedBefore) {
   const Machine machine = test::MachineOf(test::kEveryKind[0])
-                              .With({{}, {ParseEffect("presliding_hysteresis@j:"
-                                                      "force=0.5,stiffness=500")}});
+                              .With({{},
+                                     {ParseEffect("presliding_hysteresis@j:"
+                                                  "force=0.5,stiffness=500")}});
   TickMap map(machine);
   HeldInput control(0.0);
   const VectorXd none = VectorXd::Zero(1);

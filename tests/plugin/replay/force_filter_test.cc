@@ -55,8 +55,12 @@ struct Slide {
 double None(double) { return 0.0; }
 
 FilterNoise SomeNoise() {
-  return {VectorXd::Constant(1, kNoise), 1e-12, 1e-3, VectorXd::Constant(1, 0.5),
-          VectorXd::Constant(1, 0.2), VectorXd::Constant(1, 0.01)};
+  return {VectorXd::Constant(1, kNoise),
+          1e-12,
+          1e-3,
+          VectorXd::Constant(1, 0.5),
+          VectorXd::Constant(1, 0.2),
+          VectorXd::Constant(1, 0.01)};
 }
 
 TEST(ForceFilter, LeavesTheNoiseOfItsSensorBesideTheTrueMachine) {
@@ -74,8 +78,7 @@ TEST(ForceFilter, LeavesTheNoiseOfItsSensorBesideTheTrueMachine) {
 TEST(ForceFilter, BeginsInMidMotion) {
   const Slide slide;
   const MeasuredRun run = slide.Measure(None);
-  const auto starts =
-      FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
+  const auto starts = FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
   EXPECT_NEAR(starts[0].state.position[0], 0.1, 4.0 * kNoise);
   EXPECT_NEAR(starts[0].state.velocity[0], 0.2, 4.0 * starts[0].sd[1]);
   EXPECT_LT(starts[0].sd[1], 0.05);
@@ -101,8 +104,7 @@ TEST(ForceFilter, OfAnotherNoiseIsTheLinearPassAlongAnyPath) {
       slide.Measure([](double t) { return 0.7 * std::sin(2.0 * t); });
   const auto dofs = LatentDofs(slide.machine, run);
   ASSERT_EQ(dofs, std::vector<Index>{0});
-  const auto starts =
-      FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
+  const auto starts = FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
   const FilterNoise noise = SomeNoise();
   FilterNoise other = noise;
   other.size *= 30.0;
@@ -150,11 +152,12 @@ TEST(ForceSmoother, KnowsHowWellItKnows) {
       w = rho * w + std::sqrt(1.0 - rho * rho) * noise.size[0] * normal(random);
     }
     const MeasuredRun run = slide.Measure(
-        [&](double t) { return force.at(static_cast<std::size_t>(std::lround(t * 1e3))); },
+        [&](double t) {
+          return force.at(static_cast<std::size_t>(std::lround(t * 1e3)));
+        },
         2000, seed);
     const std::vector<Index> dofs = {0};
-    const auto starts =
-        FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
+    const auto starts = FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
     const SmoothedForces smoothed =
         SmoothForces(RunForceFilter(slide.machine, run, dofs, starts, noise));
     const VectorXd truth = VectorXd::Map(force.data(), std::ssize(force));
@@ -200,8 +203,8 @@ TEST(NoiseFit, OrdersHalfTruthsAndTruths) {
   };
   const double nothing = deviance({});
   const double half = deviance({"coulomb_friction@elbow:force=0.3"});
-  const double wrong = deviance({"coulomb_friction@elbow:force=0.3",
-                                 "quadratic_drag@shoulder:coefficient=0.3"});
+  const double wrong = deviance(
+      {"coulomb_friction@elbow:force=0.3", "quadratic_drag@shoulder:coefficient=0.3"});
   const double truth = deviance({"coulomb_friction@elbow:force=0.3",
                                  "viscous_friction@shoulder:coefficient=0.8"});
   EXPECT_LT(half, nothing - 100.0);
