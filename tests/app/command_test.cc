@@ -165,10 +165,9 @@ TEST(Command, RenderOfARecordLastsAsLongAsItIsAsked) {
   const TemporaryFolder folder;
   const std::string out = "'" + folder.path().string() + "'";
   ASSERT_EQ(
-      RunCommand("simulate --setup mjcf/voice_coil --duration 2 --out " + out).status,
-      0);
+      RunCommand("simulate --setup mjcf/ab383 --duration 0.5 --out " + out).status, 0);
   const json document = JsonOf(
-      "render --setup mjcf/voice_coil --record " + out +
+      "render --setup mjcf/ab383 --record " + out +
       "/record.csv --duration 0.2 --speed 0.5 --width 320 --height 240 --out " + out);
   EXPECT_EQ(document["frames"], 13);  // 0.4 s of 30 a second, and the first
 }
