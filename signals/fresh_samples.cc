@@ -6,8 +6,6 @@
 #include <map>
 #include <vector>
 
-#include "mjdiag/signals/encoder_step.h"
-
 namespace mjdiag {
 namespace {
 
@@ -41,7 +39,7 @@ std::vector<Level> LevelsOf(const VectorXd& x) {
 class Quanta {
  public:
   Quanta(const std::vector<Level>& levels, double resolution)
-      : resolution_(resolution) {
+      : resolution_(std::max(resolution, StepBetweenRepeats(levels))) {
     for (std::size_t i = 1; i < levels.size(); ++i) {
       const double step = std::abs(levels[i].value - levels[i - 1].value);
       const int decade = DecadeOf(levels[i].value);
@@ -60,6 +58,25 @@ class Quanta {
   }
 
  private:
+  /// An encoder behind a filter has values between its steps, but rests on them: the
+  /// smallest step from one value that repeats to the next that does, where enough do to
+  /// tell; else 0.
+  static double StepBetweenRepeats(const std::vector<Level>& levels) {
+    constexpr std::size_t kLeast = 20;
+    double smallest = std::numeric_limits<double>::infinity();
+    const Level* last = nullptr;
+    std::size_t count = 0;
+    for (const Level& level : levels) {
+      if (!level.Repeats()) continue;
+      if (last != nullptr && last->value != level.value) {
+        smallest = std::min(smallest, std::abs(level.value - last->value));
+      }
+      last = &level;
+      ++count;
+    }
+    return count >= kLeast && std::isfinite(smallest) ? smallest : 0.0;
+  }
+
   static int DecadeOf(double value) {
     return value == 0.0 ? -400
                         : static_cast<int>(std::floor(std::log10(std::abs(value))));
@@ -75,7 +92,7 @@ class Reading {
         x_(x),
         scale_(scale),
         levels_(LevelsOf(x)),
-        quanta_(levels_, std::max(scale.resolution, EncoderStep(x))) {}
+        quanta_(levels_, scale.resolution) {}
 
   FreshSamples Find() const {
     if (static_cast<Index>(levels_.size()) == x_.size()) return {};

@@ -13,7 +13,6 @@
 #include "mjdiag/discovery/checks/unit_check.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/plugin/replay/tracking.h"
-#include "mjdiag/signals/encoder_step.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"
 
@@ -262,7 +261,6 @@ Index RepeatsInside(const VectorXd& x) {
 void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   constexpr Index kLeast = 10;
   constexpr double kShare = 0.005;
-  constexpr double kLongShare = 0.02;   // of what may also be a rest
   constexpr double kShouldMove = 0.05;  // of the expected range, in one run
   // What was not measured is not judged: of a slow sensor every value would be held.
   if (measured_.At(sensor.channel).measured.size() > 0) return;
@@ -270,7 +268,7 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   if (StandsStill(x)) return;
   const Index inside = RepeatsInside(x);
   const VectorXd* expected = Expected(sensor);
-  const double step = std::max({SmallestStep(x), sensor.resolution, EncoderStep(x)});
+  const double step = std::max(SmallestStep(x), sensor.resolution);
   const std::vector<Repeats> runs = RepeatsIn(x, kLeast);
   for (const double extreme : {x.maxCoeff(), x.minCoeff()}) {
     Index total = 0;
@@ -288,9 +286,7 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
     }
     if (static_cast<double>(total) <= kShare * static_cast<double>(x.size())) continue;
     // An arm that friction holds rests where its reference moves on.
-    const bool loses_noise = inside<total&& static_cast<double>(total)> kLongShare *
-                                 static_cast<double>(x.size()) &&
-                             IsNoisy(x, step);
+    const bool loses_noise = inside < total && IsNoisy(x, step);
     if (!(should_move && cut_off) && !loses_noise) continue;
     throw InputError("record",
                      "saturated: " + Quoted(sensor.channel) + " sits at exactly " +

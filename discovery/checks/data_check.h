@@ -6,10 +6,10 @@
 //   too short     n < 64
 //   missing       a sample that is NaN or infinite and not marked as not measured
 //   saturated     a sensor that stays at exactly its largest or smallest value, at
-//                 least 10 samples at a time, for more than 0.5 % of n, although it
-//                 should move there (by its reference in closed loop, by the simulated
-//                 plant in open loop) and comes and goes at a steady speed; or for more
-//                 than 2 % of n, although it is noisy elsewhere and repeats less there
+//                 least 10 samples at a time, for more than 0.5 % of n, although it is
+//                 noisy elsewhere and repeats less there, or should move there (by its reference in closed
+//                 loop, by the simulated plant in open loop) and comes and goes at a
+//                 steady speed
 //   wrong units   and flipped signs: see unit_check.h
 //   clock drift   see clock_drift.h
 //
