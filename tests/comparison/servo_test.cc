@@ -34,7 +34,8 @@ class Servo : public ::testing::Test {
     if (open_loop) setup = WithoutControllers(setup);
     const std::string file = trajectory + "_kp" + std::to_string(gain) + ".csv";
     const Record measured = ReadRecord(DataFolder() / file, setup.record);
-    return Compare(Machine(setup), measured, {}).channels.at(0).mae;
+    // Where the arm falls with its torque off it may leave the measurement.
+    return CompareFree(Machine(setup), measured, {}).channels.at(0).mae;
   }
 };
 
