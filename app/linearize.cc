@@ -18,6 +18,7 @@
 #include "mjdiag/plugin/runtime/closed_loop.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag::app {
@@ -89,16 +90,11 @@ nlohmann::json TiesJson(const Linearization& linear) {
   return ties;
 }
 
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
-
 std::string TiesText(const Linearization& linear) {
   if (linear.dependent.empty()) return "";
-  return "\nindependent coordinates: " + Joined(linear.model.coordinates) +
-         "; constraints tie " + Joined(linear.dependent);
+  const std::string free = Listed(linear.model.coordinates);
+  return "\nindependent coordinates: " + (free.empty() ? "none" : free) +
+         "; constraints tie " + Listed(linear.dependent);
 }
 
 /// The plant that the controllers see. The exact map where there is one: a tree of slides

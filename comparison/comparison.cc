@@ -241,7 +241,6 @@ Comparison Compare(const Machine& machine, const Record& measured,
   const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
   const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
   result.deviance = path.deviance;
-  result.noise = path.noise;
   result.prediction = Predict(machine, run, path, result.options.skip_samples);
   result.missing_force = MissingForces(machine, path);
   if (result.falls) PredictATick(machine, measured, path, result);

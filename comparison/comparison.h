@@ -46,7 +46,6 @@ struct Comparison {
   Prediction prediction;
   std::vector<MissingForce> missing_force;
   std::optional<double> deviance;  ///< -2 ln L
-  FilterNoise noise;               ///< the most likely one
 
   /// True if any channel exceeds its noise floor.
   bool exceeds_noise() const;

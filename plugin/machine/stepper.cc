@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/start_state.h"
 
@@ -25,8 +25,7 @@ Stepper::Stepper(const Machine& machine)
       inputs_(actuators_.size()) {
   off_.reserve(actuators_.size());
   for (const SensorSetup& sensor : machine.channels().sensors) {
-    const int id = FindElement(machine.plant(), mjOBJ_SENSOR, sensor.element);
-    reads_forces_ |= machine.plant().sensor_needstage[id] == mjSTAGE_ACC;
+    reads_forces_ |= StageOf(machine.plant(), sensor) == mjSTAGE_ACC;
   }
 }
 

@@ -57,6 +57,8 @@ class Stepper {
                const std::function<void()>& after_step = {});
   /// Whether the next physics step is the first of a tick.
   bool AtTickStart() const { return substep_ == 0; }
+  /// What the sensors read at the start of this tick, as the control was told.
+  std::span<const double> outputs() const { return outputs_; }
   /// Actuators that are an open circuit in this tick, by their place in the model.
   std::span<const int> off() const { return off_; }
   /// Sets the actuators and the forces of effects to zero.

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
 #include "mjdiag/signals/error.h"
 
@@ -28,13 +29,11 @@ VectorXd StateSteps(const mjModel& model) {
   return steps;
 }
 
-/// Inertia of every degree of freedom where the model is drawn.
-VectorXd Inertia(const mjModel& model) {
-  const DataPtr data = MakeData(model);
-  mj_forward(&model, data.get());
-  Eigen::Matrix<double, -1, -1, Eigen::RowMajor> mass(model.nv, model.nv);
-  mj_fullM(&model, mass.data(), data->qM);
-  return mass.diagonal();
+/// Forces that make the steps of the velocities in a tick, where the model is drawn.
+VectorXd ForceSteps(const mjModel& model, const VectorXd& steps, double tick) {
+  const VectorXd drawn = VectorXd::Map(model.qpos0, model.nq);
+  const VectorXd inertia = PlantForces(model, drawn).Mass().diagonal();
+  return inertia.cwiseProduct(steps.segment(model.nv, model.nv)) / tick;
 }
 
 struct Outcome {
@@ -61,9 +60,7 @@ TickDifferences::TickDifferences(TickMap& map, double tick, std::vector<Index> d
     : map_(map),
       dofs_(std::move(dofs)),
       steps_(StateSteps(map.model())),
-      force_steps_(Inertia(map.model())
-                       .cwiseProduct(steps_.segment(map.model().nv, map.model().nv)) /
-                   tick) {}
+      force_steps_(ForceSteps(map.model(), steps_, tick)) {}
 
 TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
                                 std::int64_t tick, TickControl& control) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/scenery.h"
 
 namespace mjdiag {
@@ -26,28 +27,6 @@ void Mix(std::uint64_t& hash, std::uint64_t value) {
 
 }  // namespace
 
-/// The control, and what the sensors read.
-class TickMap::Listener final : public TickControl {
- public:
-  Listener(TickControl& control, VectorXd& reading)
-      : control_(control), reading_(reading) {}
-  void Tick(std::span<const double> outputs,
-            std::span<double> inputs) noexcept override {
-    std::copy(outputs.begin(), outputs.end(), reading_.begin());
-    control_.Tick(outputs, inputs);
-  }
-  double Above(std::size_t actuator, int substep) const noexcept override {
-    return control_.Above(actuator, substep);
-  }
-  bool IsOn(std::size_t actuator) const noexcept override {
-    return control_.IsOn(actuator);
-  }
-
- private:
-  TickControl& control_;
-  VectorXd& reading_;
-};
-
 TickMap::TickMap(const Machine& machine)
     : tick_(machine.rates().tick()),
       model_(CopyModel(machine.plant())),
@@ -59,8 +38,7 @@ TickMap::TickMap(const Machine& machine)
   SolveExactly(*model_);
   data_ = MakeData(*model_);
   for (const SensorSetup& sensor : machine.channels().sensors) {
-    const int id = FindElement(*model_, mjOBJ_SENSOR, sensor.element);
-    late_.push_back(model_->sensor_needstage[id] == mjSTAGE_ACC);
+    late_.push_back(StageOf(*model_, sensor) == mjSTAGE_ACC);
     reads_at_end_ |= late_.back();
   }
   last_.reading = VectorXd::Zero(sensors());
@@ -86,9 +64,8 @@ void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& 
   SetState(*model_, from, *data_);
   data_->time = static_cast<double>(tick) * tick_;
   stepper.Hold({forces.data(), static_cast<std::size_t>(forces.size())});
-  Listener listener(control, result.reading);
   result.pattern = 0xcbf29ce484222325ULL;
-  stepper.Advance(*model_, *data_, listener, [&] {
+  stepper.Advance(*model_, *data_, control, [&] {
     for (int row = 0; row < data_->nefc; ++row) {
       Mix(result.pattern, static_cast<std::uint64_t>(data_->efc_type[row]));
       Mix(result.pattern, static_cast<std::uint64_t>(data_->efc_id[row]));
@@ -102,6 +79,7 @@ void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& 
       Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
     }
   });
+  std::ranges::copy(stepper.outputs(), result.reading.begin());
   if (reads_at_end_) {
     mj_step1(model_.get(), data_.get());
     ReadForces(*model_, *data_);

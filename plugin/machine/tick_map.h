@@ -57,7 +57,6 @@ class TickMap {
   Eigen::VectorXd Read(const PlantState& at, std::int64_t tick);
 
  private:
-  class Listener;
   void Advance(Stepper& stepper, const PlantState& from, const Eigen::VectorXd& forces,
                std::int64_t tick, TickControl& control, Result& result);
 

@@ -31,6 +31,11 @@ std::vector<int> ActuatorAddresses(const Channels& channels, const mjModel& mode
   return addresses;
 }
 
+mjtStage StageOf(const mjModel& model, const SensorSetup& sensor) {
+  const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
+  return static_cast<mjtStage>(model.sensor_needstage[id]);
+}
+
 Channel JointChannel(const mjModel& model, int joint, Eigen::VectorXd samples) {
   return {"joint." + ElementName(model, mjOBJ_JOINT, joint),
           model.jnt_type[joint] == mjJNT_SLIDE ? "m" : "rad", std::move(samples)};

@@ -16,6 +16,10 @@ std::vector<int> SensorAddresses(const Channels& channels, const mjModel& model)
 /// Index into mjData.ctrl of every actuator channel of the setup.
 std::vector<int> ActuatorAddresses(const Channels& channels, const mjModel& model);
 
+/// From which stage of a step on MuJoCo knows what a sensor channel reads: of positions,
+/// of velocities, or of accelerations and forces.
+mjtStage StageOf(const mjModel& model, const SensorSetup& sensor);
+
 /// What a record has of a joint: "joint.<name>" in m or rad.
 Channel JointChannel(const mjModel& model, int joint, Eigen::VectorXd samples);
 

@@ -51,8 +51,7 @@ MatrixXd InputMatrix(const mjModel& model, const Channels& channels,
 }
 
 bool ReadsPosition(const mjModel& model, const SensorSetup& sensor) {
-  const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
-  return model.sensor_needstage[id] == mjSTAGE_POS;
+  return StageOf(model, sensor) == mjSTAGE_POS;
 }
 
 }  // namespace

@@ -69,8 +69,7 @@ std::vector<std::string> NotesOn(const mjModel& model, const Channels& channels)
                     "unit of its activation; A, B, C, D of tick and step contain them");
   }
   for (const SensorSetup& sensor : channels.sensors) {
-    const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
-    if (model.sensor_needstage[id] == mjSTAGE_POS) continue;
+    if (StageOf(model, sensor) == mjSTAGE_POS) continue;
     notes.push_back(
         "sensor '" + sensor.channel +
         "' reads no position: its column of b is 0; C and D of tick and step "

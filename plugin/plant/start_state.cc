@@ -27,8 +27,7 @@ Channels PositionSensors(const Channels& channels, const mjModel& model,
   Channels placed = channels;
   std::erase_if(placed.sensors, [&](const SensorSetup& sensor) {
     const int id = FindElement(model, mjOBJ_SENSOR, sensor.element);
-    return !start.contains(sensor.channel) ||
-           model.sensor_needstage[id] != mjSTAGE_POS ||
+    return !start.contains(sensor.channel) || StageOf(model, sensor) != mjSTAGE_POS ||
            model.sensor_type[id] == mjSENS_CLOCK;
   });
   return placed;

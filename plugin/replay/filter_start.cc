@@ -7,6 +7,8 @@
 #include "mjdiag/plugin/machine/tick_differences.h"
 #include "mjdiag/plugin/machine/tick_map.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/operating_point.h"
+#include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
@@ -80,30 +82,20 @@ VectorXd TypicalRates(const MeasuredRun& run) {
 }
 
 /// Sets the inputs of a tick of a run in a machine and takes the tangent there.
+/// @param dofs  those whose forces are asked for
 TickTangent TangentAt(TickMap& map, RecordedInputs& inputs, const PlantState& state,
-                      Index sample, double tick) {
+                      Index sample, double tick, const std::vector<Index>& dofs) {
   const VectorXd none = VectorXd::Zero(map.model().nv);
   inputs.StayAt(sample);
   map.Run(state, none, 0, inputs);
-  return TickDifferences(map, tick, AllDofs(map.model())).Of(state, none, 0, inputs);
-}
-
-MatrixXd MassAt(const mjModel& model, const PlantState& state) {
-  const DataPtr data = MakeData(model);
-  SetState(model, state, *data);
-  mj_forward(&model, data.get());
-  Eigen::Matrix<double, -1, -1, Eigen::RowMajor> mass(model.nv, model.nv);
-  mj_fullM(&model, mass.data(), data->qM);
-  return mass;
+  return TickDifferences(map, tick, dofs).Of(state, none, 0, inputs);
 }
 
 /// Degrees of freedom in the order in which a missing force is looked for: of every actuator
 /// the one that it moves most, then all others that actuators move, then the rest.
 std::vector<Index> InOrderOfDrive(const mjModel& model, const PlantState& state) {
-  const DataPtr data = MakeData(model);
-  SetState(model, state, *data);
-  mj_forward(&model, data.get());
-  const VectorXd inertia = MassAt(model, state).diagonal();
+  PlantForces forces(model, state.position);
+  const VectorXd inertia = forces.Mass().diagonal();
   std::vector<Index> order;
   const auto add = [&order](Index dof) {
     if (std::ranges::find(order, dof) == order.end()) order.push_back(dof);
@@ -111,7 +103,7 @@ std::vector<Index> InOrderOfDrive(const mjModel& model, const PlantState& state)
   std::vector<Index> moved;
   for (int i = 0; i < model.nu; ++i) {
     const VectorXd arm = VectorXd::Map(
-        RowOf(data->actuator_moment, static_cast<int>(model.nv), i), model.nv);
+        RowOf(forces.data().actuator_moment, static_cast<int>(model.nv), i), model.nv);
     if (arm.isZero(0.0)) continue;
     Index most = 0;
     (arm.array().square() / inertia.array()).maxCoeff(&most);
@@ -131,7 +123,7 @@ PlantState StillAt(const Machine& machine, const MeasuredRun& run, Index sample)
                    VectorXd::Zero(model.na)};
   // Filters and muscles settle at their commands; what integrates was nowhere before.
   for (int i = 0; i < model.nu; ++i) {
-    const int activation = i - static_cast<int>(model.nu - model.na);
+    const int activation = ActivationOf(model, i);
     if (activation < 0 || model.actuator_dyntype[i] == mjDYN_INTEGRATOR) continue;
     for (std::size_t c = 0; c < machine.actuator_addresses().size(); ++c) {
       if (machine.actuator_addresses()[c] != i) continue;
@@ -147,8 +139,9 @@ std::vector<Index> LatentDofs(const Machine& machine, const MeasuredRun& run) {
   TickMap map(machine);
   RecordedInputs inputs(machine, run);
   const PlantState state = StillAt(machine, run, 0);
-  const TickTangent tangent = TangentAt(map, inputs, state, 0, machine.rates().tick());
   const mjModel& model = map.model();
+  const TickTangent tangent =
+      TangentAt(map, inputs, state, 0, machine.rates().tick(), AllDofs(model));
   // What a force that lasts two ticks does to the readings, of each sensor in its own size.
   MatrixXd seen = tangent.C * (tangent.A * tangent.B + tangent.B) + tangent.D;
   for (Index i = 0; i < seen.rows(); ++i) {
@@ -185,7 +178,7 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
     FilterStart start;
     start.state = StillAt(machine, run, first);
     const TickTangent tangent =
-        TangentAt(map, inputs, start.state, first, machine.rates().tick());
+        TangentAt(map, inputs, start.state, first, machine.rates().tick(), {});
     MatrixXd seen = tangent.C.leftCols(nv);
     for (Index i = 0; i < seen.rows(); ++i) {
       // A rate of a velocity or of a force says nothing of velocities.
@@ -214,7 +207,7 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
     }
     start.state.velocity = place * rate;
 
-    const VectorXd mass = MassAt(model, start.state).diagonal();
+    const VectorXd mass = PlantForces(model, start.state.position).Mass().diagonal();
     constexpr double kKnownTo = 10.0;  // times the noise of the readings
     VectorXd position =
         kKnownTo * (place.cwiseAbs2() * reading_sd.cwiseAbs2()).cwiseSqrt();

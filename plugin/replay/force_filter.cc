@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "mjdiag/plugin/machine/tick_map.h"
-#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/replay/force_kalman.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
 #include "mjdiag/plugin/replay/tangent_course.h"
@@ -217,10 +217,8 @@ FilterPath RunForceFilter(const Machine& machine, const MeasuredRun& run,
     std::ranges::move(tangents[r], std::back_inserter(path.tangents));
     path.deviance += deviances[r];
   }
-  for (std::size_t i = 0; i < machine.channels().sensors.size(); ++i) {
-    const int id = FindElement(machine.plant(), mjOBJ_SENSOR,
-                               machine.channels().sensors[i].element);
-    path.late.push_back(machine.plant().sensor_needstage[id] == mjSTAGE_ACC);
+  for (const SensorSetup& sensor : machine.channels().sensors) {
+    path.late.push_back(StageOf(machine.plant(), sensor) == mjSTAGE_ACC);
   }
   return path;
 }

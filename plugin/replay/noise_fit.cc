@@ -22,47 +22,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Stretches of a run on which likelihoods are compared.
-struct Windows {
-  std::vector<std::pair<Index, Index>> of;  // first sample, count
-};
-
-/// @param first  sample at which every record begins
-Windows RecordsOf(const std::vector<Index>& first, Index samples) {
-  Windows all;
-  for (std::size_t r = 0; r < first.size(); ++r) {
-    const Index end = r + 1 < first.size() ? first[r + 1] : samples;
-    all.of.emplace_back(first[r], end - first[r]);
-  }
-  return all;
-}
-Windows AllOf(const FilterPath& path) { return RecordsOf(path.first, path.samples()); }
-
-/// Pieces of every record, evenly spread.
-Windows SomeOf(const Windows& all, Index samples) {
-  constexpr Index kSamples = 2400;
-  constexpr Index kPieces = 4;
-  if (samples <= kSamples) return all;
-  Windows some;
-  for (const auto& [first, count] : all.of) {
-    const Index piece = std::max<Index>(100, kSamples * count / samples / kPieces);
-    if (piece * kPieces >= count) {
-      some.of.emplace_back(first, count);
-      continue;
-    }
-    for (Index i = 0; i < kPieces; ++i) {
-      some.of.emplace_back(first + (count - piece) * i / (kPieces - 1), piece);
-    }
-  }
-  return some;
-}
-
-/// Of every sensor.
-VectorXd DeviancesOn(const FilterPath& path, const FilterNoise& noise,
-                     const Windows& windows) {
+/// -2 ln L of all records, of every sensor.
+VectorXd DeviancesOf(const FilterPath& path, const FilterNoise& noise) {
   VectorXd sum = VectorXd::Zero(path.sensors());
-  for (const auto& [first, count] : windows.of) {
-    sum += Score(path, noise, first, count).deviance;
+  for (std::size_t r = 0; r < path.first.size(); ++r) {
+    const Index end = r + 1 < path.first.size() ? path.first[r + 1] : path.samples();
+    sum += Score(path, noise, path.first[r], end - path.first[r]).deviance;
   }
   if (!sum.allFinite()) sum.setConstant(std::numeric_limits<double>::infinity());
   return sum;
@@ -168,32 +133,32 @@ class NoiseSearch {
     noise.clock_memory = std::exp(x[3 * nf_ + ny_ + 1]);
     return noise;
   }
-  Point At(const FilterNoise& noise, const Windows& windows) const {
+  /// From a noise on, by steps that shrink by a third from `step` to `last`, natural
+  /// logarithms.
+  Point Descend(const FilterNoise& noise, double step, double last) const {
     VectorXd x(lower_.size());
     x << noise.size.array().log().matrix(), noise.memory.array().log().matrix(),
         noise.white.array().log().matrix(), noise.reading.array().log().matrix(),
         std::log(noise.clock), std::log(noise.clock_memory);
-    return Evaluate(x, windows);
-  }
-  Point Evaluate(const VectorXd& x, const Windows& windows) const {
-    Point point{x.cwiseMax(lower_).cwiseMin(upper_), {}};
-    point.deviances = DeviancesOn(path_, NoiseOf(point.x), windows);
-    return point;
-  }
-
-  /// By steps that shrink by a third from `step` to `last`, natural logarithms.
-  void Descend(const Windows& windows, double step, double last, Point& best) const {
+    Point best = Evaluate(x);
     for (; step >= last; step /= 3.0) {
       constexpr int kRounds = 3;
       for (int round = 0; round < kRounds; ++round) {
         bool moved = false;
-        for (const auto& kind : kinds_) moved |= Move(windows, kind, step, best);
+        for (const auto& kind : kinds_) moved |= Move(kind, step, best);
         if (!moved) break;
       }
     }
+    return best;
   }
 
  private:
+  Point Evaluate(const VectorXd& x) const {
+    Point point{x.cwiseMax(lower_).cwiseMin(upper_), {}};
+    point.deviances = DeviancesOf(path_, NoiseOf(point.x));
+    return point;
+  }
+
   /// Directions with the sensor that judges each; -1: all.
   using Kind = std::vector<std::pair<VectorXd, Index>>;
 
@@ -209,13 +174,12 @@ class NoiseSearch {
     return std::clamp(-slope / bend, -kMost, kMost);
   }
 
-  bool Move(const Windows& windows, const Kind& kind, double step, Point& best) const {
+  bool Move(const Kind& kind, double step, Point& best) const {
     VectorXd all = VectorXd::Zero(best.x.size());
     for (const auto& [direction, sensor] : kind) all += step * direction;
     Point tried[2];
-    ParallelFor(2, [&](int i) {
-      tried[i] = Evaluate(best.x + (i == 0 ? 1.0 : -1.0) * all, windows);
-    });
+    ParallelFor(
+        2, [&](int i) { tried[i] = Evaluate(best.x + (i == 0 ? 1.0 : -1.0) * all); });
     VectorXd each = VectorXd::Zero(best.x.size());
     for (const auto& [direction, sensor] : kind) {
       const auto of = [sensor](const Point& point) {
@@ -230,7 +194,7 @@ class NoiseSearch {
       if (point.deviance() < best.deviance()) best = std::move(point);
     };
     if (!each.isZero(0.0)) {
-      Point mixed = Evaluate(best.x + each, windows);
+      Point mixed = Evaluate(best.x + each);
       take(mixed);
     }
     take(tried[0]);
@@ -294,35 +258,37 @@ constexpr double kFine = 0.4;
 /// The most likely noise along a path, from its own on.
 FilterNoise Refined(const FilterPath& path, const VectorXd& reading_sd, double step) {
   const NoiseSearch search(path, reading_sd);
-  const Windows all = AllOf(path);
-  Point best = search.At(path.noise, all);
-  search.Descend(all, step, kFine / 3.0, best);
-  return search.NoiseOf(best.x);
+  return search.NoiseOf(search.Descend(path.noise, step, kFine / 3.0).x);
 }
 
-}  // namespace
-
-FilterNoise FitNoise(const FilterPath& path, const VectorXd& reading_sd) {
+/// The same from two starts, its own and a slow one.
+FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd) {
   const NoiseSearch search(path, reading_sd);
-  const Windows some = SomeOf(AllOf(path), path.samples());
-  Point best = search.At(path.noise, some);
-  search.Descend(some, kCoarse, kFine, best);
-  Point other = search.At(search.Slow(path.noise), some);
-  search.Descend(some, kCoarse, kFine, other);
-  if (other.deviance() < best.deviance()) best = std::move(other);
-  return search.NoiseOf(best.x);
+  const Point fast = search.Descend(path.noise, kCoarse, kFine);
+  const Point slow = search.Descend(search.Slow(path.noise), kCoarse, kFine);
+  return search.NoiseOf(slow.deviance() < fast.deviance() ? slow.x : fast.x);
 }
 
-namespace {
-
-/// Pieces of a run, each a record of its own.
+/// Four pieces of every record, each a record of its own, of 2400 samples in all; of a short
+/// run all of it.
 MeasuredRun PiecesOf(const MeasuredRun& run) {
-  std::vector<Index> starts;
-  for (const RecordStart& record : run.records) starts.push_back(record.sample);
+  constexpr Index kSamples = 2400;
+  constexpr Index kPieces = 4;
+  constexpr Index kShortest = 100;
+  const bool is_short = run.samples() <= kSamples;
   std::vector<MeasuredRun> pieces;
-  for (const auto& [first, count] :
-       SomeOf(RecordsOf(starts, run.samples()), run.samples()).of) {
-    pieces.push_back(Excerpt(run, first, count));
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    const Index first = run.records[r].sample;
+    const Index count = run.SamplesOf(r);
+    const Index piece = std::max(kShortest, kSamples * count / run.samples() / kPieces);
+    if (is_short || piece * kPieces >= count) {
+      pieces.push_back(Excerpt(run, first, count));
+      continue;
+    }
+    for (Index i = 0; i < kPieces; ++i) {
+      pieces.push_back(
+          Excerpt(run, first + (count - piece) * i / (kPieces - 1), piece));
+    }
   }
   return Joined(pieces);
 }
@@ -352,7 +318,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
     } catch (const NumericalError&) {
     }
   };
-  refine([&] { return FitNoise(first, reading_sd); });
+  refine([&] { return RefinedFromBoth(first, reading_sd); });
   refine([&] {
     const FilterPath slow = follow(NoiseSearch(first, reading_sd).Slow(fast));
     return Refined(slow, reading_sd, kCoarse);

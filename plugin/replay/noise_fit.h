@@ -26,13 +26,10 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
                            const std::vector<FilterStart>& starts,
                            const Eigen::VectorXd& reading_sd);
 
-/// The most likely one along a path that FollowingNoise, or a fit, has made.
-/// @param reading_sd  of every sensor by itself: what a fit finds is between a half of it
-///                    and a hundred times
-FilterNoise FitNoise(const FilterPath& path, const Eigen::VectorXd& reading_sd);
-
 /// The path of a run with its most likely noise: followed, fitted, followed behind what was
-/// found, twice.
+/// found, twice. What a fit finds of a sensor is between a half of its own noise and a
+/// hundred times that.
+/// @param reading_sd  of every sensor, by itself
 /// NumericalError as RunForceFilter.
 FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const Eigen::VectorXd& reading_sd);

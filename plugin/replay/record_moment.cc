@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/plugin/plant/start_state.h"
@@ -74,11 +75,8 @@ void AddVelocities(const Machine& machine, const Readings& readings,
   std::vector<Vector3d> wanted;
   for (std::size_t i = 0; i < machine.channels().sensors.size(); ++i) {
     const SensorSetup& sensor = machine.channels().sensors[i];
-    const int id = FindElement(plant, mjOBJ_SENSOR, sensor.element);
     const auto reading = readings.find(sensor.channel);
-    if (plant.sensor_needstage[id] != mjSTAGE_VEL || reading == readings.end()) {
-      continue;
-    }
+    if (StageOf(plant, sensor) != mjSTAGE_VEL || reading == readings.end()) continue;
     addresses.push_back(machine.sensor_addresses()[i]);
     wanted.push_back(reading->second);
   }

@@ -1,13 +1,11 @@
 #include "mjdiag/plugin/replay/recorded_inputs.h"
 
-#include <algorithm>
-
 namespace mjdiag {
 
 using Eigen::Index;
 
 RecordedInputs::RecordedInputs(const Machine& machine, const MeasuredRun& run)
-    : run_(run), reading_(run.outputs.rows()) {
+    : run_(run) {
   Index i = 0;
   for (const ActuatorSetup& actuator : machine.channels().actuators) {
     courses_.emplace_back(actuator.hold, run.inputs.row(i++).transpose(),
@@ -15,9 +13,8 @@ RecordedInputs::RecordedInputs(const Machine& machine, const MeasuredRun& run)
   }
 }
 
-void RecordedInputs::Tick(std::span<const double> outputs,
+void RecordedInputs::Tick(std::span<const double> /*outputs*/,
                           std::span<double> inputs) noexcept {
-  std::copy(outputs.begin(), outputs.end(), reading_.begin());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     inputs[i] = run_.inputs(static_cast<Index>(i), tick_);
   }

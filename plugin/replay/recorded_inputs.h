@@ -24,12 +24,9 @@ class RecordedInputs final : public TickControl {
             std::span<double> inputs) noexcept override;
   double Above(std::size_t actuator, int substep) const noexcept override;
   bool IsOn(std::size_t actuator) const noexcept override;
-  /// What the machine read at the last tick.
-  const Eigen::VectorXd& reading() const { return reading_; }
 
  private:
   const MeasuredRun& run_;
-  Eigen::VectorXd reading_;
   std::vector<InputCourse> courses_;
   Eigen::Index tick_ = 0;
   Eigen::Index now_ = 0;

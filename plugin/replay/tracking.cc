@@ -126,7 +126,8 @@ void RecordFollower::Follow(const Watch& watch, Track& track) {
           (v - track.velocity.col(first + k)) / record_.sample_time;
     }
     auto innovation = track.innovations.col(first + k);
-    innovation = record_.outputs.col(k) - control_.reading();
+    innovation = record_.outputs.col(k) -
+                 VectorXd::Map(stepper_.outputs().data(), record_.outputs.rows());
     if (record_.measured.size() > 0) {
       measured = record_.measured.col(k);
       innovation = measured.select(innovation, 0.0);
