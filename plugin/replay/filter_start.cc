@@ -213,9 +213,9 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
         kKnownTo * (place.cwiseAbs2() * reading_sd.cwiseAbs2()).cwiseSqrt();
     VectorXd speed = (place.cwiseAbs2() * rate_sd.cwiseAbs2()).cwiseSqrt();
     // Of the usual motion: its energy, and the force that makes it within 20 ms.
-    const VectorXd usual = (place * rates).cwiseAbs();
-    const double energy = mass.dot(usual.cwiseAbs2());
-    const double force = mass.dot(usual) / 0.02;
+    start.usual = (place * rates).cwiseAbs();
+    const double energy = mass.dot(start.usual.cwiseAbs2());
+    const double force = mass.dot(start.usual) / 0.02;
     for (Index dof = 0; dof < nv; ++dof) {
       const double stiffness = model.jnt_stiffness[model.dof_jntid[dof]];
       constexpr double kAnywhere = 0.1;  // m or rad
@@ -226,6 +226,7 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
       } else if (position[dof] == 0.0) {
         position[dof] = kAnywhere;
         speed[dof] = energy > 0.0 ? std::sqrt(energy / mass[dof]) : kAnywhere;
+        start.usual[dof] = speed[dof];
       }
     }
     const double command =

@@ -37,7 +37,8 @@ namespace mjdiag {
 /// Of a record, before its first sample.
 struct FilterStart {
   PlantState state;
-  Eigen::VectorXd sd;  ///< of the state, in tangent coordinates
+  Eigen::VectorXd sd;     ///< of the state, in tangent coordinates
+  Eigen::VectorXd usual;  ///< speeds during the run, by its readings, nv
 };
 
 /// Where a machine was, as the filter found it, with all that a filter of other noise needs.

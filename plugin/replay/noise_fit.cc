@@ -233,16 +233,11 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
   noise.memory = VectorXd::Constant(nf, std::max(0.02, 4.0 * run.sample_time));
   noise.white.resize(nf);
   for (Index j = 0; j < nf; ++j) {
-    // As large as what makes the usual accelerations.
-    double most = unit[j];
-    const double inertia =
-        1.0 / std::max(tangent.B(machine.plant().nv + dofs[static_cast<std::size_t>(j)],
-                                 dofs[static_cast<std::size_t>(j)]) /
-                           run.sample_time,
-                       1e-300);
-    const double speed =
-        starts.front().sd[machine.plant().nv + dofs[static_cast<std::size_t>(j)]];
-    most = std::max(most, inertia * speed / 0.02);
+    // As large as what makes the usual speed within 20 ms.
+    const Index dof = dofs[static_cast<std::size_t>(j)];
+    const double gain = tangent.B(machine.plant().nv + dof, dof) / run.sample_time;
+    const double most =
+        std::max(unit[j], starts.front().usual[dof] / std::max(gain, 1e-300) / 0.02);
     noise.size[j] = most;
     noise.white[j] = 0.1 * most;
   }

@@ -341,13 +341,15 @@ VectorXd NoiseCorrelation(const Observer& observer, Index sensor, Index lags) {
   const MatrixXd F = observer.tick.A - observer.L * C;
   const MatrixXd S = StateByNoise(observer.tick, observer.L, observer.noise_sd);
   const double r = observer.noise_sd[sensor];
-  VectorXd next = F * S * C.row(sensor).transpose() - r * r * observer.L.col(sensor);
+  const VectorXd seen = C.row(sensor).transpose();
+  VectorXd next = F * S * seen - r * r * observer.L.col(sensor);
   VectorXd correlation(lags);
   for (Index l = 0; l < lags; ++l) {
-    correlation[l] = C.row(sensor).dot(next);
+    correlation[l] = seen.dot(next);
     next = F * next;
   }
-  return correlation / (C.row(sensor).dot(S * C.row(sensor).transpose()) + r * r);
+  const VectorXd spread = S * seen;
+  return correlation / (seen.dot(spread) + r * r);
 }
 
 }  // namespace mjdiag

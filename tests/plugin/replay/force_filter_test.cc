@@ -84,6 +84,24 @@ TEST(ForceFilter, BeginsInMidMotion) {
   EXPECT_LT(starts[0].sd[1], 0.05);
 }
 
+// How fast the machine usually is, and not how well its first speed is known, says how large
+// the forces may be behind which it is followed whatever it lacks.
+TEST(ForceFilter, FollowsAMachineThatBeginsAtRest) {
+  const test::Arm arm;
+  // It stands still for the first tenth of a second.
+  const MeasuredRun run = ToMeasuredRun(
+      arm.setup(), test::Arm::Measure({"viscous_friction@shoulder:coefficient=20",
+                                       "viscous_friction@elbow:coefficient=10"}));
+  const VectorXd sd = VectorXd::Constant(2, test::Arm::kNoise);
+  const auto dofs = LatentDofs(arm.machine, run);
+  const auto starts = FilterStarts(arm.machine, run, sd);
+  EXPECT_LT(starts[0].sd[2], 0.01);
+  EXPECT_GT(starts[0].usual[0], 0.3);
+  const FilterNoise noise = FollowingNoise(arm.machine, run, dofs, starts, sd);
+  const FilterPath path = RunForceFilter(arm.machine, run, dofs, starts, noise);
+  EXPECT_LT(path.innovations.cwiseAbs().maxCoeff(), 0.01);
+}
+
 // Of the same noise the linear pass along a path is the filter itself.
 TEST(ForceFilter, IsItsOwnLinearPass) {
   const test::Arm arm;
