@@ -106,7 +106,8 @@ StateSpace PlantTick(const Machine& machine, const NamedPoint& named,
       std::all_of(plant.jnt_type, plant.jnt_type + plant.njnt,
                   [](int type) { return type == mjJNT_SLIDE || type == mjJNT_HINGE; });
   const Eigen::VectorXd damping = Eigen::VectorXd::Map(plant.dof_damping, plant.nv);
-  if (!scalar || !named.point.rests || plant.na > 0 || !linear.dependent.empty() ||
+  if (!scalar || plant.opt.integrator == mjINT_RK4 || !named.point.rests ||
+      plant.na > 0 || !linear.dependent.empty() ||
       !(linear.model.D - Eigen::MatrixXd(damping.asDiagonal()))
            .isZero(1e-12 * damping.norm())) {
     return transition.tick;

@@ -19,6 +19,9 @@ namespace mjdiag {
 
 /// Found when first asked for, by whichever copy of the machine is asked.
 struct Machine::Derived {
+  explicit Derived(const Setup& setup) : held(!setup.control.axes.empty()) {}
+
+  bool held;  // by controllers
   std::once_flag rest_once;
   std::once_flag linear_once;
   RestPose rest;
@@ -90,7 +93,7 @@ void Machine::Adopt(std::shared_ptr<const mjModel> plant) {
     if (channels().actuators[i].enabled_by.empty()) continue;
     CheckOpenCircuit(*plant_, actuator_addresses_[i]);
   }
-  derived_ = std::make_shared<Derived>();
+  derived_ = std::make_shared<Derived>(setup());
 }
 
 std::vector<PlacedEffect> Machine::effects() const {
@@ -100,7 +103,8 @@ std::vector<PlacedEffect> Machine::effects() const {
 }
 
 const RestPose& Machine::rest_pose() const& {
-  std::call_once(derived_->rest_once, [this] { derived_->rest = FindRest(*plant_); });
+  std::call_once(derived_->rest_once,
+                 [this] { derived_->rest = FindRest(*plant_, derived_->held); });
   return derived_->rest;
 }
 

@@ -47,8 +47,8 @@ class Machine {
   /// All that act: those that the MJCF carries, then those of the changes.
   std::vector<PlacedEffect> effects() const;
 
-  /// Where it settles without input, else how it is drawn (FindRest), found when first
-  /// asked for.
+  /// Where it settles without input, else how it is drawn (FindRest; held where the setup
+  /// has controllers), found when first asked for.
   const RestPose& rest_pose() const&;
   /// The configuration of it, nq: where runs begin.
   const Eigen::VectorXd& rest() const& { return rest_pose().qpos; }
@@ -65,7 +65,8 @@ class Machine {
   Machine WithNumbers(const NumberFactors& factors) const;
   /// The same physics in that many steps a control tick.
   Machine WithSubsteps(int substeps) const;
-  /// The same plant under another setup that names the same channels.
+  /// The same plant, resting where it does, under another setup that names the same
+  /// channels.
   Machine WithSetup(Setup setup) const;
   /// The same machine with that noise of the sensors [unit of each]; what effects add
   /// comes on top.

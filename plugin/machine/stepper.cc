@@ -31,6 +31,12 @@ Stepper::Stepper(const Machine& machine)
 
 void Stepper::OnStep(const mjModel& model, mjData& data,
                      TickControl& control) noexcept {
+  const int stages = model.opt.integrator == mjINT_RK4 ? 4 : 1;
+  if (stage_ == 0) Act(model, data, control);
+  stage_ = (stage_ + 1) % stages;
+}
+
+void Stepper::Act(const mjModel& model, mjData& data, TickControl& control) noexcept {
   if (substep_ == 0) {
     // MuJoCo has those of the step before.
     if (reads_forces_) ReadForces(model, data);
@@ -57,11 +63,18 @@ void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,
   for (int i = 0; i < substeps_; ++i) {
     mj_step1(&model, &data);
     if (!held_.empty()) mju_zero(data.qfrc_applied, static_cast<int>(model.nv));
-    OnStep(model, data, control);
+    Act(model, data, control);
     if (!held_.empty()) {
       mju_addTo(data.qfrc_applied, held_.data(), static_cast<int>(model.nv));
     }
-    mj_step2(&model, &data);
+    if (model.opt.integrator == mjINT_RK4) {
+      // mj_step2 would take an Euler step.
+      ReadForces(model, data);
+      mj_checkAcc(&model, &data);
+      mj_RungeKutta(&model, &data, 4);
+    } else {
+      mj_step2(&model, &data);
+    }
     if (after_step) after_step();
   }
 }
@@ -70,6 +83,7 @@ void Stepper::Recall(const Stepper& other) noexcept {
   effects_.Recall(other.effects_);
   ticks_ = other.ticks_;
   substep_ = other.substep_;
+  stage_ = other.stage_;
 }
 
 void Stepper::Release(mjData& data) noexcept {

@@ -1,7 +1,8 @@
 #pragma once
 // A control tick of the nonlinear machine, physics step by physics step: at the first
 // one the sensors are read and the actuator signals decided, which hold for the tick;
-// effects act in every one. Sensors of accelerations and forces read what acts there under
+// effects act in every one. What acts at the beginning of a step acts in all of the four
+// stages that a Runge-Kutta step has. Sensors of accelerations and forces read what acts there under
 // the signals of the tick before.
 //
 // The same steps are taken inside MuJoCo's control callback, where a caller's mj_step
@@ -50,13 +51,13 @@ class Stepper {
   explicit Stepper(const Machine& machine);
 
   /// One physics step, after positions and velocities and before accelerations: where
-  /// MuJoCo calls the control callback.
+  /// MuJoCo calls the control callback, in a Runge-Kutta step at each of its stages.
   void OnStep(const mjModel& model, mjData& data, TickControl& control) noexcept;
   /// A whole tick. @param after_step  called after every physics step; may be empty
   void Advance(const mjModel& model, mjData& data, TickControl& control,
                const std::function<void()>& after_step = {});
   /// Whether the next physics step is the first of a tick.
-  bool AtTickStart() const { return substep_ == 0; }
+  bool AtTickStart() const { return substep_ == 0 && stage_ == 0; }
   /// What the sensors read at the start of this tick, as the control was told.
   std::span<const double> outputs() const { return outputs_; }
   /// Actuators that are an open circuit in this tick, by their place in the model.
@@ -77,10 +78,13 @@ class Stepper {
   void Recall(const Stepper& other) noexcept;
 
  private:
+  void Act(const mjModel& model, mjData& data, TickControl& control) noexcept;
+
   ActiveEffects effects_;
   double tick_;  // [s]
   int substeps_;
   int substep_ = 0;
+  int stage_ = 0;  // of a Runge-Kutta step
   std::int64_t ticks_ = 0;
   bool reads_forces_ = false;   // or accelerations
   std::vector<int> sensors_;    // addresses

@@ -80,6 +80,10 @@ MechanicalModel Linearize(const mjModel& model, const Channels& channels,
 }
 
 void RequireScalarJoints(const mjModel& model, const Channels& channels) {
+  if (model.opt.integrator == mjINT_RK4) {
+    throw InputError("integrator RK4", "is not what the linear plant is stepped by",
+                     R"(integrator="Euler" or "implicit")");
+  }
   for (int joint = 0; joint < model.njnt; ++joint) {
     const int type = model.jnt_type[joint];
     if (type == mjJNT_SLIDE || type == mjJNT_HINGE) continue;

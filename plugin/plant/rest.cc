@@ -46,7 +46,8 @@ class RestSearch {
     }
   }
 
-  RestPose Find() {
+  RestPose Find(bool held) {
+    const bool drawn_at_rest = AtRest(ForceAt(drawn_));
     std::optional<VectorXd> balanced;
     VectorXd from = drawn_;
     constexpr int kPushes = 5;
@@ -58,6 +59,7 @@ class RestSearch {
       if (slope.symmetric.values[0] >= Falls(slope))
         return {*rest, true, NoForce(), true};
       if (!balanced) balanced = rest;
+      if (held && drawn_at_rest) break;
       from = Displaced(model_, *rest, PushOff(slope));
     }
     if (balanced) return {*balanced, true, NoForce(), false};
@@ -256,9 +258,9 @@ class RestSearch {
 
 }  // namespace
 
-RestPose FindRest(const mjModel& model) {
+RestPose FindRest(const mjModel& model, bool held) {
   if (model.nv == 0) return {VectorXd::Map(model.qpos0, model.nq), true, {}, true};
-  return RestSearch(model).Find();
+  return RestSearch(model).Find(held);
 }
 
 RestPose PoseAt(const mjModel& model, const VectorXd& qpos) {

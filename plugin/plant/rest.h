@@ -32,10 +32,13 @@ struct RestPose {
 /// than 2 mm/s or 2 mrad/s (times the extent of the plant) is held by the friction of its
 /// contacts, and rests.
 ///
+/// A plant that controllers hold stays where it is drawn balanced.
+///
 /// Where nothing rests (free fall, a joint that is driven on and on) it is the
 /// configuration as drawn, with what would hold it. The search ends after 400 steps
 /// downhill, 8000 in the fluid and 400 more.
-RestPose FindRest(const mjModel& model);
+/// @param held  by controllers, once it runs
+RestPose FindRest(const mjModel& model, bool held = false);
 
 /// What a plant does in a configuration without input.
 RestPose PoseAt(const mjModel& model, const Eigen::VectorXd& qpos);

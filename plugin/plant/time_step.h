@@ -7,8 +7,7 @@
 
 namespace mjdiag {
 
-/// InputError if the model's time step is not control tick / substeps, or its
-/// integrator evaluates the controls several times a step.
+/// InputError if the model's time step is not control tick / substeps.
 void CheckTimeStep(const Setup& setup, const mjModel& model);
 
 }  // namespace mjdiag

@@ -171,10 +171,11 @@ TEST_F(BadInput, ChannelInAnotherUnitThanTheSetupsIsNamed) {
               AllOf(HasSubstr("x_ref"), HasSubstr("'N'")));
 }
 
-TEST_F(BadInput, IntegratorOfSeveralStagesIsRefused) {
+TEST_F(BadInput, IntegratorOfSeveralStagesIsRefusedForTheLinearPlant) {
   const std::string setup =
       Changed("emps", "plant.xml", "integrator=\"Euler\"", "integrator=\"RK4\"");
-  EXPECT_THAT(Refused("simulate --setup '" + setup + "'"), HasSubstr("integrator"));
+  EXPECT_THAT(Refused("simulate --linear --setup '" + setup + "'"),
+              HasSubstr("integrator"));
 }
 
 TEST_F(BadInput, UnwritableFolderIsNamedBeforeAnythingRuns) {

@@ -133,6 +133,8 @@ class CompareTest(Test):
         self.assertEqual(list(found.missing_force), ["shoulder", "elbow"])
         force = found.missing_force["elbow"]
         self.assertEqual((force.unit, force.value.shape), ("N m", (measured.samples,)))
+        self.assertLess(found.missing_force["shoulder"].rms, 0.02)
+        self.assertTrue(found.falls)
         # Friction is its force where the elbow turns, and less where it rests.
         self.assertTrue(0.1 < force.rms < 0.2)
         self.assertAlmostEqual(force.rms, np.sqrt(np.mean(force.value**2)), 9)

@@ -35,6 +35,14 @@ inline Machine MachineOf(const AnyKind& kind) {
                    "[actuators.u]\nelement = \"u\"\nunit = \"N\"\n");
 }
 
+inline constexpr AnyKind kRungeKutta = {
+    "Runge-Kutta",
+    R"(<option timestep="0.001" integrator="RK4"/><worldbody><body>
+       <joint name="j" axis="0 1 0" damping="0.3"/>
+       <inertial pos="0.1 0 -0.3" mass="1" diaginertia="0.02 0.02 0.01"/></body></worldbody>
+       <actuator><motor name="u" joint="j"/></actuator>
+       <sensor><jointpos name="y" joint="j"/></sensor>)"};
+
 inline constexpr AnyKind kEveryKind[] = {
     {"hinge", R"(<option timestep="0.001"/><worldbody><body>
        <joint name="j" axis="0 1 0" damping="0.1" stiffness="2"/>
@@ -95,6 +103,7 @@ inline constexpr AnyKind kEveryKind[] = {
        <inertial pos="0.1 0 -0.3" mass="1" diaginertia="0.02 0.02 0.01"/></body></worldbody>
        <actuator><motor name="u" joint="j"/></actuator>
        <sensor><jointpos name="y" joint="j"/></sensor>)"},
+    kRungeKutta,
 };
 
 }  // namespace mjdiag::test

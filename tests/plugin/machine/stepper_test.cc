@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "support/any_machine.h"
 #include "support/bonder.h"
 #include "support/changes.h"
 #include "support/count_allocations.h"
@@ -54,12 +55,7 @@ class ControlCallback {
 Stepper* called_stepper = nullptr;
 Shaker* called_control = nullptr;
 
-TEST(Stepper, TakesTheStepsOfMjStepWithAControlCallbackToTheBit) {
-  const Machine machine = test::Bonder().With(test::With(
-      {"coulomb_friction@X:force=1.3", "force_ripple@Y:amplitude=0.7,period=1e-4",
-       "presliding_hysteresis@Y:force=1.1,stiffness=230000",
-       "input_delay@x_motor:delay=2e-4",
-       "encoder_periodic_error@y_encoder:amplitude=3e-8,period=2e-5"}));
+void ExpectTheStepsOfMjStep(const Machine& machine) {
   constexpr int kTicks = 200;
   const StartedPlant one = StartPlant(machine, {});
   const StartedPlant other = StartPlant(machine, {});
@@ -93,6 +89,22 @@ TEST(Stepper, TakesTheStepsOfMjStepWithAControlCallbackToTheBit) {
   const double moved =
       VectorXd::Map(one.data->qpos, one.model->nv).cwiseAbs().maxCoeff();
   EXPECT_GT(moved, 1e-6) << "does not move";
+}
+
+TEST(Stepper, TakesTheStepsOfMjStepWithAControlCallbackToTheBit) {
+  ExpectTheStepsOfMjStep(test::Bonder().With(test::With(
+      {"coulomb_friction@X:force=1.3", "force_ripple@Y:amplitude=0.7,period=1e-4",
+       "presliding_hysteresis@Y:force=1.1,stiffness=230000",
+       "input_delay@x_motor:delay=2e-4",
+       "encoder_periodic_error@y_encoder:amplitude=3e-8,period=2e-5"})));
+}
+
+// MuJoCo calls the callback at each of the four stages: controls of a tick, and forces of
+// effects of a step, hold in all of them.
+TEST(Stepper, TakesTheRungeKuttaStepsOfMjStep) {
+  ExpectTheStepsOfMjStep(test::MachineOf(test::kRungeKutta)
+                             .With(test::With({"coulomb_friction@j:force=0.3",
+                                               "quadratic_drag@j:coefficient=2"})));
 }
 
 /// A stage of one axis with something in it, that moves at a quarter of a metre a

@@ -90,6 +90,10 @@ TEST(Rest, OfALinkThatIsDrawnBalancedUprightIsHanging) {
   const RestPose upright = PoseAt(*plant, VectorXd::Zero(1));
   EXPECT_TRUE(upright.rests);
   EXPECT_FALSE(upright.stable);
+  const RestPose held = FindRest(*plant, true);
+  EXPECT_EQ(held.qpos[0], 0.0);
+  EXPECT_TRUE(held.rests);
+  EXPECT_FALSE(held.stable);
 }
 
 /// An arm of six joints, of the size and the axes of a UR10e.
