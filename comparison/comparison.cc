@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mjdiag/comparison/noise_floor.h"
+#include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/motion_path.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"

@@ -86,28 +86,4 @@ FilterPath RunForceFilter(const Machine& machine, const MeasuredRun& run,
                           const std::vector<FilterStart>& starts,
                           const FilterNoise& noise);
 
-/// What a linear pass over a path keeps of every tick, for a smoother; in the order in which
-/// readings were taken.
-struct FilterGains {
-  Eigen::MatrixXd K;      ///< (ns + nf + 1) x ny, 0 where nothing was measured
-  Eigen::VectorXd S;      ///< ny
-  Eigen::VectorXd e;      ///< ny, innovations
-  Eigen::MatrixXd P;      ///< rows of [w; t] of the covariance before the readings
-  Eigen::VectorXd force;  ///< w before the readings, nf
-};
-
-/// What a linear pass over a path says of every sensor, ny.
-struct ReadingScores {
-  Eigen::VectorXd deviance;  ///< its part of -2 ln L
-  Eigen::VectorXd variance;  ///< geometric mean of S
-};
-
-/// Of some of a run's samples behind another noise, along a path.
-/// @param count  from `first` on, which is where a record begins or the filter is started
-///               anew
-/// @param gains  null, or receives those of every tick
-ReadingScores Score(const FilterPath& path, const FilterNoise& noise,
-                    Eigen::Index first, Eigen::Index count,
-                    std::vector<FilterGains>* gains = nullptr);
-
 }  // namespace mjdiag

@@ -1,5 +1,6 @@
 #include "mjdiag/plugin/replay/force_kalman.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace mjdiag {
@@ -71,7 +72,7 @@ void ForceKalman::MoveTo(const TickTangent& tangent) {
   Q_.noalias() = forces * noise_.white.cwiseAbs2().asDiagonal() * forces.transpose();
 }
 
-double ForceKalman::Take(Index sensor, bool late, double innovation, double speed) {
+void ForceKalman::Expect(Index sensor, bool late, double innovation, double speed) {
   const Index nf = rho_.size();
   const Index ns = z.size() - nf;
   c_.head(ns) = tangent_->C.row(sensor).transpose();
@@ -92,30 +93,46 @@ double ForceKalman::Take(Index sensor, bool late, double innovation, double spee
   c_[ns + nf - 1] = clock_shows ? speed : 0.0;
   if (clock_shows) Unsettle();
   taken_.push_back(sensor);
-  const bool known = steady_ && taken_.size() <= taken_before_.size() &&
-                     taken_before_[taken_.size() - 1] == sensor;
-  if (!known) Unsettle();
-  if (!known) Pc_.noalias() = P * c_;
-  const double S = known ? variances_[sensor] : c_.dot(Pc_) + R;
-  const double e = innovation - c_.dot(z);
-  const double square = e * e / S;
-  const bool cut = square > kCorner * kCorner;
-  const double cost =
-      cut ? 2.0 * kCorner * std::sqrt(square) - kCorner * kCorner : square;
-  variance = cut ? S * square / (kCorner * kCorner) : S;
-  last_innovation = e;
-  if (known) {
-    gain = gains_.col(sensor) * (S / variance);
-    z += e * gain;
-    return std::log(S) + cost;
+  known_ = steady_ && taken_.size() <= taken_before_.size() &&
+           taken_before_[taken_.size() - 1] == sensor;
+  if (!known_) {
+    Unsettle();
+    Pc_.noalias() = P * c_;
+  }
+  S_ = known_ ? variances_[sensor] : c_.dot(Pc_) + R;
+  last_innovation = innovation - c_.dot(z);
+}
+
+void ForceKalman::Correct(Index sensor) {
+  variance = S_ * inflation;
+  if (known_) {
+    gain = gains_.col(sensor) / inflation;
+    z += last_innovation * gain;
+    return;
   }
   gain = Pc_ / variance;
-  z += e * gain;
+  z += last_innovation * gain;
   P.noalias() -= gain * Pc_.transpose();
-  if (cut) Unsettle();
-  gains_.col(sensor) = Pc_ / S;
-  variances_[sensor] = S;
-  return std::log(S) + cost;
+  if (inflation > 1.0) Unsettle();
+  gains_.col(sensor) = Pc_ / S_;
+  variances_[sensor] = S_;
+}
+
+double ForceKalman::Take(Index sensor, bool late, double innovation, double speed) {
+  Expect(sensor, late, innovation, speed);
+  const double square = last_innovation * last_innovation / S_;
+  inflation = std::max(1.0, square / (kCorner * kCorner));
+  Correct(sensor);
+  const double cost =
+      inflation > 1.0 ? 2.0 * kCorner * std::sqrt(square) - kCorner * kCorner : square;
+  return std::log(S_) + cost;
+}
+
+void ForceKalman::TakeWeighted(Index sensor, bool late, double innovation, double speed,
+                               double weight) {
+  Expect(sensor, late, innovation, speed);
+  inflation = weight;
+  Correct(sensor);
 }
 
 void ForceKalman::Unsettle() {

@@ -30,6 +30,10 @@ class ForceKalman {
   /// @param speed       of the reading
   /// @return its part of -2 ln L
   double Take(Eigen::Index sensor, bool late, double innovation, double speed);
+  /// The same, with a weight that somebody else has decided: of that many times its
+  /// variance.
+  void TakeWeighted(Eigen::Index sensor, bool late, double innovation, double speed,
+                    double inflation);
   /// To the next tick.
   void Advance();
 
@@ -37,14 +41,19 @@ class ForceKalman {
   Eigen::MatrixXd P;
   /// Of the last reading that was taken.
   Eigen::VectorXd gain;
-  double variance = 0.0;  ///< S, larger where the reading was cut
+  double variance = 0.0;   ///< S, larger where the reading was cut
+  double inflation = 1.0;  ///< by as much
   double last_innovation = 0.0;
+  /// What it is of z: reading = c^T z + noise.
+  const Eigen::VectorXd& c() const { return c_; }
 
   /// Of the latent forces, and of the clock behind them: nf + 1.
   const Eigen::VectorXd& rho() const { return rho_; }
 
  private:
   void Unsettle();
+  void Expect(Eigen::Index sensor, bool late, double innovation, double speed);
+  void Correct(Eigen::Index sensor);
 
   std::vector<Eigen::Index> dofs_;
   const FilterNoise& noise_;
@@ -56,6 +65,8 @@ class ForceKalman {
   Eigen::MatrixXd Q_;      // of the white forces, ns x ns
   Eigen::MatrixXd top_;
   Eigen::VectorXd c_, Pc_;
+  double S_ = 0.0;
+  bool known_ = false;  // its gain, from the tick before
   /// Whether P is what it was a tick ago, and the readings of a tick with their gains then.
   bool steady_ = false;
   bool moved_ = true;       // tangent, or what was read, since the last tick

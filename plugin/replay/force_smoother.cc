@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/replay/force_kalman.h"
+#include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -111,8 +112,8 @@ SmoothedForces SmoothForces(const FilterPath& path) {
     const auto r = static_cast<std::size_t>(number);
     const Index first = path.first[r];
     const Index end = r + 1 < records ? path.first[r + 1] : path.samples();
-    std::vector<FilterGains> gains;
-    Score(path, path.noise, first, end - first, &gains);
+    const std::vector<FilterGains> gains =
+        GainsAlong(path, path.noise, first, end - first);
     variances[r] = BackwardPass(path, gains, first, smoothed).Run();
   });
   VectorXd variance = VectorXd::Zero(path.dof_count());

@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/machine/tick_differences.h"
 #include "mjdiag/plugin/machine/tick_map.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"

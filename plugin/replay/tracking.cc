@@ -181,24 +181,6 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
   return track;
 }
 
-/// Puts in what the ends of open circuits show.
-void OpenCircuits(const Machine& machine, const MeasuredRun& run, const Track& track,
-                  Eigen::MatrixXd& inputs) {
-  const mjModel& model = machine.plant();
-  const DataPtr data = MakeData(model);
-  for (Index k = 0; k < run.samples(); ++k) {
-    if ((run.on.col(k).array() != 0.0).all()) continue;
-    VectorXd::Map(data->qpos, model.nq) = track.position.col(k);
-    VectorXd::Map(data->qvel, model.nv) = track.velocity.col(k);
-    mj_fwdPosition(&model, data.get());
-    mj_fwdVelocity(&model, data.get());
-    for (Index i = 0; i < inputs.rows(); ++i) {
-      const int motor = machine.actuator_addresses()[static_cast<std::size_t>(i)];
-      if (run.on(i, k) == 0.0) inputs(i, k) = OpenCircuitCommand(model, *data, motor);
-    }
-  }
-}
-
 }  // namespace
 
 void ChooseSolver(mjModel& model) {
@@ -398,6 +380,27 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
   return Follow(machine, changes, run, observer, true, watch);
 }
 
+Eigen::MatrixXd InputsThatAct(const Machine& machine, const MeasuredRun& run,
+                              const Eigen::MatrixXd& position,
+                              const Eigen::MatrixXd& velocity) {
+  Eigen::MatrixXd inputs = run.inputs;
+  if (run.on.size() == 0) return inputs;
+  const mjModel& model = machine.plant();
+  const DataPtr data = MakeData(model);
+  for (Index k = 0; k < run.samples(); ++k) {
+    if ((run.on.col(k).array() != 0.0).all()) continue;
+    VectorXd::Map(data->qpos, model.nq) = position.col(k);
+    VectorXd::Map(data->qvel, model.nv) = velocity.col(k);
+    mj_fwdPosition(&model, data.get());
+    mj_fwdVelocity(&model, data.get());
+    for (Index i = 0; i < inputs.rows(); ++i) {
+      const int motor = machine.actuator_addresses()[static_cast<std::size_t>(i)];
+      if (run.on(i, k) == 0.0) inputs(i, k) = OpenCircuitCommand(model, *data, motor);
+    }
+  }
+  return inputs;
+}
+
 ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
                              const Track& track) {
   ObservedMotion motion;
@@ -413,8 +416,7 @@ ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
     motion.acceleration(Eigen::all, of_record) =
         CentralDifferences(track.velocity(Eigen::all, of_record), run.sample_time);
   }
-  motion.inputs = run.inputs;
-  if (run.on.size() > 0) OpenCircuits(machine, run, track, motion.inputs);
+  motion.inputs = InputsThatAct(machine, run, track.position, track.velocity);
   motion.outputs = run.outputs;
   return motion;
 }

@@ -109,9 +109,15 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
 Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
                 const Observer& observer, ErrorDynamics& dynamics);
 
-/// The motion that the joints of a track made, with what was measured beside it. The
-/// input of an actuator that is off is that of an open circuit, so that the force of
-/// every motor is the same function of input and motion at all times.
+/// The inputs of a run; that of an actuator that is off is that of an open circuit, so that
+/// the force of every motor is the same function of input and motion at all times.
+/// @param position  nq x samples
+/// @param velocity  nv x samples
+Eigen::MatrixXd InputsThatAct(const Machine& machine, const MeasuredRun& run,
+                              const Eigen::MatrixXd& position,
+                              const Eigen::MatrixXd& velocity);
+
+/// The motion that the joints of a track made, with what was measured beside it.
 ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
                              const Track& track);
 

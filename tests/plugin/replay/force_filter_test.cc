@@ -6,6 +6,7 @@
 
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/replay/force_smoother.h"
+#include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "support/any_machine.h"
 #include "support/arm.h"

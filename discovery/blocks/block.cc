@@ -1,0 +1,178 @@
+#include "mjdiag/discovery/blocks/block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/discovery/hypotheses/fitted_model.h"
+#include "mjdiag/discovery/hypotheses/number_forces.h"
+#include "mjdiag/discovery/screening/trial.h"
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/scales.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+SiteMotion At(const Machine& machine, const ObservedMotion& motion, const Site& site) {
+  return {machine.plant(), machine.linear(), motion, site};
+}
+
+/// The columns of a trial, each amplitude its own, or all of one.
+std::vector<Column> ColumnsOf(const Trial& trial, Index sensor) {
+  const bool of_reading = trial.entry.size() == 0;
+  std::vector<Column> columns;
+  for (Index a = 0; a < trial.signals.cols(); ++a) {
+    if (columns.empty() || !trial.summed) columns.emplace_back();
+    Column& column = columns.back();
+    if (of_reading) {
+      column.readings.emplace_back(sensor, trial.signals.col(a));
+      continue;
+    }
+    for (Index dof = 0; dof < trial.entry.rows(); ++dof) {
+      if (trial.entry(dof, a) == 0.0) continue;
+      column.forces.emplace_back(dof, trial.entry(dof, a) * trial.signals.col(a));
+    }
+  }
+  return columns;
+}
+
+/// How large amplitudes are expected to be: so large that the size of the law is what it
+/// usually is; where any is as good, as large as what drives the joint or as the reading's
+/// own span.
+VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& scales,
+                  Index amplitudes, const std::vector<Column>& columns,
+                  const VectorXd& span) {
+  const VectorXd spread = candidate.effect->Spread(scales);
+  VectorXd sd(amplitudes);
+  const auto sized = std::ranges::find_if(candidate.parameters, [](const auto& one) {
+    return one.role == Role::kAmplitude || one.role == Role::kFactor ||
+           one.role == Role::kTime;
+  });
+  for (Index a = 0; a < amplitudes; ++a) {
+    const Column& column = columns[static_cast<std::size_t>(a)];
+    double largest = 0.0;
+    double usual = scales.force;
+    for (const auto& [dof, signal] : column.forces) {
+      largest = std::max(largest, std::sqrt(signal.squaredNorm() /
+                                            static_cast<double>(signal.size())));
+    }
+    for (const auto& [sensor, signal] : column.readings) {
+      largest = std::max(largest, std::sqrt(signal.squaredNorm() /
+                                            static_cast<double>(signal.size())));
+      usual = span[sensor];
+    }
+    sd[a] = largest > 0.0 ? usual / largest : 1.0;
+    if (sized == candidate.parameters.end()) continue;
+    const auto place = sized - candidate.parameters.begin();
+    if (!(spread[place] > 0.0) || !std::isfinite(spread[place])) continue;
+    const double small = 1e-3 * sd[a];
+    TrialValues values = trial.values(small * VectorXd::Unit(amplitudes, a));
+    if (!values) values = trial.values(-small * VectorXd::Unit(amplitudes, a));
+    if (!values) continue;
+    const double rate = std::abs((*values)[place] - sized->nothing) / small;
+    if (rate > 0.0) sd[a] = std::min(sd[a], spread[place] / rate);
+  }
+  return sd;
+}
+
+VectorXd SpansOf(const ObservedMotion& motion) {
+  return motion.outputs.rowwise().maxCoeff() - motion.outputs.rowwise().minCoeff();
+}
+
+void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t place,
+                 Block& block, const std::function<void(Variation&&)>& take) {
+  const Candidate& candidate = *block.candidate;
+  const Site site{candidate.site, candidate.joint, candidate.channel};
+  const Scales scales = ScalesOf(At(machine, along.motion, site));
+  const VectorXd spans = SpansOf(along.motion);
+  std::size_t count = 0;
+  std::size_t shape = 0;
+  const auto one = [&](const Trial& trial) {
+    Variation variation{place, shape++,     ColumnsOf(trial, candidate.channel),
+                        {},    trial.least, trial.values};
+    const auto amplitudes = std::ssize(variation.columns);
+    for (const Column& column : variation.columns) {
+      if (column.forces.empty() && column.readings.empty()) return;
+    }
+    variation.sd = SpreadOf(candidate, trial, scales, trial.summed ? 1 : amplitudes,
+                            variation.columns, spans);
+    ++count;
+    take(std::move(variation));
+  };
+  if (const auto sweep = MakeSweep(machine, candidate, along.motion, along.duration)) {
+    for (const double value : sweep->values) one(sweep->make(value));
+  } else {
+    for (const Trial& trial : MakeTrials(machine, candidate, along.motion)) one(trial);
+  }
+  block.price = -2.0 * std::log(kMissing * candidate.effect->odds()) +
+                2.0 * std::log(std::max<double>(1.0, static_cast<double>(count)));
+}
+
+/// Below this a joint stands still: what the noise of its readings may seem to be.
+VectorXd StillSpeed(const Machine& machine, const BlockMotion& along) {
+  constexpr double kShare = 0.02;
+  return VectorXd::Constant(
+      machine.plant().nv,
+      kShare * along.reading_noise.minCoeff() / along.motion.sample_time);
+}
+
+void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t place,
+              Block& block, const std::function<void(Variation&&)>& take) {
+  const PlantNumber& number = *block.number;
+  const MatrixXd force = NumberForce(machine.plant(), machine.channels(), number,
+                                     along.motion, StillSpeed(machine, along));
+  Variation variation{place, 0, {{}}, {}, {}, {}};
+  for (Index dof = 0; dof < force.cols(); ++dof) {
+    if (force.col(dof).isZero(0.0)) continue;
+    variation.columns.front().forces.emplace_back(dof, force.col(dof));
+  }
+  block.price = -2.0 * std::log(kMissing);
+  if (variation.columns.front().forces.empty()) return;
+  variation.sd = VectorXd::Constant(1, DoubtOf(machine.plant(), number));
+  variation.values = [](const Amplitudes& a) -> TrialValues {
+    return VectorXd(a.array().exp());
+  };
+  take(std::move(variation));
+}
+
+}  // namespace
+
+std::vector<Block> BlocksOf(const Machine& machine,
+                            const std::vector<Candidate>& candidates) {
+  std::vector<Block> blocks;
+  std::vector<PlantNumber> stood_for;
+  for (const Candidate& candidate : candidates) {
+    blocks.push_back({Describe(candidate), candidate, std::nullopt, 0.0});
+    const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
+    if (number) stood_for.push_back(*number);
+  }
+  const auto add = [&](const std::vector<PlantNumber>& numbers) {
+    for (const PlantNumber& number : numbers) {
+      if (std::ranges::find(stood_for, number) != stood_for.end()) continue;
+      blocks.push_back(
+          {PlantNumberName(machine.plant(), number), std::nullopt, number, 0.0});
+    }
+  };
+  if (!IsExact(machine.plant())) {
+    add(PlantNumbers(machine.plant()));
+    add(CentreNumbers(machine.plant()));
+  }
+  return blocks;
+}
+
+void ForEachVariation(const Machine& machine, const BlockMotion& along,
+                      std::size_t place, Block& block,
+                      const std::function<void(Variation&&)>& take) {
+  if (block.candidate) {
+    OfCandidate(machine, along, place, block, take);
+  } else {
+    OfNumber(machine, along, place, block, take);
+  }
+}
+
+}  // namespace mjdiag

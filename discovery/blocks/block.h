@@ -1,0 +1,62 @@
+#pragma once
+// A block: a hypothesis about what a machine lacks, as columns along its motion
+// (column.h) with a price. Laws of the catalogue at their sites, each with its shapes on a
+// grid (variations), and numbers of the plant.
+//
+// The price is -2 ln of how often it is what is missing, kMissing times the odds of its
+// effect, and 2 ln of how many shapes it has; sizes are known beforehand to a spread, which
+// follows from the machine's own scales (Effect::Spread).
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjdiag/discovery/blocks/column.h"
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/replay/tracking.h"
+
+namespace mjdiag {
+
+/// A law with its shape, or a number: one or more columns with amplitudes of their own.
+struct Variation {
+  std::size_t block = 0;
+  std::size_t shape = 0;  ///< which of the block's, from 0
+  std::vector<Column> columns;
+  Eigen::VectorXd sd;     ///< of every amplitude, as known beforehand
+  Eigen::VectorXd least;  ///< of every amplitude; empty: anything
+  /// Of the law's parameters, or of the number's factor; see Trial::values.
+  std::function<TrialValues(const Amplitudes&)> values;
+};
+
+struct Block {
+  std::string name;  ///< "coulomb_friction@X", "mass@stage"
+  std::optional<Candidate> candidate;
+  std::optional<PlantNumber> number;
+  double price = 0.0;
+};
+
+/// The motion of a run, and what of it does not change from block to block.
+struct BlockMotion {
+  ObservedMotion motion;
+  Eigen::VectorXd reading_noise;  ///< ny
+  double duration = 0.0;          ///< [s]
+};
+
+/// Those of a machine: candidates, then numbers of the plant that no candidate stands for.
+std::vector<Block> BlocksOf(const Machine& machine,
+                            const std::vector<Candidate>& candidates);
+
+/// Hands out every variation of a block that the motion shows.
+/// @param price  of the block, receives what its many shapes cost on top
+void ForEachVariation(const Machine& machine, const BlockMotion& along,
+                      std::size_t place, Block& block,
+                      const std::function<void(Variation&&)>& take);
+
+}  // namespace mjdiag

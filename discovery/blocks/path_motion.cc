@@ -1,0 +1,62 @@
+#include "mjdiag/discovery/blocks/path_motion.h"
+
+#include <algorithm>
+
+#include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
+#include "mjdiag/plugin/replay/recorded_inputs.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
+                           const FilterPath& path) {
+  const mjModel& model = machine.plant();
+  const Index nv = model.nv;
+  const Index samples = path.samples();
+  ObservedMotion motion;
+  motion.sample_time = path.sample_time;
+  motion.time = run.Time();
+  motion.position.resize(nv, samples);
+  motion.velocity.resize(nv, samples);
+  motion.acceleration.resize(nv, samples);
+  motion.own_acceleration.resize(nv, samples);
+  motion.outputs = run.outputs - path.innovations;
+  const PlantState drawn{VectorXd::Map(model.qpos0, model.nq), VectorXd::Zero(nv),
+                         VectorXd::Zero(model.na)};
+  ParallelFor(static_cast<int>(path.first.size()), [&](int number) {
+    const auto record = static_cast<std::size_t>(number);
+    const Index first = path.first[record];
+    TickMap map(machine);
+    RecordedInputs inputs(machine, run);
+    VectorXd forces = VectorXd::Zero(nv);
+    const VectorXd none = VectorXd::Zero(nv);
+    for (Index k = first; k < first + run.SamplesOf(record); ++k) {
+      const PlantState& state = path.states[static_cast<std::size_t>(k)];
+      motion.position.col(k) = Deviation(model, drawn, state).head(nv);
+      motion.velocity.col(k) = state.velocity;
+      for (std::size_t j = 0; j < path.dofs.size(); ++j) {
+        forces[path.dofs[j]] = path.forces(static_cast<Index>(j), k);
+      }
+      inputs.StayAt(k);
+      const Index tick = run.TickOf(k);
+      motion.acceleration.col(k) =
+          (map.Run(state, forces, tick, inputs).state.velocity - state.velocity) /
+          path.sample_time;
+      motion.own_acceleration.col(k) =
+          (map.Probe(state, none, tick, inputs).state.velocity - state.velocity) /
+          path.sample_time;
+    }
+  });
+  Eigen::MatrixXd position(model.nq, samples);
+  for (Index k = 0; k < samples; ++k) {
+    position.col(k) = path.states[static_cast<std::size_t>(k)].position;
+  }
+  motion.inputs = InputsThatAct(machine, run, position, motion.velocity);
+  return motion;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,77 @@
+#include "mjdiag/discovery/regression/whitening.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mjdiag/plugin/replay/noise_fit.h"
+#include "support/arm.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The arm beside a run of it, and the filter's path.
+struct FollowedArm {
+  explicit FollowedArm(const std::vector<std::string>& lacking)
+      : run(ToMeasuredRun(arm.setup(), test::Arm::Measure(lacking))) {
+    const VectorXd sd = VectorXd::Constant(2, test::Arm::kNoise);
+    const auto dofs = LatentDofs(arm.machine, run);
+    const auto starts = FilterStarts(arm.machine, run, sd);
+    path = RunForceFilter(arm.machine, run, dofs, starts,
+                          FollowingNoise(arm.machine, run, dofs, starts, sd));
+  }
+
+  test::Arm arm;
+  MeasuredRun run;
+  FilterPath path;
+};
+
+Column SomeColumn(const FollowedArm& followed, unsigned seed, bool reading) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  const auto signal = [&] {
+    return VectorXd::NullaryExpr(followed.path.samples(),
+                                 [&] { return normal(generator); })
+        .eval();
+  };
+  Column column;
+  column.forces = {{0, signal()}, {1, signal()}};
+  if (reading) column.readings = {{1, 1e-4 * signal()}};
+  return column;
+}
+
+TEST(Whitening, IsTheTransposeOfItsTransposed) {
+  const FollowedArm followed({});
+  const Whitening whitening(followed.path, followed.path.noise,
+                            InflationAlong(followed.path));
+  for (const bool reading : {false, true}) {
+    const Column column = SomeColumn(followed, 1, reading);
+    const VectorXd there = whitening.Of({&column}).col(0);
+    const VectorXd u = VectorXd::LinSpaced(whitening.rows(), -1.0, 1.0).array().sin();
+    const double back = whitening.TransposedTimes(u).front().Times(column);
+    EXPECT_NEAR(u.dot(there), back, 1e-9 * u.norm() * there.norm());
+  }
+}
+
+// A force that the arm has and the filter does not know of changes its innovations by W
+// times that force.
+TEST(Whitening, SaysWhatAForceLeavesInTheInnovations) {
+  const FollowedArm without({});
+  const FollowedArm with({"force_offset@elbow:force=0.01"});
+  const MatrixXd inflation =
+      MatrixXd::Ones(without.path.sensors(), without.path.samples());
+  const Whitening before(without.path, without.path.noise, inflation);
+  const Whitening after(with.path, without.path.noise, inflation);
+  Column column;
+  column.forces = {{1, VectorXd::Constant(without.path.samples(), 0.01)}};
+  const VectorXd expected = before.Of({&column}).col(0);
+  EXPECT_GT(expected.norm(), 1.0);
+  EXPECT_LT((after.left() - before.left() - expected).norm(), 0.02 * expected.norm());
+}
+
+}  // namespace
+}  // namespace mjdiag
