@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "mjdiag/discovery/hypotheses/number_forces.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/discovery/hypotheses/number_sensitivity.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/structure/late_dampers.h"
@@ -17,6 +17,13 @@
 
 namespace mjdiag {
 namespace {
+
+/// Whether the twin of a plant has the force of the number as well as the plant has
+/// (number_sensitivity.h): of a feedback it has that at rest, whatever limits the drive.
+bool HasFirstOrder(PlantNumberKind kind) {
+  return kind == PlantNumberKind::kGear || !(IsDrive(kind) || IsAdditive(kind));
+}
+
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -234,7 +241,7 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const DoubtedNumber& doubted = numbers_[i];
       if (stood_for[i] || doubted.is_lateness ||
-          doubted.number.kind == PlantNumberKind::kGain) {
+          !HasFirstOrder(doubted.number.kind)) {
         continue;
       }
       by_steps.push_back(doubted.number);
