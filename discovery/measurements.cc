@@ -79,8 +79,7 @@ Measurements ReadMeasurements(const Machine& nominal,
   for (const ManifestRecord& one : records) {
     std::vector<std::string> all = overrides;
     all.insert(all.end(), one.overrides.begin(), one.overrides.end());
-    const Machine during =
-        WithOwnNumbers(one, MachineDuring(one, nominal, setup, all));
+    const Machine during = WithOwnNumbers(one, MachineDuring(one, nominal, setup, all));
     MeasuredFile measured = ReadMeasured(during.setup(), one.file);
     (one.fit ? measurements.fit : measurements.unseen)
         .push_back({std::move(measured.record), during, one.file.filename().string(),

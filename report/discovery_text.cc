@@ -250,9 +250,9 @@ Table CalibrationTable(const Discovery& discovery) {
                                  0.0,
                                  number.shift * std::log(number.low),
                                  number.shift * std::log(number.high)};
-      table.rows.push_back({number.name, "moved by " + ValueText(shift),
-                            IntervalText(shift),
-                            FormatQuantity(number.shift * number.doubt, number.shift_unit)});
+      table.rows.push_back(
+          {number.name, "moved by " + ValueText(shift), IntervalText(shift),
+           FormatQuantity(number.shift * number.doubt, number.shift_unit)});
       continue;
     }
     const CauseParameter factor{"factor", "1",        number.factor,

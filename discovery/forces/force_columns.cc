@@ -8,8 +8,8 @@
 
 #include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/hypotheses/fitted_model.h"
-#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {

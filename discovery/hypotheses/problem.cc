@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/discovery/hypotheses/number_sensitivity.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/structure/late_dampers.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -23,7 +23,6 @@ namespace {
 bool HasFirstOrder(PlantNumberKind kind) {
   return kind == PlantNumberKind::kGear || !(IsDrive(kind) || IsAdditive(kind));
 }
-
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -240,8 +239,7 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
       StaysNearRest(machine, run->track)) {
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const DoubtedNumber& doubted = numbers_[i];
-      if (stood_for[i] || doubted.is_lateness ||
-          !HasFirstOrder(doubted.number.kind)) {
+      if (stood_for[i] || doubted.is_lateness || !HasFirstOrder(doubted.number.kind)) {
         continue;
       }
       by_steps.push_back(doubted.number);

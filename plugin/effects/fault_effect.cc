@@ -53,8 +53,7 @@ class FaultParameterEffect final : public Effect {
       : Effect({.name = declared.name,
                 .family = FamilyOf(declared.kind),
                 .kind = KindOf(declared.kind),
-                .site =
-                    IsDrive(declared.kind) ? SiteKind::kActuator : SiteKind::kJoint,
+                .site = IsDrive(declared.kind) ? SiteKind::kActuator : SiteKind::kJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {{"value", Role::kFactor, "1", 0.0, kMost}},
@@ -75,7 +74,8 @@ class FaultParameterEffect final : public Effect {
   std::string SiteName(const mjModel& plant) const {
     std::string site;
     for (const int id : declared_.elements) {
-      site += (site.empty() ? "" : " ") + ElementName(plant, ElementOf(declared_.kind), id);
+      site +=
+          (site.empty() ? "" : " ") + ElementName(plant, ElementOf(declared_.kind), id);
     }
     return site;
   }

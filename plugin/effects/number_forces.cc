@@ -134,8 +134,8 @@ MatrixXd TendonFriction(const mjModel& plant, int tendon, const ObservedMotion& 
   MatrixXd force(motion.samples(), plant.nv);
   for (Index k = 0; k < motion.samples(); ++k) {
     const VectorXd moment = along.MomentOf(tendon, k);
-    const double slides = Slides(moment.dot(motion.velocity.col(k)),
-                                 moment.cwiseAbs().dot(still));
+    const double slides =
+        Slides(moment.dot(motion.velocity.col(k)), moment.cwiseAbs().dot(still));
     force.row(k) = -plant.tendon_frictionloss[tendon] * slides * moment.transpose();
   }
   return force;
@@ -155,9 +155,8 @@ VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
     case PlantNumberKind::kDamping:
       return -plant.dof_damping[dof] * motion.velocity.row(dof);
     case PlantNumberKind::kFriction:
-      return motion.velocity.row(dof).unaryExpr([&](double v) {
-        return -plant.dof_frictionloss[dof] * Slides(v, still);
-      });
+      return motion.velocity.row(dof).unaryExpr(
+          [&](double v) { return -plant.dof_frictionloss[dof] * Slides(v, still); });
     default:
       return -plant.dof_armature[dof] * motion.own_acceleration.row(dof);
   }

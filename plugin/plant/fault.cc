@@ -123,11 +123,9 @@ void CopyFaults(const mjModel& from, mjModel& to) noexcept {
 }
 
 void ApproachFaults(const mjModel& target, double part, mjModel& model) noexcept {
-  ForEachArray(target, model,
-                    [part](const mjtNum* aim, int count, mjtNum* values) {
-                      for (int i = 0; i < count; ++i)
-                        values[i] += part * (aim[i] - values[i]);
-                    });
+  ForEachArray(target, model, [part](const mjtNum* aim, int count, mjtNum* values) {
+    for (int i = 0; i < count; ++i) values[i] += part * (aim[i] - values[i]);
+  });
 }
 
 }  // namespace mjdiag

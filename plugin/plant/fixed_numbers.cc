@@ -27,9 +27,8 @@ bool MayTouch(const mjModel& model) {
   if (model.npair > 0) return true;
   for (int a = 0; a < model.ngeom; ++a) {
     for (int b = 0; b < a; ++b) {
-      const bool match =
-          (model.geom_contype[a] & model.geom_conaffinity[b]) != 0 ||
-          (model.geom_contype[b] & model.geom_conaffinity[a]) != 0;
+      const bool match = (model.geom_contype[a] & model.geom_conaffinity[b]) != 0 ||
+                         (model.geom_contype[b] & model.geom_conaffinity[a]) != 0;
       const int weld_a = model.body_weldid[model.geom_bodyid[a]];
       const int weld_b = model.body_weldid[model.geom_bodyid[b]];
       if (match && weld_a != weld_b) return true;
@@ -42,9 +41,8 @@ bool MayTouch(const mjModel& model) {
 
 std::vector<std::string> FixedNumbers(const mjModel& model) {
   std::vector<std::string> fixed;
-  const auto equalities =
-      NamesIf(model, mjOBJ_EQUALITY, static_cast<int>(model.neq),
-              [&](int id) { return model.eq_active[id] != 0; });
+  const auto equalities = NamesIf(model, mjOBJ_EQUALITY, static_cast<int>(model.neq),
+                                  [&](int id) { return model.eq_active[id] != 0; });
   if (!equalities.empty()) {
     fixed.push_back("solref and solimp of " +
                     Counted(equalities, "equality", "equalities"));

@@ -122,8 +122,8 @@ PlantNumber FindPlantNumber(const mjModel& model, const std::string& name) {
   if (!kind || at == std::string::npos) {
     throw InputError("plant number '" + name + "'", "is of no known kind", AllKinds());
   }
-  const PlantNumber number{
-      *kind, FindElement(model, ElementOf(*kind), name.substr(at + 1))};
+  const PlantNumber number{*kind,
+                           FindElement(model, ElementOf(*kind), name.substr(at + 1))};
   if (!HasNumber(model, number)) {
     throw InputError("plant number '" + name + "'", "is none of that element",
                      Condition(*kind));

@@ -81,8 +81,7 @@ std::string_view MeaningOf(PlantNumberKind kind) { return Of(kind).meaning; }
 
 std::string AllKinds(bool additive) {
   std::string text;
-  for (const mjtObj element :
-       {mjOBJ_BODY, mjOBJ_JOINT, mjOBJ_ACTUATOR, mjOBJ_TENDON}) {
+  for (const mjtObj element : {mjOBJ_BODY, mjOBJ_JOINT, mjOBJ_ACTUATOR, mjOBJ_TENDON}) {
     std::vector<std::string> words;
     for (const KindOfNumber& kind : kKinds) {
       if (kind.element != element || (!additive && IsAdditive(kind.kind))) continue;

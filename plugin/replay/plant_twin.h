@@ -60,12 +60,12 @@ class PlantTwin final : public Twin {
   struct Number {
     PlantNumber number;
     std::vector<Eigen::Index> factors;
-    int at = 0;            ///< degree of freedom, place among the commands, or tendon
-    ModelPart part;        ///< of those without a law of their own
+    int at = 0;        ///< degree of freedom, place among the commands, or tendon
+    ModelPart part{};  ///< of those without a law of their own
     bool at_command = false;
     bool inertial = false;  ///< a mass or a rotor
-    double slope = 1.0;    ///< of the number by the logarithm of its factor
-    double change = 0.0;   ///< of the number, in what it is
+    double slope = 1.0;     ///< of the number by the logarithm of its factor
+    double change = 0.0;    ///< of the number, in what it is
   };
   /// Friction that effects make, as it is in this step.
   struct Resistance {
@@ -120,7 +120,7 @@ class PlantTwin final : public Twin {
   Eigen::MatrixXd K_rest_, D_rest_;  // what is not of springs and dampers in joints
   Eigen::MatrixXd M_now_;
   std::vector<Number> numbers_;
-  bool heavy_ = false;  // MuJoCo derives constants from some
+  bool heavy_ = false;       // MuJoCo derives constants from some
   Eigen::MatrixXd moments_;  // of tendons at rest, nv x tendons
 
   Eigen::MatrixXd place_;  // of coordinates by readings, nq x ny

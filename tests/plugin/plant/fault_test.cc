@@ -204,12 +204,10 @@ TEST(FaultParameters, NameWhatIsWrongInTheirDeclaration) {
       MessageOf<InputError>([] { FaultParameters(*WithParameter("solref x")); }),
       AllOf(HasSubstr("fault.zeta"), HasSubstr("solref"),
             HasSubstr("tendon_friction@ a tendon"), Not(HasSubstr("centre_x"))));
-  EXPECT_THAT(
-      MessageOf<InputError>([] { FaultParameters(*WithParameter("ref x")); }),
-      HasSubstr("unknown kind of fault parameter"));
-  EXPECT_THAT(
-      MessageOf<InputError>([] { FaultParameters(*WithFault("gain push")); }),
-      AllOf(HasSubstr("fault.worn"), HasSubstr("affine bias")));
+  EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("ref x")); }),
+              HasSubstr("unknown kind of fault parameter"));
+  EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithFault("gain push")); }),
+              AllOf(HasSubstr("fault.worn"), HasSubstr("affine bias")));
   EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("gear x")); }),
               HasSubstr("no actuator named \"x\""));
   EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("damping")); }),

@@ -71,9 +71,9 @@ TEST(PlantNumber, IsListedOnceWhateverNamesItHas) {
               ElementsAre("kp@servo", "kp@drive"));
   EXPECT_THAT(Names(*plant, PlantNumbersOf(*plant, "kv")), ElementsAre("kv@drive"));
   EXPECT_THAT(Names(*plant, PlantNumbers(*plant)),
-              AllOf(Contains("tendon_stiffness@cable"), Contains("tendon_damping@cable"),
-                    Contains("tendon_friction@rope"), Not(Contains("ref@slide")),
-                    Not(Contains("centre_z@fore"))));
+              AllOf(Contains("tendon_stiffness@cable"),
+                    Contains("tendon_damping@cable"), Contains("tendon_friction@rope"),
+                    Not(Contains("ref@slide")), Not(Contains("centre_z@fore"))));
   // By its name it is found all the same.
   EXPECT_THAT(Names(*plant, PlantNumbersOf(*plant, "gain@drive")),
               ElementsAre("gain@drive"));
@@ -95,12 +95,9 @@ TEST(PlantNumber, IsNoneOfAnElementThatHasNone) {
 
 TEST(PlantNumber, OfNoKindIsAnsweredWithAllKinds) {
   const ModelPtr plant = test::SmallPlant(test::NumberedMjcf());
-  for (const auto& find : {+[](const mjModel& model) {
-                             FindPlantNumber(model, "solref@cable");
-                           },
-                           +[](const mjModel& model) {
-                             PlantNumbersOf(model, "solref");
-                           }}) {
+  for (const auto& find :
+       {+[](const mjModel& model) { FindPlantNumber(model, "solref@cable"); },
+        +[](const mjModel& model) { PlantNumbersOf(model, "solref"); }}) {
     EXPECT_THAT(MessageOf<InputError>([&] { find(*plant); }),
                 AllOf(HasSubstr("mass@"), HasSubstr("centre_z@ a body"),
                       HasSubstr("ref@ a joint"), HasSubstr("kv@ an actuator"),
@@ -115,9 +112,9 @@ TEST(PlantNumber, IsAReferenceOnlyIfItIsAskedFor) {
               ElementsAre("ref@shoulder", "ref@slide", "ref@elbow"));
   EXPECT_THAT(Names(*plant, PlantNumbersOf(*plant, "all")),
               Not(Contains("ref@shoulder")));
-  const ModelPtr declares = test::SmallPlant(test::NumberedMjcf(
-      test::kNumberedValues,
-      R"(<custom><numeric name="known" data="0.3"/>
+  const ModelPtr declares =
+      test::SmallPlant(test::NumberedMjcf(test::kNumberedValues,
+                                          R"(<custom><numeric name="known" data="0.3"/>
          <numeric name="known.ref@slide" data="0.01"/></custom>)"));
   EXPECT_THAT(Names(*declares, PlantNumbers(*declares)),
               AllOf(Contains("ref@slide"), Not(Contains("ref@elbow"))));

@@ -76,8 +76,7 @@ TEST(ScaleNumbers, GivesWhatLoadingTheMjcfWithTheOtherNumberDoes) {
   for (const auto& [name, value] : test::kNumberedValues) {
     const PlantNumber number = FindPlantNumber(*nominal, name);
     const bool additive = IsAdditive(number.kind);
-    const double shift =
-        additive ? std::log(kFactor) * UnitOf(*nominal, number) : 0.0;
+    const double shift = additive ? std::log(kFactor) * UnitOf(*nominal, number) : 0.0;
     test::MjcfValues other = test::kNumberedValues;
     other[name] = Changed(value, additive ? 1.0 : kFactor, shift);
     const ModelPtr loaded = test::SmallPlant(test::NumberedMjcf(other));
