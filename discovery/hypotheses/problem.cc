@@ -257,8 +257,8 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     forces[i] = doubted.spread *
                 (doubted.is_lateness
                      ? LatenessForce(machine.plant(), machine_.linear().Gamma, motion)
-                     : NumberForce(machine.plant(), machine_.channels(), doubted.number,
-                                   motion, still));
+                     : NumberForce(machine.plant(), machine.actuator_addresses(),
+                                   doubted.number, motion, still));
   });
   work_->Add(kForces * RunWork() / machine_.rates().substeps * static_cast<double>(p));
   std::vector<Index> forced;

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "support/any_machine.h"
 #include "support/small_plant.h"
 
 namespace mjdiag::test {
@@ -74,6 +75,42 @@ inline std::string NumberedMjcf(const MjcfValues& value = kNumberedValues,
   </actuator>
   <sensor><jointpos name="q1" joint="shoulder"/><jointpos name="q2" joint="slide"/>
     <jointpos name="q3" joint="elbow"/></sensor>)";
+}
+
+inline Machine NumberedMachine(const MjcfValues& value = kNumberedValues,
+                               const std::string& more = "") {
+  return MachineOf(
+      "<mujoco><compiler angle=\"radian\"/><option timestep=\"0.001\" "
+      "tolerance=\"1e-12\"/>" +
+          NumberedMjcf(value, more) + "</mujoco>",
+      R"([rates]
+control = 500.0
+substeps = 2
+[sensors.q1]
+element = "q1"
+unit = "rad"
+noise_sd = 1e-5
+[sensors.q2]
+element = "q2"
+unit = "m"
+noise_sd = 1e-5
+[sensors.q3]
+element = "q3"
+unit = "rad"
+noise_sd = 1e-5
+[actuators.push]
+element = "push"
+unit = "N"
+[actuators.volts]
+element = "volts"
+unit = "V"
+[actuators.servo]
+element = "servo"
+unit = "rad"
+[actuators.drive]
+element = "drive"
+unit = "rad"
+)");
 }
 
 }  // namespace mjdiag::test
