@@ -177,16 +177,19 @@ MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators,
     case PlantNumberKind::kCentreX:
     case PlantNumberKind::kCentreY:
     case PlantNumberKind::kCentreZ:
-      return by_difference([](AlongMotion& at, Index k) { return -at.Inertial(k); });
+      return by_difference(
+          [](AlongMotion& at, Index k) -> VectorXd { return -at.Inertial(k); });
     case PlantNumberKind::kGear:
     case PlantNumberKind::kGain:
     case PlantNumberKind::kKp:
     case PlantNumberKind::kKv:
-      return by_difference([](AlongMotion& at, Index k) { return at.Motors(k); });
+      return by_difference(
+          [](AlongMotion& at, Index k) -> VectorXd { return at.Motors(k); });
     case PlantNumberKind::kTendonStiffness:
     case PlantNumberKind::kTendonDamping:
     case PlantNumberKind::kRef:
-      return by_difference([](AlongMotion& at, Index k) { return at.Balance(k); });
+      return by_difference(
+          [](AlongMotion& at, Index k) -> VectorXd { return at.Balance(k); });
     case PlantNumberKind::kTendonFriction:
       return TendonFriction(plant, number.element, motion, still);
     case PlantNumberKind::kStiffness:

@@ -15,9 +15,8 @@ void CheckOverrides(const TomlTable& table, const std::vector<std::string>& over
   for (const std::string& text : overrides) {
     if (std::ranges::none_of(kAllowed,
                              [&](auto prefix) { return text.starts_with(prefix); })) {
-      table.Fail(
-          "set", "changes '" + text.substr(0, text.find('=')) + "'",
-          "keys under axes, record or compare; `plant` names another plant, "
+      table.Fail("set", "changes '" + text.substr(0, text.find('=')) + "'",
+                 "keys under axes, record or compare; `plant` names another plant, "
                  "`numbers` what is other in this one");
     }
   }

@@ -74,9 +74,10 @@ unit = "N"
 
   /// The second with a number of its own.
   Measurements ReadWith(const std::string& number, double value) const {
-    return ReadMeasurements(Load("plant.xml"), folder_.path(), {},
-                            {{folder_ / "bare.csv"},
-                             {folder_ / "loaded.csv", true, {}, "", {{number, value}}}});
+    return ReadMeasurements(
+        Load("plant.xml"), folder_.path(), {},
+        {{folder_ / "bare.csv"},
+         {folder_ / "loaded.csv", true, {}, "", {{number, value}}}});
   }
 
   const test::TemporaryFolder folder_;

@@ -162,9 +162,9 @@ ModelPtr ReadWith(const std::string& mjcf, const NumberFactors& factors) {
   const test::TemporaryFolder folder;
   const std::filesystem::path plant = folder.Write("nominal.xml", mjcf);
   const ModelPtr nominal = LoadModel(plant);
-  return LoadModel(
-      folder.Write("plant.xml", ExtendMjcf(plant, *nominal, {{}, {}, factors},
-                                           folder.path() / "extended")));
+  return LoadModel(folder.Write(
+      "plant.xml",
+      ExtendMjcf(plant, *nominal, {{}, {}, factors}, folder.path() / "extended")));
 }
 
 TEST(ExtendedPlant, HasEveryNumberThatIsAnother) {

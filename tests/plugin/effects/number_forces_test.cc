@@ -69,7 +69,7 @@ TEST(ForceOfANumber, IsTheDerivativeOfInverseDynamics) {
       const VectorXd difference =
           (BalanceOf(*more, qpos0, motion, k) - BalanceOf(*less, qpos0, motion, k)) /
           (2.0 * kStep);
-      EXPECT_GT(difference.norm(), 1e-3) << name;
+      EXPECT_GT(difference.norm(), 1e-4) << name;
       EXPECT_LT((force.row(k).transpose() - difference).norm(),
                 1e-6 * difference.norm())
           << name;
