@@ -75,7 +75,8 @@ class JoinedParts {
       case PlantNumberKind::kTendonStiffness:
       case PlantNumberKind::kTendonDamping:
       case PlantNumberKind::kTendonFriction:
-        return First(MomentOf(number.element));
+        // As it is drawn.
+        return First(TendonMoments(plant_, plant_.qpos0).col(number.element));
       case PlantNumberKind::kStiffness:
       case PlantNumberKind::kDamping:
       case PlantNumberKind::kFriction:
@@ -86,14 +87,6 @@ class JoinedParts {
   }
 
  private:
-  /// As the plant is drawn.
-  VectorXd MomentOf(int tendon) const {
-    const DataPtr data = MakeData(plant_);
-    mj_kinematics(&plant_, data.get());
-    mj_comPos(&plant_, data.get());
-    mj_tendon(&plant_, data.get());
-    return TendonMoment(plant_, *data, tendon);
-  }
   VectorXd CarriersOf(int body) const {
     VectorXd carries = VectorXd::Zero(plant_.nv);
     for (int b = body; b > 0; b = plant_.body_parentid[b]) {

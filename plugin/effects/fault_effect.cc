@@ -32,12 +32,8 @@ int DofOfBody(const mjModel& plant, int body) {
 
 /// The one by which a tendon grows longer most, as the plant is drawn.
 int DofOfTendon(const mjModel& plant, int tendon) {
-  const DataPtr data = MakeData(plant);
-  mj_kinematics(&plant, data.get());
-  mj_comPos(&plant, data.get());
-  mj_tendon(&plant, data.get());
   Index dof = -1;
-  TendonMoment(plant, *data, tendon).cwiseAbs().maxCoeff(&dof);
+  TendonMoments(plant, plant.qpos0).col(tendon).cwiseAbs().maxCoeff(&dof);
   return static_cast<int>(dof);
 }
 

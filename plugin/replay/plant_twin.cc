@@ -54,20 +54,6 @@ Law LawOf(const mjModel& model, const PlantNumber& number) {
   }
 }
 
-MatrixXd TendonMomentsAt(const mjModel& model, const VectorXd& qpos) {
-  MatrixXd moments(model.nv, model.ntendon);
-  if (model.ntendon == 0) return moments;
-  const DataPtr data = MakeData(model);
-  VectorXd::Map(data->qpos, model.nq) = qpos;
-  mj_kinematics(&model, data.get());
-  mj_comPos(&model, data.get());
-  mj_tendon(&model, data.get());
-  for (int tendon = 0; tendon < model.ntendon; ++tendon) {
-    moments.col(tendon) = TendonMoment(model, *data, tendon);
-  }
-  return moments;
-}
-
 std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
   std::vector<ModelPart> parts;
   for (const UncertainNumber& number : uncertain.numbers) parts.push_back(number.part);
@@ -135,7 +121,7 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
     }
     numbers_.push_back(std::move(number));
   }
-  moments_ = TendonMomentsAt(*model_, machine.rest());
+  moments_ = TendonMoments(*model_, machine.rest().data());
   for (const UncertainResistance& known : uncertain_.resistances) {
     resistances_.push_back({model_->jnt_dofadr[known.joint], known.unknown});
   }
