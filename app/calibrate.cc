@@ -12,6 +12,7 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/plant/fixed_numbers.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
@@ -143,6 +144,9 @@ void RunCalibration(CalibrateCommand& command) {
   WriteCalibratedSetup(folder, setup_file, report.calibration, design);
   nlohmann::json document = CalibrationDocument(command, report);
   std::string text = CalibrationText(command, report);
+  if (const std::string fixed = NoteOfFixedNumbers(machine.plant()); !fixed.empty()) {
+    notes.push_back(fixed);
+  }
   AddNotes(notes, document, text);
   Publish(command.output, "calibration_report", document, text);
 }

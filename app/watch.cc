@@ -41,15 +41,8 @@ struct LiveOptions {
   WatchOptions watch;
 };
 
-const char* WordsOf(PlantNumberKind kind) {
-  switch (kind) {
-    case PlantNumberKind::kDamping:
-      return "damping of ";
-    case PlantNumberKind::kStiffness:
-      return "stiffness of ";
-    default:
-      return "force of ";
-  }
+std::string WordsOf(PlantNumberKind kind) {
+  return std::string(MeaningOf(kind)) + " of ";
 }
 
 /// "damping of X", "force of x_motor", "sines of 100 and 300 Hz".
@@ -63,8 +56,7 @@ std::vector<FaultMeaning> MeaningsOf(const Machine& machine,
     std::string& words = meanings.back().meaning;
     for (const FaultParameter& fault : FaultParameters(plant)) {
       if (fault.name != name) continue;
-      const mjtObj type =
-          fault.kind == PlantNumberKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
+      const mjtObj type = ElementOf(fault.kind);
       for (const int element : fault.elements) {
         words += (words.empty() ? WordsOf(fault.kind) : ", ") +
                  ElementName(plant, type, element);

@@ -242,7 +242,7 @@ MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filte
                                 const ForceBalance& balance) {
   Changes frictionless;
   for (const PlantNumber& number : PlantNumbers(machine.plant())) {
-    if (number.kind == PlantNumberKind::kFriction) {
+    if (IsFriction(number.kind)) {
       frictionless.numbers.emplace_back(number, 0.0);
     }
   }

@@ -18,6 +18,7 @@
 #include "mjdiag/discovery/selection/learned_numbers.h"
 #include "mjdiag/discovery/selection/model_choice.h"
 #include "mjdiag/discovery/selection/verdict.h"
+#include "mjdiag/plugin/plant/fixed_numbers.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
@@ -331,6 +332,10 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   };
   check(split.fit, "");
   check(split.unseen, "validation record: ");
+  if (const std::string fixed = NoteOfFixedNumbers(machine.plant());
+      options.doubt && !fixed.empty()) {
+    notes.push_back(fixed);
+  }
   Discovery discovery = Discoverer(machine, std::move(split), options).Run();
   discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
   return discovery;

@@ -45,9 +45,10 @@ struct CalibratedNumber {
   double high = 1.0;
   /// Standard deviation of its logarithm as far as was known before the record.
   double doubt = 0.0;
-  /// Of a centre of mass, which is no factor: by how far it moves with ln factor [m];
-  /// else 0.
+  /// Of a centre of mass or a reference, which is no factor: by how far it moves with ln
+  /// factor; else 0.
   double shift = 0.0;
+  std::string shift_unit{};  ///< "m" or "rad"
 };
 
 /// What motion tells of masses and of where they are, together (mass_moments.h) [kg m].

@@ -14,6 +14,7 @@
 #include "mjdiag/discovery/unexplained/active_curve.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 
 namespace mjdiag {
 
@@ -155,8 +156,9 @@ void Discoverer::NameNumbers(const MatrixXd& covariance) {
         {PlantNumberName(machine_.plant(), doubted.number), doubted.number,
          std::exp(doubted.spread * z[i]), std::exp(doubted.spread * (z[i] - half)),
          std::exp(doubted.spread * (z[i] + half)), doubted.spread,
-         IsCentre(doubted.number.kind) ? CentreUnit(machine_.plant(), doubted.number)
-                                       : 0.0});
+         IsAdditive(doubted.number.kind) ? UnitOf(machine_.plant(), doubted.number)
+                                         : 0.0,
+         UnitName(machine_.plant(), doubted.number)});
   }
   NameMoments(covariance);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
 
@@ -40,6 +41,21 @@ void RequireSameElements(const std::string& file, const mjModel& plant,
   throw InputError(file, "has joints of other types", "those of the setup's plant");
 }
 
+/// With what the plant of a record has of its own.
+Machine WithOwnNumbers(const ManifestRecord& record, const Machine& during) {
+  NumberFactors factors;
+  for (const auto& [name, value] : record.numbers) {
+    try {
+      const PlantNumber number = FindPlantNumber(during.plant(), name);
+      factors.emplace_back(number, FactorFor(during.plant(), number, value));
+    } catch (const InputError& error) {
+      throw InputError("numbers of " + record.file.filename().string() + ": " +
+                       error.what());
+    }
+  }
+  return factors.empty() ? during : during.WithNumbers(factors);
+}
+
 Machine MachineDuring(const ManifestRecord& record, const Machine& nominal,
                       const std::filesystem::path& setup,
                       std::vector<std::string> overrides) {
@@ -63,11 +79,12 @@ Measurements ReadMeasurements(const Machine& nominal,
   for (const ManifestRecord& one : records) {
     std::vector<std::string> all = overrides;
     all.insert(all.end(), one.overrides.begin(), one.overrides.end());
-    const Machine during = MachineDuring(one, nominal, setup, all);
+    const Machine during = WithOwnNumbers(one, MachineDuring(one, nominal, setup, all));
     MeasuredFile measured = ReadMeasured(during.setup(), one.file);
     (one.fit ? measurements.fit : measurements.unseen)
         .push_back({std::move(measured.record), during, one.file.filename().string(),
-                    std::move(measured.notes), !one.plant.empty()});
+                    std::move(measured.notes),
+                    !one.plant.empty() || !one.numbers.empty()});
   }
   return measurements;
 }

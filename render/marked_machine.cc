@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
@@ -29,6 +30,26 @@ int BodyOfActuator(const mjModel& model, int actuator) {
   }
 }
 
+/// Those that it passes.
+std::vector<int> BodiesOfTendon(const mjModel& model, int tendon) {
+  std::vector<int> bodies;
+  const int first = model.tendon_adr[tendon];
+  for (int wrap = first; wrap < first + model.tendon_num[tendon]; ++wrap) {
+    const int id = model.wrap_objid[wrap];
+    switch (model.wrap_type[wrap]) {
+      case mjWRAP_JOINT:
+        bodies.push_back(model.jnt_bodyid[id]);
+        break;
+      case mjWRAP_SITE:
+        if (model.site_bodyid[id] > 0) bodies.push_back(model.site_bodyid[id]);
+        break;
+      default:
+        break;  // pulleys have no body, and what it is wound around is not of it
+    }
+  }
+  return bodies;
+}
+
 void Mark(std::span<const int> bodies, mjModel& model) {
   for (int geom = 0; geom < model.ngeom; ++geom) {
     const bool marked =
@@ -52,10 +73,21 @@ void Mark(std::span<const int> bodies, mjModel& model) {
 std::vector<int> BodiesOf(const mjModel& model, const FaultParameter& fault) {
   std::vector<int> bodies;
   for (const int element : fault.elements) {
-    const int body = fault.kind == PlantNumberKind::kGear
-                         ? BodyOfActuator(model, element)
-                         : model.jnt_bodyid[element];
-    if (body >= 0) bodies.push_back(body);
+    switch (ElementOf(fault.kind)) {
+      case mjOBJ_BODY:
+        bodies.push_back(element);
+        break;
+      case mjOBJ_TENDON:
+        std::ranges::copy(BodiesOfTendon(model, element), std::back_inserter(bodies));
+        break;
+      case mjOBJ_ACTUATOR:
+        if (const int body = BodyOfActuator(model, element); body >= 0) {
+          bodies.push_back(body);
+        }
+        break;
+      default:
+        bodies.push_back(model.jnt_bodyid[element]);
+    }
   }
   return bodies;
 }

@@ -88,7 +88,7 @@ json CalibrationOf(const Discovery& discovery) {
          {"ci95", {value(number.low), value(number.high)}},
          {"prior_sd",
           Finite(number.shift > 0.0 ? number.shift * number.doubt : number.doubt)},
-         {"unit", number.shift > 0.0 ? "m" : "1"},
+         {"unit", number.shift > 0.0 ? number.shift_unit : "1"},
          {"off", IsOff(number)}});
   }
   return numbers;

@@ -245,14 +245,14 @@ Table CalibrationTable(const Discovery& discovery) {
     if (!IsOff(number)) continue;
     if (number.shift > 0.0) {
       const CauseParameter shift{"shift",
-                                 "m",
+                                 number.shift_unit,
                                  number.shift * std::log(number.factor),
                                  0.0,
                                  number.shift * std::log(number.low),
                                  number.shift * std::log(number.high)};
-      table.rows.push_back({number.name, "moved by " + ValueText(shift),
-                            IntervalText(shift),
-                            FormatQuantity(number.shift * number.doubt, "m")});
+      table.rows.push_back(
+          {number.name, "moved by " + ValueText(shift), IntervalText(shift),
+           FormatQuantity(number.shift * number.doubt, number.shift_unit)});
       continue;
     }
     const CauseParameter factor{"factor", "1",        number.factor,

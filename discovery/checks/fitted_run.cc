@@ -23,17 +23,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+bool IsStiffness(const PlantNumber& number) {
+  return number.kind == PlantNumberKind::kStiffness ||
+         number.kind == PlantNumberKind::kTendonStiffness;
+}
+
 /// Those that move resonances: stiffnesses, and what swings where there are none.
 std::vector<PlantNumber> NumbersOfFrequencies(const mjModel& plant) {
   std::vector<PlantNumber> all = PlantNumbers(plant);
-  const auto is_stiffness = [](const PlantNumber& number) {
-    return number.kind == PlantNumberKind::kStiffness;
-  };
-  const bool any = std::ranges::any_of(all, is_stiffness);
+  const bool any = std::ranges::any_of(all, IsStiffness);
   std::erase_if(all, [&](const PlantNumber& number) {
-    return any ? !is_stiffness(number)
+    return any ? !IsStiffness(number)
                : number.kind == PlantNumberKind::kDamping ||
-                     number.kind == PlantNumberKind::kFriction;
+                     number.kind == PlantNumberKind::kTendonDamping ||
+                     IsFriction(number.kind);
   });
   return all;
 }
@@ -135,7 +138,7 @@ class NumbersFit {
       for (const double sign : {-1.0, 1.0}) {
         VectorXd z = VectorXd::Zero(static_cast<Index>(numbers_.size()));
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
-          if (numbers_[i].kind != PlantNumberKind::kStiffness) continue;
+          if (!IsStiffness(numbers_[i])) continue;
           z[static_cast<Index>(i)] =
               sign * std::log1p(step) / DoubtOf(machine_.plant(), numbers_[i]);
         }

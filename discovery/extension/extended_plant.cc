@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/extension/extended_plant.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <span>
@@ -9,6 +10,7 @@
 #include "mjdiag/discovery/extension/mjcf_files.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/plugin/setup/xml_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
@@ -68,6 +70,7 @@ class MjcfEditor {
     for (int joint = 0; joint < before_.njnt; ++joint) EditJoint(joint);
     for (int body = 1; body < before_.nbody; ++body) EditMass(body);
     for (int actuator = 0; actuator < before_.nu; ++actuator) EditActuator(actuator);
+    for (int tendon = 0; tendon < before_.ntendon; ++tendon) EditTendon(tendon);
   }
 
   void WriteNumerics(const std::vector<PlacedEffect>& carried,
@@ -92,6 +95,11 @@ class MjcfEditor {
   void EditJoint(int joint);
   void EditMass(int body);
   void EditActuator(int actuator);
+  void EditTendon(int tendon);
+  /// Gain and bias, in the words of the element's tag.
+  Attributes DriveOf(int actuator, const std::string& tag) const;
+  /// What an angle or a distance is multiplied by in the file.
+  double AngleUnit(int joint) const;
   void RequireOwnMasses(int body) const;
 
   std::string where_;
@@ -150,6 +158,12 @@ void MjcfEditor::EditOption() {
   }
 }
 
+double MjcfEditor::AngleUnit(int joint) const {
+  const bool degrees =
+      before_.jnt_type[joint] == mjJNT_HINGE && CompilerOption("angle") != "radian";
+  return degrees ? 180.0 / std::numbers::pi : 1.0;
+}
+
 void MjcfEditor::EditJoint(int joint) {
   const int dof = before_.jnt_dofadr[joint];
   const int address = before_.jnt_qposadr[joint];
@@ -170,14 +184,15 @@ void MjcfEditor::EditJoint(int joint) {
   }
   AddIfChanged(changed, "armature", Row(before_.dof_armature, dof),
                Row(after_.dof_armature, dof));
-  const mjtNum reference = after_.qpos_spring[address];
-  if (before_.jnt_type[joint] >= mjJNT_SLIDE &&
-      before_.qpos_spring[address] != reference) {
-    const bool degrees =
-        before_.jnt_type[joint] == mjJNT_HINGE && CompilerOption("angle") != "radian";
-    const double unit = degrees ? 180.0 / std::numbers::pi : 1.0;
-    changed.emplace_back("springref", AllDigits(reference * unit));
-  }
+  const auto add_position = [&](const char* name, const mjtNum* before,
+                                const mjtNum* after) {
+    if (before_.jnt_type[joint] < mjJNT_SLIDE || before[address] == after[address]) {
+      return;
+    }
+    changed.emplace_back(name, AllDigits(after[address] * AngleUnit(joint)));
+  };
+  add_position("springref", before_.qpos_spring, after_.qpos_spring);
+  add_position("ref", before_.qpos0, after_.qpos0);
   AddIfChanged(changed, "frictionloss", Row(before_.dof_frictionloss, dof),
                Row(after_.dof_frictionloss, dof));
   if (after_.dof_frictionloss[dof] != 0.0) {
@@ -243,11 +258,48 @@ void MjcfEditor::EditActuator(int actuator) {
   if (!changed.empty()) changed.emplace_back("forcelimited", "true");
   AddIfChanged(changed, "gear", Row(before_.actuator_gear, actuator, 6),
                Row(after_.actuator_gear, actuator, 6));
+  const auto gain = Row(after_.actuator_gainprm, actuator, mjNGAIN);
+  const auto bias = Row(after_.actuator_biasprm, actuator, mjNBIAS);
+  const bool same_drive =
+      std::ranges::equal(gain, Row(before_.actuator_gainprm, actuator, mjNGAIN)) &&
+      std::ranges::equal(bias, Row(before_.actuator_biasprm, actuator, mjNBIAS));
+  if (changed.empty() && same_drive) return;
+  const int element = FindOrFail("actuator", mjOBJ_ACTUATOR, actuator);
+  if (!same_drive) {
+    std::ranges::move(DriveOf(actuator, xml_.At(element).tag),
+                      std::back_inserter(changed));
+  }
+  Set(element, changed);
+}
+
+Attributes MjcfEditor::DriveOf(int actuator, const std::string& tag) const {
+  const auto gain = Row(after_.actuator_gainprm, actuator, mjNGAIN);
+  const auto bias = Row(after_.actuator_biasprm, actuator, mjNBIAS);
+  if (tag == "position" && bias[1] == -gain[0]) return {{"kp", AllDigits(gain[0])}};
+  if (tag == "velocity" && bias[2] == -gain[0]) return {{"kv", AllDigits(gain[0])}};
+  if (tag != "general") {
+    throw InputError(where_,
+                     "<" + tag + "> does not say gain and bias of '" +
+                         ElementName(before_, mjOBJ_ACTUATOR, actuator) + "' apart",
+                     "<general> with gainprm, biastype and biasprm");
+  }
+  Attributes changed;
   AddIfChanged(changed, "gainprm", Row(before_.actuator_gainprm, actuator, mjNGAIN),
-               Row(after_.actuator_gainprm, actuator, mjNGAIN));
+               gain);
   AddIfChanged(changed, "biasprm", Row(before_.actuator_biasprm, actuator, mjNBIAS),
-               Row(after_.actuator_biasprm, actuator, mjNBIAS));
-  if (!changed.empty()) Set(FindOrFail("actuator", mjOBJ_ACTUATOR, actuator), changed);
+               bias);
+  return changed;
+}
+
+void MjcfEditor::EditTendon(int tendon) {
+  Attributes changed;
+  AddIfChanged(changed, "stiffness", Row(before_.tendon_stiffness, tendon),
+               Row(after_.tendon_stiffness, tendon));
+  AddIfChanged(changed, "damping", Row(before_.tendon_damping, tendon),
+               Row(after_.tendon_damping, tendon));
+  AddIfChanged(changed, "frictionloss", Row(before_.tendon_frictionloss, tendon),
+               Row(after_.tendon_frictionloss, tendon));
+  if (!changed.empty()) Set(FindOrFail("tendon", mjOBJ_TENDON, tendon), changed);
 }
 
 void MjcfEditor::WriteNumerics(const std::vector<PlacedEffect>& carried,

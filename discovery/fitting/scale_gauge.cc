@@ -12,6 +12,7 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/fault.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/tendon_moment.h"
 
 namespace mjdiag {
 namespace {
@@ -53,7 +54,14 @@ class JoinedParts {
       case PlantNumberKind::kInertia:
         return First(CarriersOf(number.element));
       case PlantNumberKind::kGear:
-      case PlantNumberKind::kGain: {
+        // What is behind it is as heavy as all else, and the gear is the same.
+        if (plant_.actuator_biastype[number.element] == mjBIAS_AFFINE) {
+          return std::nullopt;
+        }
+        [[fallthrough]];
+      case PlantNumberKind::kGain:
+      case PlantNumberKind::kKp:
+      case PlantNumberKind::kKv: {
         const auto& motors = machine.actuator_addresses();
         const auto at = std::ranges::find(motors, number.element);
         if (at == motors.end()) return std::nullopt;
@@ -62,10 +70,20 @@ class JoinedParts {
       case PlantNumberKind::kCentreX:
       case PlantNumberKind::kCentreY:
       case PlantNumberKind::kCentreZ:
+      case PlantNumberKind::kRef:
         return std::nullopt;  // where it is, no matter how heavy
-      default:
-        return Of(plant_.jnt_dofadr[number.element]);
+      case PlantNumberKind::kTendonStiffness:
+      case PlantNumberKind::kTendonDamping:
+      case PlantNumberKind::kTendonFriction:
+        // As it is drawn.
+        return First(TendonMoments(plant_, plant_.qpos0).col(number.element));
+      case PlantNumberKind::kStiffness:
+      case PlantNumberKind::kDamping:
+      case PlantNumberKind::kFriction:
+      case PlantNumberKind::kArmature:
+        break;
     }
+    return Of(plant_.jnt_dofadr[number.element]);
   }
 
  private:

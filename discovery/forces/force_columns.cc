@@ -8,8 +8,8 @@
 
 #include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/hypotheses/fitted_model.h"
-#include "mjdiag/discovery/hypotheses/number_forces.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -18,10 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-bool IsDrive(PlantNumberKind kind) {
-  return kind == PlantNumberKind::kGear || kind == PlantNumberKind::kGain;
-}
 
 /// Whether its one size multiplies what a drive does.
 bool ScalesDrive(const Candidate& candidate) {
@@ -65,12 +61,14 @@ MatrixXd ForceColumns::ForceOf(const DoubtedNumber& doubted) const {
   if (doubted.is_lateness) {
     return LatenessForce(machine.plant(), machine.linear().Gamma, motion_);
   }
-  MatrixXd force = NumberForce(machine.plant(), machine.channels(), doubted.number,
-                               motion_, problem_.StillSpeed());
-  if (doubted.number.kind == PlantNumberKind::kFriction) {
+  MatrixXd force = NumberForce(machine.plant(), machine.actuator_addresses(),
+                               doubted.number, motion_, problem_.StillSpeed());
+  if (IsFriction(doubted.number.kind)) {
     // It jumps, and readings do not.
-    const Index dof = machine.plant().jnt_dofadr[doubted.number.element];
-    force.col(dof) = LowPassed(filtered_, force.col(dof));
+    for (Index dof = 0; dof < force.cols(); ++dof) {
+      if (force.col(dof).isZero(0.0)) continue;
+      force.col(dof) = LowPassed(filtered_, force.col(dof));
+    }
   }
   return force;
 }
@@ -82,7 +80,7 @@ VectorXd ForceColumns::NumbersOf(const VectorXd& z) const {
   VectorXd numbers = z;
   for (Index i = 0; i < z.size(); ++i) {
     const DoubtedNumber& doubted = problem_.numbers()[static_cast<std::size_t>(i)];
-    if (!doubted.is_lateness && !IsCentre(doubted.number.kind)) {
+    if (!doubted.is_lateness && !IsAdditive(doubted.number.kind)) {
       numbers[i] = std::log(std::max(1.0 + doubted.spread * z[i], kLeastFactor)) /
                    doubted.spread;
     }

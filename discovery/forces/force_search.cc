@@ -180,8 +180,7 @@ bool Search::Silence() {
   bool moved = false;
   for (Index i = 0; i < fit_.z.size(); ++i) {
     const DoubtedNumber& doubted = numbers[static_cast<std::size_t>(i)];
-    if (doubted.is_lateness || doubted.number.kind != PlantNumberKind::kFriction)
-      continue;
+    if (doubted.is_lateness || !IsFriction(doubted.number.kind)) continue;
     moved = moved || doubted.spread * std::abs(fit_.z[i] - silenced_[i]) > kNear;
   }
   if (!moved) return false;

@@ -23,7 +23,7 @@ UncertainMachine WithUnknown(const Machine& machine,
   ParallelFor(static_cast<int>(numbers.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     uncertain.numbers[i].number = numbers[i];
-    if (numbers[i].kind != PlantNumberKind::kFriction) {
+    if (!IsFriction(numbers[i].kind)) {
       uncertain.numbers[i].part = PartOf(machine, numbers[i]);
     }
     uncertain.numbers[i].part.factors = {number};

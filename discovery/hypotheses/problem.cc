@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "mjdiag/discovery/hypotheses/number_forces.h"
 #include "mjdiag/discovery/hypotheses/number_sensitivity.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/structure/late_dampers.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -17,6 +17,12 @@
 
 namespace mjdiag {
 namespace {
+
+/// Whether the twin of a plant has the force of the number as well as the plant has
+/// (number_sensitivity.h): of a feedback it has that at rest, whatever limits the drive.
+bool HasFirstOrder(PlantNumberKind kind) {
+  return kind == PlantNumberKind::kGear || !(IsDrive(kind) || IsAdditive(kind));
+}
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -233,8 +239,7 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
       StaysNearRest(machine, run->track)) {
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const DoubtedNumber& doubted = numbers_[i];
-      if (stood_for[i] || doubted.is_lateness ||
-          doubted.number.kind == PlantNumberKind::kGain) {
+      if (stood_for[i] || doubted.is_lateness || !HasFirstOrder(doubted.number.kind)) {
         continue;
       }
       by_steps.push_back(doubted.number);
@@ -252,8 +257,8 @@ Eigen::MatrixXd DiscoveryProblem::RoughNumberJacobian(const Changes& changes,
     forces[i] = doubted.spread *
                 (doubted.is_lateness
                      ? LatenessForce(machine.plant(), machine_.linear().Gamma, motion)
-                     : NumberForce(machine.plant(), machine_.channels(), doubted.number,
-                                   motion, still));
+                     : NumberForce(machine.plant(), machine.actuator_addresses(),
+                                   doubted.number, motion, still));
   });
   work_->Add(kForces * RunWork() / machine_.rates().substeps * static_cast<double>(p));
   std::vector<Index> forced;

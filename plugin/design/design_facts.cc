@@ -4,6 +4,7 @@
 #include "mjdiag/diagnosis/model/left_null_space.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
+#include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/signals/number_text.h"
 
 namespace mjdiag {
@@ -33,7 +34,7 @@ DesignFacts FactsOf(const Machine& machine, bool linear_programs) {
 std::vector<ChangedMachine> WithoutStiffness(const Machine& machine) {
   std::vector<ChangedMachine> changed;
   for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
-    if (parameter.kind != PlantNumberKind::kStiffness) continue;
+    if (KindOf(parameter.kind) != Kind::kCompliance) continue;
     changed.push_back(
         {parameter.name + " = " + AllDigits(kLostStiffness),
          machine.With({{{parameter.name, kLostStiffness}}, {}}).linear()});

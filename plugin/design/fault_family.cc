@@ -13,6 +13,7 @@ constexpr double kDefaultMagnitude = 1e-3;
 
 /// What a fault parameter adds to the model per unit of its value.
 struct Slope {
+  Eigen::MatrixXd M;
   Eigen::MatrixXd D;
   Eigen::MatrixXd K;
   Eigen::MatrixXd Gamma;
@@ -62,7 +63,8 @@ ModelAt FaultModels(const Machine& machine,
         Eigen::VectorXd::Ones(static_cast<Eigen::Index>(parameters.size()));
     values[static_cast<Eigen::Index>(i)] = kMovedTo;
     const MechanicalModel moved = full(values);
-    slopes.push_back({(moved.D - base.D) / (kMovedTo - 1.0),
+    slopes.push_back({(moved.M - base.M) / (kMovedTo - 1.0),
+                      (moved.D - base.D) / (kMovedTo - 1.0),
                       (moved.K - base.K) / (kMovedTo - 1.0),
                       (moved.Gamma - base.Gamma) / (kMovedTo - 1.0)});
   }
@@ -70,6 +72,7 @@ ModelAt FaultModels(const Machine& machine,
     MechanicalModel model = base;
     for (std::size_t i = 0; i < slopes.size(); ++i) {
       const double moved = values[static_cast<Eigen::Index>(i)] - 1.0;
+      model.M += moved * slopes[i].M;
       model.D += moved * slopes[i].D;
       model.K += moved * slopes[i].K;
       model.Gamma += moved * slopes[i].Gamma;

@@ -8,6 +8,7 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/diagnosis/twin/naming.h"
 #include "mjdiag/plugin/design/reference_forces.h"
+#include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/signals/error.h"
 
@@ -96,7 +97,15 @@ FaultRemedy RemedyOf(const Machine& machine, const FaultFamily& family,
     remedy.most = most - 1.0;
     return remedy;
   }
-  const bool damper = parameter.kind == PlantNumberKind::kDamping;
+  const Kind kind = KindOf(parameter.kind);
+  if (kind != Kind::kCompliance && kind != Kind::kViscousFriction &&
+      kind != Kind::kInertia) {
+    // Dry friction jumps, and a drive that feeds back makes no force of a command alone.
+    remedy.least = remedy.most = 0.0;
+    return remedy;
+  }
+  // Masses, too, resist in proportion to what they are.
+  const bool damper = kind != Kind::kCompliance;
   remedy.least = (damper ? range.least_damping : range.least_stiffness) - 1.0;
   remedy.most = (damper ? range.most_damping : range.most_stiffness) - 1.0;
   if (mode == ControlMode::kFeedback) return remedy;

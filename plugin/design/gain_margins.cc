@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/runtime/closed_loop.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
@@ -66,8 +67,9 @@ std::vector<StateSpace> WornTicks(const Machine& machine, const FaultFamily& fam
   std::vector<Index> dampers;
   Index place = 0;
   for (const FaultParameter& parameter : FaultParameters(machine.plant())) {
-    if (parameter.kind == PlantNumberKind::kStiffness) springs.push_back(place);
-    if (parameter.kind == PlantNumberKind::kDamping) dampers.push_back(place);
+    const Kind kind = KindOf(parameter.kind);
+    if (kind == Kind::kCompliance) springs.push_back(place);
+    if (kind == Kind::kViscousFriction) dampers.push_back(place);
     ++place;
   }
   const std::vector<double> stiffness =

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/tendon_moment.h"
 
 namespace mjdiag {
 namespace {
@@ -14,16 +16,31 @@ using Eigen::Index;
 // Where a fit ends: far beyond any machine.
 constexpr double kMost = 100.0;
 
-/// That of the effect that changes the same attribute of one element.
 Family FamilyOf(PlantNumberKind kind) {
-  switch (kind) {
-    case PlantNumberKind::kDamping:
-      return ViscousFriction().family();
-    case PlantNumberKind::kGear:
-      return MotorConstant().family();
-    default:
-      return StructuralStiffness().family();
+  if (IsDrive(kind)) return Family::kDrive;
+  if (IsFriction(kind) || KindOf(kind) == Kind::kViscousFriction) {
+    return Family::kFriction;
   }
+  return Family::kStructure;
+}
+
+/// The degree of freedom that a body hangs on; -1: none.
+int DofOfBody(const mjModel& plant, int body) {
+  while (body > 0 && plant.body_dofnum[body] == 0) body = plant.body_parentid[body];
+  return body > 0 ? plant.body_dofadr[body] : -1;
+}
+
+/// The one by which a tendon grows longer most, as the plant is drawn.
+int DofOfTendon(const mjModel& plant, int tendon) {
+  Index dof = -1;
+  TendonMoments(plant, plant.qpos0).col(tendon).cwiseAbs().maxCoeff(&dof);
+  return static_cast<int>(dof);
+}
+
+/// Speeds below which a joint may be held, as Direction() has them.
+Eigen::VectorXd StillSpeeds(const ObservedMotion& motion) {
+  constexpr double kStill = 1.0 / 200.0;
+  return kStill * motion.velocity.cwiseAbs().rowwise().maxCoeff();
 }
 
 class FaultParameterEffect final : public Effect {
@@ -32,8 +49,7 @@ class FaultParameterEffect final : public Effect {
       : Effect({.name = declared.name,
                 .family = FamilyOf(declared.kind),
                 .kind = KindOf(declared.kind),
-                .site = declared.kind == PlantNumberKind::kGear ? SiteKind::kActuator
-                                                                : SiteKind::kJoint,
+                .site = IsDrive(declared.kind) ? SiteKind::kActuator : SiteKind::kJoint,
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {{"value", Role::kFactor, "1", 0.0, kMost}},
@@ -54,12 +70,14 @@ class FaultParameterEffect final : public Effect {
   std::string SiteName(const mjModel& plant) const {
     std::string site;
     for (const int id : declared_.elements) {
-      site += (site.empty() ? "" : " ") + ElementName(plant, element(), id);
+      site +=
+          (site.empty() ? "" : " ") + ElementName(plant, ElementOf(declared_.kind), id);
     }
     return site;
   }
 
  private:
+  Trial TrialOfNumbers(const SiteMotion& at) const;
   double Damping(const mjModel& plant) const {
     return plant.dof_damping[plant.jnt_dofadr[declared_.elements.front()]];
   }
@@ -69,20 +87,63 @@ class FaultParameterEffect final : public Effect {
 
 std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const {
   const std::string name = SiteName(map.plant());
+  const mjModel& plant = map.plant();
   const int first = declared_.elements.front();
-  if (declared_.kind != PlantNumberKind::kGear) {
-    return {{name, map.plant().jnt_dofadr[first], -1}};
+  int dof = -1;
+  switch (ElementOf(declared_.kind)) {
+    case mjOBJ_JOINT:
+      dof = plant.jnt_dofadr[first];
+      break;
+    case mjOBJ_BODY:
+      dof = DofOfBody(plant, first);
+      break;
+    case mjOBJ_TENDON:
+      dof = DofOfTendon(plant, first);
+      break;
+    default: {
+      const std::string motor = ElementName(plant, mjOBJ_ACTUATOR, first);
+      for (const Site& site : map.Actuators()) {
+        if (site.name == motor) return {{name, site.joint, site.channel}};
+      }
+    }
   }
-  const std::string motor = ElementName(map.plant(), mjOBJ_ACTUATOR, first);
-  for (const Site& site : map.Actuators()) {
-    if (site.name == motor) return {{name, site.joint, site.channel}};
+  if (dof < 0) return {};
+  return {{name, dof, -1}};
+}
+
+/// Along the motion, whatever the numbers do.
+Trial FaultParameterEffect::TrialOfNumbers(const SiteMotion& at) const {
+  std::vector<int> actuators(static_cast<std::size_t>(at.motion.inputs.rows()), -1);
+  if (at.site.channel >= 0) {
+    actuators[static_cast<std::size_t>(at.site.channel)] = declared_.elements.front();
   }
-  return {};
+  const Eigen::VectorXd still = StillSpeeds(at.motion);
+  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(at.motion.samples(), at.plant.nv);
+  for (const int id : declared_.elements) {
+    force += NumberForce(at.plant, actuators, {declared_.kind, id}, at.motion, still);
+  }
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(at.plant.nv, at.plant.nv);
+  std::vector<Index> pushed;
+  for (Index dof = 0; dof < force.cols(); ++dof) {
+    if (!force.col(dof).isZero(0.0)) pushed.push_back(dof);
+  }
+  if (pushed.empty()) pushed.push_back(0);
+  return LinearTrial(force(Eigen::all, pushed), all(Eigen::all, pushed), 1.0, true);
 }
 
 std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
   if (declared_.kind == PlantNumberKind::kGear) {
     return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
+  }
+  const auto as_one = [](Trial trial) {
+    // One amplitude, whatever the number of joints.
+    trial.summed = true;
+    trial.least.conservativeResize(1);
+    return std::vector<Trial>{std::move(trial)};
+  };
+  if (declared_.kind != PlantNumberKind::kDamping &&
+      declared_.kind != PlantNumberKind::kStiffness) {
+    return as_one(TrialOfNumbers(at));
   }
   const auto joints = static_cast<Index>(declared_.elements.size());
   Eigen::MatrixXd signals(at.motion.samples(), joints);
@@ -100,11 +161,7 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
                        (at.motion.position.row(dof).array() - rest).matrix();
     }
   }
-  // One amplitude, whatever the number of joints.
-  Trial trial = LinearTrial(std::move(signals), std::move(entry), 1.0, true);
-  trial.summed = true;
-  trial.least.conservativeResize(1);
-  return {std::move(trial)};
+  return as_one(LinearTrial(std::move(signals), std::move(entry), 1.0, true));
 }
 
 const Effect* FaultParameterEffect::Twin() const {
@@ -117,7 +174,7 @@ const Effect* FaultParameterEffect::Twin() const {
     case PlantNumberKind::kGear:
       return &MotorConstant();
     default:
-      return nullptr;  // no fault parameter is of another kind
+      return nullptr;
   }
 }
 

@@ -60,14 +60,21 @@ Kind KindOf(PlantNumberKind number) {
     case PlantNumberKind::kCentreZ:
       return Kind::kInertia;
     case PlantNumberKind::kStiffness:
+    case PlantNumberKind::kTendonStiffness:
       return Kind::kCompliance;
     case PlantNumberKind::kDamping:
+    case PlantNumberKind::kTendonDamping:
       return Kind::kViscousFriction;
     case PlantNumberKind::kFriction:
+    case PlantNumberKind::kTendonFriction:
       return Kind::kDryFriction;
     case PlantNumberKind::kGear:
     case PlantNumberKind::kGain:
+    case PlantNumberKind::kKp:
+    case PlantNumberKind::kKv:
       return Kind::kDriveGain;
+    case PlantNumberKind::kRef:
+      return Kind::kEncoder;
   }
   return Kind::kUnknownForce;
 }

@@ -12,6 +12,7 @@
 #include "mjdiag/plugin/plant/linearize.h"
 #include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/plugin/plant/time_step.h"
 #include "mjdiag/signals/error.h"
 
@@ -74,6 +75,7 @@ Setup WithNoiseOf(Setup setup, const std::vector<PlacedEffect>& effects) {
 Machine::Machine(Setup setup) {
   ModelPtr model = LoadPlant(setup);
   FaultParameters(*model);  // complains of those that are malformed
+  CheckKnownNumbers(*model);
   if (setup.calibration) setup = WithNoiseOf(setup, *setup.calibration);
   setup_ = std::make_shared<Setup>(WithNoiseOf(std::move(setup), EffectsOf(*model)));
   Adopt(std::move(model));

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -14,11 +15,10 @@ namespace {
 constexpr std::string_view kPrefix = "fault.";
 
 PlantNumberKind ParseKind(const std::string& where, const std::string& word) {
-  if (word == "damping") return PlantNumberKind::kDamping;
-  if (word == "stiffness") return PlantNumberKind::kStiffness;
-  if (word == "gear") return PlantNumberKind::kGear;
+  const auto kind = FindKind(word);
+  if (kind && !IsAdditive(*kind)) return *kind;
   throw InputError(where, "unknown kind of fault parameter \"" + word + "\"",
-                   R"("damping" or "stiffness" and joints, or "gear" and actuators)");
+                   "one of " + AllKinds(false) + ", with the names of such elements");
 }
 
 FaultParameter ParseFaultParameter(const mjModel& model, const std::string& text_name,
@@ -27,20 +27,19 @@ FaultParameter ParseFaultParameter(const mjModel& model, const std::string& text
   std::istringstream words(data);
   std::string word;
   words >> word;
-  FaultParameter parameter{
-      text_name.substr(kPrefix.size()), ParseKind(where, word), {}};
-  const mjtObj target =
-      parameter.kind == PlantNumberKind::kGear ? mjOBJ_ACTUATOR : mjOBJ_JOINT;
+  const PlantNumberKind kind = ParseKind(where, word);
+  FaultParameter parameter{text_name.substr(kPrefix.size()), kind, {}};
+  const std::string of_kind = word + "@";
   while (words >> word) {
     try {
-      parameter.elements.push_back(FindElement(model, target, word));
+      parameter.elements.push_back(FindPlantNumber(model, of_kind + word).element);
     } catch (const InputError& error) {
       throw InputError(where + ": " + error.what());
     }
   }
   if (parameter.elements.empty()) {
     throw InputError(where, "no element behind \"" + data + "\"",
-                     "the names of joints or actuators");
+                     std::string("the name of a ") + mju_type2Str(ElementOf(kind)));
   }
   return parameter;
 }
@@ -59,8 +58,36 @@ FaultParameter FindFaultParameter(const mjModel& model, const std::string& name)
 template <typename Change>
 void ForEachFaultArray(const mjModel& from, mjModel& to, const Change& change) {
   change(from.dof_damping, from.nv, to.dof_damping);
+  change(from.dof_frictionloss, from.nv, to.dof_frictionloss);
+  change(from.dof_armature, from.nv, to.dof_armature);
   change(from.jnt_stiffness, from.njnt, to.jnt_stiffness);
   change(from.actuator_gear, 6 * from.nu, to.actuator_gear);
+  change(from.actuator_gainprm, mjNGAIN * from.nu, to.actuator_gainprm);
+  change(from.actuator_biasprm, mjNBIAS * from.nu, to.actuator_biasprm);
+  change(from.tendon_stiffness, from.ntendon, to.tendon_stiffness);
+  change(from.tendon_damping, from.ntendon, to.tendon_damping);
+  change(from.tendon_frictionloss, from.ntendon, to.tendon_frictionloss);
+  change(from.body_mass, from.nbody, to.body_mass);
+  change(from.body_inertia, 3 * from.nbody, to.body_inertia);
+}
+
+/// What MuJoCo derives from masses and rotors.
+template <typename Change>
+void ForEachDerivedArray(const mjModel& from, mjModel& to, const Change& change) {
+  change(from.body_subtreemass, from.nbody, to.body_subtreemass);
+  change(from.body_invweight0, 2 * from.nbody, to.body_invweight0);
+  change(from.dof_M0, from.nv, to.dof_M0);
+  change(from.dof_invweight0, from.nv, to.dof_invweight0);
+  change(from.tendon_invweight0, from.ntendon, to.tendon_invweight0);
+  change(from.actuator_acc0, from.nu, to.actuator_acc0);
+  change(&from.stat.meanmass, 1, &to.stat.meanmass);
+  change(&from.stat.meaninertia, 1, &to.stat.meaninertia);
+}
+
+template <typename Change>
+void ForEachArray(const mjModel& from, mjModel& to, const Change& change) {
+  ForEachFaultArray(from, to, change);
+  ForEachDerivedArray(from, to, change);
 }
 
 }  // namespace
@@ -86,20 +113,19 @@ void ApplyFault(mjModel& model, const Fault& fault) {
   for (const int element : parameter.elements) {
     Scale(model, {parameter.kind, element}, fault.value);
   }
+  if (IsDerivedFrom(parameter.kind)) DeriveConstants(model);
 }
 
 void CopyFaults(const mjModel& from, mjModel& to) noexcept {
-  ForEachFaultArray(from, to, [](const mjtNum* source, int count, mjtNum* values) {
+  ForEachArray(from, to, [](const mjtNum* source, int count, mjtNum* values) {
     std::copy_n(source, count, values);
   });
 }
 
 void ApproachFaults(const mjModel& target, double part, mjModel& model) noexcept {
-  ForEachFaultArray(target, model,
-                    [part](const mjtNum* aim, int count, mjtNum* values) {
-                      for (int i = 0; i < count; ++i)
-                        values[i] += part * (aim[i] - values[i]);
-                    });
+  ForEachArray(target, model, [part](const mjtNum* aim, int count, mjtNum* values) {
+    for (int i = 0; i < count; ++i) values[i] += part * (aim[i] - values[i]);
+  });
 }
 
 }  // namespace mjdiag

@@ -1,14 +1,12 @@
 #include "mjdiag/plugin/plant/plant_number.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <numbers>
-#include <span>
 #include <string_view>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -16,83 +14,8 @@ namespace {
 
 constexpr std::string_view kDeclaration = "known";
 
-struct KindOfNumber {
-  std::string_view name;
-  mjtObj element;
-  double spread;  ///< UsualSpread
-  double doubt;   ///< DoubtOf
-};
-
-constexpr double kFactorOfTwo = std::numbers::ln2;
-
-/// In the order of PlantNumberKind.
-constexpr std::array<KindOfNumber, 11> kKinds = {
-    {{"mass", mjOBJ_BODY, 0.01, 0.05},
-     {"inertia", mjOBJ_BODY, 0.03, 0.1},
-     {"stiffness", mjOBJ_JOINT, 0.05, 0.1},
-     {"damping", mjOBJ_JOINT, 0.2, kFactorOfTwo},
-     {"friction", mjOBJ_JOINT, 0.2, kFactorOfTwo},
-     {"gear", mjOBJ_ACTUATOR, 0.01, 0.05},
-     {"armature", mjOBJ_JOINT, 0.05, 0.1},
-     {"gain", mjOBJ_ACTUATOR, 0.03, 0.1},
-     {"centre_x", mjOBJ_BODY, 0.03, 0.1},
-     {"centre_y", mjOBJ_BODY, 0.03, 0.1},
-     {"centre_z", mjOBJ_BODY, 0.03, 0.1}}};
-
-const KindOfNumber& Of(PlantNumberKind kind) {
-  return kKinds[static_cast<std::size_t>(kind)];
-}
-
-/// Degrees of freedom of a joint: three of a ball joint, six of a free one.
-std::span<mjtNum> DofsOf(const mjModel& model, int joint, mjtNum* of_dof) {
-  const int first = model.jnt_dofadr[joint];
-  const int last =
-      joint + 1 < model.njnt ? model.jnt_dofadr[joint + 1] : static_cast<int>(model.nv);
-  return {of_dof + first, static_cast<std::size_t>(last - first)};
-}
-
-/// Where the number stands in the model, one place or two.
-std::array<std::span<mjtNum>, 2> NumbersOf(const mjModel& model,
-                                           const PlantNumber& number) {
-  const int element = number.element;
-  switch (number.kind) {
-    case PlantNumberKind::kMass:
-      return {{{model.body_mass + element, 1}}};
-    case PlantNumberKind::kInertia:
-      return {{{RowOf(model.body_inertia, 3, element), 3}}};
-    case PlantNumberKind::kStiffness:
-      return {{{model.jnt_stiffness + element, 1}}};
-    case PlantNumberKind::kDamping:
-      return {DofsOf(model, element, model.dof_damping)};
-    case PlantNumberKind::kFriction:
-      return {DofsOf(model, element, model.dof_frictionloss)};
-    case PlantNumberKind::kGear:
-      return {{{RowOf(model.actuator_gear, 6, element), 6}}};
-    case PlantNumberKind::kArmature:
-      return {DofsOf(model, element, model.dof_armature)};
-    case PlantNumberKind::kGain:
-      // Of a motor without a bias it is the gear.
-      if (model.actuator_biastype[element] != mjBIAS_AFFINE) return {};
-      return {{{RowOf(model.actuator_gainprm, mjNGAIN, element), mjNGAIN},
-               {RowOf(model.actuator_biasprm, mjNBIAS, element), mjNBIAS}}};
-    case PlantNumberKind::kCentreX:
-    case PlantNumberKind::kCentreY:
-    case PlantNumberKind::kCentreZ:
-      break;  // none that is multiplied
-  }
-  return {};
-}
-
 /// Bodies that hang on a joint, their own or one further up.
 bool Moves(const mjModel& model, int body) { return model.body_weldid[body] != 0; }
-
-int AxisOf(PlantNumberKind kind) {
-  return static_cast<int>(kind) - static_cast<int>(PlantNumberKind::kCentreX);
-}
-
-mjtNum& CentreOf(mjModel& model, const PlantNumber& number) {
-  return RowOf(model.body_ipos, 3, number.element)[AxisOf(number.kind)];
-}
 
 /// -1: not declared.
 double Declared(const mjModel& model, const std::string& name) {
@@ -114,98 +37,157 @@ struct Declarations {
 
 Declarations DeclarationsOf(const mjModel& model, const PlantNumber& number) {
   const std::string name(kDeclaration);
-  return {Declared(model, name + "." + PlantNumberName(model, number)),
-          Declared(model, name)};
+  Declarations declared{Declared(model, name + "." + PlantNumberName(model, number)),
+                        Declared(model, name)};
+  // No part of anything, it is known to a distance of its own.
+  if (number.kind == PlantNumberKind::kRef && declared.of_all > 0.0) {
+    declared.of_all = -1.0;
+  }
+  return declared;
+}
+
+int CountOf(const mjModel& model, mjtObj element) {
+  switch (element) {
+    case mjOBJ_BODY:
+      return static_cast<int>(model.nbody);
+    case mjOBJ_JOINT:
+      return static_cast<int>(model.njnt);
+    case mjOBJ_ACTUATOR:
+      return static_cast<int>(model.nu);
+    default:
+      return static_cast<int>(model.ntendon);
+  }
+}
+
+/// Whether an element has such a number that is not 0, and no other one does the same.
+bool IsInDoubt(const mjModel& model, const PlantNumber& number) {
+  const auto has = [&](PlantNumberKind kind) {
+    return HasNumber(model, {kind, number.element});
+  };
+  if (!HasNumber(model, number)) return false;
+  switch (number.kind) {
+    case PlantNumberKind::kMass:
+    case PlantNumberKind::kInertia:
+      if (!Moves(model, number.element)) return false;
+      break;
+    case PlantNumberKind::kGain:
+      if (has(PlantNumberKind::kKp) || !has(PlantNumberKind::kKv)) return false;
+      break;
+    case PlantNumberKind::kKv:
+      if (!has(PlantNumberKind::kKp)) return false;
+      break;
+    case PlantNumberKind::kRef:
+      return DeclarationsOf(model, number).own > 0.0;
+    default:
+      break;
+  }
+  return ValueOf(model, number) != 0.0;
+}
+
+std::vector<PlantNumber> References(const mjModel& model) {
+  std::vector<PlantNumber> numbers;
+  for (int joint = 0; joint < model.njnt; ++joint) {
+    const PlantNumber number{PlantNumberKind::kRef, joint};
+    if (HasNumber(model, number)) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+/// What an element needs to have such a number.
+const char* Condition(PlantNumberKind kind) {
+  switch (kind) {
+    case PlantNumberKind::kGain:
+      return "an actuator with an affine bias; of others it is gear@";
+    case PlantNumberKind::kKp:
+      return "an actuator that feeds back its position, biasprm[1] other than 0";
+    case PlantNumberKind::kKv:
+      return "an actuator that feeds back its velocity, biasprm[2] other than 0";
+    case PlantNumberKind::kRef:
+      return "a hinge or a slide";
+    default:
+      return "a body with a mass and an inertia";
+  }
 }
 
 }  // namespace
 
 std::string PlantNumberName(const mjModel& model, const PlantNumber& number) {
-  const KindOfNumber& kind = Of(number.kind);
-  return std::string(kind.name) + "@" +
-         ElementName(model, kind.element, number.element);
+  return std::string(WordOf(number.kind)) + "@" +
+         ElementName(model, ElementOf(number.kind), number.element);
 }
 
 PlantNumber FindPlantNumber(const mjModel& model, const std::string& name) {
   const auto at = name.find('@');
-  const std::string word = name.substr(0, at);
-  const auto kind =
-      std::find_if(kKinds.begin(), kKinds.end(),
-                   [&](const KindOfNumber& known) { return known.name == word; });
-  if (kind == kKinds.end() || at == std::string::npos) {
-    throw InputError("plant number '" + name + "'", "is of no known kind",
-                     "mass@ or inertia@ a body, stiffness@, damping@, friction@ or "
-                     "armature@ a joint, gear@ or gain@ an actuator");
+  const auto kind = FindKind(std::string_view(name).substr(0, at));
+  if (!kind || at == std::string::npos) {
+    throw InputError("plant number '" + name + "'", "is of no known kind", AllKinds());
   }
-  return {static_cast<PlantNumberKind>(kind - kKinds.begin()),
-          FindElement(model, kind->element, name.substr(at + 1))};
+  const PlantNumber number{*kind,
+                           FindElement(model, ElementOf(*kind), name.substr(at + 1))};
+  if (!HasNumber(model, number)) {
+    throw InputError("plant number '" + name + "'", "is none of that element",
+                     Condition(*kind));
+  }
+  return number;
 }
 
 std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
   std::vector<PlantNumber> numbers;
-  const auto add = [&](PlantNumberKind kind, int count) {
-    for (int element = 0; element < count; ++element) {
+  const auto add = [&](PlantNumberKind kind) {
+    for (int element = 0; element < CountOf(model, ElementOf(kind)); ++element) {
       const PlantNumber number{kind, element};
-      const bool of_body = Of(kind).element == mjOBJ_BODY;
-      if (of_body && !Moves(model, element)) continue;
-      for (const auto values : NumbersOf(model, number)) {
-        if (std::ranges::all_of(values, [](double value) { return value == 0.0; })) {
-          continue;
-        }
-        numbers.push_back(number);
-        break;
-      }
+      if (IsInDoubt(model, number)) numbers.push_back(number);
     }
   };
-  add(PlantNumberKind::kMass, model.nbody);
-  add(PlantNumberKind::kInertia, model.nbody);
-  add(PlantNumberKind::kStiffness, model.njnt);
-  add(PlantNumberKind::kDamping, model.njnt);
-  add(PlantNumberKind::kFriction, model.njnt);
-  add(PlantNumberKind::kGear, model.nu);
-  add(PlantNumberKind::kArmature, model.njnt);
-  add(PlantNumberKind::kGain, model.nu);
+  add(PlantNumberKind::kMass);
+  add(PlantNumberKind::kInertia);
+  add(PlantNumberKind::kStiffness);
+  add(PlantNumberKind::kDamping);
+  add(PlantNumberKind::kFriction);
+  add(PlantNumberKind::kGear);
+  add(PlantNumberKind::kArmature);
+  add(PlantNumberKind::kGain);
+  add(PlantNumberKind::kKp);
+  add(PlantNumberKind::kKv);
+  add(PlantNumberKind::kTendonStiffness);
+  add(PlantNumberKind::kTendonDamping);
+  add(PlantNumberKind::kTendonFriction);
+  add(PlantNumberKind::kRef);
   return numbers;
 }
-
-bool IsCentre(PlantNumberKind kind) { return kind >= PlantNumberKind::kCentreX; }
 
 std::vector<PlantNumber> CentreNumbers(const mjModel& model) {
   std::vector<PlantNumber> numbers;
   for (int body = 0; body < model.nbody; ++body) {
-    if (!Moves(model, body) || model.body_mass[body] == 0.0) continue;
+    if (!Moves(model, body)) continue;
     for (const auto kind : {PlantNumberKind::kCentreX, PlantNumberKind::kCentreY,
                             PlantNumberKind::kCentreZ}) {
       const PlantNumber number{kind, body};
-      if (CentreUnit(model, number) > 0.0) numbers.push_back(number);
+      if (HasNumber(model, number)) numbers.push_back(number);
     }
   }
   return numbers;
-}
-
-double CentreUnit(const mjModel& model, const PlantNumber& number) {
-  const mjtNum* inertia = RowOf(model.body_inertia, 3, number.element);
-  const double trace = inertia[0] + inertia[1] + inertia[2];
-  return std::sqrt(trace / (2.0 * model.body_mass[number.element]));
 }
 
 std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string& text) {
   std::vector<PlantNumber> meant = PlantNumbers(model);
   std::ranges::copy(CentreNumbers(model), std::back_inserter(meant));
   std::erase_if(meant, [&](const PlantNumber& number) {
-    return text != "all" && text != Of(number.kind).name &&
+    return text != "all" && text != WordOf(number.kind) &&
            text != PlantNumberName(model, number);
   });
+  if (text == WordOf(PlantNumberKind::kRef)) meant = References(model);
+  if (meant.empty() && text.find('@') != std::string::npos) {
+    const PlantNumber number = FindPlantNumber(model, text);
+    if (IsAdditive(number.kind) || ValueOf(model, number) != 0.0) return {number};
+    throw InputError("number of the plant '" + text + "'", "is 0", "one that is not 0");
+  }
   if (meant.empty()) {
-    throw InputError(
-        "number of the plant '" + text + "'", "there is none",
-        "all, a kind (mass, inertia, stiffness, damping, friction, gear) or "
-        "one of an element, as mass@<body>");
+    throw InputError("number of the plant '" + text + "'", "there is none",
+                     "all, a kind or one of an element: " + AllKinds());
   }
   return meant;
 }
-
-double UsualSpread(PlantNumberKind kind) { return Of(kind).spread; }
 
 double SpreadOf(const mjModel& model, const PlantNumber& number) {
   const Declarations declared = DeclarationsOf(model, number);
@@ -216,48 +198,24 @@ double SpreadOf(const mjModel& model, const PlantNumber& number) {
 double DoubtOf(const mjModel& model, const PlantNumber& number) {
   const Declarations declared = DeclarationsOf(model, number);
   if (declared.own > 0.0) return declared.own;
-  return declared.of_all > 0.0 ? declared.of_all : Of(number.kind).doubt;
+  return declared.of_all > 0.0 ? declared.of_all : UsualDoubt(number.kind);
 }
 
 bool IsExact(const mjModel& model) {
   return Declared(model, std::string(kDeclaration)) == 0.0;
 }
 
-void Scale(mjModel& model, const PlantNumber& number, double factor) {
-  if (IsCentre(number.kind)) {
-    CentreOf(model, number) += std::log(factor) * CentreUnit(model, number);
-    return;
+void CheckKnownNumbers(const mjModel& model) {
+  const std::string prefix = std::string(kDeclaration) + ".";
+  for (int id = 0; id < model.nnumeric; ++id) {
+    const std::string name = ElementName(model, mjOBJ_NUMERIC, id);
+    if (!name.starts_with(prefix)) continue;
+    try {
+      SpreadOf(model, FindPlantNumber(model, name.substr(prefix.size())));
+    } catch (const InputError& error) {
+      throw InputError("custom numeric " + name + ": " + error.what());
+    }
   }
-  for (const auto values : NumbersOf(model, number)) {
-    for (mjtNum& value : values) value *= factor;
-  }
-}
-
-void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
-  if (factors.empty()) return;
-  for (const auto& [number, factor] : factors) Scale(model, number, factor);
-  DeriveConstants(model);
-}
-
-void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
-               double factor) {
-  if (IsCentre(number.kind)) {
-    CentreOf(model, number) =
-        RowOf(nominal.body_ipos, 3, number.element)[AxisOf(number.kind)];
-    Scale(model, number, factor);
-    return;
-  }
-  const auto all = NumbersOf(nominal, number);
-  const auto changed = NumbersOf(model, number);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    std::ranges::transform(all[i], changed[i].begin(),
-                           [&](double value) { return factor * value; });
-  }
-}
-
-void DeriveConstants(mjModel& model) {
-  const DataPtr data = MakeData(model);
-  mj_setConst(&model, data.get());
 }
 
 }  // namespace mjdiag

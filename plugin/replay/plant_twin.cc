@@ -7,7 +7,9 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/machine/stepper.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/plugin/plant/tangent.h"
+#include "mjdiag/plugin/plant/tendon_moment.h"
 #include "mjdiag/signals/wide_product.h"
 
 namespace mjdiag {
@@ -26,6 +28,30 @@ std::vector<PlacedEffect> FrictionOf(std::vector<PlacedEffect> effects) {
     return effect.effect->family() != Family::kFriction;
   });
   return effects;
+}
+
+/// How the force of a number is known along a run.
+enum class Law { kJoint, kTendonFriction, kGear, kInertia, kAtRest };
+
+Law LawOf(const mjModel& model, const PlantNumber& number) {
+  switch (number.kind) {
+    case PlantNumberKind::kStiffness:
+    case PlantNumberKind::kDamping:
+    case PlantNumberKind::kFriction:
+      return Law::kJoint;
+    case PlantNumberKind::kTendonFriction:
+      return Law::kTendonFriction;
+    case PlantNumberKind::kMass:
+    case PlantNumberKind::kInertia:
+    case PlantNumberKind::kArmature:
+      return Law::kInertia;
+    case PlantNumberKind::kGear:
+      // Behind it a bias acts, too.
+      return model.actuator_biastype[number.element] == mjBIAS_AFFINE ? Law::kAtRest
+                                                                      : Law::kGear;
+    default:
+      return Law::kAtRest;
+  }
 }
 
 std::vector<ModelPart> PartsOf(const UncertainMachine& uncertain) {
@@ -67,40 +93,48 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
   K_rest_ = K_ - MatrixXd(JointStiffness(*model_).asDiagonal());
   D_rest_ = D_ - MatrixXd(VectorXd::Map(model_->dof_damping, nv).asDiagonal());
   for (const UncertainNumber& known : uncertain_.numbers) {
-    Number number{known.number, known.part.factors, 0, {}, 1.0};
+    Number number{known.number, known.part.factors};
     const int element = known.number.element;
-    switch (known.number.kind) {
-      case PlantNumberKind::kMass:
-      case PlantNumberKind::kInertia:
-      case PlantNumberKind::kArmature:
-        number.inertia = known.part;
-        heavy_ = true;
+    heavy_ = heavy_ || IsDerivedFrom(known.number.kind);
+    switch (LawOf(*model_, known.number)) {
+      case Law::kJoint:
+        number.at = model_->jnt_dofadr[element];
         break;
-      case PlantNumberKind::kGear: {
+      case Law::kTendonFriction:
+        number.at = element;
+        break;
+      case Law::kGear: {
         const auto& addresses = machine.actuator_addresses();
         const auto at = std::find(addresses.begin(), addresses.end(), element);
         if (at == addresses.end()) continue;  // nothing drives it
         number.at = static_cast<int>(at - addresses.begin());
+        number.at_command = true;
         break;
       }
-      default:
-        number.at = model_->jnt_dofadr[element];
+      case Law::kInertia:
+        number.inertial = true;
+        number.part = known.part;
+        break;
+      case Law::kAtRest:
+        number.part = known.part;
+        break;
     }
     numbers_.push_back(std::move(number));
   }
+  moments_ = TendonMoments(*model_, machine.rest().data());
   for (const UncertainResistance& known : uncertain_.resistances) {
     resistances_.push_back({model_->jnt_dofadr[known.joint], known.unknown});
   }
   place_ = PlacementOf(linear);
   state_ = VectorXd::Zero(2 * nv);
-  before_ = acceleration_ = inertial_ = VectorXd::Zero(nv);
+  before_ = acceleration_ = work_force_ = VectorXd::Zero(nv);
   for (Map& map : maps_) {
     map.QV = MatrixXd::Zero(WideRows(nv), 2 * nv);
     map.G = MatrixXd::Zero(WideRows(nv), nv);
   }
   lifted_ = by_force_ = VectorXd::Zero(WideRows(nv));
   inertia_ = identity_ = work_ = MatrixXd::Identity(nv, nv);
-  stick_r_.assign(static_cast<std::size_t>(nv), 0.0);
+  stick_r_.assign(static_cast<std::size_t>(nv + moments_.cols()), 0.0);
   stick_rb_ = stick_r_;
   tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
@@ -114,14 +148,33 @@ void PlantTwin::SetParameters() noexcept {
   M_now_ = M_;
   for (Number& number : numbers_) {
     const double sum = Logarithm(number.factors);
-    number.value = std::exp(sum);
-    SetNumber(*model_, machine_.plant(), number.number, number.value);
-    if (number.inertia.M.size() > 0) M_now_ += std::expm1(sum) * number.inertia.M;
+    const double factor = std::exp(sum);
+    const bool additive = IsAdditive(number.number.kind);
+    number.slope = additive ? 1.0 : factor;
+    number.change = additive ? sum : std::expm1(sum);
+    SetNumber(*model_, machine_.plant(), number.number, factor);
+    if (number.part.M.size() > 0) M_now_ += number.change * number.part.M;
   }
   for (Resistance& resistance : resistances_) {
     resistance.times = std::exp(theta_[resistance.unknown]);
   }
   for (Map& map : maps_) map.known = false;
+}
+
+void PlantTwin::AddSticking(std::uint64_t sticking, const std::vector<double>& r,
+                            MatrixXd& matrix) const noexcept {
+  const Index nv = matrix.rows();
+  for (Index j = 0; j < std::ssize(r); ++j) {
+    if ((sticking >> j & 1) == 0) continue;
+    const double stiff = r[static_cast<std::size_t>(j)];
+    if (j < nv) {
+      matrix(j, j) += stiff;
+      continue;
+    }
+    for (Index i = 0; i < nv; ++i) {
+      matrix.col(i) += stiff * moments_(i, j - nv) * moments_.col(j - nv);
+    }
+  }
 }
 
 const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
@@ -140,12 +193,14 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
   for (int j = 0; j < nv; ++j) {
     K_(j, j) += model_->jnt_stiffness[model_->dof_jntid[j]];
   }
+  for (const Number& number : numbers_) {
+    if (number.inertial) continue;
+    if (number.part.K.size() > 0) K_ += number.change * number.part.K;
+    if (number.part.D.size() > 0) D_ += number.change * number.part.D;
+  }
   // G = h (M + h D)^-1 M W^-1
   inertia_ = M_now_;
-  for (Index j = 0; j < nv; ++j) {
-    if ((sticking >> j & 1) != 0)
-      inertia_(j, j) += stick_r_[static_cast<std::size_t>(j)];
-  }
+  AddSticking(sticking, stick_r_, inertia_);
   factor_.compute(inertia_);
   work_ = identity_;
   factor_.solveInPlace(work_);
@@ -156,9 +211,7 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
   factor_.solveInPlace(G);
   G *= h;
   map.QV.topLeftCorner(nv, nv).noalias() = -G * K_;
-  for (Index j = 0; j < nv; ++j) {
-    if ((sticking >> j & 1) != 0) D_(j, j) += stick_rb_[static_cast<std::size_t>(j)];
-  }
+  AddSticking(sticking, stick_rb_, D_);
   auto V = map.QV.topRightCorner(nv, nv);
   V = identity_;
   V.noalias() -= G * D_;
@@ -234,9 +287,26 @@ void PlantTwin::AddForce(MatrixXd& forces, const Number& number, Index dof,
   for (const Index factor : number.factors) forces(dof, factor) += force;
 }
 
-void PlantTwin::AddInertial(const Number& number) noexcept {
+void PlantTwin::AddWorkForce(const Number& number) noexcept {
   for (const Index factor : number.factors) {
-    force_.col(factor) += number.value * inertial_;
+    force_.col(factor) += number.slope * work_force_;
+  }
+}
+
+/// Of what slides.
+void PlantTwin::AddFriction(int type, Index at, double force) noexcept {
+  const bool of_dof = type == mjCNSTR_FRICTION_DOF;
+  const PlantNumberKind kind =
+      of_dof ? PlantNumberKind::kFriction : PlantNumberKind::kTendonFriction;
+  for (const Number& number : numbers_) {
+    if (number.number.kind != kind || number.at != at) continue;
+    if (of_dof) {
+      AddForce(force_, number, at, force);
+      continue;
+    }
+    for (const Index factor : number.factors) {
+      force_.col(factor) += force * moments_.col(at);
+    }
   }
 }
 
@@ -246,8 +316,7 @@ void PlantTwin::AddTickForces() noexcept {
   for (Index i = 0; i < tones_.count(); ++i) {
     tone_ = tones_.amplitude(i);
     for (const Number& number : numbers_) {
-      if (number.number.kind == PlantNumberKind::kGear)
-        tone_[number.at] *= number.value;
+      if (number.at_command) tone_[number.at] *= number.slope;
     }
     auto sine = drive_.col(first + 2 * i);
     auto cosine = drive_.col(first + 2 * i + 1);
@@ -256,9 +325,13 @@ void PlantTwin::AddTickForces() noexcept {
     cosine *= tones_.cosine(i);
   }
   for (const Number& number : numbers_) {
-    if (number.number.kind != PlantNumberKind::kGear) continue;
     for (const Index factor : number.factors) {
-      drive_.col(factor) += number.value * u_[number.at] * Gamma_.col(number.at);
+      if (number.at_command) {
+        drive_.col(factor) += number.slope * u_[number.at] * Gamma_.col(number.at);
+      }
+      if (number.part.Gamma.size() == 0) continue;
+      work_force_.noalias() = number.part.Gamma * u_;
+      drive_.col(factor) += number.slope * work_force_;
     }
   }
 }
@@ -287,15 +360,15 @@ void PlantTwin::AddStepForces() noexcept {
                -model_->jnt_stiffness[number.number.element] *
                    (data_->qpos[address] - model_->qpos_spring[address]));
     }
-    const ModelPart& part = number.inertia;
+    const ModelPart& part = number.part;
     if (part.K.size() + part.force.size() == 0) continue;
-    inertial_.setZero();
-    if (part.force.size() > 0) inertial_ = part.force;
+    work_force_.setZero();
+    if (part.force.size() > 0) work_force_ = part.force;
     if (part.K.size() > 0) {
       state_.head(nv) = VectorXd::Map(data_->qpos, nv) - start_;
-      inertial_.noalias() -= part.K * state_.head(nv);
+      work_force_.noalias() -= part.K * state_.head(nv);
     }
-    AddInertial(number);
+    AddWorkForce(number);
   }
 }
 
@@ -337,20 +410,18 @@ void PlantTwin::Substep() noexcept {
   const Index nv = model_->nv;
   std::uint64_t sticking = 0;
   for (int row = 0; row < data_->nefc; ++row) {
-    if (data_->efc_type[row] != mjCNSTR_FRICTION_DOF) continue;
-    const int dof = data_->efc_id[row];
-    if (data_->efc_state[row] == mjCNSTRSTATE_QUADRATIC) {
-      sticking |= std::uint64_t{1} << dof;
-      stick_r_[static_cast<std::size_t>(dof)] = data_->efc_D[row];
-      stick_rb_[static_cast<std::size_t>(dof)] =
-          data_->efc_D[row] * data_->efc_KBIP[4 * row + 1];
+    const int type = data_->efc_type[row];
+    if (type != mjCNSTR_FRICTION_DOF && type != mjCNSTR_FRICTION_TENDON) continue;
+    const int at = data_->efc_id[row];
+    if (data_->efc_state[row] != mjCNSTRSTATE_QUADRATIC) {
+      AddFriction(type, at, data_->efc_force[row]);
       continue;
     }
-    for (const Number& number : numbers_) {
-      if (number.number.kind != PlantNumberKind::kFriction || number.at != dof)
-        continue;
-      AddForce(force_, number, dof, data_->efc_force[row]);
-    }
+    const Index place = type == mjCNSTR_FRICTION_DOF ? at : nv + at;
+    sticking |= std::uint64_t{1} << place;
+    stick_r_[static_cast<std::size_t>(place)] = data_->efc_D[row];
+    stick_rb_[static_cast<std::size_t>(place)] =
+        data_->efc_D[row] * data_->efc_KBIP[4 * row + 1];
   }
   acceleration_ = (VectorXd::Map(data_->qvel, nv) - before_) / model_->opt.timestep;
   for (const Number& number : numbers_) {
@@ -358,9 +429,13 @@ void PlantTwin::Substep() noexcept {
       AddForce(force_, number, number.at,
                -model_->dof_damping[number.at] * data_->qvel[number.at]);
     }
-    if (number.inertia.M.size() == 0) continue;
-    inertial_.noalias() = -number.inertia.M * acceleration_;
-    AddInertial(number);
+    if (number.part.D.size() > 0) {
+      work_force_.noalias() = -number.part.D * VectorXd::Map(data_->qvel, nv);
+      AddWorkForce(number);
+    }
+    if (number.part.M.size() == 0) continue;
+    work_force_.noalias() = -number.part.M * acceleration_;
+    AddWorkForce(number);
   }
   const Map& map = MapOf(sticking);
   Lift(map, acting(), theta_.size() - start_unknowns(), force_, S_);

@@ -6,10 +6,13 @@
 //   G = h (M + h D)^-1 M W^-1,    W = M + sum over the joints that stick of r e e^T
 //
 // with M, D, K of the machine at rest, which it leaves by little, and the joints that
-// stick those of the very step. df is the force of a unit of each unknown where the run
-// is: a damper's with the velocity at the end of a step, as Euler's method has it; a
-// mass's with the acceleration of the step; dry friction's +-1 where the joint slides, 0
-// where it sticks. At the end of a tick the gain takes its part, S -= L C S.
+// stick those of the very step; tendons that stick add r J^T J, J their moments at rest. df
+// is the force of a unit of each unknown where the run is: a damper's with the velocity at
+// the end of a step, as Euler's method has it; a mass's with the acceleration of the step;
+// dry friction's +-1 where the joint or the tendon slides, 0 where it sticks; that of
+// numbers that have no law of their own here, as of tendons and of drives that feed back,
+// what they add to M, D, K and Gamma at rest. At the end of a tick the gain takes its part,
+// S -= L C S.
 
 #include <mujoco/mujoco.h>
 
@@ -57,9 +60,12 @@ class PlantTwin final : public Twin {
   struct Number {
     PlantNumber number;
     std::vector<Eigen::Index> factors;
-    int at = 0;         ///< degree of freedom, or place among the commands
-    ModelPart inertia;  ///< of masses
-    double value = 1.0;
+    int at = 0;        ///< degree of freedom, place among the commands, or tendon
+    ModelPart part{};  ///< of those without a law of their own
+    bool at_command = false;
+    bool inertial = false;  ///< a mass or a rotor
+    double slope = 1.0;     ///< of the number by the logarithm of its factor
+    double change = 0.0;    ///< of the number, in what it is
   };
   /// Friction that effects make, as it is in this step.
   struct Resistance {
@@ -91,7 +97,12 @@ class PlantTwin final : public Twin {
   /// Columns of the unknowns of that number.
   void AddForce(Eigen::MatrixXd& forces, const Number& number, Eigen::Index dof,
                 double force) const noexcept;
-  void AddInertial(const Number& number) noexcept;
+  /// Of the force in work_force_, at a unit of the number.
+  void AddWorkForce(const Number& number) noexcept;
+  void AddFriction(int type, Eigen::Index at, double force) noexcept;
+  /// A matrix with r e e^T, r J^T J of what sticks in it.
+  void AddSticking(std::uint64_t sticking, const std::vector<double>& r,
+                   Eigen::MatrixXd& matrix) const noexcept;
 
   Machine machine_;
   UncertainMachine uncertain_;
@@ -109,17 +120,18 @@ class PlantTwin final : public Twin {
   Eigen::MatrixXd K_rest_, D_rest_;  // what is not of springs and dampers in joints
   Eigen::MatrixXd M_now_;
   std::vector<Number> numbers_;
-  bool heavy_ = false;  // masses are among them
+  bool heavy_ = false;       // MuJoCo derives constants from some
+  Eigen::MatrixXd moments_;  // of tendons at rest, nv x tendons
 
   Eigen::MatrixXd place_;  // of coordinates by readings, nq x ny
   std::array<Map, 16> maps_;
   std::size_t next_map_ = 0;
   Eigen::MatrixXd inertia_, identity_, work_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
-  std::vector<double> stick_r_, stick_rb_;  // by dof
+  std::vector<double> stick_r_, stick_rb_;  // by dof, then by tendon
 
   double time_ = 0.0;
-  Eigen::VectorXd tone_, before_, acceleration_, inertial_;
+  Eigen::VectorXd tone_, before_, acceleration_, work_force_;
   Eigen::VectorXd lifted_, by_force_;  // in whole registers
   std::vector<double> outputs_;
   Eigen::Index in_block_ = 0;

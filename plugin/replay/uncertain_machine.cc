@@ -32,7 +32,7 @@ double Spread(const Machine& machine, const PlantNumber& number,
   if (options.unmeasured) return DoubtOf(machine.plant(), number);
   const bool doubt = options.doubt;
   const Index at = InCalibration(machine, PlantNumberName(machine.plant(), number));
-  const bool friction = number.kind == PlantNumberKind::kFriction;
+  const bool friction = IsFriction(number.kind);
   // Dry friction is another one today than it was in the runs that were calibrated on.
   if (at >= 0 && !doubt && !friction) return machine.setup().calibration->Sd()[at];
   const double declared = SpreadOf(machine.plant(), number);
@@ -46,7 +46,7 @@ UncertainNumber& NumberOf(const Machine& machine, const PlantNumber& number,
       [&](const UncertainNumber& known) { return known.number == number; });
   if (found != uncertain.numbers.end()) return *found;
   UncertainNumber& added = uncertain.numbers.emplace_back(UncertainNumber{number, {}});
-  if (number.kind != PlantNumberKind::kFriction) added.part = PartOf(machine, number);
+  if (!IsFriction(number.kind)) added.part = PartOf(machine, number);
   return added;
 }
 
@@ -73,10 +73,8 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
                 UncertainMachine& uncertain) {
   const mjModel& plant = machine.plant();
   for (const PlantNumber& number : PlantNumbers(plant)) {
-    const bool friction = number.kind == PlantNumberKind::kFriction;
+    const bool friction = IsFriction(number.kind);
     if (friction && !options.friction) continue;
-    // Its force is no function of the input alone, as a twin has motors.
-    if (number.kind == PlantNumberKind::kGain) continue;
     const double spread = Spread(machine, number, options);
     if (!(spread > 0.0)) continue;
     UncertainNumber& uncertain_number = NumberOf(machine, number, uncertain);
@@ -238,7 +236,7 @@ UncertainModel MakeUncertainModel(const Machine& machine,
   model.timing = {machine.rates().step(), machine.rates().substeps};
   model.rest = SensorReadings(machine.channels(), machine.plant(), machine.rest());
   for (const UncertainNumber& number : uncertain.numbers) {
-    if (number.number.kind == PlantNumberKind::kFriction) continue;
+    if (IsFriction(number.number.kind)) continue;
     model.parts.push_back(number.part);
   }
   model.unknowns = uncertain.unknowns;

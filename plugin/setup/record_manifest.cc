@@ -16,7 +16,8 @@ void CheckOverrides(const TomlTable& table, const std::vector<std::string>& over
     if (std::ranges::none_of(kAllowed,
                              [&](auto prefix) { return text.starts_with(prefix); })) {
       table.Fail("set", "changes '" + text.substr(0, text.find('=')) + "'",
-                 "keys under axes, record or compare; `plant` names another plant");
+                 "keys under axes, record or compare; `plant` names another plant, "
+                 "`numbers` what is other in this one");
     }
   }
 }
@@ -33,7 +34,8 @@ std::vector<ManifestRecord> ReadRecordManifest(const std::filesystem::path& mani
       table.Fail("role", "is \"" + role + "\"", "\"fit\" or \"validation\"");
     }
     ManifestRecord record{folder / table.Text("file"), role == "fit",
-                          table.Overrides("set"), table.Text("plant", "")};
+                          table.Overrides("set"), table.Text("plant", ""),
+                          table.TextNumbers("numbers")};
     CheckOverrides(table, record.overrides);
     if (std::ranges::count(records, record.file, &ManifestRecord::file) > 0) {
       table.Fail("file", "is named twice", "every record once");

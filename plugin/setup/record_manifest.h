@@ -5,13 +5,15 @@
 //   file = "slow_kp100.csv"     # in the folder of the data
 //   role = "fit"                # or "validation": nothing is fitted to it
 //   set = { "axes.q.drive_gain" = 0.2 }   # keys of the setup, for this record
-//   plant = "with_2kg.xml"      # another load, beside the setup's own plant
+//   numbers = { "mass@load" = 2.5 }       # of the plant, in SI units: another load
+//   plant = "with_2kg.xml"      # or another one, beside the setup's own plant
 //
 // What may be set is what does not change the plant: keys under axes, record and compare.
 // Another plant has the joints, sensors and actuators of the setup's own.
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace mjdiag {
@@ -21,6 +23,8 @@ struct ManifestRecord {
   bool fit = true;
   std::vector<std::string> overrides{};  ///< "key.path=value", for ReadSetup
   std::string plant{};  ///< its MJCF, relative to the setup; empty: that of the setup
+  /// Numbers of that plant by their names (FindPlantNumber), in SI units.
+  std::vector<std::pair<std::string, double>> numbers{};
 };
 
 /// @param folder  of the records

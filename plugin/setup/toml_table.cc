@@ -384,6 +384,22 @@ std::vector<std::string> TomlTable::Overrides(std::string_view key) const {
   return overrides;
 }
 
+std::vector<std::pair<std::string, double>> TomlTable::TextNumbers(
+    std::string_view key) const {
+  const auto table = FindTable(key);
+  std::vector<std::pair<std::string, double>> numbers;
+  if (!table) return numbers;
+  for (const auto& [name, node] : *table->table_) {
+    const auto number = node.value<double>();
+    if (!number || !node.is_number()) {
+      table->Fail(name.str(), "is no number", "a number");
+    }
+    numbers.emplace_back(name.str(), *number);
+    document_->paths_.insert(Join(table->path_, name.str()));
+  }
+  return numbers;
+}
+
 std::vector<std::string> TomlTable::Names(const std::string& placeholder) const {
   // toml::table sorts by key; the position in the file is the order meant. What an
   // override adds comes last.

@@ -104,6 +104,9 @@ class TomlTable {
   /// The table `key`, whose own keys are key paths of another document, as overrides of
   /// that: "axes.x.drive_gain=2.0"; none if the key is missing.
   std::vector<std::string> Overrides(std::string_view key) const;
+  /// The numbers of the table `key`, whose own keys are any texts; none if the key is
+  /// missing.
+  std::vector<std::pair<std::string, double>> TextNumbers(std::string_view key) const;
   /// InputError if the key "schema" is not `schema`.
   void RequireSchema(const std::string& schema) const;
   /// Throws the InputError "<file>:<line>: <key path>: <what>; expected <expected>".

@@ -72,8 +72,32 @@ unit = "N"
         {{folder_ / "bare.csv"}, {folder_ / "loaded.csv", true, {}, plant}});
   }
 
+  /// The second with a number of its own.
+  Measurements ReadWith(const std::string& number, double value) const {
+    return ReadMeasurements(
+        Load("plant.xml"), folder_.path(), {},
+        {{folder_ / "bare.csv"},
+         {folder_ / "loaded.csv", true, {}, "", {{number, value}}}});
+  }
+
   const test::TemporaryFolder folder_;
 };
+
+TEST_F(LoadedRecords, MayDifferInNumbersAlone) {
+  const Measurements measurements = ReadWith("mass@stage", 1.7);
+  EXPECT_EQ(measurements.fit[0].machine.plant().body_mass[1], 1.0);
+  EXPECT_NEAR(measurements.fit[1].machine.plant().body_mass[1], 1.7, 1e-15);
+  ASSERT_NE(RunOf(measurements.fit).records[1].machine, nullptr);
+  // What is found of the machine holds for the load as well.
+  const Machine& loaded = measurements.fit[1].machine;
+  const Machine heavier =
+      loaded.With({{}, {}, {{FindPlantNumber(loaded.plant(), "mass@stage"), 1.1}}});
+  EXPECT_NEAR(heavier.plant().body_mass[1], 1.87, 1e-15);
+  EXPECT_THAT(test::MessageOf<InputError>([&] { ReadWith("mass@table", 2.0); }),
+              testing::AllOf(HasSubstr("numbers of loaded.csv"), HasSubstr("table")));
+  EXPECT_THAT(test::MessageOf<InputError>([&] { ReadWith("friction@stage", 2.0); }),
+              HasSubstr("is 0 in the plant"));
+}
 
 TEST_F(LoadedRecords, HaveTheirOwnPlants) {
   const Measurements measurements = Read("loaded.xml");

@@ -8,6 +8,11 @@
 
 namespace mjdiag::test {
 
+inline ModelPtr PlantOf(const std::string& mjcf) {
+  const TemporaryFolder folder;
+  return LoadModel(folder.Write("small.xml", mjcf));
+}
+
 /// @param mjcf  what is inside <mujoco>; angles in rad, constraints solved to 1e-12
 inline ModelPtr SmallPlant(const std::string& mjcf) {
   const TemporaryFolder folder;

@@ -8,13 +8,14 @@
 #include <string>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 #include "support/changes.h"
 #include "support/every_effect.h"
 #include "support/message_of.h"
+#include "support/numbered_plant.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -154,6 +155,49 @@ TEST(ExtendedPlant, HasTheRotorAndTheWindingThatWereFound) {
   EXPECT_DOUBLE_EQ(read->actuator_biasprm[2],
                    1.125 * servo.plant().actuator_biasprm[2]);
   EXPECT_EQ(read->actuator_gear[0], servo.plant().actuator_gear[0]);
+}
+
+/// What is read of the text of a plant with those numbers.
+ModelPtr ReadWith(const std::string& mjcf, const NumberFactors& factors) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path plant = folder.Write("nominal.xml", mjcf);
+  const ModelPtr nominal = LoadModel(plant);
+  return LoadModel(folder.Write(
+      "plant.xml",
+      ExtendMjcf(plant, *nominal, {{}, {}, factors}, folder.path() / "extended")));
+}
+
+TEST(ExtendedPlant, HasEveryNumberThatIsAnother) {
+  // Angles in degrees, as most files have them.
+  const std::string mjcf =
+      "<mujoco><option timestep=\"0.001\"/>" + test::NumberedMjcf() + "</mujoco>";
+  const ModelPtr nominal = test::PlantOf(mjcf);
+  for (const auto& [name, value] : test::kNumberedValues) {
+    const PlantNumber number = FindPlantNumber(*nominal, name);
+    const ModelPtr expected = CopyModel(*nominal);
+    ScaleNumbers(*expected, {{number, 1.1}});
+    const ModelPtr read = ReadWith(mjcf, {{number, 1.1}});
+    EXPECT_NEAR(ValueOf(*read, number), ValueOf(*expected, number),
+                1e-14 * std::abs(ValueOf(*expected, number)))
+        << name;
+    EXPECT_NE(ValueOf(*read, number), ValueOf(*nominal, number)) << name;
+  }
+}
+
+// <position> has one number for both.
+TEST(ExtendedPlant, SaysWhatATagCannotSay) {
+  const std::string mjcf = R"(<mujoco><worldbody><body><joint name="j" type="slide"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+    <actuator><velocity name="drive" joint="j" kv="3"/></actuator></mujoco>)";
+  const ModelPtr nominal = test::PlantOf(mjcf);
+  const ModelPtr read =
+      ReadWith(mjcf, {{FindPlantNumber(*nominal, "gain@drive"), 2.0}});
+  EXPECT_EQ(read->actuator_gainprm[0], 6.0);
+  EXPECT_EQ(read->actuator_biasprm[2], -6.0);
+  EXPECT_THAT(test::MessageOf<InputError>([&] {
+                ReadWith(mjcf, {{FindPlantNumber(*nominal, "kv@drive"), 2.0}});
+              }),
+              testing::AllOf(HasSubstr("<velocity>"), HasSubstr("<general>")));
 }
 
 TEST(ExtendedPlant, HoldsSeveralCausesAtOneSite) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "support/arm.h"
 
 namespace mjdiag {

@@ -1,6 +1,6 @@
 // Derivatives by numbers of a plant from one pass, against differences of whole runs.
 
-#include "mjdiag/discovery/hypotheses/number_forces.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 
 #include <gtest/gtest.h>
 

@@ -3,13 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <Eigen/Core>
 #include <limits>
+#include <sstream>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/signals/error.h"
 #include "support/bonder.h"
+#include "support/count_allocations.h"
 #include "support/message_of.h"
+#include "support/numbered_plant.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -19,6 +23,7 @@ using test::MessageOf;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 ModelPtr Bonder() { return CopyModel(test::Bonder().plant()); }
 
@@ -110,14 +115,99 @@ TEST(ApplyFault, RefusesValuesThatAreNoFactors) {
   }
 }
 
+ModelPtr WithFault(const std::string& data) {
+  return test::SmallPlant(test::NumberedMjcf(
+      test::kNumberedValues,
+      R"(<custom><text name="fault.worn" data=")" + data + R"("/></custom>)"));
+}
+
+/// Positions along a swing, under a model that another becomes on the way.
+Eigen::VectorXd Swing(const mjModel& model) {
+  constexpr int kSteps = 200;
+  const DataPtr data = MakeData(model);
+  Eigen::VectorXd all(kSteps * model.nv);
+  for (int k = 0; k < kSteps; ++k) {
+    for (int u = 0; u < model.nu; ++u) data->ctrl[u] = 0.4;
+    mj_step(&model, data.get());
+    all.segment(model.nv * k, model.nv) = Eigen::VectorXd::Map(data->qpos, model.nv);
+  }
+  return all;
+}
+
+const std::vector<std::string> kEveryFault = {"mass fore",
+                                              "inertia fore",
+                                              "stiffness shoulder slide",
+                                              "damping shoulder elbow",
+                                              "friction shoulder",
+                                              "armature shoulder",
+                                              "gear push volts",
+                                              "gain volts",
+                                              "kp servo drive",
+                                              "kv drive",
+                                              "tendon_stiffness cable",
+                                              "tendon_damping cable",
+                                              "tendon_friction rope"};
+
+TEST(ApplyFault, IsTheNumbersOfItsKindTogether) {
+  for (const std::string& data : kEveryFault) {
+    const ModelPtr faulty = WithFault(data);
+    const ModelPtr scaled = CopyModel(*faulty);
+    NumberFactors factors;
+    std::istringstream words(data);
+    std::string kind;
+    std::string element;
+    words >> kind;
+    while (words >> element) {
+      factors.emplace_back(FindPlantNumber(*scaled, kind + "@" + element), 0.7);
+    }
+    const Eigen::VectorXd healthy = Swing(*faulty);
+    ScaleNumbers(*scaled, factors);
+    ApplyFault(*faulty, {"worn", 0.7});
+    EXPECT_EQ(Swing(*faulty), Swing(*scaled)) << data;
+    EXPECT_NE(Swing(*faulty), healthy) << data;
+  }
+}
+
+TEST(CopyFaults, GivesARunningModelAllThatFaultsChange) {
+  for (const std::string& data : kEveryFault) {
+    const ModelPtr running = WithFault(data);
+    const ModelPtr faulty = CopyModel(*running);
+    ApplyFault(*faulty, {"worn", 1.4});
+    const long allocations =
+        test::CountAllocations([&] { CopyFaults(*faulty, *running); });
+    EXPECT_EQ(allocations, 0);
+    EXPECT_EQ(Swing(*running), Swing(*faulty)) << data;
+  }
+}
+
+// In straight lines: masses, and what their constants are in the middle and at the end.
+TEST(ApproachFaults, GoesThereByEqualPartsAndArrives) {
+  const ModelPtr target = WithFault("mass fore");
+  const ModelPtr running = CopyModel(*target);
+  ApplyFault(*target, {"worn", 2.0});
+  const int fore = FindElement(*target, mjOBJ_BODY, "fore");
+  for (int left = 4; left > 0; --left) {
+    ApproachFaults(*target, 1.0 / left, *running);
+    EXPECT_NEAR(running->body_mass[fore], 1.5 * (1.0 + (5 - left) / 4.0), 1e-12);
+    EXPECT_LE(running->dof_invweight0[1], WithFault("mass fore")->dof_invweight0[1]);
+    EXPECT_GE(running->dof_invweight0[1], target->dof_invweight0[1]);
+  }
+  EXPECT_NEAR(running->dof_invweight0[1], target->dof_invweight0[1], 1e-12);
+}
+
 TEST(FaultParameters, NameWhatIsWrongInTheirDeclaration) {
   EXPECT_THAT(
       MessageOf<InputError>([] { FaultParameters(*WithParameter("damping Q")); }),
       AllOf(HasSubstr("fault.zeta"), HasSubstr("no joint named \"Q\""),
             HasSubstr("one of x")));
   EXPECT_THAT(
-      MessageOf<InputError>([] { FaultParameters(*WithParameter("friction x")); }),
-      AllOf(HasSubstr("fault.zeta"), HasSubstr("friction")));
+      MessageOf<InputError>([] { FaultParameters(*WithParameter("solref x")); }),
+      AllOf(HasSubstr("fault.zeta"), HasSubstr("solref"),
+            HasSubstr("tendon_friction@ a tendon"), Not(HasSubstr("centre_x"))));
+  EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("ref x")); }),
+              HasSubstr("unknown kind of fault parameter"));
+  EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithFault("gain push")); }),
+              AllOf(HasSubstr("fault.worn"), HasSubstr("affine bias")));
   EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("gear x")); }),
               HasSubstr("no actuator named \"x\""));
   EXPECT_THAT(MessageOf<InputError>([] { FaultParameters(*WithParameter("damping")); }),

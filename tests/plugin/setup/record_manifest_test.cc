@@ -45,6 +45,22 @@ plant = "loaded.xml"
   EXPECT_THAT(records[1].overrides, ElementsAre());
 }
 
+TEST(RecordManifest, HasNumbersOfThePlantOfARecord) {
+  const auto records = Read(R"(
+[[record]]
+file = "a.csv"
+numbers = { "mass@load" = 2.5, "damping@q" = 1 }
+[[record]]
+file = "b.csv"
+)");
+  EXPECT_THAT(records[0].numbers,
+              ElementsAre(std::pair("damping@q", 1.0), std::pair("mass@load", 2.5)));
+  EXPECT_TRUE(records[1].numbers.empty());
+  EXPECT_THAT(
+      Refusal("[[record]]\nfile = \"a.csv\"\nnumbers = { \"mass@load\" = \"2 kg\" }\n"),
+      AllOf(HasSubstr("numbers.mass@load"), HasSubstr("is no number")));
+}
+
 TEST(RecordManifest, RefusesWhatItCannotMean) {
   EXPECT_THAT(Refusal("[[record]]\nfile = \"a.csv\"\nrole = \"test\"\n"),
               AllOf(HasSubstr("role: is \"test\""), HasSubstr("validation")));

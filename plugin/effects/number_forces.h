@@ -6,23 +6,25 @@
 //   F = - d/d(log p) [ M(q) q'' + c(q, q') + g(q) - passive(q, q') - motors(q, q', u) ]
 //
 // Masses and inertias enter linearly, so that inverse dynamics with twice the number less
-// that with the number itself is the derivative; motors by a small difference; springs,
-// dampers, rotors and dry friction in closed form. One pass over the samples for each.
+// that with the number itself is the derivative; springs, dampers, rotors and dry friction
+// of joints in closed form, that of tendons along their moments; all else by a small
+// difference about the plant. One pass over the samples for each.
 
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <span>
 
 #include "mjdiag/plugin/effects/observed_motion.h"
 #include "mjdiag/plugin/plant/plant_number.h"
-#include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
 
 /// F, samples x nv [N, N m].
-/// @param plant  with the number as it is
-/// @param still  speeds of the joints below which dry friction holds them, nv
-Eigen::MatrixXd NumberForce(const mjModel& plant, const Channels& channels,
+/// @param plant      with the number as it is
+/// @param actuators  ids of those that the inputs drive; -1: none
+/// @param still      speeds of the joints below which dry friction holds them, nv
+Eigen::MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators,
                             const PlantNumber& number, const ObservedMotion& motion,
                             const Eigen::VectorXd& still);
 
