@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "mjdiag/discovery/extension/mjcf_files.h"
+#include "mjdiag/plugin/setup/mjcf_files.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/setup/xml_text.h"
