@@ -112,14 +112,13 @@ void Init(const InitCommand& command) {
   PrepareOutput(command.output);
   HoldFiles();
   WriteDraft(draft, source, command.output.folder);
-  std::string text = draft.name + ", " + Short(draft.control) + " Hz, " +
-                     std::to_string(draft.substeps) + " steps a tick\n\n" +
-                     ChannelTable(draft) + Section("assumed:", draft.assumed) +
-                     Section("added to the plant:", draft.added) +
-                     Section("of the log, not used:", draft.unused) +
-                     Section("notes:", draft.notes) +
-                     Section("could not be told:", draft.questions) + "\n" +
-                     (fs::path(command.output.folder) / "setup.toml").string() + "\n";
+  std::string text =
+      draft.name + ", " + Short(draft.control) + " Hz, " +
+      std::to_string(draft.substeps) + " steps a tick\n\n" + ChannelTable(draft) +
+      Section("assumed:", draft.assumed) + Section("added to the plant:", draft.added) +
+      Section("of the log, not used:", draft.unused) + Section("notes:", draft.notes) +
+      Section("could not be told:", draft.questions) + "\n" +
+      (fs::path(command.output.folder) / "setup.toml").string() + "\n";
   Publish(command.output, "init", DraftJson(draft), text);
   if (!draft.certain()) throw NegativeAnswer{};
 }

@@ -13,7 +13,6 @@
 #include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
-#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -66,6 +65,12 @@ void AddFault(const std::string& text, Subject& subject) {
   }
 }
 
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& one : sentences) text += (text.empty() ? "" : "; ") + one;
+  return text;
+}
+
 }  // namespace
 
 CLI::Validator Within(double least, double most) {
@@ -99,9 +104,10 @@ void AddMachineOrPlantOptions(CLI::App& command, MachineOptions& options) {
   AddMachineOptions(command, options);
   CLI::Option* setup = command.get_option("--setup")->required(false);
   command
-      .add_option("--plant", options.plant,
-                  "In the place of --setup, an MJCF or URDF file, where a setup follows "
-                  "from it and the record without doubt (mjdiag init)")
+      .add_option(
+          "--plant", options.plant,
+          "In the place of --setup, an MJCF or URDF file, where a setup follows "
+          "from it and the record without doubt (mjdiag init)")
       ->excludes(setup);
 }
 
@@ -117,7 +123,7 @@ std::vector<std::string> DraftMachine(MachineOptions& options,
   const SetupDraft draft = DraftSetup(source, options.plant, record);
   if (!draft.certain()) {
     const std::string log = record.empty() ? "" : " --record " + record;
-    throw InputError("--plant " + options.plant, Listed(draft.questions),
+    throw InputError("--plant " + options.plant, Joined(draft.questions),
                      "a setup: `mjdiag init --plant " + options.plant + log +
                          " --out FOLDER` writes what is certain");
   }
@@ -127,7 +133,7 @@ std::vector<std::string> DraftMachine(MachineOptions& options,
   std::vector<std::string> notes = draft.notes;
   for (const auto* lines : {&draft.assumed, &draft.added}) {
     const char* what = lines == &draft.assumed ? "assumed: " : "added to the plant: ";
-    for (const std::string& line : *lines) notes.push_back(what + line);
+    if (!lines->empty()) notes.push_back(what + Joined(*lines));
   }
   return notes;
 }

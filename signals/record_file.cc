@@ -118,7 +118,8 @@ class SelectedColumns {
  public:
   SelectedColumns(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map, MissingCells missing)
-      : source_(OpenRecordSource(file)), selection_(Selector(file.string(), *source_).Select(map)) {
+      : source_(OpenRecordSource(file)),
+        selection_(Selector(file.string(), *source_).Select(map)) {
     values_ = source_->Read(selection_.columns, missing);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       values_[i] *= selection_.units[i].factor;

@@ -24,20 +24,19 @@ const std::map<std::string, Quantity, std::less<>>& Quantities() {
       for (const std::string& word : words) all[word] = quantity;
     };
     add(kTime, {"t", "time", "times", "timestamp", "stamp", "clock", "elapsed"});
-    add(kPosition, {"q",     "qpos",    "pos",   "position", "positions",
-                    "angle", "angles",  "theta", "phi",      "enc",
-                    "encoder", "x",     "y",     "z",        "disp",
-                    "displacement",     "travel", "rotation"});
-    add(kVelocity, {"qd",   "dq",    "qdot", "qvel",  "vel",   "velocity", "velocities",
-                    "speed", "omega", "w",    "xd",    "dx",    "xdot",     "thetadot",
-                    "rpm",  "tacho", "rate"});
-    add(kAcceleration, {"qdd", "ddq", "qddot", "qacc", "acc", "accel", "acceleration",
-                        "xdd", "ddx"});
-    add(kDrive, {"tau",  "torque", "torques", "trq",   "effort",  "efforts",
-                 "f",    "force",  "forces",  "frc",   "u",       "i",
-                 "iq",   "uq",     "current", "currents", "cur",  "amps",
-                 "volt", "volts",  "voltage", "v",     "ctrl",    "control",
-                 "duty", "pwm",    "thrust",  "moment"});
+    add(kPosition, {"q", "qpos", "pos", "position", "positions", "angle", "angles",
+                    "theta", "phi", "enc", "encoder", "x", "y", "z", "disp",
+                    "displacement", "travel", "rotation"});
+    add(kVelocity,
+        {"qd", "dq", "qdot", "qvel", "vel", "velocity", "velocities", "speed", "omega",
+         "w", "xd", "dx", "xdot", "thetadot", "rpm", "tacho", "rate"});
+    add(kAcceleration,
+        {"qdd", "ddq", "qddot", "qacc", "acc", "accel", "acceleration", "xdd", "ddx"});
+    add(kDrive, {"tau",     "torque", "torques", "eff",     "trq",      "effort",
+                 "efforts", "f",      "force",   "forces",  "frc",      "u",
+                 "i",       "iq",     "uq",      "current", "currents", "cur",
+                 "amps",    "volt",   "volts",   "voltage", "v",        "ctrl",
+                 "control", "duty",   "pwm",     "thrust",  "moment"});
     return all;
   }();
   return kQuantities;
@@ -46,41 +45,42 @@ const std::map<std::string, Quantity, std::less<>>& Quantities() {
 const std::map<std::string, Role, std::less<>>& Roles() {
   using enum Role;
   static const std::map<std::string, Role, std::less<>> kRoles{
-      {"meas", kMeasured},      {"measured", kMeasured}, {"act", kMeasured},
-      {"actual", kMeasured},    {"fbk", kMeasured},      {"feedback", kMeasured},
-      {"present", kMeasured},   {"sensed", kMeasured},   {"cmd", kCommand},
-      {"command", kCommand},    {"commanded", kCommand}, {"ctrl", kCommand},
-      {"control", kCommand},    {"input", kCommand},     {"ref", kReference},
-      {"reference", kReference}, {"des", kReference},    {"desired", kReference},
-      {"target", kReference},   {"goal", kReference},    {"setpoint", kReference},
-      {"sp", kReference},       {"wanted", kReference},  {"ff", kOther},
-      {"feedforward", kOther},  {"err", kOther},         {"error", kOther},
-      {"enable", kOther},       {"enabled", kOther},     {"on", kOther},
-      {"supply", kOther},       {"temp", kOther},        {"temperature", kOther},
-      {"filt", kOther},         {"filtered", kOther},    {"offset", kOther},
-      {"limit", kOther},        {"status", kOther},      {"mode", kOther}};
+      {"meas", kMeasured},       {"measured", kMeasured}, {"act", kMeasured},
+      {"actual", kMeasured},     {"fbk", kMeasured},      {"feedback", kMeasured},
+      {"present", kMeasured},    {"sensed", kMeasured},   {"cmd", kCommand},
+      {"command", kCommand},     {"commanded", kCommand}, {"ctrl", kCommand},
+      {"control", kCommand},     {"input", kCommand},     {"ref", kReference},
+      {"reference", kReference}, {"des", kReference},     {"desired", kReference},
+      {"target", kReference},    {"goal", kReference},    {"setpoint", kReference},
+      {"sp", kReference},        {"wanted", kReference},  {"ff", kOther},
+      {"feedforward", kOther},   {"err", kOther},         {"error", kOther},
+      {"enable", kOther},        {"enabled", kOther},     {"on", kOther},
+      {"supply", kOther},        {"temp", kOther},        {"temperature", kOther},
+      {"filt", kOther},          {"filtered", kOther},    {"offset", kOther},
+      {"limit", kOther},         {"status", kOther},      {"mode", kOther}};
   return kRoles;
 }
 
 bool IsGeneric(const std::string& word) {
   static const std::set<std::string, std::less<>> kGeneric{
-      "joint", "joints", "jnt", "j", "motor", "motors", "mot", "axis", "axes", "ax",
-      "sensor", "actuator", "drive", "state", "states", "data", "value", "log", "robot"};
+      "joint",  "joints", "jnt",   "j",      "motor",    "motors", "mot",
+      "axis",   "axes",   "ax",    "sensor", "actuator", "drive",  "state",
+      "states", "data",   "value", "log",    "robot"};
   return kGeneric.contains(word);
 }
 
 /// A unit as people write it, in the words of ParseUnit; none if it is no unit.
 std::optional<std::string> UnitWord(const std::string& text) {
   static const std::map<std::string, std::string, std::less<>> kSpelled{
-      {"degree", "deg"},   {"degrees", "deg"}, {"\xC2\xB0", "deg"},  {"radian", "rad"},
-      {"radians", "rad"},  {"sec", "s"},       {"secs", "s"},        {"second", "s"},
-      {"seconds", "s"},    {"msec", "ms"},     {"millis", "ms"},     {"usec", "us"},
-      {"micros", "us"},    {"nsec", "ns"},     {"nanos", "ns"},      {"meter", "m"},
-      {"meters", "m"},     {"metre", "m"},     {"metres", "m"},      {"amp", "A"},
-      {"amps", "A"},       {"volts", "V"},     {"volt", "V"},        {"newton", "N"},
-      {"mNm", "mN m"},     {"uNm", "uN m"},    {"kNm", "kN m"},      {"N.m", "N m"},
-      {"deg_s", "deg/s"},  {"rad_s", "rad/s"}, {"m_s", "m/s"},       {"mm_s", "mm/s"},
-      {"dps", "deg/s"},    {"N_m", "N m"},     {"mN_m", "mN m"}};
+      {"degree", "deg"},  {"degrees", "deg"}, {"\xC2\xB0", "deg"}, {"radian", "rad"},
+      {"radians", "rad"}, {"sec", "s"},       {"secs", "s"},       {"second", "s"},
+      {"seconds", "s"},   {"msec", "ms"},     {"millis", "ms"},    {"usec", "us"},
+      {"micros", "us"},   {"nsec", "ns"},     {"nanos", "ns"},     {"meter", "m"},
+      {"meters", "m"},    {"metre", "m"},     {"metres", "m"},     {"amp", "A"},
+      {"amps", "A"},      {"volts", "V"},     {"volt", "V"},       {"newton", "N"},
+      {"mNm", "mN m"},    {"uNm", "uN m"},    {"kNm", "kN m"},     {"N.m", "N m"},
+      {"deg_s", "deg/s"}, {"rad_s", "rad/s"}, {"m_s", "m/s"},      {"mm_s", "mm/s"},
+      {"dps", "deg/s"},   {"N_m", "N m"},     {"mN_m", "mN m"}};
   if (const auto found = kSpelled.find(text); found != kSpelled.end()) {
     return found->second;
   }
@@ -166,9 +166,11 @@ void Sort(const Words& words, ColumnWords& column) {
       column.place.numbers.push_back(word.size() < 9 ? std::stoi(word) : -1);
       continue;
     }
+    column.switches = column.switches || word == "enable" || word == "enabled";
     const auto role = Roles().find(word);
     const auto quantity = Quantities().find(word);
-    if (role != Roles().end() && column.role != Role::kOther) column.role = role->second;
+    if (role != Roles().end() && column.role != Role::kOther)
+      column.role = role->second;
     if (quantity != Quantities().end() && column.quantity == Quantity::kUnknown) {
       column.quantity = quantity->second;
     }
@@ -215,9 +217,9 @@ ColumnWords ReadColumnWords(const SourceColumn& source) {
       }
     }
     column.quantity = *quantity;
-  } else if (dimension != "1" || !column.unknown_unit.empty()) {
-    if (dimension != "1") column.quantity = Quantity::kUnknown;
-    if (dimension != "1") column.role = Role::kOther;
+  } else if (dimension != "1") {
+    column.quantity = Quantity::kUnknown;
+    column.role = Role::kOther;
   }
   return column;
 }

@@ -41,13 +41,14 @@ struct PlaceWords {
 };
 
 struct ColumnWords {
-  std::string name;                   ///< without its unit
+  std::string name;  ///< without its unit
   Quantity quantity = Quantity::kUnknown;
   Role role = Role::kPlain;
   PlaceWords place;
   /// As the setup is to say it; none where neither the file nor the name says one.
   std::optional<std::string> unit;
   bool unit_in_header = false;  ///< it stands in the file, as the setup would say it
+  bool switches = false;        ///< "enable": says whether a motor is on
   std::string unknown_unit;     ///< in the file, and none of those that are known
 
   /// In SI, "1" of none.

@@ -9,7 +9,9 @@ namespace mjdiag {
 namespace {
 
 bool IsUsed(const SetupDraft& draft, const std::string& channel) {
-  const auto same = [&](const DraftedChannel& other) { return other.channel == channel; };
+  const auto same = [&](const DraftedChannel& other) {
+    return other.channel == channel;
+  };
   return std::ranges::any_of(draft.sensors, same) ||
          std::ranges::any_of(draft.actuators, same);
 }
@@ -18,7 +20,8 @@ bool IsUsed(const SetupDraft& draft, const std::string& channel) {
 std::string ChannelName(const SetupDraft& draft, const std::string& column) {
   std::string name;
   for (const char c : column) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 && (c & 0x80) == 0;
+    const bool plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 && (c & 0x80) == 0;
     if (plain) {
       name += c;
     } else if (!name.empty() && name.back() != '_') {
@@ -42,7 +45,8 @@ bool IsNameless(const mjModel& model, mjtObj kind, int id) {
 
 std::string Joint(const mjModel& model, int joint, SetupDraft& draft) {
   std::vector<int>& named = draft.additions.named_joints;
-  if (IsNameless(model, mjOBJ_JOINT, joint) && std::ranges::find(named, joint) == named.end()) {
+  if (IsNameless(model, mjOBJ_JOINT, joint) &&
+      std::ranges::find(named, joint) == named.end()) {
     named.push_back(joint);
     draft.added.push_back("the name '" + NameOf(model, mjOBJ_JOINT, joint) +
                           "' of a joint that has none");
@@ -51,7 +55,7 @@ std::string Joint(const mjModel& model, int joint, SetupDraft& draft) {
 }
 
 DraftedChannel ChannelOf(const ColumnWords* column, const std::string& unit,
-                       const std::string& fallback, const SetupDraft& draft) {
+                         const std::string& fallback, const SetupDraft& draft) {
   DraftedChannel channel;
   channel.channel = ChannelName(draft, column != nullptr ? column->name : fallback);
   if (column == nullptr) return channel;
@@ -73,15 +77,17 @@ void AddSensor(const mjModel& model, const Reading& reading, const ColumnWords* 
     const std::string joint = Joint(model, reading.joint, draft);
     channel.element = FreeName(model, mjOBJ_SENSOR, joint);
     draft.additions.sensors.push_back({channel.element, joint});
-    draft.added.push_back("<jointpos name=\"" + channel.element + "\" joint=\"" + joint +
-                          "\"/>");
+    draft.added.push_back("<jointpos name=\"" + channel.element + "\" joint=\"" +
+                          joint + "\"/>");
   }
   draft.sensors.push_back(std::move(channel));
 }
 
 void AddActuator(const mjModel& model, const Drive& drive, const ColumnWords* column,
                  const std::string& unit, SetupDraft& draft) {
-  DraftedChannel channel = ChannelOf(column, unit, drive.element, draft);
+  const bool read = IsUsed(draft, drive.element);
+  DraftedChannel channel =
+      ChannelOf(column, unit, drive.element + (read ? "_input" : ""), draft);
   channel.element = drive.element;
   channel.unit = drive.unit;
   if (column != nullptr && column->unit) channel.unit = column->Dimension();
@@ -93,7 +99,8 @@ void AddActuator(const mjModel& model, const Drive& drive, const ColumnWords* co
                           "\"/>");
   } else if (IsNameless(model, mjOBJ_ACTUATOR, drive.actuator)) {
     draft.additions.named_actuators.push_back(drive.actuator);
-    draft.added.push_back("the name '" + drive.element + "' of an actuator that has none");
+    draft.added.push_back("the name '" + drive.element +
+                          "' of an actuator that has none");
   }
   draft.actuators.push_back(std::move(channel));
 }

@@ -41,7 +41,8 @@ std::string Column(const std::string& name, const std::string& unit) {
 }
 
 void AddRecord(const SetupDraft& draft, std::string& text) {
-  if (draft.record.empty() || (draft.sensors.empty() && draft.actuators.empty())) return;
+  if (draft.record.empty() || (draft.sensors.empty() && draft.actuators.empty()))
+    return;
   text += "\n[record]\n";
   if (!draft.time_column.empty()) {
     text += "time = " + Column(draft.time_column, draft.time_unit);
@@ -74,7 +75,8 @@ std::string DraftText(const SetupDraft& draft, const std::string& plant) {
           "\n\n[rates]\ncontrol = " + AllDigits(draft.control) +
           "\nsubsteps = " + std::to_string(draft.substeps) + "\n";
   for (const DraftedChannel& sensor : draft.sensors) {
-    text += "\n[sensors." + sensor.channel + "]\nelement = " + TomlString(sensor.element);
+    text +=
+        "\n[sensors." + sensor.channel + "]\nelement = " + TomlString(sensor.element);
     if (sensor.component > 0) {
       text += "\ncomponent = " + std::to_string(sensor.component);
     }

@@ -1,9 +1,11 @@
 #include "mjdiag/plugin/draft/draft_rates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -14,8 +16,9 @@ constexpr double kMostSubsteps = 1000.0;
 
 /// To so many significant digits.
 double Rounded(double value, int digits) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
-  return std::round(value / unit) * unit;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return ParseNumber(text.data()).value_or(value);
 }
 
 /// 499.9 Hz is 500 Hz to a percent, and no other number of one digit.

@@ -18,11 +18,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kFewest = 64;      // samples
-constexpr Index kMost = 1500;      // instants at which forces are evaluated
-constexpr int kOrder = 3;          // of the low-pass
-constexpr double kEnds = 0.05;     // of the record, where filters begin
-constexpr double kTurning = 0.1;   // of the usual speed: dry friction turns round below it
+constexpr Index kFewest = 64;   // samples
+constexpr Index kMost = 1500;   // instants at which forces are evaluated
+constexpr int kOrder = 3;       // of the low-pass
+constexpr double kEnds = 0.05;  // of the record, where filters begin
+constexpr double kTurning =
+    0.1;  // of the usual speed: dry friction turns round below it
 
 /// nv x instants each.
 struct Terms {
@@ -56,8 +57,10 @@ MatrixXd Later(const MatrixXd& rows, int lag) {
   return later;
 }
 
-Terms EvaluateTerms(const mjModel& model, mjData& data, const MatrixXd& position,
-                    const MatrixXd& control, double sample_time) {
+/// @param motion  low-passed
+Terms EvaluateTerms(const mjModel& model, mjData& data, const LoggedMotion& motion) {
+  const MatrixXd& position = motion.positions;
+  const double sample_time = motion.sample_time;
   const MatrixXd speed = Derivative(position, sample_time);
   const MatrixXd acceleration = Derivative(speed, sample_time);
   const auto samples = static_cast<double>(position.cols());
@@ -74,14 +77,15 @@ Terms EvaluateTerms(const mjModel& model, mjData& data, const MatrixXd& position
     mju_copy(data.qpos, position.col(k).data(), model.nq);
     mju_copy(data.qvel, speed.col(k).data(), model.nv);
     mju_copy(data.qacc, acceleration.col(k).data(), model.nv);
-    if (model.nu > 0) mju_copy(data.ctrl, control.col(k).data(), model.nu);
+    if (model.nu > 0) mju_copy(data.ctrl, motion.controls.col(k).data(), model.nu);
     mj_inverse(&model, &data);
     mj_fwdActuation(&model, &data);
     mj_mulM(&model, &data, inertia.data(), data.qacc);
     terms.speed.col(i) = speed.col(k);
     terms.inertia.col(i) = inertia;
     terms.rest.col(i) = VectorXd::Map(data.qfrc_inverse, nv) - inertia;
-    terms.supplied.col(i) = VectorXd::Map(data.qfrc_actuator, nv);
+    terms.supplied.col(i) =
+        VectorXd::Map(data.qfrc_actuator, nv) + motion.forces.col(k);
   }
   return terms;
 }
@@ -116,8 +120,8 @@ std::optional<double> MisfitOf(const Terms& terms) {
     const VectorXd inertia = terms.inertia.row(j).transpose();
     const VectorXd rest = terms.rest.row(j).transpose();
     const VectorXd supplied = terms.supplied.row(j).transpose();
-    const double all = out.SquaredRest(inertia) + out.SquaredRest(rest) +
-                       out.SquaredRest(supplied);
+    const double all =
+        out.SquaredRest(inertia) + out.SquaredRest(rest) + out.SquaredRest(supplied);
     if (!(all > 0.0) || !std::isfinite(all)) continue;
     left += out.SquaredRest(inertia + rest - supplied) / all;
     ++joints;
@@ -141,16 +145,18 @@ std::optional<double> ForceMisfit(const mjModel& model, const LoggedMotion& moti
   if (motion.positions.cols() < kFewest) return std::nullopt;
   const DataPtr data = MakeData(model);
   const MatrixXd controls = Later(motion.controls, lag);
+  const MatrixXd forces = Later(motion.forces, lag);
   std::optional<double> least;
   // Octaves below a quarter of the rate.
   for (double share = 0.25; share > 0.005; share /= 2.0) {
-    const SecondOrderSections filter = DigitalButterworth(
-        FilterKind::kLowPass, kOrder, share / motion.sample_time / 2.0,
-        motion.sample_time);
+    const SecondOrderSections filter =
+        DigitalButterworth(FilterKind::kLowPass, kOrder,
+                           share / motion.sample_time / 2.0, motion.sample_time);
     try {
-      const std::optional<double> misfit = MisfitOf(EvaluateTerms(
-          model, *data, LowPassed(motion.positions, filter),
-          LowPassed(controls, filter), motion.sample_time));
+      const std::optional<double> misfit = MisfitOf(
+          EvaluateTerms(model, *data,
+                        {motion.sample_time, LowPassed(motion.positions, filter),
+                         LowPassed(controls, filter), LowPassed(forces, filter)}));
       if (misfit && (!least || *misfit < *least)) least = misfit;
     } catch (const NumericalError&) {
       // Columns that are taken for what they are not may be out of all bounds.

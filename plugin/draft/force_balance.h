@@ -25,13 +25,14 @@ struct LoggedMotion {
   double sample_time = 0.0;   ///< [s]
   Eigen::MatrixXd positions;  ///< of all joints, slides and hinges, in SI, nq x samples
   Eigen::MatrixXd controls;   ///< of all actuators, nu x samples
+  Eigen::MatrixXd forces;     ///< besides those of actuators, nv x samples
 };
 
 /// Whether the balance can be made up: slides and hinges alone, actuators without
 /// activations.
 bool HasForceBalance(const mjModel& model);
 
-/// @param lag  samples by which the controls act later
+/// @param lag  samples by which controls and forces act later
 /// None of a log that is too short, or does not move.
 std::optional<double> ForceMisfit(const mjModel& model, const LoggedMotion& motion,
                                   int lag = 0);

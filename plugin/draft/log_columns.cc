@@ -36,8 +36,8 @@ std::optional<double> StepOf(const Eigen::VectorXd& times) {
     }
     before = time;
   }
-  if (steps.empty() || static_cast<double>(wrong) >
-                           kMostSteps * static_cast<double>(times.size())) {
+  if (steps.empty() ||
+      static_cast<double>(wrong) > kMostSteps * static_cast<double>(times.size())) {
     return std::nullopt;
   }
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);

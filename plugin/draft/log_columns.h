@@ -15,9 +15,9 @@ namespace mjdiag {
 
 struct LogColumns {
   std::filesystem::path file;
-  std::vector<ColumnWords> columns;  ///< those that are series beside the time
-  std::optional<ColumnWords> time;   ///< none: no column can be one
-  double interval = 0.0;             ///< usual time between rows [s]
+  std::vector<ColumnWords> columns;    ///< those that are series beside the time
+  std::optional<ColumnWords> time;     ///< none: no column can be one
+  double interval = 0.0;               ///< usual time between rows [s]
   std::vector<std::string> assumed;    ///< what was taken for granted about the time
   std::vector<std::string> questions;  ///< what of it could not be told
 };

@@ -62,7 +62,8 @@ class Drafter {
   }
 
  private:
-  static void Append(const std::vector<std::string>& from, std::vector<std::string>& to) {
+  static void Append(const std::vector<std::string>& from,
+                     std::vector<std::string>& to) {
     to.insert(to.end(), from.begin(), from.end());
   }
   const ColumnWords& Column(std::size_t c) const { return log_.columns[c]; }
@@ -89,7 +90,8 @@ class Drafter {
     }
     return candidates;
   }
-  static void Append(const std::vector<std::size_t>& from, std::vector<std::size_t>& to) {
+  static void Append(const std::vector<std::size_t>& from,
+                     std::vector<std::size_t>& to) {
     to.insert(to.end(), from.begin(), from.end());
   }
 
@@ -112,8 +114,13 @@ class Drafter {
     }
     for (std::size_t p = 0; p < drives_.size(); ++p) {
       const ColumnChoice& choice = columns_of_drives_[p];
-      if (drives_[p].actuator < 0 || !choice.column) continue;
-      known.motors[drives_[p].actuator] = {*choice.column, FactorOf(*choice.column)};
+      if (!choice.column) continue;
+      const ScaledColumn scaled{*choice.column, FactorOf(*choice.column)};
+      if (drives_[p].actuator >= 0) {
+        known.motors[drives_[p].actuator] = scaled;
+      } else {
+        known.forces[drives_[p].joint] = scaled;
+      }
     }
     return known;
   }
@@ -158,7 +165,7 @@ class Drafter {
       choice.what = Listed(names);
       for (const UnitOption& option : UnitsOf(si)) {
         const auto apply = [columns = columns, option](LogReading& reading) {
-          for (auto* places : {&reading.joints, &reading.motors}) {
+          for (auto* places : {&reading.joints, &reading.motors, &reading.forces}) {
             for (auto& [place, scaled] : *places) {
               if (std::ranges::find(columns, scaled.column) == columns.end()) continue;
               scaled.factor = option.factor;
@@ -220,7 +227,8 @@ class Drafter {
     for (const auto& [i, p] : open_readings_) {
       TakeColumn(choices[i], columns_of_readings_[p]);
     }
-    for (const auto& [i, p] : open_drives_) TakeColumn(choices[i], columns_of_drives_[p]);
+    for (const auto& [i, p] : open_drives_)
+      TakeColumn(choices[i], columns_of_drives_[p]);
   }
 
   void TakeUnit(const OpenChoice& choice, std::size_t group) {
@@ -241,17 +249,18 @@ class Drafter {
                                  "under record.channels");
       return;
     }
-    draft_.assumed.push_back(choice.what + " in " + labels[option] + ": " +
-                             (choice.because.empty() ? "out of range otherwise"
-                                                     : choice.because));
+    draft_.assumed.push_back(
+        choice.what + " in " + labels[option] + ": " +
+        (choice.because.empty() ? "out of range otherwise" : choice.because));
   }
 
   void TakeColumn(const OpenChoice& choice, ColumnChoice& place) {
     if (!choice.chosen) return;
     place.column = place.others[*choice.chosen];
     place.others.clear();
-    draft_.assumed.push_back(choice.what + " is " + choice.options[*choice.chosen].label +
-                             ": " + choice.because);
+    draft_.assumed.push_back(choice.what + " is " +
+                             choice.options[*choice.chosen].label + ": " +
+                             choice.because);
   }
 
   std::string UnitOf(std::size_t c) const {
@@ -306,11 +315,15 @@ class Drafter {
     const std::vector<std::string> unknown = NotUnderstood();
     const std::string perhaps =
         unknown.empty() ? "" : "; names that say nothing: " + Listed(unknown);
-    const auto no_others = [](const ColumnChoice& choice) { return choice.others.empty(); };
-    if (draft_.sensors.empty() && std::ranges::all_of(columns_of_readings_, no_others)) {
+    const auto no_others = [](const ColumnChoice& choice) {
+      return choice.others.empty();
+    };
+    if (draft_.sensors.empty() &&
+        std::ranges::all_of(columns_of_readings_, no_others)) {
       draft_.questions.push_back("no column is a position of the plant" + perhaps);
     }
-    if (draft_.actuators.empty() && std::ranges::all_of(columns_of_drives_, no_others)) {
+    if (draft_.actuators.empty() &&
+        std::ranges::all_of(columns_of_drives_, no_others)) {
       draft_.questions.push_back("no column drives the plant" + DrivesThatCannot() +
                                  perhaps);
     }
@@ -336,8 +349,9 @@ class Drafter {
       ExplainChoice(columns_of_drives_[p], drives_[p].element, ordered);
     }
     if (!ordered.empty()) {
-      draft_.assumed.push_back("numbered columns are of joints in the order of the plant: " +
-                               Listed(ordered));
+      draft_.assumed.push_back(
+          "numbered columns are of joints in the order of the plant: " +
+          Listed(ordered));
     }
     std::vector<std::string> idle;
     for (std::size_t p = 0; p < drives_.size(); ++p) {
@@ -346,8 +360,7 @@ class Drafter {
       }
     }
     if (!idle.empty()) {
-      draft_.notes.push_back("no column drives " + Listed(idle) +
-                             ": 0 all the time");
+      draft_.notes.push_back("no column drives " + Few(idle) + ": 0 all the time");
     }
     std::vector<std::string> unread;
     for (std::size_t p = 0; p < readings_.size(); ++p) {
@@ -358,7 +371,7 @@ class Drafter {
       }
     }
     if (!unread.empty()) {
-      draft_.notes.push_back("no column is the position of " + Listed(unread));
+      draft_.notes.push_back("no column is the position of " + Few(unread));
     }
     ExplainUnused();
   }
@@ -383,17 +396,38 @@ class Drafter {
     for (const auto* channels : {&draft_.sensors, &draft_.actuators}) {
       for (const DraftedChannel& channel : *channels) used.insert(channel.column);
     }
+    std::set<std::string> behind;
+    for (const auto* choices : {&columns_of_readings_, &columns_of_drives_}) {
+      for (const ColumnChoice& choice : *choices) {
+        for (const std::size_t c : choice.others) behind.insert(Column(c).name);
+      }
+    }
     std::map<std::string, std::vector<std::string>> reasons;
     for (const ColumnWords& column : log_.columns) {
       if (used.contains(column.name)) continue;
-      reasons[WhyUnused(column)].push_back(Quoted(column.name));
+      const std::string reason = behind.contains(column.name)
+                                     ? "another column goes before it"
+                                     : WhyUnused(column);
+      reasons[reason].push_back(Quoted(column.name));
     }
     for (const auto& [reason, names] : reasons) {
-      draft_.unused.push_back(Listed(names) + ": " + reason);
+      draft_.unused.push_back(Few(names) + ": " + reason);
     }
   }
 
+  /// "a, b, c and 9 more".
+  static std::string Few(std::vector<std::string> names) {
+    constexpr std::size_t kShown = 6;
+    if (names.size() <= kShown + 1) return Listed(names);
+    const std::string more = std::to_string(names.size() - kShown);
+    names.resize(kShown);
+    return Listed(names) + " and " + more + " more";
+  }
+
   static std::string WhyUnused(const ColumnWords& column) {
+    if (column.switches) {
+      return "says when a motor is on, if actuators.<channel>.enabled_by names it";
+    }
     if (column.role == Role::kReference) return "what was wanted, for [axes]";
     if (column.role == Role::kOther) return "no channel of an open-loop setup";
     switch (column.quantity) {
@@ -404,14 +438,14 @@ class Drafter {
       case Quantity::kUnknown:
         return "the name says nothing of the plant";
       default:
-        return "stands behind another column";
+        return "nothing of the plant is called so";
     }
   }
 
   /// Signs and delays: said, never put in.
   void CheckAgainstForces(const LogPhysics& physics) {
     const LogReading known = Known();
-    if (known.motors.empty()) return;
+    if (known.motors.empty() && known.forces.empty()) return;
     const std::optional<double> misfit = physics.Misfit(known);
     if (!misfit) return;
     for (const auto& [motor, scaled] : known.motors) {
@@ -441,10 +475,9 @@ class Drafter {
       }
     }
     if (best == 0 || least > kClearly * misfit) return;
-    draft_.notes.push_back(
-        "the motion follows the input by about " +
-        FormatQuantity(best * physics.sample_time(), "s") +
-        "; it is not put in: --effect input_delay would");
+    draft_.notes.push_back("the motion follows the input by about " +
+                           FormatQuantity(best * physics.sample_time(), "s") +
+                           "; it is not put in: --effect input_delay would");
   }
 
   static constexpr double kClearly = 0.8;        // of a misfit

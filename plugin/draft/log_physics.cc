@@ -42,6 +42,10 @@ std::optional<double> LogPhysics::Misfit(const LogReading& reading, int lag) con
   for (const auto& [motor, scaled] : reading.motors) {
     motion.controls.row(motor) = samples(scaled);
   }
+  motion.forces.setZero(model_.nv, record_->samples());
+  for (const auto& [joint, scaled] : reading.forces) {
+    motion.forces.row(model_.jnt_dofadr[joint]) = samples(scaled);
+  }
   return ForceMisfit(model_, motion, lag);
 }
 

@@ -27,6 +27,7 @@ struct ScaledColumn {
 struct LogReading {
   std::map<int, ScaledColumn> joints;  ///< position of a joint
   std::map<int, ScaledColumn> motors;  ///< control of an actuator
+  std::map<int, ScaledColumn> forces;  ///< force on a joint that no actuator drives yet
 };
 
 class LogPhysics {

@@ -38,10 +38,11 @@ double ReadingScore(const Reading& reading, const ColumnWords& column) {
   // Sensor, or what stands for the one that is to be added: the joint.
   const bool own = !reading.names.empty() && IsCalled(column, reading.names.front());
   if (own && column.role != Role::kCommand) return 1.3;
-  const bool component = !own && reading.joint < 0 &&
-                         std::ranges::any_of(reading.names, [&](const std::string& name) {
-                           return IsCalled(column, name);
-                         });
+  const bool component =
+      !own && reading.joint < 0 &&
+      std::ranges::any_of(reading.names, [&](const std::string& name) {
+        return IsCalled(column, name);
+      });
   if (component) return 1.2;
   if (reading.by_name_only || column.quantity != reading.quantity ||
       column.role == Role::kCommand) {
@@ -80,21 +81,23 @@ int RoleRank(const Drive& drive, Role role) {
 double DriveScore(const Drive& drive, const ColumnWords& column) {
   if (column.role == Role::kOther) return kImpossible;
   const std::string unit = column.Dimension();
-  const bool own = drive.actuator >= 0 && IsCalled(column, drive.names.empty()
-                                                               ? drive.element
-                                                               : drive.names.front());
+  const bool own =
+      drive.actuator >= 0 &&
+      IsCalled(column, drive.names.empty() ? drive.element : drive.names.front());
   if (drive.input == Input::kPosition || drive.input == Input::kVelocity) {
     const Quantity wanted =
         drive.input == Input::kPosition ? Quantity::kPosition : Quantity::kVelocity;
     if (unit != drive.unit && !IsUnitless(column)) return kImpossible;
     const bool told = column.role == Role::kCommand || column.role == Role::kReference;
-    const bool can = own || (told && (column.quantity == wanted ||
-                                      column.quantity == Quantity::kUnknown ||
-                                      column.quantity == Quantity::kDrive)) ||
-                     (IsUnitless(column) && column.quantity == Quantity::kDrive);
+    const bool can =
+        own ||
+        (told && (column.quantity == wanted || column.quantity == Quantity::kUnknown ||
+                  column.quantity == Quantity::kDrive)) ||
+        (IsUnitless(column) && column.quantity == Quantity::kDrive);
     if (!can) return kImpossible;
   } else {
-    const bool slide_and_torque = drive.unit == "N" && drive.joint >= 0 && unit == "N m";
+    const bool slide_and_torque =
+        drive.unit == "N" && drive.joint >= 0 && unit == "N m";
     const bool hinge_and_force = drive.unit == "N m" && unit == "N";
     const bool pure = drive.input == Input::kPure && column.unit && unit == "1";
     const bool can = column.quantity == Quantity::kDrive || own ||
@@ -149,8 +152,12 @@ class Table {
     }
   }
 
-  double At(std::size_t place, std::size_t column) const { return scores_[place][column]; }
-  int RankAt(std::size_t place, std::size_t column) const { return ranks_[place][column]; }
+  double At(std::size_t place, std::size_t column) const {
+    return scores_[place][column];
+  }
+  int RankAt(std::size_t place, std::size_t column) const {
+    return ranks_[place][column];
+  }
   bool IsOpen(std::size_t place) const { return !choices[place].column; }
   bool IsFree(std::size_t column) const { return !used_[column]; }
   void Close(std::size_t column) { used_[column] = true; }
@@ -213,8 +220,8 @@ class Table {
       const std::size_t c = columns.front();
       bool contested = false;
       for (std::size_t q = 0; q < choices.size(); ++q) {
-        contested = contested ||
-                    (q != p && IsOpen(q) && scores_[q][c] > scores_[p][c] - kSame);
+        contested =
+            contested || (q != p && IsOpen(q) && scores_[q][c] > scores_[p][c] - kSame);
       }
       if (contested) continue;
       if (!best || scores_[p][c] > scores_[best->first][best->second]) best = {p, c};
@@ -243,12 +250,13 @@ std::vector<Row> RowsOf(const std::vector<ColumnWords>& columns) {
       if (letter < '0' || letter > '9') stem += letter;
     }
     const std::vector<std::string> key{stem, column.Dimension()};
-    if (!rows[key].emplace(column.place.numbers.front(), c).second) doubtful.insert(key);
+    if (!rows[key].emplace(column.place.numbers.front(), c).second)
+      doubtful.insert(key);
   }
   std::vector<Row> found;
   for (const auto& [key, row] : rows) {
-    const bool whole = row.rbegin()->first - row.begin()->first + 1 ==
-                       static_cast<int>(row.size());
+    const bool whole =
+        row.rbegin()->first - row.begin()->first + 1 == static_cast<int>(row.size());
     if (row.size() > 1 && whole && !doubtful.contains(key)) found.push_back(row);
   }
   return found;
@@ -266,8 +274,9 @@ std::optional<int> NumberOf(const std::vector<std::string>& names) {
 /// Rows whose numbers are not those of the places: from 0 where places begin at 1, or of
 /// places without numbers, as many as there are.
 template <typename Place, typename Able>
-void DecideRows(const std::vector<Place>& places, const std::vector<std::size_t>& series,
-                const std::vector<Row>& rows, const Able& able, Table& table) {
+void DecideRows(const std::vector<Place>& places,
+                const std::vector<std::size_t>& series, const std::vector<Row>& rows,
+                const Able& able, Table& table) {
   if (series.empty()) return;
   std::set<int> numbers;
   bool numbered = true;
@@ -289,13 +298,14 @@ void DecideRows(const std::vector<Place>& places, const std::vector<std::size_t>
     }
     // Where the numbers are the same the names say it themselves.
     if (!fits || (numbered && row.begin()->first == *numbers.begin())) continue;
-    if (numbered && static_cast<int>(numbers.size()) !=
-                        *numbers.rbegin() - *numbers.begin() + 1) {
+    if (numbered &&
+        static_cast<int>(numbers.size()) != *numbers.rbegin() - *numbers.begin() + 1) {
       continue;
     }
     std::vector<std::size_t> order = series;
     if (numbered) {
-      std::ranges::sort(order, {}, [&](std::size_t p) { return NumberOf(places[p].names); });
+      std::ranges::sort(order, {},
+                        [&](std::size_t p) { return NumberOf(places[p].names); });
     }
     at = 0;
     for (const auto& [number, c] : row) {

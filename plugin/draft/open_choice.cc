@@ -85,7 +85,9 @@ void Decide(const std::vector<double>& misfits, OpenChoice& choice) {
 void DecideByForces(const LogPhysics& physics, const LogReading& known,
                     std::vector<OpenChoice>& choices) {
   for (OpenChoice& choice : choices) TakeTheOnlyPossible(choice);
-  if (std::ranges::all_of(choices, [](const OpenChoice& c) { return c.chosen.has_value(); })) return;
+  if (std::ranges::all_of(choices,
+                          [](const OpenChoice& c) { return c.chosen.has_value(); }))
+    return;
   const std::optional<Least> least = LeastMisfits(physics, known, choices);
   if (!least) return;
   for (std::size_t i = 0; i < choices.size(); ++i) {

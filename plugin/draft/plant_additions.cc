@@ -56,9 +56,8 @@ std::vector<int> ActuatorElements(const XmlText& xml) {
   for (int i = 0; i < static_cast<int>(xml.elements().size()); ++i) {
     const XmlElement& element = xml.At(i);
     // Inside <default> such an element says what others have.
-    const bool in_section =
-        xml.ParentTag(element) == "actuator" &&
-        xml.ParentTag(xml.At(element.parent)) == "mujoco";
+    const bool in_section = xml.ParentTag(element) == "actuator" &&
+                            xml.ParentTag(xml.At(element.parent)) == "mujoco";
     if (in_section) actuators.push_back(i);
   }
   return actuators;

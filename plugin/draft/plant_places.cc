@@ -8,7 +8,8 @@
 namespace mjdiag {
 namespace {
 
-void AddName(const mjModel& model, mjtObj kind, int id, std::vector<std::string>& names) {
+void AddName(const mjModel& model, mjtObj kind, int id,
+             std::vector<std::string>& names) {
   const char* name = mj_id2name(&model, kind, id);
   if (name == nullptr || name[0] == '\0') return;
   if (std::ranges::find(names, name) == names.end()) names.emplace_back(name);
@@ -61,14 +62,13 @@ SensorKind KindOf(const mjModel& model, int sensor) {
     case mjSENS_JOINTVEL:
       return {kVelocity, PositionUnit(model, object) + "/s"};
     case mjSENS_TENDONPOS:
-      return {kPosition, model.tendon_num[object] > 0 &&
-                                 model.wrap_type[model.tendon_adr[object]] ==
-                                     mjWRAP_JOINT &&
-                                 model.jnt_type[model.wrap_objid
-                                                    [model.tendon_adr[object]]] ==
-                                     mjJNT_HINGE
-                             ? "rad"
-                             : "m"};
+      return {kPosition,
+              model.tendon_num[object] > 0 &&
+                      model.wrap_type[model.tendon_adr[object]] == mjWRAP_JOINT &&
+                      model.jnt_type[model.wrap_objid[model.tendon_adr[object]]] ==
+                          mjJNT_HINGE
+                  ? "rad"
+                  : "m"};
     case mjSENS_ACTUATORPOS: {
       const int joint = DrivenJoint(model, object);
       return {kPosition, joint >= 0 ? PositionUnit(model, joint) : "m"};
@@ -213,7 +213,8 @@ std::vector<Reading> ReadingsOf(const mjModel& model) {
     if (IsScalar(model, joint)) readings.push_back(JointReading(model, joint));
   }
   for (int sensor = 0; sensor < model.nsensor; ++sensor) {
-    if (model.sensor_type[sensor] != mjSENS_JOINTPOS) AddSensor(model, sensor, readings);
+    if (model.sensor_type[sensor] != mjSENS_JOINTPOS)
+      AddSensor(model, sensor, readings);
   }
   return readings;
 }
@@ -262,8 +263,13 @@ std::vector<Drive> DrivesOf(const mjModel& model) {
     if (std::ranges::any_of(drives, [&](const Drive& d) { return d.joint == joint; })) {
       continue;
     }
-    Drive drive{NameOf(model, mjOBJ_JOINT, joint), -1, joint, Input::kForce,
-                model.jnt_type[joint] == mjJNT_SLIDE ? "N" : "N m", true, {}};
+    Drive drive{NameOf(model, mjOBJ_JOINT, joint),
+                -1,
+                joint,
+                Input::kForce,
+                model.jnt_type[joint] == mjJNT_SLIDE ? "N" : "N m",
+                true,
+                {}};
     AddName(model, mjOBJ_JOINT, joint, drive.names);
     drives.push_back(std::move(drive));
   }

@@ -13,10 +13,10 @@ namespace mjdiag {
 
 /// A number that a sensor gives, or the position of a joint that none reads.
 struct Reading {
-  std::string element;             ///< sensor; of a joint that none reads, the joint
-  int component = 0;               ///< of the sensor's numbers
-  int joint = -1;                  ///< that alone it is of, a slide or hinge
-  bool exists = true;              ///< false: a <jointpos> is to be added
+  std::string element;  ///< sensor; of a joint that none reads, the joint
+  int component = 0;    ///< of the sensor's numbers
+  int joint = -1;       ///< that alone it is of, a slide or hinge
+  bool exists = true;   ///< false: a <jointpos> is to be added
   Quantity quantity = Quantity::kPosition;
   std::string unit;                ///< SI
   std::vector<std::string> names;  ///< by which a log may call it, the surest first

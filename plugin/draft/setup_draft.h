@@ -41,7 +41,7 @@ struct SetupDraft {
   std::vector<std::string> assumed;    ///< what was taken for granted
   std::vector<std::string> added;      ///< what the plant lacked
   std::vector<std::string> questions;  ///< what could not be told, and what to write
-  std::vector<std::string> unused;     ///< columns that are nothing of the setup, and why
+  std::vector<std::string> unused;  ///< columns that are nothing of the setup, and why
   std::vector<std::string> notes;
 
   bool certain() const { return questions.empty(); }
