@@ -42,9 +42,9 @@ const std::map<std::string, Quantity, std::less<>>& Quantities() {
   return kQuantities;
 }
 
-const std::map<std::string, Role, std::less<>>& Roles() {
-  using enum Role;
-  static const std::map<std::string, Role, std::less<>> kRoles{
+const std::map<std::string, ColumnRole, std::less<>>& Roles() {
+  using enum ColumnRole;
+  static const std::map<std::string, ColumnRole, std::less<>> kRoles{
       {"meas", kMeasured},       {"measured", kMeasured}, {"act", kMeasured},
       {"actual", kMeasured},     {"fbk", kMeasured},      {"feedback", kMeasured},
       {"present", kMeasured},    {"sensed", kMeasured},   {"cmd", kCommand},
@@ -169,7 +169,7 @@ void Sort(const Words& words, ColumnWords& column) {
     column.switches = column.switches || word == "enable" || word == "enabled";
     const auto role = Roles().find(word);
     const auto quantity = Quantities().find(word);
-    if (role != Roles().end() && column.role != Role::kOther)
+    if (role != Roles().end() && column.role != ColumnRole::kOther)
       column.role = role->second;
     if (quantity != Quantities().end() && column.quantity == Quantity::kUnknown) {
       column.quantity = quantity->second;
@@ -219,7 +219,7 @@ ColumnWords ReadColumnWords(const SourceColumn& source) {
     column.quantity = *quantity;
   } else if (dimension != "1") {
     column.quantity = Quantity::kUnknown;
-    column.role = Role::kOther;
+    column.role = ColumnRole::kOther;
   }
   return column;
 }

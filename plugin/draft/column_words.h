@@ -23,7 +23,7 @@ enum class Quantity {
 };
 
 /// Which of several of one quantity it is.
-enum class Role {
+enum class ColumnRole {
   kPlain,      ///< the name does not say
   kMeasured,   ///< "meas", "actual"
   kCommand,    ///< "cmd", "ctrl"
@@ -43,7 +43,7 @@ struct PlaceWords {
 struct ColumnWords {
   std::string name;  ///< without its unit
   Quantity quantity = Quantity::kUnknown;
-  Role role = Role::kPlain;
+  ColumnRole role = ColumnRole::kPlain;
   PlaceWords place;
   /// As the setup is to say it; none where neither the file nor the name says one.
   std::optional<std::string> unit;

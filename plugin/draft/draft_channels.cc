@@ -48,10 +48,10 @@ std::string Joint(const mjModel& model, int joint, SetupDraft& draft) {
   if (IsNameless(model, mjOBJ_JOINT, joint) &&
       std::ranges::find(named, joint) == named.end()) {
     named.push_back(joint);
-    draft.added.push_back("the name '" + NameOf(model, mjOBJ_JOINT, joint) +
+    draft.added.push_back("the name '" + GivenName(model, mjOBJ_JOINT, joint) +
                           "' of a joint that has none");
   }
-  return NameOf(model, mjOBJ_JOINT, joint);
+  return GivenName(model, mjOBJ_JOINT, joint);
 }
 
 DraftedChannel ChannelOf(const ColumnWords* column, const std::string& unit,

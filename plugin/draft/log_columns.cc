@@ -72,7 +72,7 @@ void ChooseUnit(double step, LogColumns& log) {
 void ChooseTime(RecordSource& source, std::vector<ColumnWords>& all,
                 std::vector<std::size_t>& places, LogColumns& log) {
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].quantity != Quantity::kTime || all[i].role == Role::kOther ||
+    if (all[i].quantity != Quantity::kTime || all[i].role == ColumnRole::kOther ||
         !all[i].unknown_unit.empty()) {
       continue;
     }

@@ -41,8 +41,8 @@ class Drafter {
       : model_(model),
         log_(log),
         draft_(draft),
-        readings_(ReadingsOf(model)),
-        drives_(DrivesOf(model)),
+        readings_(PlantReadings(model)),
+        drives_(PlantDrives(model)),
         columns_of_readings_(MatchReadings(readings_, log.columns)),
         columns_of_drives_(MatchDrives(drives_, log.columns, Taken())) {}
 
@@ -193,7 +193,8 @@ class Drafter {
       if (open.column || open.others.size() < 2 || joint < 0) continue;
       if (readings_[p].quantity != Quantity::kPosition) continue;
       OpenChoice choice;
-      choice.what = "position of joint " + Quoted(NameOf(model_, mjOBJ_JOINT, joint));
+      choice.what =
+          "position of joint " + Quoted(GivenName(model_, mjOBJ_JOINT, joint));
       for (const std::size_t c : open.others) {
         const auto apply = [joint, scaled = ScaledColumn{c, FactorOf(c)}](
                                LogReading& reading) { reading.joints[joint] = scaled; };
@@ -333,7 +334,7 @@ class Drafter {
   std::string DrivesThatCannot() const {
     for (const ColumnWords& column : log_.columns) {
       const std::string unit = column.Dimension();
-      if (column.role == Role::kOther || (unit != "A" && unit != "V")) continue;
+      if (column.role == ColumnRole::kOther || (unit != "A" && unit != "V")) continue;
       return ": " + Quoted(column.name) + " is in " + unit +
              ", and no motor of the plant says what force that is (<motor gear>)";
     }
@@ -367,7 +368,7 @@ class Drafter {
       const Reading& reading = readings_[p];
       if (reading.joint < 0 || reading.quantity != Quantity::kPosition) continue;
       if (!columns_of_readings_[p].column) {
-        unread.push_back(Quoted(NameOf(model_, mjOBJ_JOINT, reading.joint)));
+        unread.push_back(Quoted(GivenName(model_, mjOBJ_JOINT, reading.joint)));
       }
     }
     if (!unread.empty()) {
@@ -428,8 +429,8 @@ class Drafter {
     if (column.switches) {
       return "says when a motor is on, if actuators.<channel>.enabled_by names it";
     }
-    if (column.role == Role::kReference) return "what was wanted, for [axes]";
-    if (column.role == Role::kOther) return "no channel of an open-loop setup";
+    if (column.role == ColumnRole::kReference) return "what was wanted, for [axes]";
+    if (column.role == ColumnRole::kOther) return "no channel of an open-loop setup";
     switch (column.quantity) {
       case Quantity::kVelocity:
         return "speed, beside a position or without a sensor";
@@ -456,7 +457,7 @@ class Drafter {
       draft_.questions.push_back(
           "sign of " + Quoted(Column(scaled.column).name) +
           ": forces balance the other way round; turn the gear of actuator " +
-          Quoted(NameOf(model_, mjOBJ_ACTUATOR, motor)) + " round if so");
+          Quoted(GivenName(model_, mjOBJ_ACTUATOR, motor)) + " round if so");
     }
     if (*misfit > kBalanced) return;
     GuessDelay(physics, known, *misfit);

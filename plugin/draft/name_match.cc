@@ -32,12 +32,13 @@ double NameAgreement(const ColumnWords& column, const std::vector<std::string>& 
 
 double ReadingScore(const Reading& reading, const ColumnWords& column) {
   const bool fits = column.Dimension() == reading.unit || IsUnitless(column);
-  if (!fits || column.role == Role::kOther || column.role == Role::kReference) {
+  if (!fits || column.role == ColumnRole::kOther ||
+      column.role == ColumnRole::kReference) {
     return kImpossible;
   }
   // Sensor, or what stands for the one that is to be added: the joint.
   const bool own = !reading.names.empty() && IsCalled(column, reading.names.front());
-  if (own && column.role != Role::kCommand) return 1.3;
+  if (own && column.role != ColumnRole::kCommand) return 1.3;
   const bool component =
       !own && reading.joint < 0 &&
       std::ranges::any_of(reading.names, [&](const std::string& name) {
@@ -45,7 +46,7 @@ double ReadingScore(const Reading& reading, const ColumnWords& column) {
       });
   if (component) return 1.2;
   if (reading.by_name_only || column.quantity != reading.quantity ||
-      column.role == Role::kCommand) {
+      column.role == ColumnRole::kCommand) {
     return kImpossible;
   }
   return NameAgreement(column, reading.names);
@@ -61,25 +62,25 @@ int UnitRank(const Drive& drive, const ColumnWords& column) {
   return 0;
 }
 
-int RoleRank(const Drive& drive, Role role) {
+int RoleRank(const Drive& drive, ColumnRole role) {
   const bool servo = drive.input == Input::kPosition || drive.input == Input::kVelocity;
   switch (role) {
-    case Role::kMeasured:
+    case ColumnRole::kMeasured:
       return servo ? 3 : 0;
-    case Role::kPlain:
+    case ColumnRole::kPlain:
       return servo ? 2 : 1;
-    case Role::kCommand:
+    case ColumnRole::kCommand:
       return servo ? 0 : 2;
-    case Role::kReference:
+    case ColumnRole::kReference:
       return servo ? 1 : 3;
-    case Role::kOther:
+    case ColumnRole::kOther:
       break;
   }
   return 9;
 }
 
 double DriveScore(const Drive& drive, const ColumnWords& column) {
-  if (column.role == Role::kOther) return kImpossible;
+  if (column.role == ColumnRole::kOther) return kImpossible;
   const std::string unit = column.Dimension();
   const bool own =
       drive.actuator >= 0 &&
@@ -88,7 +89,8 @@ double DriveScore(const Drive& drive, const ColumnWords& column) {
     const Quantity wanted =
         drive.input == Input::kPosition ? Quantity::kPosition : Quantity::kVelocity;
     if (unit != drive.unit && !IsUnitless(column)) return kImpossible;
-    const bool told = column.role == Role::kCommand || column.role == Role::kReference;
+    const bool told =
+        column.role == ColumnRole::kCommand || column.role == ColumnRole::kReference;
     const bool can =
         own ||
         (told && (column.quantity == wanted || column.quantity == Quantity::kUnknown ||
@@ -102,7 +104,7 @@ double DriveScore(const Drive& drive, const ColumnWords& column) {
     const bool pure = drive.input == Input::kPure && column.unit && unit == "1";
     const bool can = column.quantity == Quantity::kDrive || own ||
                      (column.quantity == Quantity::kUnknown &&
-                      column.role == Role::kCommand && IsUnitless(column));
+                      column.role == ColumnRole::kCommand && IsUnitless(column));
     if (!can || (slide_and_torque && drive.is_force) ||
         (hinge_and_force && drive.is_force)) {
       return kImpossible;
@@ -345,7 +347,7 @@ std::vector<ColumnChoice> MatchReadings(const std::vector<Reading>& readings,
             &Reading::exists);
       },
       [&](std::size_t, std::size_t c) {
-        const int measured = columns[c].role == Role::kMeasured ? 0 : 1;
+        const int measured = columns[c].role == ColumnRole::kMeasured ? 0 : 1;
         return 2 * measured + (IsUnitless(columns[c]) ? 1 : 0);
       });
   // Positions of joints first: speeds stand behind them, as logs mostly make them of those.
@@ -358,7 +360,8 @@ std::vector<ColumnChoice> MatchReadings(const std::vector<Reading>& readings,
   const auto able = [&](std::size_t p, std::size_t c) {
     const ColumnWords& column = columns[c];
     return column.quantity == readings[p].quantity &&
-           (column.role == Role::kPlain || column.role == Role::kMeasured) &&
+           (column.role == ColumnRole::kPlain ||
+            column.role == ColumnRole::kMeasured) &&
            (IsUnitless(column) || column.Dimension() == readings[p].unit);
   };
   DecideRows(readings, joints, RowsOf(columns), able, table);

@@ -73,7 +73,7 @@ void GiveNames(const mjModel& model, mjtObj kind, const std::vector<int>& ids,
   }
   for (const int id : ids) {
     xml.SetAttribute(elements[static_cast<std::size_t>(id)], "name",
-                     XmlEscape(NameOf(model, kind, id)));
+                     XmlEscape(GivenName(model, kind, id)));
   }
 }
 

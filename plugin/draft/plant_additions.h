@@ -14,7 +14,7 @@
 namespace mjdiag {
 
 struct PlantAdditions {
-  std::vector<int> named_joints;     ///< nameless ones that get their name (NameOf)
+  std::vector<int> named_joints;     ///< nameless ones that get their name (GivenName)
   std::vector<int> named_actuators;  ///< the same
   struct Element {
     std::string name;

@@ -175,7 +175,7 @@ Reading JointReading(const mjModel& model, int joint) {
   }
   AddName(model, mjOBJ_JOINT, joint, reading.names);
   AddMotorNames(model, joint, reading.names);
-  if (!reading.exists) reading.element = NameOf(model, mjOBJ_JOINT, joint);
+  if (!reading.exists) reading.element = GivenName(model, mjOBJ_JOINT, joint);
   return reading;
 }
 
@@ -195,7 +195,7 @@ Input InputOf(const mjModel& model, int actuator) {
 
 }  // namespace
 
-std::string NameOf(const mjModel& model, mjtObj kind, int id) {
+std::string GivenName(const mjModel& model, mjtObj kind, int id) {
   const char* name = mj_id2name(&model, kind, id);
   if (name != nullptr && name[0] != '\0') return name;
   std::string given = std::string(mju_type2Str(kind)) + "_" + std::to_string(id);
@@ -207,7 +207,7 @@ bool IsScalar(const mjModel& model, int joint) {
   return model.jnt_type[joint] == mjJNT_SLIDE || model.jnt_type[joint] == mjJNT_HINGE;
 }
 
-std::vector<Reading> ReadingsOf(const mjModel& model) {
+std::vector<Reading> PlantReadings(const mjModel& model) {
   std::vector<Reading> readings;
   for (int joint = 0; joint < model.njnt; ++joint) {
     if (IsScalar(model, joint)) readings.push_back(JointReading(model, joint));
@@ -219,14 +219,14 @@ std::vector<Reading> ReadingsOf(const mjModel& model) {
   return readings;
 }
 
-std::vector<Drive> DrivesOf(const mjModel& model) {
+std::vector<Drive> PlantDrives(const mjModel& model) {
   std::vector<Drive> drives;
   for (int id = 0; id < model.nu; ++id) {
     Drive drive;
     drive.actuator = id;
     drive.joint = DrivenJoint(model, id);
     AddName(model, mjOBJ_ACTUATOR, id, drive.names);
-    drive.element = NameOf(model, mjOBJ_ACTUATOR, id);
+    drive.element = GivenName(model, mjOBJ_ACTUATOR, id);
     drive.input = InputOf(model, id);
     drive.is_force = drive.input == Input::kForce &&
                      RowOf(model.actuator_gear, 6, id)[0] == 1.0 &&
@@ -263,7 +263,7 @@ std::vector<Drive> DrivesOf(const mjModel& model) {
     if (std::ranges::any_of(drives, [&](const Drive& d) { return d.joint == joint; })) {
       continue;
     }
-    Drive drive{NameOf(model, mjOBJ_JOINT, joint),
+    Drive drive{GivenName(model, mjOBJ_JOINT, joint),
                 -1,
                 joint,
                 Input::kForce,

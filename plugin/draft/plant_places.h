@@ -43,14 +43,14 @@ struct Drive {
 };
 
 /// Positions of slides and hinges in their order, read or not, then the other sensors.
-std::vector<Reading> ReadingsOf(const mjModel& model);
+std::vector<Reading> PlantReadings(const mjModel& model);
 
 /// Actuators in their order, then slides and hinges that none drives alone.
-std::vector<Drive> DrivesOf(const mjModel& model);
+std::vector<Drive> PlantDrives(const mjModel& model);
 
 /// The name of a joint or an actuator; of a nameless one that which the drafted plant gives
 /// it, "joint_2".
-std::string NameOf(const mjModel& model, mjtObj kind, int id);
+std::string GivenName(const mjModel& model, mjtObj kind, int id);
 
 /// Slides and hinges.
 bool IsScalar(const mjModel& model, int joint);

@@ -22,11 +22,11 @@ std::string NameOfMachine(const mjModel& model, const std::filesystem::path& pla
 
 /// Positions of all joints, and all actuators.
 void DraftWithoutLog(const mjModel& model, SetupDraft& draft) {
-  for (const Reading& reading : ReadingsOf(model)) {
+  for (const Reading& reading : PlantReadings(model)) {
     if (reading.quantity != Quantity::kPosition) continue;
     AddSensor(model, reading, nullptr, "", draft);
   }
-  const std::vector<Drive> drives = DrivesOf(model);
+  const std::vector<Drive> drives = PlantDrives(model);
   for (const Drive& drive : drives) {
     // A plant that has motors has those that it has.
     if (drive.actuator < 0 && model.nu > 0) continue;
