@@ -18,10 +18,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kFewest = 64;   // samples
-constexpr Index kMost = 1500;   // instants at which forces are evaluated
-constexpr int kOrder = 3;       // of the low-pass
-constexpr double kEnds = 0.05;  // of the record, where filters begin
+constexpr Index kFewest = 64;        // samples
+constexpr Index kMost = 1500;        // instants at which forces are evaluated
+constexpr int kOrder = 3;            // of the low-pass
+constexpr double kEnds = 0.05;       // of the record, where filters begin
+constexpr double kRounding = 1e-18;  // of squares of terms that do not change
 constexpr double kTurning =
     0.1;  // of the usual speed: dry friction turns round below it
 
@@ -122,7 +123,9 @@ std::optional<double> MisfitOf(const Terms& terms) {
     const VectorXd supplied = terms.supplied.row(j).transpose();
     const double all =
         out.SquaredRest(inertia) + out.SquaredRest(rest) + out.SquaredRest(supplied);
-    if (!(all > 0.0) || !std::isfinite(all)) continue;
+    const double whole =
+        inertia.squaredNorm() + rest.squaredNorm() + supplied.squaredNorm();
+    if (!(all > kRounding * whole) || !std::isfinite(all)) continue;
     left += out.SquaredRest(inertia + rest - supplied) / all;
     ++joints;
   }

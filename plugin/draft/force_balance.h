@@ -9,7 +9,7 @@
 // and taken out of every term. The misfit is what is left of the balance over the terms
 // that ought to cancel, as root mean squares, all joints together:
 //
-//   0  they cancel      1  they have nothing to do with each other      1.4  the sign is wrong
+//   0  they cancel      1  they have nothing to do with each other, or the wrong sign
 //
 // Degrees taken for radians, amperes for newtons or a column of another joint leave 1. The
 // low-pass is the one of several that leaves least: noise hides a motion above it.

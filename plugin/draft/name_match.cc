@@ -1,7 +1,6 @@
 #include "mjdiag/plugin/draft/name_match.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -125,16 +124,9 @@ double DriveScore(const Drive& drive, const ColumnWords& column) {
 constexpr double kSaid = 0.6;
 
 /// The score of a place that the plant has not got yet: a sensor or a motor is added where
-/// the column says that it is of there, or no other place can take it.
-template <typename Place, typename Score>
-double ScoreOfNew(std::size_t place, const std::vector<Place>& places,
-                  const Score& score, const std::function<bool(const Place&)>& exists) {
-  const double own = score(places[place]);
-  if (exists(places[place]) || own >= kSaid) return own;
-  for (const Place& other : places) {
-    if (exists(other) && score(other) > 0.0) return kImpossible;
-  }
-  return own;
+/// the column says that it is of there, or the plant has none of its kind.
+double ScoreOfNew(double score, bool has_others) {
+  return has_others && score < kSaid ? kImpossible : score;
 }
 
 /// Scores of places and columns, and what has been decided.
@@ -338,13 +330,15 @@ void DecideTheOnlyPair(const std::vector<std::size_t>& series, std::size_t colum
 
 std::vector<ColumnChoice> MatchReadings(const std::vector<Reading>& readings,
                                         const std::vector<ColumnWords>& columns) {
+  const bool has_encoders = std::ranges::any_of(readings, [](const Reading& reading) {
+    return reading.exists && reading.joint >= 0 &&
+           reading.quantity == Quantity::kPosition;
+  });
   Table table(
       readings.size(), columns.size(),
       [&](std::size_t p, std::size_t c) {
-        return ScoreOfNew<Reading>(
-            p, readings,
-            [&](const Reading& reading) { return ReadingScore(reading, columns[c]); },
-            &Reading::exists);
+        const double score = ReadingScore(readings[p], columns[c]);
+        return readings[p].exists ? score : ScoreOfNew(score, has_encoders);
       },
       [&](std::size_t, std::size_t c) {
         const int measured = columns[c].role == ColumnRole::kMeasured ? 0 : 1;
@@ -381,14 +375,14 @@ std::vector<ColumnChoice> MatchReadings(const std::vector<Reading>& readings,
 std::vector<ColumnChoice> MatchDrives(const std::vector<Drive>& drives,
                                       const std::vector<ColumnWords>& columns,
                                       const std::vector<bool>& taken) {
+  const bool has_motors = std::ranges::any_of(
+      drives, [](const Drive& drive) { return drive.actuator >= 0; });
   Table table(
       drives.size(), columns.size(),
       [&](std::size_t p, std::size_t c) {
         if (taken[c]) return kImpossible;
-        return ScoreOfNew<Drive>(
-            p, drives,
-            [&](const Drive& drive) { return DriveScore(drive, columns[c]); },
-            [](const Drive& drive) { return drive.actuator >= 0; });
+        const double score = DriveScore(drives[p], columns[c]);
+        return drives[p].actuator >= 0 ? score : ScoreOfNew(score, has_motors);
       },
       [&](std::size_t p, std::size_t c) {
         return 20 * UnitRank(drives[p], columns[c]) +

@@ -132,7 +132,7 @@ TEST_F(SetupDraftOf, WhatThePlantLacksIsInACopy) {
 
 TEST_F(SetupDraftOf, NamelessElementsGetNames) {
   std::string plant =
-      Arm("<default><motor ctrlrange=\"-5 5\"/></default>"
+      Arm("<default><motor forcelimited=\"false\"/></default>"
           "<actuator><motor joint=\"hinge\"/></actuator>");
   const SetupDraft draft = Draft(plant, SwungLog("t,q [rad],tau [N m]", InRadians));
   const Machine machine = Written(draft);
