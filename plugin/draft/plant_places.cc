@@ -173,6 +173,7 @@ Reading JointReading(const mjModel& model, int joint) {
     reading.exists = true;
     reading.element = reading.names.front();
   }
+  reading.joint_name = GivenName(model, mjOBJ_JOINT, joint);
   AddName(model, mjOBJ_JOINT, joint, reading.names);
   AddMotorNames(model, joint, reading.names);
   if (!reading.exists) reading.element = GivenName(model, mjOBJ_JOINT, joint);

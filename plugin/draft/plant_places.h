@@ -21,6 +21,7 @@ struct Reading {
   std::string unit;                ///< SI
   std::vector<std::string> names;  ///< by which a log may call it, the surest first
   bool by_name_only = false;       ///< nothing else makes a column one of it
+  std::string joint_name{};        ///< of a position of a joint
 };
 
 /// What the control of an actuator is.

@@ -112,6 +112,17 @@ TEST_F(SetupDraftOf, AForceThatPushesTheOtherWayRoundIsAQuestion) {
   EXPECT_THAT(draft.questions, ElementsAre(HasSubstr("sign of 'tau'")));
 }
 
+TEST_F(SetupDraftOf, AMotorThatMayHaveBeenOffIsAQuestion) {
+  const auto log = [](double off_after) {
+    return SwungLog("t,q [rad],tau [N m],torque_enable", [=](const SwungMoment& m) {
+      return Row(m.time, m.angle, m.torque, m.time < off_after ? 1.0 : 0.0);
+    });
+  };
+  const std::string plant = Arm(kMotor + kEncoder);
+  EXPECT_THAT(Draft(plant, log(3.0)).questions, ElementsAre(HasSubstr("enabled_by")));
+  EXPECT_THAT(Draft(plant, log(9.0)).questions, IsEmpty());
+}
+
 TEST_F(SetupDraftOf, ALateInputIsSaidAndNotPutIn) {
   const SetupDraft draft =
       Draft(Arm(kMotor + kEncoder), SwungLog("t,q [rad],tau [N m]", InRadians, 7));
