@@ -54,11 +54,8 @@ std::vector<int> JointElements(const XmlText& xml) {
 std::vector<int> ActuatorElements(const XmlText& xml) {
   std::vector<int> actuators;
   for (int i = 0; i < static_cast<int>(xml.elements().size()); ++i) {
-    const XmlElement& element = xml.At(i);
-    // Inside <default> such an element says what others have.
-    const bool in_section = xml.ParentTag(element) == "actuator" &&
-                            xml.ParentTag(xml.At(element.parent)) == "mujoco";
-    if (in_section) actuators.push_back(i);
+    // Inside <default> such an element says what others have, outside of a section.
+    if (xml.ParentTag(xml.At(i)) == "actuator") actuators.push_back(i);
   }
   return actuators;
 }
