@@ -19,6 +19,8 @@ class LogColumnsOf : public ::testing::Test {
 
 TEST_F(LogColumnsOf, ATimeWithoutAUnitIsInTheOneThatMakesARate) {
   EXPECT_EQ(Read("t", 0.002).time->unit, "s");
+  EXPECT_EQ(Read("t", 0.1).time->unit, "s");
+  EXPECT_TRUE(Read("t", 0.1).questions.empty());
   EXPECT_EQ(Read("t", 10.0).time->unit, "ms");
   EXPECT_EQ(Read("timestamp", 4000.0).time->unit, "us");
   EXPECT_DOUBLE_EQ(Read("t", 10.0).interval, 0.01);

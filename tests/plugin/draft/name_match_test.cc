@@ -87,7 +87,7 @@ TEST_F(NameMatch, LeavesOpenWhatOneColumnMayBeOf) {
 
 TEST_F(NameMatch, DoesNotTakeAWantedPositionForAMeasuredOne) {
   const ModelPtr model = Links("");
-  EXPECT_EQ(Readings(*model, {"elbow_ref", "elbow_pos"}), "elbow=elbow_pos");
+  EXPECT_EQ(Readings(*model, {"elbow_pos_ref", "elbow_pos"}), "elbow=elbow_pos");
 }
 
 TEST_F(NameMatch, PutsWhatWasMeasuredBeforeWhatWasCommanded) {
