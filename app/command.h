@@ -5,6 +5,7 @@
 
 namespace mjdiag::app {
 
+void AddInit(CLI::App& app);
 void AddSimulate(CLI::App& app);
 void AddLinearize(CLI::App& app);
 void AddDesign(CLI::App& app);

@@ -1,6 +1,8 @@
 // mjdiag compare: what the simulation gets wrong on a measured record.
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "app/command.h"
@@ -75,10 +77,11 @@ std::string FollowedText(const Comparison& comparison) {
          Short(*comparison.deviance) + "\n";
 }
 
-void Compare(const CompareOptions& options) {
+void Compare(CompareOptions& options) {
+  std::vector<std::string> notes = DraftMachine(options.machine, options.record);
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
-  std::vector<std::string> notes = NotesOn(subject.nominal);
+  std::ranges::copy(NotesOn(subject.nominal), std::back_inserter(notes));
   const Record measured = ReadMeasured(subject.setup(), options.record, notes);
   if (options.open_loop) {
     subject.machine =
@@ -116,7 +119,7 @@ void AddCompare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = app.add_subcommand(
       "compare", "What the simulation gets wrong on a measured record");
-  AddMachineOptions(*command, options->machine);
+  AddMachineOrPlantOptions(*command, options->machine);
   command
       ->add_option("--record", options->record,
                    "Measured record: CSV, JSON, HDF5 or MAT")

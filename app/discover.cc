@@ -84,14 +84,17 @@ std::string Extend(const DiscoverCommand& command, const Machine& machine,
   }
 }
 
-void Discover(const DiscoverCommand& command) {
+void Discover(DiscoverCommand& command) {
   RequirePlantOfItsFile(command.machine);
+  const std::vector<std::string> drafted =
+      DraftMachine(command.machine, FirstRecord(command.records));
   const Machine machine = LoadSubject(command.machine).nominal;
   const Measurements measurements =
       LoadMeasurements(command.records, command.machine, machine);
   PrepareOutput(command.output);
   const Interrupt interrupt;
   Discovery discovery = RunDiscovery(machine, command, measurements);
+  std::ranges::copy(drafted, std::back_inserter(discovery.notes));
   std::ranges::copy(NotesOn(machine), std::back_inserter(discovery.notes));
 
   HoldFiles();
@@ -126,7 +129,7 @@ void AddDiscover(CLI::App& app) {
   auto options = std::make_shared<DiscoverCommand>();
   CLI::App* command = app.add_subcommand(
       "discover", "Find what the plant lacks on a measured record, and put it in");
-  AddMachineOptions(*command, options->machine);
+  AddMachineOrPlantOptions(*command, options->machine);
   AddMeasurementOptions(*command, options->records);
   command
       ->add_option("--train-share", options->search.train_share,

@@ -115,7 +115,9 @@ StateSpace PlantTick(const Machine& machine, const NamedPoint& named,
   return TickModel(linear.model, machine.rates().step(), machine.rates().substeps);
 }
 
-void Linearize(const LinearizeOptions& options) {
+void Linearize(LinearizeOptions& options) {
+  std::vector<std::string> notes =
+      DraftMachine(options.machine, RecordOfPoint(options.at));
   const Subject subject = LoadSubject(options.machine);
   const Machine& machine = subject.machine;
   if (!machine.changes().effects.empty() || !subject.options.disturbances.empty() ||
@@ -124,7 +126,6 @@ void Linearize(const LinearizeOptions& options) {
                      "effects, disturbances and late faults are not linear",
                      "fault parameters of the plant only");
   }
-  std::vector<std::string> notes;
   const NamedPoint named = FindPoint(machine, options.at, notes);
   const Linearization linear =
       LinearizeAbout(machine.plant(), machine.channels(), named.point);
@@ -177,7 +178,7 @@ void AddLinearize(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "linearize",
       "M, D, K, Gamma, b, the modes, and A, B, C, D of a step and a control tick");
-  AddMachineOptions(*command, options->machine);
+  AddMachineOrPlantOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
   command->add_option("--at", options->at,
                       "Where: rest, start (as the MJCF draws it), keyframe:NAME or "

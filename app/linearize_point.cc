@@ -108,6 +108,11 @@ nlohmann::json CoordinateJson(const mjModel& plant, const VectorXd& values) {
 
 }  // namespace
 
+std::string RecordOfPoint(const std::string& at) {
+  const std::size_t sign = at.rfind('@');
+  return at.starts_with("keyframe:") || sign == at.npos ? "" : at.substr(0, sign);
+}
+
 NamedPoint FindPoint(const Machine& machine, const std::string& at,
                      std::vector<std::string>& notes) {
   const std::string keyframe = "keyframe:";

@@ -21,6 +21,9 @@ struct NamedPoint {
 NamedPoint FindPoint(const Machine& machine, const std::string& at,
                      std::vector<std::string>& notes);
 
+/// The record of "RECORD@TIME"; empty of another place.
+std::string RecordOfPoint(const std::string& at);
+
 /// `about` of the document: at, pose {joint}, rests, stable, holding_force {coordinate},
 /// the part of it that no actuator makes in applied_force (of a moment of a record what
 /// the model lacks there), inputs {channel}, of a motion velocity {coordinate}.

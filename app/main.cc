@@ -78,6 +78,7 @@ int Main(int argc, char** argv) {
       "Exit status: 0 done, 1 done and the answer is negative, 2 bad input or usage, "
       "3 numerical failure, 130 or 143 ended by SIGINT or SIGTERM with the answer so "
       "far.");
+  AddInit(app);
   AddSimulate(app);
   AddLinearize(app);
   AddDesign(app);

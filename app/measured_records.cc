@@ -25,8 +25,9 @@ void AddMeasurementOptions(CLI::App& command, MeasurementOptions& options) {
   data->needs(manifest);
 }
 
-Measurements LoadMeasurements(const MeasurementOptions& options,
-                              const MachineOptions& machine, const Machine& nominal) {
+namespace {
+
+std::vector<ManifestRecord> ListedRecords(const MeasurementOptions& options) {
   std::vector<ManifestRecord> records;
   if (!options.manifest.empty()) {
     records = ReadRecordManifest(options.manifest, options.data);
@@ -36,7 +37,20 @@ Measurements LoadMeasurements(const MeasurementOptions& options,
   if (std::ranges::none_of(records, &ManifestRecord::fit)) {
     throw InputError("--record", "is missing", "a record, or --records with --data");
   }
-  return ReadMeasurements(nominal, machine.setup, machine.overrides, records);
+  return records;
+}
+
+}  // namespace
+
+std::string FirstRecord(const MeasurementOptions& options) {
+  const std::vector<ManifestRecord> records = ListedRecords(options);
+  return std::ranges::find_if(records, &ManifestRecord::fit)->file.string();
+}
+
+Measurements LoadMeasurements(const MeasurementOptions& options,
+                              const MachineOptions& machine, const Machine& nominal) {
+  return ReadMeasurements(nominal, machine.setup, machine.overrides,
+                          ListedRecords(options));
 }
 
 std::string Names(const std::vector<MeasuredRecord>& records) {

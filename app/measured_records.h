@@ -20,6 +20,9 @@ struct MeasurementOptions {
 
 void AddMeasurementOptions(CLI::App& command, MeasurementOptions& options);
 
+/// The first record that is fitted to; InputError as LoadMeasurements.
+std::string FirstRecord(const MeasurementOptions& options);
+
 /// @param nominal  the machine of the setup
 /// InputError if there is nothing to fit to, and as ReadRecordManifest and ReadRecord.
 Measurements LoadMeasurements(const MeasurementOptions& options,

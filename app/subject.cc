@@ -8,6 +8,7 @@
 
 #include "app/format.h"
 #include "app/progress.h"
+#include "mjdiag/plugin/draft/setup_draft.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
@@ -64,6 +65,12 @@ void AddFault(const std::string& text, Subject& subject) {
   }
 }
 
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& one : sentences) text += (text.empty() ? "" : "; ") + one;
+  return text;
+}
+
 }  // namespace
 
 CLI::Validator Within(double least, double most) {
@@ -91,6 +98,44 @@ void AddMachineOptions(CLI::App& command, MachineOptions& options) {
                      "coulomb_friction@load:force=20");
   command.add_flag("--no-friction", options.no_friction,
                    "Switch the plant's static friction off");
+}
+
+void AddMachineOrPlantOptions(CLI::App& command, MachineOptions& options) {
+  AddMachineOptions(command, options);
+  CLI::Option* setup = command.get_option("--setup")->required(false);
+  command
+      .add_option(
+          "--plant", options.plant,
+          "In the place of --setup, an MJCF or URDF file, where a setup follows "
+          "from it and the record without doubt (mjdiag init)")
+      ->excludes(setup);
+}
+
+std::vector<std::string> DraftMachine(MachineOptions& options,
+                                      const std::string& record) {
+  if (options.plant.empty()) {
+    if (options.setup.empty()) {
+      throw InputError("--setup", "is missing", "a setup, or --plant with its plant");
+    }
+    return {};
+  }
+  const SourcePlant source = LoadSourcePlant(options.plant);
+  const SetupDraft draft = DraftSetup(source, options.plant, record);
+  if (!draft.certain()) {
+    const std::string log = record.empty() ? "" : " --record " + record;
+    throw InputError("--plant " + options.plant, Joined(draft.questions),
+                     "a setup: `mjdiag init --plant " + options.plant + log +
+                         " --out FOLDER` writes what is certain");
+  }
+  options.drafted = std::make_shared<ScratchFolder>();
+  options.setup = options.drafted->path().string();
+  WriteDraft(draft, source, options.drafted->path());
+  std::vector<std::string> notes = draft.notes;
+  for (const auto* lines : {&draft.assumed, &draft.added}) {
+    const char* what = lines == &draft.assumed ? "assumed: " : "added to the plant: ";
+    if (!lines->empty()) notes.push_back(what + Joined(*lines));
+  }
+  return notes;
 }
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {

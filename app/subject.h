@@ -2,21 +2,25 @@
 // The options that say which machine a command works on and what is wrong with it.
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/scratch_folder.h"
 
 namespace mjdiag::app {
 
 /// What the user asked for, as text.
 struct MachineOptions {
   std::string setup;
+  std::string plant;  ///< in the place of the setup, for commands that draft one
   std::vector<std::string> overrides;
   std::vector<std::string> faults;
   std::vector<std::string> effects;
   bool no_friction = false;
+  std::shared_ptr<ScratchFolder> drafted{};  ///< where the setup is, then
 };
 
 /// What moves it, and how.
@@ -51,6 +55,14 @@ std::vector<std::string> NotesOn(const Machine& machine);
 CLI::Validator Within(double least, double most);
 
 void AddMachineOptions(CLI::App& command, MachineOptions& options);
+/// The same with `--plant` in the place of `--setup`.
+void AddMachineOrPlantOptions(CLI::App& command, MachineOptions& options);
+/// Where `--plant` is given: drafts a setup from it and the record, which lasts as long as
+/// the options, and points `setup` to it. InputError if something could not be told.
+/// @param record  a file; empty: all joints and actuators
+/// @return what was assumed, notes for people
+std::vector<std::string> DraftMachine(MachineOptions& options,
+                                      const std::string& record);
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 /// `--seed`, a whole number from 0 on; CLI11 itself would take -1 for 2^64 - 1.
 void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& words);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fuzz/target.h"
-#include "mjdiag/discovery/extension/mjcf_files.h"
+#include "mjdiag/plugin/setup/mjcf_files.h"
 #include "mjdiag/plugin/setup/xml_text.h"
 
 namespace mjdiag::fuzz {

@@ -13,7 +13,6 @@
 #include "mjdiag/signals/json_file.h"
 #include "mjdiag/signals/mat_container.h"
 #include "mjdiag/signals/mat_file.h"
-#include "mjdiag/signals/record_source.h"
 #include "mjdiag/signals/text_file.h"
 #include "mjdiag/signals/uniform_time.h"
 #include "mjdiag/signals/unit.h"
@@ -31,22 +30,6 @@ struct Selection {
   std::vector<std::string> channels;
   std::vector<Unit> units;
 };
-
-std::unique_ptr<RecordSource> Open(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) {
-    if (DetectMatVersion(file)) return OpenMat(file);
-    if (IsHdf5(file)) return OpenHdf5(file);
-  }
-  std::string text = ReadTextFile(file);
-  RefuseForeignFormat(file, text);
-  if (text.find('\0') != std::string::npos) {
-    throw InputError(file.string(), "unknown format",
-                     "CSV, JSON, HDF5 or MAT version 5 or 7.3");
-  }
-  if (LooksLikeJson(text)) return OpenJson(file, text);
-  return OpenCsv(file, std::move(text));
-}
 
 class Selector {
  public:
@@ -135,7 +118,8 @@ class SelectedColumns {
  public:
   SelectedColumns(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map, MissingCells missing)
-      : source_(Open(file)), selection_(Selector(file.string(), *source_).Select(map)) {
+      : source_(OpenRecordSource(file)),
+        selection_(Selector(file.string(), *source_).Select(map)) {
     values_ = source_->Read(selection_.columns, missing);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       values_[i] *= selection_.units[i].factor;
@@ -191,6 +175,22 @@ void RequireWritable(const std::filesystem::path& file, const Channel& channel) 
 }
 
 }  // namespace
+
+std::unique_ptr<RecordSource> OpenRecordSource(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) {
+    if (DetectMatVersion(file)) return OpenMat(file);
+    if (IsHdf5(file)) return OpenHdf5(file);
+  }
+  std::string text = ReadTextFile(file);
+  RefuseForeignFormat(file, text);
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(file.string(), "unknown format",
+                     "CSV, JSON, HDF5 or MAT version 5 or 7.3");
+  }
+  if (LooksLikeJson(text)) return OpenJson(file, text);
+  return OpenCsv(file, std::move(text));
+}
 
 Record ReadRecord(const std::filesystem::path& file,
                   const std::optional<ColumnMap>& map) {

@@ -5,12 +5,14 @@
 // of a foreign file may come from the column map.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mjdiag/signals/measured_columns.h"
 #include "mjdiag/signals/record.h"
+#include "mjdiag/signals/record_source.h"
 #include "mjdiag/signals/resampling.h"
 
 namespace mjdiag {
@@ -32,6 +34,10 @@ struct ColumnMap {
   ColumnSpec time{"time", "time", "", false};
   std::vector<ColumnSpec> columns;
 };
+
+/// The columns of a file as they are, for those who do not know yet which they want; the
+/// format follows from the file's first bytes. InputError if it is none that is read here.
+std::unique_ptr<RecordSource> OpenRecordSource(const std::filesystem::path& file);
 
 /// Reads a record; the format follows from the file's first bytes. Without a map every
 /// column with a header is a channel, and "time" is the time.

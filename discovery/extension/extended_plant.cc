@@ -7,10 +7,10 @@
 #include <span>
 #include <utility>
 
-#include "mjdiag/discovery/extension/mjcf_files.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/scale_number.h"
+#include "mjdiag/plugin/setup/mjcf_files.h"
 #include "mjdiag/plugin/setup/xml_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"

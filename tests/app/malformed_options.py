@@ -65,6 +65,11 @@ OPTIONS = [
     ((*WATCH, "tcp:9870"), ["--source", "tcp:9870", "udp"]),
     ((*WATCH, "udp:99999"), ["--source", "99999"]),
     ((*WATCH, "mqtt:host"), ["--source", "mqtt:HOST[:PORT]/TOPIC"]),
+    # init, and a plant in the place of a setup
+    (("init", "--plant", "NOWHERE", "--out", "NOWHERE"), ["/nowhere"]),
+    (("linearize", "--plant", "NOWHERE"), ["/nowhere"]),
+    (("linearize", "--plant", "NOWHERE", "--setup", "STAGE"), ["--plant", "--setup"]),
+    (("compare", "--record", "RECORD"), ["--setup", "--plant"]),
     # others
     ((*SIMULATE, "--filters", "NOWHERE", "--diagnose"), ["/nowhere"]),
     ((*SIMULATE, "--replay", "NOWHERE"), ["/nowhere"]),

@@ -79,8 +79,14 @@ const std::map<std::string, Rows>& Table() {
                             {"--log-joints", Same("--log-joints=false")},
                             {"--diagnose", Same("--diagnose=false")},
                             {"--tolerate", Same("--tolerate=false")}}},
+      {"init", Rows{{"--plant", kRequired},
+                    {"--out", kRequired},
+                    {"--json", kNothing},
+                    {"--record", kNothing},
+                    {"--force", kNothing}}},
       {"linearize", kMachine + kOutput +
-                        Rows{{"--at", Same("--at rest")},
+                        Rows{{"--plant", kNothing},
+                             {"--at", Same("--at rest")},
                              {"--compare", Same("--compare=false")},
                              {"--published", Same("--published=false")}}},
       {"design", kMachine + kDiagnosis + kOutput + kReport +
@@ -94,12 +100,14 @@ const std::map<std::string, Rows>& Table() {
                                     {"--record", kRequired},
                                     {"--linear", Same("--linear=false")}}},
       {"compare", kMachine + kOutput + kReport +
-                      Rows{{"--record", kRequired},
+                      Rows{{"--plant", kNothing},
+                           {"--record", kRequired},
                            {"--open-loop", Same("--open-loop=false")},
                            {"--seed", Same("--seed 1")}}},
       // Without --doubt and --no-doubt the plant says whether it is exact (below).
       {"discover", kMachine + kReport +
-                       Rows{{"--out", kRequired},
+                       Rows{{"--plant", kNothing},
+                            {"--out", kRequired},
                             {"--json", kNothing},
                             {"--record", kRequired},
                             {"--validation", kNothing},
@@ -202,6 +210,7 @@ class OptionTable : public ::testing::Test {
     if (command == "report") return "report" + Quoted("measured");
     if (command == "linearize") return "linearize --setup mjcf/ab383" + to;
     if (command == "study") return "study --setup mjcf/ab383 --preset bound" + to;
+    if (command == "init") return "init --plant" + Quoted("stage/plant.xml") + to;
     std::string text = command + " --setup" + Quoted("stage") + to;
     if (command == "simulate") text += " --duration 0.2";
     if (command == "render") text += " --duration 0.2 --still 0.1";

@@ -12,5 +12,10 @@ namespace mjdiag {
 /// InputError if a file cannot be read or is not well-formed.
 std::string MjcfForFolder(const std::filesystem::path& mjcf,
                           const std::filesystem::path& folder);
+/// The same of a text without includes that can be loaded from `own`.
+/// @param where  what complaints call it
+std::string MjcfForFolder(const std::string& where, std::string text,
+                          const std::filesystem::path& own,
+                          const std::filesystem::path& folder);
 
 }  // namespace mjdiag

@@ -1,8 +1,9 @@
-#include "mjdiag/discovery/extension/mjcf_files.h"
+#include "mjdiag/plugin/setup/mjcf_files.h"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/plugin/setup/xml_text.h"
@@ -111,7 +112,12 @@ void Relocate(XmlText& xml, const fs::path& from, const fs::path& to) {
 
 std::string MjcfForFolder(const fs::path& mjcf, const fs::path& folder) {
   const fs::path own = fs::absolute(mjcf).parent_path();
-  XmlText xml(mjcf.string(), WithIncludes(mjcf, own));
+  return MjcfForFolder(mjcf.string(), WithIncludes(mjcf, own), own, folder);
+}
+
+std::string MjcfForFolder(const std::string& where, std::string text,
+                          const fs::path& own, const fs::path& folder) {
+  XmlText xml(where, std::move(text));
   Relocate(xml, own, folder);
   return xml.Text();
 }
