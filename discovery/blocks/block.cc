@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "mjdiag/discovery/hypotheses/fitted_model.h"
-#include "mjdiag/discovery/hypotheses/number_forces.h"
 #include "mjdiag/discovery/screening/trial.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/scales.h"
 
 namespace mjdiag {
@@ -124,8 +124,8 @@ VectorXd StillSpeed(const Machine& machine, const BlockMotion& along) {
 void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t place,
               Block& block, const std::function<void(Variation&&)>& take) {
   const PlantNumber& number = *block.number;
-  const MatrixXd force = NumberForce(machine.plant(), machine.channels(), number,
-                                     along.motion, StillSpeed(machine, along));
+  const MatrixXd force = NumberForce(machine.plant(), machine.actuator_addresses(),
+                                     number, along.motion, StillSpeed(machine, along));
   Variation variation{place, 0, {{}}, {}, {}, {}};
   for (Index dof = 0; dof < force.cols(); ++dof) {
     if (force.col(dof).isZero(0.0)) continue;
