@@ -209,9 +209,11 @@ std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun&
 
     const VectorXd mass = PlantForces(model, start.state.position).Mass().diagonal();
     constexpr double kKnownTo = 10.0;  // times the noise of the readings
-    VectorXd position =
-        kKnownTo * (place.cwiseAbs2() * reading_sd.cwiseAbs2()).cwiseSqrt();
-    VectorXd speed = (place.cwiseAbs2() * rate_sd.cwiseAbs2()).cwiseSqrt();
+    const MatrixXd squared = place.cwiseAbs2();
+    const VectorXd reading_variance = squared * reading_sd.cwiseAbs2();
+    const VectorXd rate_variance = squared * rate_sd.cwiseAbs2();
+    VectorXd position = kKnownTo * reading_variance.cwiseSqrt();
+    VectorXd speed = rate_variance.cwiseSqrt();
     // Of the usual motion: its energy, and the force that makes it within 20 ms.
     start.usual = (place * rates).cwiseAbs();
     const double energy = mass.dot(start.usual.cwiseAbs2());
