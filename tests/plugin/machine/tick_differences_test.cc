@@ -101,6 +101,25 @@ TEST_P(EveryKind, MovesAsItsTangentSays) {
   EXPECT_LT((Deviation(model, there, moved) - expected).norm(), 2e-3 * expected.norm());
 }
 
+TEST(TickDifferences, AreThoseOfRungeKuttaSteps) {
+  const Machine machine = test::MachineOf(test::kRungeKutta);
+  const PlantState state = SomeState(machine.plant());
+  const DataPtr data = MakeData(machine.plant());
+  const auto step = [&](double dq, double dv) -> Eigen::Vector2d {
+    SetState(machine.plant(), state, *data);
+    data->qpos[0] += dq;
+    data->qvel[0] += dv;
+    data->ctrl[0] = 0.4;
+    mj_step(&machine.plant(), data.get());
+    return {data->qpos[0], data->qvel[0]};
+  };
+  constexpr double h = 1e-6;
+  Eigen::Matrix2d A;
+  A << (step(h, 0.0) - step(-h, 0.0)) / (2.0 * h),
+      (step(0.0, h) - step(0.0, -h)) / (2.0 * h);
+  EXPECT_LT(Relative(TangentAt(machine, state, 0.4).A, A), 1e-8);
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, EveryKind, ::testing::ValuesIn(test::kEveryKind),
                          [](const auto& of) {
                            std::string name = of.param.name;

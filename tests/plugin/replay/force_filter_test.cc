@@ -100,7 +100,8 @@ TEST(ForceFilter, FollowsAMachineThatBeginsAtRest) {
   EXPECT_GT(starts[0].usual[0], 0.3);
   const FilterNoise noise = FollowingNoise(arm.machine, run, dofs, starts, sd);
   const FilterPath path = RunForceFilter(arm.machine, run, dofs, starts, noise);
-  EXPECT_LT(path.innovations.cwiseAbs().maxCoeff(), 0.01);
+  // It is raised by more than two radians.
+  EXPECT_LT(path.innovations.cwiseAbs().maxCoeff(), 0.05);
 }
 
 // Of the same noise the linear pass along a path is the filter itself.
