@@ -59,7 +59,9 @@ void BackwardPass::ThroughTick(Index k) {
   smoothed_.value.col(k) = path_.noise.white.cwiseAbs2().cwiseProduct(
       F.block(0, ns, ns, nf_).transpose() * r_.head(ns));
   r_ = (F.transpose() * r_).eval();
+  // What rounding makes skew would grow.
   W_ = (F.transpose() * (W_ * F)).eval();
+  W_ = (0.5 * (W_ + W_.transpose())).eval();
 }
 
 void BackwardPass::ThroughReadings(Index k, const FilterGains& gain, bool late) {

@@ -104,6 +104,38 @@ TEST(ForceFilter, FollowsAMachineThatBeginsAtRest) {
   EXPECT_LT(path.innovations.cwiseAbs().maxCoeff(), 0.05);
 }
 
+// Behind all readings more is known of forces than before any, also where a deviation grows
+// from tick to tick: a link on its head, read every 10 ms for a minute.
+TEST(SmoothForces, KnowTheForcesOfAMachineThatFalls) {
+  const Machine machine = test::MachineOf(
+      R"(<mujoco><option timestep="0.01"/><worldbody><body>
+      <joint name="j" axis="0 1 0"/>
+      <inertial pos="0 0 0.4" mass="2" diaginertia="0.05 0.05 0.05"/>
+      <body pos="0 0 0.8"><joint name="k" axis="0 1 0"/>
+      <inertial pos="0 0 0.3" mass="1" diaginertia="0.02 0.02 0.02"/></body></body></worldbody>
+      <actuator><motor name="u" joint="j"/></actuator>
+      <sensor><jointpos name="y" joint="j"/><jointpos name="z" joint="k"/></sensor></mujoco>)",
+      "[rates]\ncontrol = 100.0\n[sensors.y]\nelement = \"y\"\nunit = \"rad\"\n"
+      "[sensors.z]\nelement = \"z\"\nunit = \"rad\"\n"
+      "[actuators.u]\nelement = \"u\"\nunit = \"N m\"\n");
+  MeasuredRun run;
+  run.sample_time = 0.01;
+  run.inputs = MatrixXd::Zero(1, 6000);
+  run.outputs.resize(2, 6000);
+  for (Index k = 0; k < 6000; ++k) {
+    run.outputs(0, k) = 0.4 * std::sin(0.03 * static_cast<double>(k));
+    run.outputs(1, k) = 0.3 * std::sin(0.05 * static_cast<double>(k));
+  }
+  const VectorXd sd = VectorXd::Constant(2, kNoise);
+  const auto dofs = LatentDofs(machine, run);
+  const auto starts = FilterStarts(machine, run, sd);
+  const FilterNoise noise = FollowingNoise(machine, run, dofs, starts, sd);
+  const SmoothedForces smoothed =
+      SmoothForces(RunForceFilter(machine, run, dofs, starts, noise));
+  EXPECT_GT(smoothed.sd.minCoeff(), 0.0);
+  EXPECT_TRUE((smoothed.sd.array() < noise.size.array()).all()) << smoothed.sd;
+}
+
 // Of the same noise the linear pass along a path is the filter itself.
 TEST(ForceFilter, IsItsOwnLinearPass) {
   const test::Arm arm;
