@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = Path(sys.argv[1]).resolve()
-RUNS = 120
+RUNS = 600  # so many that no rank is done before the others have begun
 PLAN = f"""schema = "mjdiag.plan/1"
 name = "ranks"
 setup = "{ROOT}/mjcf/ab383"
