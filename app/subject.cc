@@ -13,6 +13,7 @@
 #include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/number_text.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -63,12 +64,6 @@ void AddFault(const std::string& text, Subject& subject) {
   } else {
     AddLateFault(fault, subject);
   }
-}
-
-std::string Joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& one : sentences) text += (text.empty() ? "" : "; ") + one;
-  return text;
 }
 
 }  // namespace
@@ -123,7 +118,7 @@ std::vector<std::string> DraftMachine(MachineOptions& options,
   const SetupDraft draft = DraftSetup(source, options.plant, record);
   if (!draft.certain()) {
     const std::string log = record.empty() ? "" : " --record " + record;
-    throw InputError("--plant " + options.plant, Joined(draft.questions),
+    throw InputError("--plant " + options.plant, Listed(draft.questions, "; "),
                      "a setup: `mjdiag init --plant " + options.plant + log +
                          " --out FOLDER` writes what is certain");
   }
@@ -133,7 +128,7 @@ std::vector<std::string> DraftMachine(MachineOptions& options,
   std::vector<std::string> notes = draft.notes;
   for (const auto* lines : {&draft.assumed, &draft.added}) {
     const char* what = lines == &draft.assumed ? "assumed: " : "added to the plant: ";
-    if (!lines->empty()) notes.push_back(what + Joined(*lines));
+    if (!lines->empty()) notes.push_back(what + Listed(*lines, "; "));
   }
   return notes;
 }

@@ -8,10 +8,10 @@
 
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/discovery/regression/set_choice.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/setup/measured_file.h"
-#include "mjdiag/signals/noise_level.h"
 
 namespace mjdiag {
 namespace {
@@ -19,17 +19,6 @@ namespace {
 double Now() {
   using Clock = std::chrono::steady_clock;
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
-
-Eigen::VectorXd NoiseOf(const Machine& machine, const MeasuredRun& run) {
-  Eigen::VectorXd sd(run.outputs.rows());
-  for (Eigen::Index i = 0; i < sd.size(); ++i) {
-    const SensorSetup& sensor = machine.channels().sensors[static_cast<std::size_t>(i)];
-    sd[i] =
-        std::max({NoiseLevel(run.ReadingsOf(i)), sensor.resolution / std::sqrt(12.0),
-                  1e-12 * run.outputs.row(i).cwiseAbs().maxCoeff(), 1e-15});
-  }
-  return sd;
 }
 
 int Main(int argc, char** argv) {
@@ -42,7 +31,8 @@ int Main(int argc, char** argv) {
   }
   const MeasuredRun run = Joined(runs);
   const double begin = Now();
-  const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, run));
+  const FilterPath path =
+      FilterLikeliest(machine, run, SensorNoise(machine.channels(), run, {}));
   const double filtered = Now();
   std::printf("filter %.1f s, -2 ln L %.1f, %ld samples\n", filtered - begin,
               path.deviance, static_cast<long>(path.samples()));

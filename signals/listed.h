@@ -7,9 +7,10 @@
 namespace mjdiag {
 
 /// "x, y, z"; of none: "".
-inline std::string Listed(const std::vector<std::string>& names) {
+inline std::string Listed(const std::vector<std::string>& names,
+                          const std::string& between = ", ") {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
   return text;
 }
 

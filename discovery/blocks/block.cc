@@ -41,6 +41,10 @@ std::vector<Column> ColumnsOf(const Trial& trial, Index sensor) {
   return columns;
 }
 
+double Rms(const VectorXd& signal) {
+  return std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
+}
+
 /// How large amplitudes are expected to be: so large that the size of the law is what it
 /// usually is; where any is as good, as large as what drives the joint or as the reading's
 /// own span.
@@ -58,12 +62,10 @@ VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& 
     double largest = 0.0;
     double usual = scales.force;
     for (const auto& [dof, signal] : column.forces) {
-      largest = std::max(largest, std::sqrt(signal.squaredNorm() /
-                                            static_cast<double>(signal.size())));
+      largest = std::max(largest, Rms(signal));
     }
     for (const auto& [sensor, signal] : column.readings) {
-      largest = std::max(largest, std::sqrt(signal.squaredNorm() /
-                                            static_cast<double>(signal.size())));
+      largest = std::max(largest, Rms(signal));
       usual = span[sensor];
     }
     sd[a] = largest > 0.0 ? usual / largest : 1.0;
@@ -113,19 +115,12 @@ void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t p
                 2.0 * std::log(std::max<double>(1.0, static_cast<double>(count)));
 }
 
-/// Below this a joint stands still: what the noise of its readings may seem to be.
-VectorXd StillSpeed(const Machine& machine, const BlockMotion& along) {
-  constexpr double kShare = 0.02;
-  return VectorXd::Constant(
-      machine.plant().nv,
-      kShare * along.reading_noise.minCoeff() / along.motion.sample_time);
-}
-
 void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t place,
               Block& block, const std::function<void(Variation&&)>& take) {
   const PlantNumber& number = *block.number;
-  const MatrixXd force = NumberForce(machine.plant(), machine.actuator_addresses(),
-                                     number, along.motion, StillSpeed(machine, along));
+  const MatrixXd force = NumberForce(
+      machine.plant(), machine.actuator_addresses(), number, along.motion,
+      StillSpeeds(machine.plant(), along.reading_noise, along.motion.sample_time));
   Variation variation{place, 0, {{}}, {}, {}, {}};
   for (Index dof = 0; dof < force.cols(); ++dof) {
     if (force.col(dof).isZero(0.0)) continue;

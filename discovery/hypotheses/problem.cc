@@ -313,9 +313,7 @@ ObservedMotion DiscoveryProblem::MotionOf(const Track& track) const {
 }
 
 VectorXd DiscoveryProblem::StillSpeed() const {
-  constexpr double kShare = 0.02;
-  const double noise = observer_.noise_sd.minCoeff();
-  return VectorXd::Constant(machine_.plant().nv, kShare * noise / run_->sample_time);
+  return StillSpeeds(machine_.plant(), observer_.noise_sd, run_->sample_time);
 }
 
 DiscoveryProblem DiscoveryProblem::TrainPart() const {

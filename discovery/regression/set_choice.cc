@@ -43,23 +43,26 @@ std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
 /// Places of the variations of a set among those that are whitened.
 using Places = std::vector<std::size_t>;
 
+Places Without(Places set, std::size_t member) {
+  set.erase(set.begin() + static_cast<std::ptrdiff_t>(member));
+  return set;
+}
+
 class Choice {
  public:
   Choice(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
          const std::vector<Candidate>& candidates, const ChoiceOptions& options)
       : machine_(machine),
-        path_(path),
         options_(options),
         along_{MotionAlong(machine, run, path), path.noise.reading,
                run.Time().maxCoeff()},
-        blocks_(BlocksOf(machine, candidates)) {
+        blocks_(BlocksOf(machine, candidates)),
+        noises_(NoisesFrom(path.noise)) {
     const MatrixXd inflation = InflationAlong(path);
-    const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
-    whitenings_.resize(noises.size());
-    noises_ = noises;
-    ParallelFor(static_cast<int>(noises.size()), [&](int number) {
+    whitenings_.resize(noises_.size());
+    ParallelFor(static_cast<int>(noises_.size()), [&](int number) {
       const auto r = static_cast<std::size_t>(number);
-      whitenings_[r] = std::make_unique<Whitening>(path, noises[r], inflation);
+      whitenings_[r] = std::make_unique<Whitening>(path, noises_[r], inflation);
     });
   }
 
@@ -82,7 +85,6 @@ class Choice {
   std::string Describe() const;
 
   const Machine& machine_;
-  const FilterPath& path_;
   const ChoiceOptions& options_;
   BlockMotion along_;
   std::vector<Block> blocks_;
@@ -282,8 +284,7 @@ void Choice::Exchange() {
   for (bool moved = true; moved;) {
     moved = false;
     for (std::size_t i = 0; i < set_.size() && !moved; ++i) {
-      Places without = set_;
-      without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
+      const Places without = Without(set_, i);
       const Scored scored = ScoreOf(without);
       if (scored.score > scored_.score) continue;
       set_ = without;
@@ -348,12 +349,10 @@ ChosenSet Choice::Run() {
   chosen.noise = noises_[scored_.noise];
   Index first = 0;
   for (std::size_t i = 0; i < set_.size(); ++i) {
-    Places without = set_;
-    without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
     const Variation& one = kept_[set_[i]];
     chosen.members.push_back({one, scored_.fit.amplitudes.segment(first, one.sd.size()),
                               scored_.fit.sd.segment(first, one.sd.size()),
-                              ScoreOf(without).score - scored_.score});
+                              ScoreOf(Without(set_, i)).score - scored_.score});
     first += one.sd.size();
   }
   chosen.blocks = blocks_;

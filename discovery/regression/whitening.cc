@@ -17,30 +17,17 @@ namespace {
 // Columns that go through the run side by side: their deviations stay in the cache.
 constexpr Index kTogether = 32;
 
-Index RecordsOf(const FilterPath& path) { return std::ssize(path.first); }
-
-Index EndOf(const FilterPath& path, Index record) {
-  return record + 1 < RecordsOf(path) ? path.first[static_cast<std::size_t>(record + 1)]
-                                      : path.samples();
-}
-
-Index ReadingsOf(const FilterPath& path) { return path.counts.count(); }
-
-MatrixXd LatentColumns(const MatrixXd& B, const std::vector<Index>& dofs) {
-  return B(Eigen::indexing::all, dofs);
-}
-
 }  // namespace
 
 MatrixXd InflationAlong(const FilterPath& path) {
   MatrixXd inflation = MatrixXd::Ones(path.sensors(), path.samples());
-  for (Index record = 0; record < RecordsOf(path); ++record) {
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
     LinearPass pass(path, path.noise);
     pass.at_reading = [&](Index sensor, Index sample, bool, double) {
       inflation(sensor, sample) = pass.kalman.inflation;
     };
-    const Index first = path.first[static_cast<std::size_t>(record)];
-    pass.Over(first, EndOf(path, record) - first);
+    const Index first = path.first[record];
+    pass.Over(first, path.EndOf(record) - first);
   }
   return inflation;
 }
@@ -49,13 +36,13 @@ Whitening::Whitening(const FilterPath& path, const FilterNoise& noise,
                      const MatrixXd& inflation)
     : path_(path), ticks_(static_cast<std::size_t>(path.samples())) {
   const Index n = path.pulled.rows();
-  const Index rows = ReadingsOf(path);
+  const Index rows = path.counts.count();
   K_.resize(n, rows);
   C_.resize(n, rows);
   inverse_sd_.resize(rows);
   left_.resize(rows);
   Index row = 0;
-  for (Index record = 0; record < RecordsOf(path); ++record) {
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
     LinearPass pass(path, noise);
     pass.inflation = &inflation;
     pass.at_tick = [&](Index k) { ticks_[static_cast<std::size_t>(k)].first = row; };
@@ -69,8 +56,8 @@ Whitening::Whitening(const FilterPath& path, const FilterNoise& noise,
       ++row;
     };
     pass.at_advance = [&](Index k) { ticks_[static_cast<std::size_t>(k)].end = row; };
-    const Index first = path.first[static_cast<std::size_t>(record)];
-    pass.Over(first, EndOf(path, record) - first);
+    const Index first = path.first[record];
+    pass.Over(first, path.EndOf(record) - first);
     rho_ = pass.kalman.rho();
   }
   // Readings of the end of a tick before the first one of a record are taken by nobody.
@@ -106,10 +93,9 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
   for (Index dof = 0; dof < nv; ++dof) {
     if (forced[static_cast<std::size_t>(dof)]) dofs.push_back(dof);
   }
-  for (Index record = 0; record < RecordsOf(path_); ++record) {
+  for (std::size_t record = 0; record < path_.first.size(); ++record) {
     d.setZero();
-    const Index end = EndOf(path_, record);
-    for (Index k = path_.first[static_cast<std::size_t>(record)]; k < end; ++k) {
+    for (Index k = path_.first[record]; k < path_.EndOf(record); ++k) {
       const TickTangent& tangent = path_.At(k);
       for (Index j = 0; j < count; ++j) {
         for (const auto& [dof, signal] :
@@ -135,7 +121,7 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
       }
       if (of_latent != &tangent) {
         of_latent = &tangent;
-        latent = LatentColumns(tangent.B, path_.dofs);
+        latent = tangent.B(Eigen::indexing::all, path_.dofs);
       }
       moved.noalias() = tangent.A * d.topRows(ns);
       moved.noalias() += latent * d.middleRows(ns, nf);
@@ -175,10 +161,9 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
     MatrixXd moved(n, count);
     MatrixXd F(nv, count);
     Eigen::RowVectorXd y(count);
-    for (Index record = RecordsOf(path_); record-- > 0;) {
+    for (std::size_t record = path_.first.size(); record-- > 0;) {
       l.setZero();
-      const Index begin = path_.first[static_cast<std::size_t>(record)];
-      for (Index k = EndOf(path_, record); k-- > begin;) {
+      for (Index k = path_.EndOf(record); k-- > path_.first[record];) {
         const TickTangent& tangent = path_.At(k);
         F.noalias() = tangent.B.transpose() * l.topRows(ns);
         moved.topRows(ns).noalias() = tangent.A.transpose() * l.topRows(ns);

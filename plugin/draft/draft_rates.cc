@@ -37,8 +37,7 @@ void DraftRates(const mjModel& model, double interval, SetupDraft& draft) {
   if (model.opt.integrator != mjINT_EULER && model.opt.integrator != mjINT_IMPLICIT) {
     draft.additions.euler = true;
     draft.added.push_back(
-        "integrator=\"Euler\": the plant's own looks at the controls several times a "
-        "step");
+        "integrator=\"Euler\": the linear plant, which discover needs, is stepped so");
   }
   if (!(interval > 0.0)) {
     draft.control = Rounded(1.0 / step, 12);

@@ -164,6 +164,12 @@ VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
 
 }  // namespace
 
+VectorXd StillSpeeds(const mjModel& plant, const VectorXd& reading_noise,
+                     double sample_time) {
+  constexpr double kShare = 0.02;
+  return VectorXd::Constant(plant.nv, kShare * reading_noise.minCoeff() / sample_time);
+}
+
 MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators,
                      const PlantNumber& number, const ObservedMotion& motion,
                      const VectorXd& still) {

@@ -20,6 +20,11 @@
 
 namespace mjdiag {
 
+/// Speeds below which joints stand still, nv: what the noise of readings may seem to be.
+/// @param reading_noise  of every sensor
+Eigen::VectorXd StillSpeeds(const mjModel& plant, const Eigen::VectorXd& reading_noise,
+                            double sample_time);
+
 /// F, samples x nv [N, N m].
 /// @param plant      with the number as it is
 /// @param actuators  ids of those that the inputs drive; -1: none

@@ -64,6 +64,10 @@ struct FilterPath {
 
   Eigen::Index samples() const { return innovations.cols(); }
   Eigen::Index sensors() const { return innovations.rows(); }
+  /// Sample behind the last one of a record.
+  Eigen::Index EndOf(std::size_t record) const {
+    return record + 1 < first.size() ? first[record + 1] : samples();
+  }
   Eigen::Index dof_count() const { return static_cast<Eigen::Index>(dofs.size()); }
   const TickTangent& At(Eigen::Index sample) const {
     return tangents[of_tick[static_cast<std::size_t>(sample)]];

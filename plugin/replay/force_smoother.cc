@@ -113,9 +113,8 @@ SmoothedForces SmoothForces(const FilterPath& path) {
   ParallelFor(static_cast<int>(records), [&](int number) {
     const auto r = static_cast<std::size_t>(number);
     const Index first = path.first[r];
-    const Index end = r + 1 < records ? path.first[r + 1] : path.samples();
     const std::vector<FilterGains> gains =
-        GainsAlong(path, path.noise, first, end - first);
+        GainsAlong(path, path.noise, first, path.EndOf(r) - first);
     variances[r] = BackwardPass(path, gains, first, smoothed).Run();
   });
   VectorXd variance = VectorXd::Zero(path.dof_count());

@@ -16,7 +16,7 @@ namespace mjdiag {
 class LinearPass {
  public:
   LinearPass(const FilterPath& path, const FilterNoise& noise)
-      : path_(path), kalman(path.dofs, noise, path.sample_time) {}
+      : kalman(path.dofs, noise, path.sample_time), path_(path) {}
 
   void Over(Eigen::Index first, Eigen::Index count);
 
@@ -33,14 +33,12 @@ class LinearPass {
   /// How many times its variance a reading has, ny x samples; null: as the pass itself
   /// finds it, by Huber's corner.
   const Eigen::MatrixXd* inflation = nullptr;
+  ForceKalman kalman;
 
  private:
   void Take(Eigen::Index sensor, bool late, Eigen::Index sample);
 
   const FilterPath& path_;
-
- public:
-  ForceKalman kalman;
 };
 
 /// What a linear pass over a path keeps of every tick, for a smoother; in the order in which

@@ -27,8 +27,7 @@ namespace {
 VectorXd DeviancesOf(const FilterPath& path, const FilterNoise& noise) {
   VectorXd sum = VectorXd::Zero(path.sensors());
   for (std::size_t r = 0; r < path.first.size(); ++r) {
-    const Index end = r + 1 < path.first.size() ? path.first[r + 1] : path.samples();
-    sum += Score(path, noise, path.first[r], end - path.first[r]).deviance;
+    sum += Score(path, noise, path.first[r], path.EndOf(r) - path.first[r]).deviance;
   }
   if (!sum.allFinite()) sum.setConstant(std::numeric_limits<double>::infinity());
   return sum;
