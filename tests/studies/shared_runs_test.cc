@@ -115,7 +115,8 @@ class Job : public ::testing::Test {
     const auto rest =
         MakeRuns(team, pool, kStudy, patience_, [&] { return wish && wish(rank); });
     ReportClosed(team, rest);
-    team.Leave(team.AwaitOrder(patience_));
+    // As ranks of a plan do: until then the lead may wait for one that died.
+    team.Leave(team.AwaitOrder(2.0 * patience_));
   }
 
   std::vector<int> Made() const { return {made_.begin(), made_.end()}; }
