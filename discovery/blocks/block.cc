@@ -128,11 +128,25 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
   }
   block.price = -2.0 * std::log(kMissing);
   if (variation.columns.front().forces.empty()) return;
-  variation.sd = VectorXd::Constant(1, DoubtOf(machine.plant(), number));
+  variation.sd = VectorXd::Constant(1, block.doubt);
   variation.values = [](const Amplitudes& a) -> TrialValues {
     return VectorXd(a.array().exp());
   };
   take(std::move(variation));
+}
+
+/// Resistances of a joint are one curve over its velocity each, however it is called.
+std::string GroupOf(Kind kind, const std::string& name) {
+  const std::string site = name.substr(name.find('@') + 1);
+  switch (kind) {
+    case Kind::kDryFriction:
+    case Kind::kLoadFriction:
+      return "dry friction@" + site;
+    case Kind::kViscousFriction:
+      return "viscous friction@" + site;
+    default:
+      return name;
+  }
 }
 
 }  // namespace
@@ -142,15 +156,26 @@ std::vector<Block> BlocksOf(const Machine& machine,
   std::vector<Block> blocks;
   std::vector<PlantNumber> stood_for;
   for (const Candidate& candidate : candidates) {
-    blocks.push_back({Describe(candidate), candidate, std::nullopt, 0.0});
+    const std::string name = Describe(candidate);
+    const bool repeats =
+        PeriodPlace(candidate) < std::ssize(candidate.parameters);
+    blocks.push_back(
+        {.name = name,
+         .candidate = candidate,
+         .number = std::nullopt,
+         .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
     const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
     if (number) stood_for.push_back(*number);
   }
   const auto add = [&](const std::vector<PlantNumber>& numbers) {
     for (const PlantNumber& number : numbers) {
       if (std::ranges::find(stood_for, number) != stood_for.end()) continue;
-      blocks.push_back(
-          {PlantNumberName(machine.plant(), number), std::nullopt, number, 0.0});
+      const std::string name = PlantNumberName(machine.plant(), number);
+      blocks.push_back({.name = name,
+                        .candidate = std::nullopt,
+                        .number = number,
+                        .doubt = DoubtOf(machine.plant(), number),
+                        .group = GroupOf(KindOf(number.kind), name)});
     }
   };
   if (!IsExact(machine.plant())) {
@@ -158,6 +183,24 @@ std::vector<Block> BlocksOf(const Machine& machine,
     add(CentreNumbers(machine.plant()));
   }
   return blocks;
+}
+
+bool Block::HasShape() const {
+  return candidate && std::ranges::any_of(candidate->parameters, [](const auto& one) {
+           return IsShape(one.role);
+         });
+}
+
+bool IsAllowed(const Block& block, const TrialValues& values) {
+  if (!values || !values->allFinite()) return false;
+  if (!block.candidate) return true;
+  for (Index i = 0; i < values->size(); ++i) {
+    const FitParameter& parameter =
+        block.candidate->parameters[static_cast<std::size_t>(i)];
+    if (IsShape(parameter.role)) continue;
+    if ((*values)[i] < parameter.lower || (*values)[i] > parameter.upper) return false;
+  }
+  return true;
 }
 
 void ForEachVariation(const Machine& machine, const BlockMotion& along,

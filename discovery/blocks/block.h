@@ -39,7 +39,13 @@ struct Block {
   std::string name;  ///< "coulomb_friction@X", "mass@stage"
   std::optional<Candidate> candidate;
   std::optional<PlantNumber> number;
+  double doubt = 0.0;  ///< of the number's logarithm, a standard deviation
+  /// Blocks of one group are one thing in several shapes: a model has one of them. Empty:
+  /// a group of its own, of which there may be several members.
+  std::string group = {};
   double price = 0.0;
+
+  bool HasShape() const;
 };
 
 /// The motion of a run, and what of it does not change from block to block.
@@ -48,6 +54,9 @@ struct BlockMotion {
   Eigen::VectorXd reading_noise;  ///< ny
   double duration = 0.0;          ///< [s]
 };
+
+/// Whether values are such as its law, or the number, can have.
+bool IsAllowed(const Block& block, const TrialValues& values);
 
 /// Those of a machine: candidates, then numbers of the plant that no candidate stands for.
 std::vector<Block> BlocksOf(const Machine& machine,

@@ -13,10 +13,10 @@ FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& co
                 int folds) {
   const Index rows = whitening.rows();
   MatrixXd all(rows, 1 + std::ssize(columns));
-  all.col(0) = whitening.left();
+  all.col(0) = whitening.gains().left;
   all.rightCols(std::ssize(columns)) = whitening.Of(columns);
   FoldGram gram;
-  gram.log_determinant = whitening.log_determinant();
+  gram.log_determinant = whitening.gains().log_determinant;
   gram.sum = MatrixXd::Zero(all.cols(), all.cols());
   for (Index fold = 0; fold < folds; ++fold) {
     const Index first = fold * rows / folds;
@@ -30,36 +30,45 @@ FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& co
   return gram;
 }
 
-SetFit FitSet(const FoldGram& gram, const std::vector<Index>& columns,
-              const VectorXd& sd) {
-  const Index n = std::ssize(columns);
-  SetFit fit;
-  fit.unseen = gram.log_determinant;
-  fit.amplitudes.resize(0);
-  if (n == 0) {
-    fit.unseen += gram.sum(0, 0);
-    return fit;
-  }
+SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
+  const Index n = std::ssize(set.columns);
   std::vector<Index> places;
-  for (const Index column : columns) places.push_back(1 + column);
-  // In units of what is known beforehand.
+  for (const Index column : set.columns) places.push_back(1 + column);
+  VectorXd given = VectorXd::Zero(gram.sum.cols());
+  given[0] = 1.0;
+  for (const Index column : set.given) given[1 + column] = -1.0;
+  const VectorXd& sd = set.sd;
+  const VectorXd mean = set.mean.cwiseQuotient(sd);
+  // In units of what is known beforehand, what is given taken off.
   const auto part = [&](const MatrixXd& of) -> MatrixXd {
     return sd.asDiagonal() * of(places, places) * sd.asDiagonal();
   };
   const auto product = [&](const MatrixXd& of) -> VectorXd {
-    return sd.cwiseProduct(of(places, 0));
+    return sd.cwiseProduct(VectorXd(of(places, Eigen::all) * given));
   };
+  const auto square = [&](const MatrixXd& of) -> double { return given.dot(of * given); };
+  SetFit fit;
   const MatrixXd G = part(gram.sum);
   const VectorXd b = product(gram.sum);
   const MatrixXd I = MatrixXd::Identity(n, n);
   const Eigen::LLT<MatrixXd> whole(G + I);
-  fit.amplitudes = sd.cwiseProduct(whole.solve(b));
+  const VectorXd a = whole.solve(b + mean);
+  fit.amplitudes = sd.cwiseProduct(a);
   fit.sd = sd.cwiseProduct(whole.solve(I).diagonal().cwiseSqrt());
+  fit.evidence = gram.log_determinant + square(gram.sum) - 2.0 * a.dot(b) +
+                 a.dot(G * a) + (a - mean).squaredNorm() +
+                 2.0 * whole.matrixLLT().diagonal().array().log().sum();
+  fit.unseen = gram.log_determinant;
   for (const MatrixXd& fold : gram.folds) {
+    if (n == 0) {
+      fit.unseen += square(fold);
+      continue;
+    }
     const MatrixXd Gf = part(fold);
     const VectorXd bf = product(fold);
-    const VectorXd a = Eigen::LLT<MatrixXd>(G - Gf + I).solve(b - bf);
-    fit.unseen += fold(0, 0) - 2.0 * a.dot(bf) + a.dot(Gf * a);
+    const VectorXd of_others = Eigen::LLT<MatrixXd>(G - Gf + I).solve(b - bf + mean);
+    fit.unseen +=
+        square(fold) - 2.0 * of_others.dot(bf) + of_others.dot(Gf * of_others);
   }
   return fit;
 }

@@ -20,6 +20,15 @@ struct FoldGram {
 FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& columns,
                 int folds);
 
+/// Columns that are in, with what is known of their amplitudes beforehand, and others that
+/// are in as they are, with an amplitude of 1.
+struct SetOfColumns {
+  std::vector<Eigen::Index> columns;  ///< places in the Gram matrix, without the first row
+  Eigen::VectorXd sd;
+  Eigen::VectorXd mean;
+  std::vector<Eigen::Index> given;
+};
+
 /// What a set of columns says behind a noise.
 struct SetFit {
   Eigen::VectorXd amplitudes;
@@ -27,11 +36,11 @@ struct SetFit {
   /// -2 ln of how dense the folds are predicted that a fit did not see, each from all of the
   /// others, but for a constant.
   double unseen = 0.0;
+  /// -2 ln of how dense the run is predicted by what is known beforehand, but for the same
+  /// constant: the evidence.
+  double evidence = 0.0;
 };
 
-/// @param columns  places in the Gram matrix, without the first row
-/// @param sd       of their amplitudes as known beforehand
-SetFit FitSet(const FoldGram& gram, const std::vector<Eigen::Index>& columns,
-              const Eigen::VectorXd& sd);
+SetFit FitSet(const FoldGram& gram, const SetOfColumns& set);
 
 }  // namespace mjdiag

@@ -1,9 +1,8 @@
 #include "mjdiag/discovery/regression/whitening.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -19,57 +18,12 @@ constexpr Index kTogether = 32;
 
 }  // namespace
 
-MatrixXd InflationAlong(const FilterPath& path) {
-  MatrixXd inflation = MatrixXd::Ones(path.sensors(), path.samples());
-  for (std::size_t record = 0; record < path.first.size(); ++record) {
-    LinearPass pass(path, path.noise);
-    pass.at_reading = [&](Index sensor, Index sample, bool, double) {
-      inflation(sensor, sample) = pass.kalman.inflation;
-    };
-    const Index first = path.first[record];
-    pass.Over(first, path.EndOf(record) - first);
-  }
-  return inflation;
-}
-
-Whitening::Whitening(const FilterPath& path, const FilterNoise& noise,
-                     const MatrixXd& inflation)
-    : path_(path), ticks_(static_cast<std::size_t>(path.samples())) {
-  const Index n = path.pulled.rows();
-  const Index rows = path.counts.count();
-  K_.resize(n, rows);
-  C_.resize(n, rows);
-  inverse_sd_.resize(rows);
-  left_.resize(rows);
-  Index row = 0;
-  for (std::size_t record = 0; record < path.first.size(); ++record) {
-    LinearPass pass(path, noise);
-    pass.inflation = &inflation;
-    pass.at_tick = [&](Index k) { ticks_[static_cast<std::size_t>(k)].first = row; };
-    pass.at_reading = [&](Index sensor, Index sample, bool late, double) {
-      readings_.push_back({sensor, sample, late});
-      K_.col(row) = pass.kalman.gain;
-      C_.col(row) = pass.kalman.c();
-      inverse_sd_[row] = 1.0 / std::sqrt(pass.kalman.variance);
-      left_[row] = pass.kalman.last_innovation * inverse_sd_[row];
-      log_determinant_ += std::log(pass.kalman.variance);
-      ++row;
-    };
-    pass.at_advance = [&](Index k) { ticks_[static_cast<std::size_t>(k)].end = row; };
-    const Index first = path.first[record];
-    pass.Over(first, path.EndOf(record) - first);
-    rho_ = pass.kalman.rho();
-  }
-  // Readings of the end of a tick before the first one of a record are taken by nobody.
-  K_.conservativeResize(n, row);
-  C_.conservativeResize(n, row);
-  inverse_sd_.conservativeResize(row);
-  left_.conservativeResize(row);
-}
+Whitening::Whitening(const FilterPath& path, KeptGains gains)
+    : path_(path), gains_(std::move(gains)) {}
 
 void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index first,
                             Index count, MatrixXd& out) const {
-  const Index n = K_.rows();
+  const Index n = gains_.K.rows();
   const Index nf = path_.dof_count();
   const Index ns = n - nf - 1;
   const Index nv = path_.tangents.front().B.cols();
@@ -103,10 +57,10 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
           F(dof, j) = signal[k];
         }
       }
-      const Tick& tick = ticks_[static_cast<std::size_t>(k)];
+      const KeptGains::Tick& tick = gains_.ticks[static_cast<std::size_t>(k)];
       for (Index row = tick.first; row < tick.end; ++row) {
-        const Reading& reading = readings_[static_cast<std::size_t>(row)];
-        y.noalias() = C_.col(row).transpose() * d;
+        const KeptGains::Reading& reading = gains_.readings[static_cast<std::size_t>(row)];
+        y.noalias() = gains_.C.col(row).transpose() * d;
         if (reading.late) y += tangent.D.row(reading.sensor) * F;
         if (any_reading) {
           for (Index j = 0; j < count; ++j) {
@@ -116,8 +70,8 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
             }
           }
         }
-        out.row(row).segment(first, count) = y * inverse_sd_[row];
-        d.noalias() -= K_.col(row) * y;
+        out.row(row).segment(first, count) = y * gains_.inverse_sd[row];
+        d.noalias() -= gains_.K.col(row) * y;
       }
       if (of_latent != &tangent) {
         of_latent = &tangent;
@@ -126,8 +80,14 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
       moved.noalias() = tangent.A * d.topRows(ns);
       moved.noalias() += latent * d.middleRows(ns, nf);
       for (const Index dof : dofs) moved.noalias() += tangent.B.col(dof) * F.row(dof);
+      for (Index j = 0; j < count; ++j) {
+        for (const auto& [state, signal] :
+             columns[static_cast<std::size_t>(first + j)]->states) {
+          moved(state, j) += signal[k];
+        }
+      }
       d.topRows(ns) = moved;
-      d.bottomRows(nf + 1) = rho_.asDiagonal() * d.bottomRows(nf + 1);
+      d.bottomRows(nf + 1) = gains_.rho.asDiagonal() * d.bottomRows(nf + 1);
     }
   }
 }
@@ -143,7 +103,7 @@ MatrixXd Whitening::Of(const std::vector<const Column*>& columns) const {
 }
 
 std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u) const {
-  const Index n = K_.rows();
+  const Index n = gains_.K.rows();
   const Index nf = path_.dof_count();
   const Index ns = n - nf - 1;
   const Index nv = path_.tangents.front().B.cols();
@@ -171,14 +131,14 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
           moved.row(ns + j) = F.row(path_.dofs[static_cast<std::size_t>(j)]);
         }
         moved.row(n - 1).setZero();
-        moved.bottomRows(nf + 1) += rho_.asDiagonal() * l.bottomRows(nf + 1);
+        moved.bottomRows(nf + 1) += gains_.rho.asDiagonal() * l.bottomRows(nf + 1);
         l = moved;
-        const Tick& tick = ticks_[static_cast<std::size_t>(k)];
+        const KeptGains::Tick& tick = gains_.ticks[static_cast<std::size_t>(k)];
         for (Index row = tick.end; row-- > tick.first;) {
-          const Reading& reading = readings_[static_cast<std::size_t>(row)];
-          y = u.row(row).segment(first, count) * inverse_sd_[row];
-          y.noalias() -= K_.col(row).transpose() * l;
-          l.noalias() += C_.col(row) * y;
+          const KeptGains::Reading& reading = gains_.readings[static_cast<std::size_t>(row)];
+          y = u.row(row).segment(first, count) * gains_.inverse_sd[row];
+          y.noalias() -= gains_.K.col(row).transpose() * l;
+          l.noalias() += gains_.C.col(row) * y;
           if (reading.late) {
             F.noalias() += tangent.D.row(reading.sensor).transpose() * y;
           }

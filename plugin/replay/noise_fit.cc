@@ -335,4 +335,18 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   return path;
 }
 
+FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
+                               const VectorXd& reading_sd, const FilterNoise& near) {
+  const std::vector<Index> dofs = LatentDofs(machine, run);
+  const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
+  const MeasuredRun pieces = PiecesOf(run);
+  const FilterPath of_pieces = RunForceFilter(
+      machine, pieces, dofs, FilterStarts(machine, pieces, reading_sd), near);
+  const FilterNoise found = Refined(of_pieces, reading_sd, kCoarse);
+  FilterPath path = RunForceFilter(machine, run, dofs, starts, found);
+  FilterPath refined =
+      RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, kMedium));
+  return refined.deviance < path.deviance ? refined : path;
+}
+
 }  // namespace mjdiag

@@ -34,4 +34,9 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
 FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const Eigen::VectorXd& reading_sd);
 
+/// The path of a run with the noise that is most likely from a near one on.
+FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
+                               const Eigen::VectorXd& reading_sd,
+                               const FilterNoise& near);
+
 }  // namespace mjdiag

@@ -1,0 +1,137 @@
+#include "mjdiag/discovery/fit/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "mjdiag/discovery/hypotheses/fitted_cause.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+
+Coordinate OfParameter(const FitParameter& parameter, double theta) {
+  Coordinate one;
+  const bool sized = std::isfinite(parameter.spread) && parameter.spread > 0.0;
+  const double size = std::max(std::abs(theta), 1e-12);
+  switch (parameter.role) {
+    case Role::kAmplitude:
+    case Role::kTime:
+      one.unit = sized ? parameter.spread : size;
+      one.is_known = sized;
+      break;
+    case Role::kFactor:
+      one.is_log = parameter.lower >= 0.0;
+      one.unit = sized ? parameter.spread : 1.0;
+      one.is_known = sized;
+      break;
+    case Role::kLength:
+    case Role::kVelocity:
+    case Role::kSteepness:
+    case Role::kDuration:
+    case Role::kPeriod:
+    case Role::kFrequency:
+      one.is_log = parameter.lower >= 0.0 && theta > 0.0;
+      one.unit = one.is_log ? 1.0 : size;
+      break;
+    case Role::kPhase:
+    case Role::kRatio:
+      break;
+    default:
+      one.unit = sized ? parameter.spread : size;
+      break;
+  }
+  one.lower = one.ToX(parameter.lower);
+  one.upper = one.ToX(parameter.upper);
+  return one;
+}
+
+}  // namespace
+
+double Coordinate::ToX(double theta) const {
+  if (!is_log) return theta / unit;
+  return theta > 0.0 ? std::log(theta) / unit : -kAny;
+}
+
+double Coordinate::ToTheta(double x) const {
+  return is_log ? std::exp(unit * x) : unit * x;
+}
+
+Changes ChangesOf(const std::vector<Block>& blocks, const Model& model) {
+  Changes changes;
+  for (const Member& member : model) {
+    const Block& block = blocks[member.block];
+    if (block.number) {
+      changes.numbers.emplace_back(*block.number, member.values[0]);
+      continue;
+    }
+    const Changes own = ChangesOf({*block.candidate}, {{0, member.values}});
+    changes.faults.insert(changes.faults.end(), own.faults.begin(), own.faults.end());
+    changes.effects.insert(changes.effects.end(), own.effects.begin(),
+                           own.effects.end());
+  }
+  return changes;
+}
+
+std::string Describe(const std::vector<Block>& blocks, const Model& model) {
+  std::string text;
+  for (const Member& member : model) {
+    text += (text.empty() ? "" : ", ") + blocks[member.block].name + "(";
+    for (Index i = 0; i < member.values.size(); ++i) {
+      char value[32];
+      std::snprintf(value, sizeof value, "%s%.5g", i == 0 ? "" : " ", member.values[i]);
+      text += value;
+    }
+    text += ")";
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+std::vector<Coordinate> CoordinatesOf(const std::vector<Block>& blocks,
+                                      const Model& model) {
+  std::vector<Coordinate> all;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    const Block& block = blocks[model[m].block];
+    if (block.number) {
+      // Nine times the doubt is another machine.
+      constexpr double kFarthest = 9.0;
+      all.push_back({m, 0, true, block.doubt, true, -kFarthest, kFarthest});
+      continue;
+    }
+    for (Index i = 0; i < model[m].values.size(); ++i) {
+      const FitParameter& parameter =
+          block.candidate->parameters[static_cast<std::size_t>(i)];
+      if (parameter.role == Role::kChoice) continue;
+      Coordinate one = OfParameter(parameter, model[m].values[i]);
+      one.member = m;
+      one.value = i;
+      all.push_back(one);
+    }
+  }
+  return all;
+}
+
+VectorXd Place(const std::vector<Coordinate>& coordinates, const Model& model) {
+  VectorXd x(std::ssize(coordinates));
+  for (Index i = 0; i < x.size(); ++i) {
+    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
+    x[i] = std::clamp(one.ToX(model[one.member].values[one.value]), one.lower, one.upper);
+  }
+  return x;
+}
+
+Model At(const std::vector<Coordinate>& coordinates, Model model, const VectorXd& x) {
+  for (Index i = 0; i < x.size(); ++i) {
+    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
+    model[one.member].values[one.value] = one.ToTheta(x[i]);
+  }
+  return model;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,205 @@
+#include "mjdiag/discovery/fit/model_fit.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Residuals at [x; a].
+class Innovations {
+ public:
+  Innovations(const Machine& nominal, const MeasuredRun& run, const FilterPath& path,
+              const KeptGains& gains, const std::vector<Block>& blocks, Model model,
+              std::vector<Coordinate> coordinates, const MatrixXd& free)
+      : nominal_(nominal),
+        run_(run),
+        path_(path),
+        gains_(gains),
+        blocks_(blocks),
+        model_(std::move(model)),
+        coordinates_(std::move(coordinates)),
+        free_(free) {}
+
+  Index rows() const { return gains_.rows(); }
+  Index size() const { return std::ssize(coordinates_) + free_.cols(); }
+  const std::vector<Coordinate>& coordinates() const { return coordinates_; }
+
+  const VectorXd& Of(const VectorXd& xa) {
+    if (kept_.size() > 0 && xa == at_) return kept_;
+    kept_ = RunAt(xa.head(std::ssize(coordinates_)));
+    if (free_.cols() > 0) kept_ -= free_ * xa.tail(free_.cols());
+    at_ = xa;
+    return kept_;
+  }
+
+  MatrixXd Jacobian(const VectorXd& xa) {
+    const Index own = std::ssize(coordinates_);
+    const VectorXd x = xa.head(own);
+    VectorXd base = Of(xa);
+    if (free_.cols() > 0) base += free_ * xa.tail(free_.cols());
+    MatrixXd J(rows(), size());
+    J.rightCols(free_.cols()) = -free_;
+    ParallelForAll(static_cast<int>(own), [&](int number) {
+      const Index i = number;
+      const Coordinate& one = coordinates_[static_cast<std::size_t>(i)];
+      double step = one.is_log ? 1e-4 : std::max(1e-3 * std::abs(x[i]), 1e-6);
+      if (x[i] + step > one.upper) step = -step;
+      VectorXd moved = x;
+      moved[i] += step;
+      J.col(i) = (RunAt(moved) - base) / step;
+    });
+    return J;
+  }
+
+ private:
+  VectorXd RunAt(const VectorXd& x) const {
+    const Model model = At(coordinates_, model_, x);
+    return PredictAlong(nominal_.With(ChangesOf(blocks_, model)), run_, path_, gains_);
+  }
+
+  const Machine& nominal_;
+  const MeasuredRun& run_;
+  const FilterPath& path_;
+  const KeptGains& gains_;
+  const std::vector<Block>& blocks_;
+  Model model_;
+  std::vector<Coordinate> coordinates_;
+  const MatrixXd& free_;
+  VectorXd at_, kept_;
+};
+
+class InnovationCost final : public ceres::CostFunction {
+ public:
+  explicit InnovationCost(Innovations& innovations) : innovations_(innovations) {
+    set_num_residuals(static_cast<int>(innovations.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(innovations.size()));
+  }
+  bool Evaluate(const double* const* blocks, double* residuals,
+                double** jacobians) const override {
+    const VectorXd x = VectorXd::Map(blocks[0], innovations_.size());
+    try {
+      VectorXd::Map(residuals, innovations_.rows()) = innovations_.Of(x);
+      if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+      using RowMajor =
+          Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      const MatrixXd J = innovations_.Jacobian(x);
+      if (!J.allFinite()) return false;
+      if (J.cols() == 1) {
+        VectorXd::Map(jacobians[0], J.rows()) = J.col(0);
+      } else {
+        Eigen::Map<RowMajor>(jacobians[0], J.rows(), J.cols()) = J;
+      }
+      return true;
+    } catch (const NumericalError&) {
+      return false;  // diverged: a step that far is refused
+    } catch (const InputError&) {
+      return false;  // takes away more than there is
+    }
+  }
+
+ private:
+  Innovations& innovations_;
+};
+
+/// x of what is known beforehand.
+class KnownCost final : public ceres::CostFunction {
+ public:
+  explicit KnownCost(VectorXd weight) : weight_(std::move(weight)) {
+    set_num_residuals(static_cast<int>(weight_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(weight_.size()));
+  }
+  bool Evaluate(const double* const* blocks, double* residuals,
+                double** jacobians) const override {
+    VectorXd::Map(residuals, weight_.size()) =
+        weight_.cwiseProduct(VectorXd::Map(blocks[0], weight_.size()));
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      MatrixXd::Map(jacobians[0], weight_.size(), weight_.size()) = weight_.asDiagonal();
+    }
+    return true;
+  }
+
+ private:
+  VectorXd weight_;
+};
+
+}  // namespace
+
+ModelFit FitModel(const Machine& nominal, const MeasuredRun& run, const FilterPath& path,
+                  const KeptGains& gains, const std::vector<Block>& blocks,
+                  const Model& start, const MatrixXd& free, int iterations) {
+  const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, start);
+  Innovations innovations(nominal, run, path, gains, blocks, start, coordinates, free);
+  const Index own = std::ssize(coordinates);
+  VectorXd x = VectorXd::Zero(innovations.size());
+  x.head(own) = Place(coordinates, start);
+  VectorXd weight = VectorXd::Zero(x.size());
+  for (Index i = 0; i < own; ++i) {
+    weight[i] = coordinates[static_cast<std::size_t>(i)].is_known ? 1.0 : 0.0;
+  }
+  innovations.Of(x);
+  if (x.size() > 0 && iterations > 0) {
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(ownership);
+    InnovationCost cost(innovations);
+    KnownCost known(weight);
+    problem.AddResidualBlock(&cost, nullptr, x.data());
+    problem.AddResidualBlock(&known, nullptr, x.data());
+    for (Index i = 0; i < own; ++i) {
+      const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
+      const int index = static_cast<int>(i);
+      if (std::isfinite(one.lower)) {
+        problem.SetParameterLowerBound(x.data(), index, one.lower);
+      }
+      if (std::isfinite(one.upper)) {
+        problem.SetParameterUpperBound(x.data(), index, one.upper);
+      }
+    }
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.max_num_iterations = iterations;
+    // A hundredth of what one innovation tells.
+    solver.function_tolerance =
+        0.01 / std::max(1.0, innovations.Of(x).squaredNorm());
+    solver.parameter_tolerance = 1e-7;
+    solver.logging_type = ceres::SILENT;
+    solver.line_search_interpolation_type = ceres::QUADRATIC;
+    solver.max_num_line_search_step_size_iterations = 5;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    if (!summary.IsSolutionUsable()) {
+      throw NumericalError("fit: the run with the first values diverges");
+    }
+  }
+  ModelFit fit;
+  fit.model = At(coordinates, start, x.head(own));
+  fit.deviance = innovations.Of(x).squaredNorm() + gains.log_determinant;
+  fit.prior = weight.cwiseProduct(x).squaredNorm();
+  for (const Member& member : fit.model) fit.prior += blocks[member.block].price;
+  if (own > 0) {
+    const MatrixXd J = innovations.Jacobian(x);
+    const MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
+    const Eigen::LLT<MatrixXd> solved(H);
+    fit.occam = 2.0 * solved.matrixLLT().diagonal().array().log().sum();
+    fit.sd = solved.solve(MatrixXd::Identity(x.size(), x.size()))
+                 .diagonal()
+                 .head(own)
+                 .cwiseSqrt();
+  }
+  return fit;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,284 @@
+#include "mjdiag/discovery/regression/moves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/regression/fold_gram.h"
+#include "mjdiag/discovery/regression/promising.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kImpossible = std::numeric_limits<double>::infinity();
+constexpr int kFolds = 40;
+
+/// Smaller and smaller latent forces.
+std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
+  std::vector<FilterNoise> noises;
+  for (const double part : {1.0, 0.4, 0.15, 0.05, 0.01, 1e-6}) {
+    noises.push_back(found);
+    noises.back().size *= part;
+    noises.back().white *= part;
+  }
+  return noises;
+}
+
+/// A change of the model: terms that leave it, variations that come in.
+struct Change {
+  std::vector<std::size_t> removed;
+  std::vector<std::size_t> added;
+};
+
+class MoveSearch {
+ public:
+  MoveSearch(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
+             std::vector<Block>& blocks, const std::vector<Term>& terms)
+      : machine_(machine),
+        along_{MotionAlong(machine, run, path), path.noise.reading,
+               run.Time().maxCoeff()},
+        blocks_(blocks),
+        terms_(terms) {
+    const MatrixXd inflation = InflationAlong(path);
+    moves_.noises = NoisesFrom(path.noise);
+    moves_.whitenings.resize(moves_.noises.size());
+    ParallelFor(static_cast<int>(moves_.noises.size()), [&](int number) {
+      const auto r = static_cast<std::size_t>(number);
+      moves_.whitenings[r] = std::make_shared<const Whitening>(
+          path, KeepGains(path, moves_.noises[r], inflation));
+    });
+  }
+
+  Moves Run();
+
+ private:
+  struct Scored {
+    Change change;
+    double score = kImpossible;
+    std::size_t noise = 0;
+    SetFit fit;
+  };
+  void Whiten();
+  SetOfColumns ColumnsOf(const Change& change) const;
+  bool IsWithinBounds(const Change& change, const VectorXd& amplitudes) const;
+  /// With what a group that comes in takes the place of.
+  Change Completed(Change change) const;
+  Scored ScoreOf(const Change& change) const;
+  std::vector<Scored> ScoresOf(std::vector<Change> changes) const;
+  void Keep(const std::vector<Scored>& scored);
+
+  const Machine& machine_;
+  BlockMotion along_;
+  std::vector<Block>& blocks_;
+  const std::vector<Term>& terms_;
+  std::vector<Variation> kept_;
+  std::vector<Index> first_of_term_, first_of_kept_;
+  std::vector<FoldGram> grams_;
+  Moves moves_;
+};
+
+void MoveSearch::Whiten() {
+  std::vector<const Column*> columns;
+  first_of_term_.clear();
+  first_of_kept_.clear();
+  for (const Term& term : terms_) {
+    first_of_term_.push_back(std::ssize(columns));
+    for (const Column& column : term.columns) columns.push_back(&column);
+    columns.push_back(&term.removed);
+  }
+  for (const Variation& one : kept_) {
+    first_of_kept_.push_back(std::ssize(columns));
+    for (const Column& column : one.columns) columns.push_back(&column);
+  }
+  grams_.clear();
+  for (const auto& whitening : moves_.whitenings) {
+    grams_.push_back(GramOf(*whitening, columns, kFolds));
+  }
+}
+
+Change MoveSearch::Completed(Change change) const {
+  for (const std::size_t v : change.added) {
+    const std::string& group = blocks_[kept_[v].block].group;
+    if (group.empty()) continue;
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+      if (terms_[t].is_free || blocks_[terms_[t].block].group != group) continue;
+      if (std::ranges::find(change.removed, t) == change.removed.end()) {
+        change.removed.push_back(t);
+      }
+    }
+  }
+  std::ranges::sort(change.removed);
+  return change;
+}
+
+SetOfColumns MoveSearch::ColumnsOf(const Change& change) const {
+  SetOfColumns set;
+  std::vector<double> sd, mean;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    const Term& term = terms_[t];
+    const Index count = std::ssize(term.columns);
+    if (std::ranges::find(change.removed, t) != change.removed.end()) {
+      set.given.push_back(first_of_term_[t] + count);
+      continue;
+    }
+    for (Index i = 0; i < count; ++i) {
+      set.columns.push_back(first_of_term_[t] + i);
+      sd.push_back(term.sd[i]);
+      mean.push_back(term.mean[i]);
+    }
+  }
+  for (const std::size_t v : change.added) {
+    for (Index i = 0; i < kept_[v].sd.size(); ++i) {
+      set.columns.push_back(first_of_kept_[v] + i);
+      sd.push_back(kept_[v].sd[i]);
+      mean.push_back(0.0);
+    }
+  }
+  set.sd = VectorXd::Map(sd.data(), std::ssize(sd));
+  set.mean = VectorXd::Map(mean.data(), std::ssize(mean));
+  return set;
+}
+
+/// @param amplitudes  of all columns, those of what comes in last
+bool MoveSearch::IsWithinBounds(const Change& change, const VectorXd& amplitudes) const {
+  Index last = amplitudes.size();
+  for (std::size_t i = change.added.size(); i-- > 0;) {
+    const Variation& one = kept_[change.added[i]];
+    last -= one.sd.size();
+    const VectorXd a = amplitudes.segment(last, one.sd.size());
+    if (one.least.size() > 0 && (a.array() < one.least.array()).any()) return false;
+    if (!IsAllowed(blocks_[one.block], one.values(a))) return false;
+  }
+  return true;
+}
+
+MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
+  Scored best{change, kImpossible, 0, {}};
+  const SetOfColumns set = ColumnsOf(change);
+  double price = 0.0;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    const bool is_in =
+        std::ranges::find(change.removed, t) == change.removed.end();
+    if (is_in && !terms_[t].is_free) price += blocks_[terms_[t].block].price;
+  }
+  for (const std::size_t v : change.added) price += blocks_[kept_[v].block].price;
+  for (std::size_t r = 0; r < grams_.size(); ++r) {
+    SetFit fit = FitSet(grams_[r], set);
+    const double score =
+        fit.unseen + price +
+        (fit.amplitudes - set.mean).cwiseQuotient(set.sd).squaredNorm();
+    if (!(score < best.score)) continue;
+    best.score = score;
+    best.noise = r;
+    best.fit = std::move(fit);
+  }
+  if (!IsWithinBounds(change, best.fit.amplitudes)) best.score = kImpossible;
+  return best;
+}
+
+std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(std::vector<Change> changes) const {
+  std::vector<Scored> scored(changes.size());
+  ParallelFor(static_cast<int>(changes.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    scored[i] = ScoreOf(Completed(std::move(changes[i])));
+  });
+  std::ranges::sort(scored, {}, &Scored::score);
+  return scored;
+}
+
+void MoveSearch::Keep(const std::vector<Scored>& scored) {
+  for (const Scored& one : scored) {
+    if (!(one.score < moves_.score)) break;
+    ModelMove move{one.change.removed, {}, one.score, one.noise};
+    Index last = one.fit.amplitudes.size();
+    for (std::size_t i = one.change.added.size(); i-- > 0;) {
+      const Variation& variation = kept_[one.change.added[i]];
+      last -= variation.sd.size();
+      move.added.push_back(
+          {variation, one.fit.amplitudes.segment(last, variation.sd.size())});
+    }
+    moves_.best.push_back(std::move(move));
+  }
+}
+
+Moves MoveSearch::Run() {
+  Whiten();
+  const Scored here = ScoreOf({});
+  moves_.score = here.score;
+  moves_.noise = here.noise;
+  const Whitening& whitening = *moves_.whitenings[here.noise];
+  const SetOfColumns set = ColumnsOf({});
+  std::vector<const Column*> columns;
+  for (const Term& term : terms_) {
+    for (const Column& column : term.columns) columns.push_back(&column);
+  }
+  const MatrixXd W = whitening.Of(columns);
+  VectorXd left = whitening.gains().left;
+  if (W.cols() > 0) left -= W * here.fit.amplitudes;
+  kept_ = PromisingVariations(machine_, along_, whitening, left, W, set.sd, blocks_);
+  // What has no shape is in with all that it can be.
+  std::erase_if(kept_, [&](const Variation& one) {
+    return !blocks_[one.block].HasShape() &&
+           std::ranges::any_of(terms_, [&](const Term& term) {
+             return !term.is_free && term.block == one.block;
+           });
+  });
+  moves_.variations = std::ssize(kept_);
+  Whiten();
+
+  std::vector<Change> changes;
+  for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{}, {v}});
+  std::vector<Scored> all = ScoresOf(changes);
+  // Two that say something together only.
+  constexpr std::size_t kBeam = 12;
+  changes.clear();
+  for (std::size_t i = 0; i < std::min(kBeam, all.size()); ++i) {
+    const std::size_t first = all[i].change.added.front();
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      const std::string& group = blocks_[kept_[v].block].group;
+      if (v == first) continue;
+      if (!group.empty() && group == blocks_[kept_[first].block].group) continue;
+      changes.push_back({{}, {first, v}});
+    }
+  }
+  for (Scored& pair : ScoresOf(changes)) {
+    // Another member has to bring what it costs.
+    pair.score += kLeastGain;
+    all.push_back(std::move(pair));
+  }
+  changes.clear();
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    if (terms_[t].is_free) continue;
+    changes.push_back({{t}, {}});
+    for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{t}, {v}});
+  }
+  std::ranges::move(ScoresOf(changes), std::back_inserter(all));
+  std::ranges::sort(all, {}, &Scored::score);
+  Keep(all);
+  // The best of those that say the same.
+  std::set<std::pair<std::vector<std::size_t>, std::multiset<std::size_t>>> seen;
+  std::erase_if(moves_.best, [&](const ModelMove& move) {
+    std::multiset<std::size_t> names;
+    for (const Added& added : move.added) names.insert(added.variation.block);
+    return !seen.insert({move.removed, names}).second;
+  });
+  return std::move(moves_);
+}
+
+}  // namespace
+
+Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
+              std::vector<Block>& blocks, const std::vector<Term>& terms) {
+  return MoveSearch(machine, run, path, blocks, terms).Run();
+}
+
+}  // namespace mjdiag

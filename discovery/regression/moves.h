@@ -1,0 +1,66 @@
+#pragma once
+// How a model of what a machine lacks may change for the better: members that leave it,
+// blocks that come in, and both at once, by one regression along the path of the machine
+// with the model as it is,
+//
+//   score = -2 ln p(unseen folds) + what is known beforehand of sizes + prices,
+//
+// behind the noise that suits each best: a model that is right deserves smaller latent
+// forces. What members do by their coordinates and what they would leave when taken out are
+// exact columns; what blocks would do is that of first order.
+//
+// All shapes of all laws are looked at along what the model leaves: inner products with W^T
+// of it say how much each would take away, and W^T of white noise how large each is behind
+// the filter, |W f|^2 = E (f . W^T n)^2. The most promising of every block are then whitened
+// themselves.
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "mjdiag/discovery/blocks/block.h"
+#include "mjdiag/discovery/regression/whitening.h"
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/replay/force_filter.h"
+
+namespace mjdiag {
+
+/// What is in already: a member of the model, or what is always in.
+struct Term {
+  std::size_t block = 0;
+  std::vector<Column> columns;  ///< by every coordinate of it
+  Eigen::VectorXd sd;           ///< of what is still to be added to each
+  Eigen::VectorXd mean;
+  Column removed;        ///< what the machine would do without it
+  bool is_free = false;  ///< it is no member: no price, never taken out
+};
+
+struct Added {
+  Variation variation;
+  Eigen::VectorXd amplitudes;
+};
+
+struct ModelMove {
+  std::vector<std::size_t> removed;  ///< places of terms
+  std::vector<Added> added;
+  double score = 0.0;
+  std::size_t noise = 0;  ///< the whitening behind which it is best
+};
+
+struct Moves {
+  std::vector<FilterNoise> noises;
+  std::vector<std::shared_ptr<const Whitening>> whitenings;  ///< behind each
+  double score = 0.0;  ///< of the model as it is
+  std::size_t noise = 0;
+  std::vector<ModelMove> best;  ///< by score, no two with the same blocks
+  Eigen::Index variations = 0;
+};
+
+/// @param blocks  receive the prices of their shapes
+Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
+              std::vector<Block>& blocks, const std::vector<Term>& terms);
+
+/// What a move has to promise, in -2 ln: odds of 20.
+inline constexpr double kLeastGain = 6.0;
+
+}  // namespace mjdiag

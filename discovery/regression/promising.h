@@ -1,0 +1,24 @@
+#pragma once
+// The most promising variations of every block along what a model leaves of a run.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/discovery/blocks/block.h"
+#include "mjdiag/discovery/regression/whitening.h"
+
+namespace mjdiag {
+
+/// @param left    what is left, whitened
+/// @param W       whitened columns that are in, rows x k
+/// @param sd      of their amplitudes beforehand
+/// @param blocks  receive the prices of their shapes
+std::vector<Variation> PromisingVariations(const Machine& machine,
+                                           const BlockMotion& along,
+                                           const Whitening& whitening,
+                                           const Eigen::VectorXd& left,
+                                           const Eigen::MatrixXd& W,
+                                           const Eigen::VectorXd& sd,
+                                           std::vector<Block>& blocks);
+
+}  // namespace mjdiag

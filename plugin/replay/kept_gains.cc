@@ -1,0 +1,135 @@
+#include "mjdiag/plugin/replay/kept_gains.h"
+
+#include <cmath>
+
+#include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/replay/linear_pass.h"
+#include "mjdiag/plugin/replay/recorded_inputs.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd InflationAlong(const FilterPath& path) {
+  MatrixXd inflation = MatrixXd::Ones(path.sensors(), path.samples());
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
+    LinearPass pass(path, path.noise);
+    pass.at_reading = [&](Index sensor, Index sample, bool, double) {
+      inflation(sensor, sample) = pass.kalman.inflation;
+    };
+    const Index first = path.first[record];
+    pass.Over(first, path.EndOf(record) - first);
+  }
+  return inflation;
+}
+
+KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,
+                    const MatrixXd& inflation) {
+  KeptGains kept;
+  kept.ticks.resize(static_cast<std::size_t>(path.samples()));
+  const Index n = path.pulled.rows();
+  const Index rows = path.counts.count();
+  kept.K.resize(n, rows);
+  kept.C.resize(n, rows);
+  kept.inverse_sd.resize(rows);
+  kept.left.resize(rows);
+  Index row = 0;
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
+    LinearPass pass(path, noise);
+    pass.inflation = &inflation;
+    pass.at_tick = [&](Index k) { kept.ticks[static_cast<std::size_t>(k)].first = row; };
+    pass.at_reading = [&](Index sensor, Index sample, bool late, double) {
+      kept.readings.push_back({sensor, sample, late});
+      kept.K.col(row) = pass.kalman.gain;
+      kept.C.col(row) = pass.kalman.c();
+      kept.inverse_sd[row] = 1.0 / std::sqrt(pass.kalman.variance);
+      kept.left[row] = pass.kalman.last_innovation * kept.inverse_sd[row];
+      kept.log_determinant += std::log(pass.kalman.variance);
+      ++row;
+    };
+    pass.at_advance = [&](Index k) { kept.ticks[static_cast<std::size_t>(k)].end = row; };
+    const Index first = path.first[record];
+    pass.Over(first, path.EndOf(record) - first);
+    kept.rho = pass.kalman.rho();
+  }
+  // Readings of the end of a tick before the first one of a record are taken by nobody.
+  kept.K.conservativeResize(n, row);
+  kept.C.conservativeResize(n, row);
+  kept.inverse_sd.conservativeResize(row);
+  kept.left.conservativeResize(row);
+  return kept;
+}
+
+VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
+                      const FilterPath& path, const KeptGains& gains) {
+  VectorXd left(gains.rows());
+  const Index nf = path.dof_count();
+  const Index ns = path.pulled.rows() - nf - 1;
+  ParallelFor(static_cast<int>(path.first.size()), [&](int number) {
+    const auto record = static_cast<std::size_t>(number);
+    TickMap map(machine);
+    const mjModel& model = map.model();
+    RecordedInputs inputs(machine, run);
+    PlantState state = path.starts[record].state;
+    VectorXd latent = VectorXd::Zero(nf);
+    VectorXd applied = VectorXd::Zero(model.nv);
+    VectorXd z(ns + nf + 1);
+    VectorXd read, ended;
+    double clock = 0.0;
+    const Index first = path.first[record];
+    for (Index k = first; k < path.EndOf(record); ++k) {
+      const Index tick = run.TickOf(k);
+      const TickTangent& tangent = path.At(k);
+      read = map.Read(state, tick);
+      z.setZero();
+      Index row = gains.ticks[static_cast<std::size_t>(k)].first;
+      const Index end = gains.ticks[static_cast<std::size_t>(k)].end;
+      const auto take = [&](bool late, const VectorXd& expected) {
+        for (; row < end && gains.readings[static_cast<std::size_t>(row)].late == late;
+             ++row) {
+          const KeptGains::Reading& reading =
+              gains.readings[static_cast<std::size_t>(row)];
+          const double e = run.outputs(reading.sensor, reading.sample) -
+                           expected[reading.sensor] -
+                           path.speeds(reading.sensor, reading.sample) * clock -
+                           gains.C.col(row).dot(z);
+          left[row] = e * gains.inverse_sd[row];
+          z += e * gains.K.col(row);
+        }
+      };
+      take(false, read);
+      state = Moved(model, state, z);
+      latent += z.segment(ns, nf);
+      clock += z[ns + nf];
+      for (Index j = 0; j < nf; ++j) {
+        applied[path.dofs[static_cast<std::size_t>(j)]] = latent[j];
+      }
+      inputs.StayAt(k);
+      const TickMap::Result& ticked = map.Run(state, applied, tick, inputs);
+      if (ticked.diverged) throw NumericalError("fit: the run diverges");
+      PlantState next = ticked.state;
+      z.setZero();
+      if (row < end) {
+        ended = ticked.reading;
+        take(true, ended);
+        VectorXd moved = tangent.A * z.head(ns);
+        for (Index j = 0; j < nf; ++j) {
+          moved += tangent.B.col(path.dofs[static_cast<std::size_t>(j)]) * z[ns + j];
+        }
+        next = Moved(model, next, moved);
+        latent += z.segment(ns, nf);
+        clock += z[ns + nf];
+      }
+      state = std::move(next);
+      latent = latent.cwiseProduct(gains.rho.head(nf));
+      clock *= gains.rho[nf];
+    }
+  });
+  return left;
+}
+
+}  // namespace mjdiag
