@@ -1,8 +1,9 @@
 // What one regression along the filtered motion says that a machine lacks, of any setup and
-// records: lacks SETUP RECORD...
+// records: lacks SETUP RECORD... [EFFECT@SITE:VALUES]...
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,22 @@ double Now() {
 
 int Main(int argc, char** argv) {
   const std::string setup = argv[1];
-  const Machine machine(ReadSetup(setup));
+  Machine machine(ReadSetup(setup));
   std::vector<MeasuredRun> runs;
   for (int i = 2; i < argc; ++i) {
+    if (std::string(argv[i]).find('@') != std::string::npos) {
+      machine = machine.With({{}, {ParseEffect(argv[i])}});
+      continue;
+    }
     runs.push_back(
         ToMeasuredRun(machine.setup(), ReadMeasured(machine.setup(), argv[i]).record));
   }
   const MeasuredRun run = Joined(runs);
   const double begin = Now();
   ExplainOptions options;
+  if (const char* seconds = std::getenv("SECONDS_OF_WORK")) {
+    options.seconds = std::atof(seconds);
+  }
   options.progress = [&](const std::string& text) {
     std::printf("[%.1f s] %s\n", Now() - begin, text.c_str());
     std::fflush(stdout);

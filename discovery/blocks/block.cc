@@ -41,6 +41,10 @@ std::vector<Column> ColumnsOf(const Trial& trial, Index sensor) {
   return columns;
 }
 
+// A regression may take sizes that far, in standard deviations, as easily as any: what they
+// cost comes on top (SizePrice).
+constexpr double kWide = 3.0;
+
 double Rms(const VectorXd& signal) {
   return std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
 }
@@ -51,7 +55,6 @@ double Rms(const VectorXd& signal) {
 VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& scales,
                   Index amplitudes, const std::vector<Column>& columns,
                   const VectorXd& span) {
-  const VectorXd spread = candidate.effect->Spread(scales);
   VectorXd sd(amplitudes);
   const auto sized = std::ranges::find_if(candidate.parameters, [](const auto& one) {
     return one.role == Role::kAmplitude || one.role == Role::kFactor ||
@@ -71,13 +74,13 @@ VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& 
     sd[a] = largest > 0.0 ? usual / largest : 1.0;
     if (sized == candidate.parameters.end()) continue;
     const auto place = sized - candidate.parameters.begin();
-    if (!(spread[place] > 0.0) || !std::isfinite(spread[place])) continue;
+    if (!(sized->spread > 0.0) || !std::isfinite(sized->spread)) continue;
     const double small = 1e-3 * sd[a];
     TrialValues values = trial.values(small * VectorXd::Unit(amplitudes, a));
     if (!values) values = trial.values(-small * VectorXd::Unit(amplitudes, a));
     if (!values) continue;
     const double rate = std::abs((*values)[place] - sized->nothing) / small;
-    if (rate > 0.0) sd[a] = std::min(sd[a], spread[place] / rate);
+    if (rate > 0.0) sd[a] = std::min(sd[a], kWide * sized->spread / rate);
   }
   return sd;
 }
@@ -107,7 +110,11 @@ void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t p
     take(std::move(variation));
   };
   if (const auto sweep = MakeSweep(machine, candidate, along.motion, along.duration)) {
-    for (const double value : sweep->values) one(sweep->make(value));
+    const FitParameter& period =
+        candidate.parameters[static_cast<std::size_t>(PeriodPlace(candidate))];
+    for (const double value : sweep->values) {
+      if (value >= period.lower && value <= period.upper) one(sweep->make(value));
+    }
   } else {
     for (const Trial& trial : MakeTrials(machine, candidate, along.motion)) one(trial);
   }
@@ -128,7 +135,7 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
   }
   block.price = -2.0 * std::log(kMissing);
   if (variation.columns.front().forces.empty()) return;
-  variation.sd = VectorXd::Constant(1, block.doubt);
+  variation.sd = VectorXd::Constant(1, kWide * block.doubt);
   variation.values = [](const Amplitudes& a) -> TrialValues {
     return VectorXd(a.array().exp());
   };
@@ -157,6 +164,7 @@ std::vector<Block> BlocksOf(const Machine& machine,
   std::vector<PlantNumber> stood_for;
   for (const Candidate& candidate : candidates) {
     const std::string name = Describe(candidate);
+    const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
     const bool repeats =
         PeriodPlace(candidate) < std::ssize(candidate.parameters);
     blocks.push_back(
@@ -164,7 +172,12 @@ std::vector<Block> BlocksOf(const Machine& machine,
          .candidate = candidate,
          .number = std::nullopt,
          .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
-    const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
+    // A factor of a number is known as well as the number.
+    for (FitParameter& parameter : blocks.back().candidate->parameters) {
+      if (number && parameter.role == Role::kFactor) {
+        parameter.spread = DoubtOf(machine.plant(), *number);
+      }
+    }
     if (number) stood_for.push_back(*number);
   }
   const auto add = [&](const std::vector<PlantNumber>& numbers) {
@@ -198,9 +211,28 @@ bool IsAllowed(const Block& block, const TrialValues& values) {
     const FitParameter& parameter =
         block.candidate->parameters[static_cast<std::size_t>(i)];
     if (IsShape(parameter.role)) continue;
+    if (std::abs((*values)[i] - parameter.nothing) < parameter.least_size) return false;
     if ((*values)[i] < parameter.lower || (*values)[i] > parameter.upper) return false;
   }
   return true;
+}
+
+double SizePrice(double x) { return 3.0 * std::log1p(x * x / 3.0); }
+
+double SizePrice(const Block& block, const VectorXd& values) {
+  if (block.number) return SizePrice(std::log(values[0]) / block.doubt);
+  double sum = 0.0;
+  for (Index i = 0; i < values.size(); ++i) {
+    const FitParameter& parameter =
+        block.candidate->parameters[static_cast<std::size_t>(i)];
+    if (!std::isfinite(parameter.spread) || !(parameter.spread > 0.0)) continue;
+    if (parameter.role == Role::kFactor && values[i] > 0.0) {
+      sum += SizePrice(std::log(values[i]) / parameter.spread);
+    } else if (!IsShape(parameter.role)) {
+      sum += SizePrice((values[i] - parameter.nothing) / parameter.spread);
+    }
+  }
+  return sum;
 }
 
 void ForEachVariation(const Machine& machine, const BlockMotion& along,

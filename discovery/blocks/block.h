@@ -58,6 +58,13 @@ struct BlockMotion {
 /// Whether values are such as its law, or the number, can have.
 bool IsAllowed(const Block& block, const TrialValues& values);
 
+/// What a size costs that is x of its standard deviations from what is known beforehand, in
+/// -2 ln: Student's t of two degrees of freedom. What is known is mostly right, and where it
+/// is not it may be far off.
+double SizePrice(double x);
+/// Of all sizes of a block with values.
+double SizePrice(const Block& block, const Eigen::VectorXd& values);
+
 /// Those of a machine: candidates, then numbers of the plant that no candidate stands for.
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates);

@@ -4,7 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <optional>
+#include <functional>
+#include <map>
 #include <utility>
 
 #include "mjdiag/discovery/blocks/path_motion.h"
@@ -28,7 +29,10 @@ class Search {
  public:
   Search(const Machine& machine, const MeasuredRun& run, const VectorXd& reading_sd,
          const ExplainOptions& options)
-      : machine_(machine), run_(run), reading_sd_(reading_sd), options_(options) {}
+      : machine_(machine),
+        run_(run),
+        reading_sd_(reading_sd),
+        options_(options) {}
 
   Explained Run();
 
@@ -40,6 +44,13 @@ class Search {
     double score() const { return path.deviance + fit.prior + fit.occam; }
   };
   Settled Settle(ModelFit fit, const FilterNoise& near) const;
+  void Adopt(Settled settled);
+  bool Resettle(const Moves& moves, const ModelFit& as_it_is);
+  std::string Difference(double score) const {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f", score - found_.score);
+    return text;
+  }
   /// The best of some moves, fitted; none if none pays.
   bool Step();
   Model After(const ModelMove& move) const;
@@ -51,7 +62,19 @@ class Search {
     if (options_.progress) options_.progress(text);
   }
 
+  Machine With(const Model& model) const {
+    return With(model, steps_);
+  }
+  Machine With(const Model& model, bool steps) const {
+    const Machine machine = machine_.With(ChangesOf(found_.blocks, model));
+    return steps ? machine : machine.WithoutSteps();
+  }
+  /// Is the run of a machine with the physics steps of the model, as one that was simulated
+  /// with it, or of one that has none?
+  void ChooseSteps();
+
   const Machine& machine_;
+  bool steps_ = true;
   const MeasuredRun& run_;
   const VectorXd& reading_sd_;
   const ExplainOptions& options_;
@@ -75,17 +98,15 @@ std::vector<Term> Search::Terms() const {
     VectorXd moved = x;
     moved[place] += step;
     others.push_back(
-        {machine_.With(ChangesOf(found_.blocks, At(coordinates, model, moved))), step});
+        {With(At(coordinates, model, moved)), step});
   }
   for (std::size_t m = 0; m < model.size(); ++m) {
     Model without = model;
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
-    others.push_back({machine_.With(ChangesOf(found_.blocks, without))});
+    others.push_back({With(without)});
   }
-  const Machine own = machine_.With(ChangesOf(found_.blocks, model));
-  others.push_back({own.WithSubsteps(2 * own.rates().substeps)});
-  std::vector<Column> columns = TickColumns(own, run_, found_.path, others);
-  std::vector<Term> terms(model.size() + 1);
+  std::vector<Column> columns = TickColumns(With(model), run_, found_.path, others);
+  std::vector<Term> terms(model.size());
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     Term& term = terms[coordinates[i].member];
     term.columns.push_back(std::move(columns[i]));
@@ -93,18 +114,15 @@ std::vector<Term> Search::Terms() const {
     const Index count = std::ssize(term.columns);
     term.mean.conservativeResize(count);
     term.mean[count - 1] = known;
+    term.known.push_back(coordinates[i].is_known);
   }
   for (std::size_t m = 0; m < model.size(); ++m) {
     terms[m].block = model[m].block;
-    terms[m].sd = VectorXd::Ones(terms[m].mean.size());
+    // What is known may be far off (SizePrice), what shapes a law is wide.
+    constexpr double kWide = 3.0;
+    terms[m].sd = VectorXd::Constant(terms[m].mean.size(), kWide);
     terms[m].removed = std::move(columns[coordinates.size() + m]);
   }
-  // Half a step is half way to none.
-  Term& finer = terms.back();
-  finer.is_free = true;
-  finer.columns.push_back(std::move(columns.back()));
-  finer.sd = VectorXd::Constant(1, 2.0);
-  finer.mean = VectorXd::Zero(1);
   return terms;
 }
 
@@ -124,23 +142,19 @@ Model Search::After(const ModelMove& move) const {
 
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
 Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
-  const auto filter = [&](const Model& model, const FilterNoise& from) {
-    return FilterLikeliestFrom(machine_.With(ChangesOf(found_.blocks, model)), run_,
-                               reading_sd_, from);
+  const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
+    return FilterLikeliestFrom(With(model), run_, reading_sd_, from);
   };
   Settled settled{std::move(fit), {}};
-  settled.path = filter(settled.fit.model, near);
+  settled.path = filter(settled.fit.model, {near, found_.path.noise});
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds && !IsOver(); ++round) {
     const FilterPath& path = settled.path;
-    const Machine own = machine_.With(ChangesOf(found_.blocks, settled.fit.model));
-    const Whitening whitening(path, KeepGains(path, path.noise, InflationAlong(path)));
-    const std::vector<Column> finer = TickColumns(
-        own, run_, path, {{own.WithSubsteps(2 * own.rates().substeps)}});
-    Settled next{FitModel(machine_, run_, path, whitening.gains(), found_.blocks,
-                          settled.fit.model, whitening.Of({&finer.front()}), 4),
+    const KeptGains gains = KeepGains(path, path.noise, InflationAlong(path));
+    Settled next{FitModel([this](const Model& model) { return With(model); }, run_, path, gains, found_.blocks,
+                          settled.fit.model, 4),
                  {}};
-    next.path = filter(next.fit.model, path.noise);
+    next.path = filter(next.fit.model, {path.noise});
     const double gain = settled.score() - next.score();
     if (!(gain > 0.0)) break;
     settled = std::move(next);
@@ -149,49 +163,79 @@ Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
   return settled;
 }
 
+void Search::Adopt(Settled settled) {
+  found_.fit = std::move(settled.fit);
+  found_.path = std::move(settled.path);
+  found_.score = settled.score();
+  ChooseSteps();
+}
+
+/// The model as it is behind the noise that suits it by now; false if nothing is gained.
+bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
+  const KeptGains& own = moves.whitenings.front()->gains();
+  const double before = own.left.squaredNorm() + own.log_determinant +
+                        found_.fit.prior + found_.fit.occam;
+  if (as_it_is.score() > before - kLeastGain) return false;
+  Settled settled = Settle(as_it_is, moves.noises[moves.noise]);
+  if (settled.score() > found_.score - 0.5 * kLeastGain) return false;
+  Say("settled: " + Difference(settled.score()));
+  Adopt(std::move(settled));
+  return true;
+}
+
 bool Search::Step() {
-  const Machine own = machine_.With(ChangesOf(found_.blocks, found_.fit.model));
-  const std::vector<Term> terms = Terms();
-  const Moves moves = MovesOf(own, run_, found_.path, found_.blocks, terms);
-  char text[200];
-  std::snprintf(text, sizeof text, "%ld shapes, %zu moves, %.1f", moves.variations,
-                moves.best.size(), moves.score);
-  Say(text);
+  const Moves moves =
+      MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks, Terms());
+  constexpr int kIterations = 6;
+  const auto fitted = [&](const Model& model, std::size_t noise) {
+    return FitModel([this](const Model& one) { return With(one); }, run_, found_.path,
+                    moves.whitenings[noise]->gains(), found_.blocks, model, kIterations);
+  };
+  // Moves are compared with the model as it is behind the same gains.
+  std::map<std::size_t, ModelFit> as_it_is;
+  const auto base = [&](std::size_t noise) -> const ModelFit& {
+    const auto known = as_it_is.find(noise);
+    if (known != as_it_is.end()) return known->second;
+    return as_it_is.emplace(noise, fitted(found_.fit.model, noise)).first->second;
+  };
+  if (Resettle(moves, base(moves.noise))) return true;
+  Say(std::to_string(moves.variations) + " shapes, " + std::to_string(moves.best.size()) +
+      " moves");
   struct Tried {
     ModelFit fit;
     std::size_t noise = 0;
+    double gain = 0.0;
   };
   std::vector<Tried> tried;
   constexpr std::size_t kMost = 4;
-  constexpr int kIterations = 6;
   for (const ModelMove& move : moves.best) {
     if (tried.size() == kMost || IsOver()) break;
     if (move.score > moves.score - kLeastGain) break;
-    const Whitening& whitening = *moves.whitenings[move.noise];
-    const MatrixXd free = whitening.Of({&terms.back().columns.front()});
     try {
-      tried.push_back({FitModel(machine_, run_, found_.path, whitening.gains(),
-                                found_.blocks, After(move), free, kIterations),
-                       move.noise});
+      ModelFit fit = fitted(After(move), move.noise);
+      const double gain = base(move.noise).score() - fit.score();
+      char text[80];
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
-                    tried.back().fit.score() - found_.score);
-      Say(text + Describe(found_.blocks, tried.back().fit.model));
+                    -gain);
+      Say(text + Describe(found_.blocks, fit.model));
+      tried.push_back({std::move(fit), move.noise, gain});
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
   }
-  std::ranges::sort(tried, {}, [](const Tried& one) { return one.fit.score(); });
+  std::ranges::sort(tried, std::greater<>(), &Tried::gain);
   for (const Tried& one : tried) {
-    if (one.fit.score() > found_.score - kLeastGain) break;
+    if (one.gain < kLeastGain) break;
+    if (!std::ranges::all_of(one.fit.model, [&](const Member& member) {
+          return IsAllowed(found_.blocks[member.block], member.values);
+        })) {
+      continue;
+    }
     try {
       Settled settled = Settle(one.fit, moves.noises[one.noise]);
-      std::snprintf(text, sizeof text, "  filtered: %.1f",
-                    settled.score() - found_.score);
-      Say(text);
+      Say("  filtered: " + Difference(settled.score()));
       if (settled.score() > found_.score - kLeastGain) continue;
-      found_.fit = std::move(settled.fit);
-      found_.path = std::move(settled.path);
-      found_.score = settled.score();
+      Adopt(std::move(settled));
       return true;
     } catch (const NumericalError&) {
     } catch (const InputError&) {
@@ -200,12 +244,27 @@ bool Search::Step() {
   return false;
 }
 
+void Search::ChooseSteps() {
+  FilterPath path =
+      RunForceFilter(With(found_.fit.model, !steps_), run_, found_.path.dofs,
+                     found_.path.starts, found_.path.noise);
+  const double gain = found_.path.deviance - path.deviance;
+  if (gain < kLeastGain) return;
+  steps_ = !steps_;
+  Say((steps_ ? "with physics steps: " : "without physics steps: ") +
+      std::to_string(-gain));
+  found_.score -= gain;
+  found_.path = std::move(path);
+}
+
 Explained Search::Run() {
   found_.path = FilterLikeliest(machine_, run_, reading_sd_);
   found_.nothing = found_.path;
   found_.score = found_.path.deviance;
+  ChooseSteps();
   std::vector<Candidate> candidates = ListCandidates(machine_);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
+  BoundByReadings(candidates, machine_, run_);
   found_.blocks = BlocksOf(machine_, candidates);
   while (!IsOver() && Step()) {
     char text[80];

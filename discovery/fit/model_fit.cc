@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -18,41 +19,34 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Residuals at [x; a].
+/// Residuals at x.
 class Innovations {
  public:
-  Innovations(const Machine& nominal, const MeasuredRun& run, const FilterPath& path,
-              const KeptGains& gains, const std::vector<Block>& blocks, Model model,
-              std::vector<Coordinate> coordinates, const MatrixXd& free)
-      : nominal_(nominal),
+  Innovations(const MachineWith& machine_with, const MeasuredRun& run,
+              const FilterPath& path, const KeptGains& gains, Model model,
+              std::vector<Coordinate> coordinates)
+      : machine_with_(machine_with),
         run_(run),
         path_(path),
         gains_(gains),
-        blocks_(blocks),
         model_(std::move(model)),
-        coordinates_(std::move(coordinates)),
-        free_(free) {}
+        coordinates_(std::move(coordinates)) {}
 
   Index rows() const { return gains_.rows(); }
-  Index size() const { return std::ssize(coordinates_) + free_.cols(); }
+  Index size() const { return std::ssize(coordinates_); }
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
 
-  const VectorXd& Of(const VectorXd& xa) {
-    if (kept_.size() > 0 && xa == at_) return kept_;
-    kept_ = RunAt(xa.head(std::ssize(coordinates_)));
-    if (free_.cols() > 0) kept_ -= free_ * xa.tail(free_.cols());
-    at_ = xa;
+  const VectorXd& Of(const VectorXd& x) {
+    if (kept_.size() > 0 && x == at_) return kept_;
+    kept_ = RunAt(x);
+    at_ = x;
     return kept_;
   }
 
-  MatrixXd Jacobian(const VectorXd& xa) {
-    const Index own = std::ssize(coordinates_);
-    const VectorXd x = xa.head(own);
-    VectorXd base = Of(xa);
-    if (free_.cols() > 0) base += free_ * xa.tail(free_.cols());
+  MatrixXd Jacobian(const VectorXd& x) {
+    const VectorXd base = Of(x);
     MatrixXd J(rows(), size());
-    J.rightCols(free_.cols()) = -free_;
-    ParallelForAll(static_cast<int>(own), [&](int number) {
+    ParallelForAll(static_cast<int>(size()), [&](int number) {
       const Index i = number;
       const Coordinate& one = coordinates_[static_cast<std::size_t>(i)];
       double step = one.is_log ? 1e-4 : std::max(1e-3 * std::abs(x[i]), 1e-6);
@@ -66,18 +60,15 @@ class Innovations {
 
  private:
   VectorXd RunAt(const VectorXd& x) const {
-    const Model model = At(coordinates_, model_, x);
-    return PredictAlong(nominal_.With(ChangesOf(blocks_, model)), run_, path_, gains_);
+    return PredictAlong(machine_with_(At(coordinates_, model_, x)), run_, path_, gains_);
   }
 
-  const Machine& nominal_;
+  const MachineWith& machine_with_;
   const MeasuredRun& run_;
   const FilterPath& path_;
   const KeptGains& gains_;
-  const std::vector<Block>& blocks_;
   Model model_;
   std::vector<Coordinate> coordinates_;
-  const MatrixXd& free_;
   VectorXd at_, kept_;
 };
 
@@ -114,51 +105,52 @@ class InnovationCost final : public ceres::CostFunction {
   Innovations& innovations_;
 };
 
-/// x of what is known beforehand.
+/// One x of what is known beforehand.
 class KnownCost final : public ceres::CostFunction {
  public:
-  explicit KnownCost(VectorXd weight) : weight_(std::move(weight)) {
-    set_num_residuals(static_cast<int>(weight_.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(weight_.size()));
+  KnownCost(Index place, Index size) : place_(place), size_(size) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(size));
   }
   bool Evaluate(const double* const* blocks, double* residuals,
                 double** jacobians) const override {
-    VectorXd::Map(residuals, weight_.size()) =
-        weight_.cwiseProduct(VectorXd::Map(blocks[0], weight_.size()));
+    residuals[0] = blocks[0][place_];
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      MatrixXd::Map(jacobians[0], weight_.size(), weight_.size()) = weight_.asDiagonal();
+      VectorXd::Map(jacobians[0], size_) = VectorXd::Unit(size_, place_);
     }
     return true;
   }
 
  private:
-  VectorXd weight_;
+  Index place_;
+  Index size_;
 };
 
 }  // namespace
 
-ModelFit FitModel(const Machine& nominal, const MeasuredRun& run, const FilterPath& path,
-                  const KeptGains& gains, const std::vector<Block>& blocks,
-                  const Model& start, const MatrixXd& free, int iterations) {
+ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
+                  const FilterPath& path, const KeptGains& gains,
+                  const std::vector<Block>& blocks,
+                  const Model& start, int iterations) {
   const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, start);
-  Innovations innovations(nominal, run, path, gains, blocks, start, coordinates, free);
-  const Index own = std::ssize(coordinates);
-  VectorXd x = VectorXd::Zero(innovations.size());
-  x.head(own) = Place(coordinates, start);
-  VectorXd weight = VectorXd::Zero(x.size());
-  for (Index i = 0; i < own; ++i) {
-    weight[i] = coordinates[static_cast<std::size_t>(i)].is_known ? 1.0 : 0.0;
-  }
+  Innovations innovations(machine_with, run, path, gains, start, coordinates);
+  VectorXd x = Place(coordinates, start);
   innovations.Of(x);
   if (x.size() > 0 && iterations > 0) {
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
     InnovationCost cost(innovations);
-    KnownCost known(weight);
     problem.AddResidualBlock(&cost, nullptr, x.data());
-    problem.AddResidualBlock(&known, nullptr, x.data());
-    for (Index i = 0; i < own; ++i) {
+    ceres::CauchyLoss loss(std::sqrt(3.0));  // SizePrice
+    std::vector<std::unique_ptr<KnownCost>> known;
+    for (Index i = 0; i < x.size(); ++i) {
+      if (!coordinates[static_cast<std::size_t>(i)].is_known) continue;
+      known.push_back(std::make_unique<KnownCost>(i, x.size()));
+      problem.AddResidualBlock(known.back().get(), &loss, x.data());
+    }
+    for (Index i = 0; i < x.size(); ++i) {
       const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
       const int index = static_cast<int>(i);
       if (std::isfinite(one.lower)) {
@@ -185,18 +177,19 @@ ModelFit FitModel(const Machine& nominal, const MeasuredRun& run, const FilterPa
     }
   }
   ModelFit fit;
-  fit.model = At(coordinates, start, x.head(own));
+  fit.model = At(coordinates, start, x);
   fit.deviance = innovations.Of(x).squaredNorm() + gains.log_determinant;
-  fit.prior = weight.cwiseProduct(x).squaredNorm();
-  for (const Member& member : fit.model) fit.prior += blocks[member.block].price;
-  if (own > 0) {
+  for (const Member& member : fit.model) {
+    fit.prior += blocks[member.block].price +
+                 SizePrice(blocks[member.block], member.values);
+  }
+  if (x.size() > 0) {
     const MatrixXd J = innovations.Jacobian(x);
     const MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
     const Eigen::LLT<MatrixXd> solved(H);
     fit.occam = 2.0 * solved.matrixLLT().diagonal().array().log().sum();
     fit.sd = solved.solve(MatrixXd::Identity(x.size(), x.size()))
                  .diagonal()
-                 .head(own)
                  .cwiseSqrt();
   }
   return fit;

@@ -2,11 +2,12 @@
 // A model fitted with MuJoCo's own ticks: the machine with it is followed with kept gains
 // (kept_gains.h), and what its innovations leave is made least by all of its values at once,
 //
-//   |r(x) - W a|^2 + |x|^2 of what is known beforehand,
+//   |r(x)|^2 + sum of SizePrice(x) of what is known beforehand (block.h),
 //
-// beside free columns a (tick_columns.h), by Levenberg-Marquardt within bounds (Ceres).
+// by Levenberg-Marquardt within bounds (Ceres).
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "mjdiag/discovery/blocks/block.h"
@@ -21,17 +22,19 @@ namespace mjdiag {
 struct ModelFit {
   Model model;
   Eigen::VectorXd sd;  ///< of the coordinates, given the data
-  double prior = 0.0;  ///< |x|^2 of what is known, and prices of the blocks
+  double prior = 0.0;  ///< prices of the blocks and of their sizes
   double occam = 0.0;  ///< ln det of how much narrower the data make it
   double deviance = 0.0;
   double score() const { return deviance + prior + occam; }
 };
 
-/// @param free  whitened columns that are in without a price
+using MachineWith = std::function<Machine(const Model&)>;
+
 /// NumericalError where the run with the first values diverges; InputError where the plant
 /// cannot be so.
-ModelFit FitModel(const Machine& nominal, const MeasuredRun& run, const FilterPath& path,
-                  const KeptGains& gains, const std::vector<Block>& blocks,
-                  const Model& start, const Eigen::MatrixXd& free, int iterations);
+ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
+                  const FilterPath& path, const KeptGains& gains,
+                  const std::vector<Block>& blocks,
+                  const Model& start, int iterations);
 
 }  // namespace mjdiag

@@ -28,6 +28,8 @@ struct FitParameter {
   /// infinite: anywhere.
   double nothing = 0.0;
   double spread = std::numeric_limits<double>::infinity();
+  /// How far from `nothing` it is at least: less is not told from nothing.
+  double least_size = 0.0;
 };
 
 /// An effect and where it acts, without values.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
@@ -18,7 +19,51 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
   parameter.upper = std::min(parameter.upper, upper);
 }
 
+/// The step in which a reading is written, 0 where it has none: where values come again, the
+/// usual distance from one to the next.
+double StepOf(VectorXd values) {
+  const Index samples = values.size();
+  std::ranges::sort(values);
+  const double least = 1e-9 * (values[samples - 1] - values[0]);
+  std::vector<double> gaps;
+  for (Index k = 1; k < samples; ++k) {
+    if (values[k] - values[k - 1] > least) gaps.push_back(values[k] - values[k - 1]);
+  }
+  if (gaps.empty() || 2 * std::ssize(gaps) > samples) return 0.0;
+  // Places that were left out make gaps of several steps.
+  const auto tenth = gaps.begin() + std::ssize(gaps) / 10;
+  std::ranges::nth_element(gaps, tenth);
+  return *tenth;
+}
+
 }  // namespace
+
+void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
+                     const MeasuredRun& run) {
+  for (Candidate& candidate : candidates) {
+    if (candidate.effect->site() != SiteKind::kSensor) continue;
+    const SensorSetup& sensor =
+        machine.channels().sensors[static_cast<std::size_t>(candidate.channel)];
+    const double step = sensor.resolution > 0.0
+                            ? sensor.resolution
+                            : StepOf(run.ReadingsOf(candidate.channel));
+    for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+      FitParameter& parameter = candidate.parameters[i];
+      if (parameter.role == Role::kAmplitude &&
+          candidate.effect->parameters()[i].unit == "m") {
+        parameter.least_size = 0.5 * step;
+      }
+      if (parameter.role != Role::kPeriod) continue;
+      // What repeats with the step is the step, and an encoder is the same after a turn.
+      constexpr double kSteps = 4.0;
+      parameter.lower = std::max(parameter.lower, kSteps * step);
+      if (machine.plant().jnt_type[machine.plant().dof_jntid[candidate.joint]] ==
+          mjJNT_HINGE) {
+        parameter.upper = std::min(parameter.upper, 1.001 * 2.0 * std::numbers::pi);
+      }
+    }
+  }
+}
 
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion) {
@@ -54,6 +99,10 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
           Narrow(parameter, 0.0,
                  kOnce * (candidate.effect->site() == SiteKind::kSensor ? Range(at.y())
                                                                         : own.stroke));
+          break;
+        case Role::kTime:
+          // What is later than that follows nothing any more.
+          Narrow(parameter, 0.0, 0.1 * motion.time.maxCoeff());
           break;
         case Role::kLimit:
           Narrow(parameter, 0.0, at.before_gear().cwiseAbs().maxCoeff());

@@ -7,6 +7,7 @@
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/replay/tracking.h"
 
 namespace mjdiag {
 
@@ -18,5 +19,10 @@ namespace mjdiag {
 /// stand still keep theirs. Sizes get their spread (Effect::Spread).
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion);
+
+/// Errors of readings, narrowed by the steps in which these are written: none is smaller
+/// than half of one, or repeats with it.
+void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
+                     const MeasuredRun& run);
 
 }  // namespace mjdiag

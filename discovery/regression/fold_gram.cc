@@ -55,9 +55,6 @@ SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   const VectorXd a = whole.solve(b + mean);
   fit.amplitudes = sd.cwiseProduct(a);
   fit.sd = sd.cwiseProduct(whole.solve(I).diagonal().cwiseSqrt());
-  fit.evidence = gram.log_determinant + square(gram.sum) - 2.0 * a.dot(b) +
-                 a.dot(G * a) + (a - mean).squaredNorm() +
-                 2.0 * whole.matrixLLT().diagonal().array().log().sum();
   fit.unseen = gram.log_determinant;
   for (const MatrixXd& fold : gram.folds) {
     if (n == 0) {

@@ -27,6 +27,9 @@ struct SetOfColumns {
   Eigen::VectorXd sd;
   Eigen::VectorXd mean;
   std::vector<Eigen::Index> given;
+  /// Of the first ones: whether `mean` is where they are known to be, with a standard
+  /// deviation of 1.
+  std::vector<bool> known{};
 };
 
 /// What a set of columns says behind a noise.
@@ -36,9 +39,6 @@ struct SetFit {
   /// -2 ln of how dense the folds are predicted that a fit did not see, each from all of the
   /// others, but for a constant.
   double unseen = 0.0;
-  /// -2 ln of how dense the run is predicted by what is known beforehand, but for the same
-  /// constant: the evidence.
-  double evidence = 0.0;
 };
 
 SetFit FitSet(const FoldGram& gram, const SetOfColumns& set);

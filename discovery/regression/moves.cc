@@ -25,7 +25,7 @@ constexpr int kFolds = 40;
 /// Smaller and smaller latent forces.
 std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
   std::vector<FilterNoise> noises;
-  for (const double part : {1.0, 0.4, 0.15, 0.05, 0.01, 1e-6}) {
+  for (const double part : {1.0, 0.2, 0.02, 1e-6}) {
     noises.push_back(found);
     noises.back().size *= part;
     noises.back().white *= part;
@@ -70,6 +70,9 @@ class MoveSearch {
   void Whiten();
   SetOfColumns ColumnsOf(const Change& change) const;
   bool IsWithinBounds(const Change& change, const VectorXd& amplitudes) const;
+  /// What sizes cost.
+  double SizesOf(const Change& change, const SetOfColumns& set,
+                 const VectorXd& amplitudes) const;
   /// With what a group that comes in takes the place of.
   Change Completed(Change change) const;
   Scored ScoreOf(const Change& change) const;
@@ -110,7 +113,7 @@ Change MoveSearch::Completed(Change change) const {
     const std::string& group = blocks_[kept_[v].block].group;
     if (group.empty()) continue;
     for (std::size_t t = 0; t < terms_.size(); ++t) {
-      if (terms_[t].is_free || blocks_[terms_[t].block].group != group) continue;
+      if (blocks_[terms_[t].block].group != group) continue;
       if (std::ranges::find(change.removed, t) == change.removed.end()) {
         change.removed.push_back(t);
       }
@@ -134,6 +137,7 @@ SetOfColumns MoveSearch::ColumnsOf(const Change& change) const {
       set.columns.push_back(first_of_term_[t] + i);
       sd.push_back(term.sd[i]);
       mean.push_back(term.mean[i]);
+      set.known.push_back(term.known[static_cast<std::size_t>(i)]);
     }
   }
   for (const std::size_t v : change.added) {
@@ -161,6 +165,22 @@ bool MoveSearch::IsWithinBounds(const Change& change, const VectorXd& amplitudes
   return true;
 }
 
+double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
+                           const VectorXd& amplitudes) const {
+  double sum = 0.0;
+  Index last = amplitudes.size();
+  for (std::size_t i = change.added.size(); i-- > 0;) {
+    const Variation& one = kept_[change.added[i]];
+    last -= one.sd.size();
+    const TrialValues values = one.values(amplitudes.segment(last, one.sd.size()));
+    if (values) sum += SizePrice(blocks_[one.block], *values);
+  }
+  for (Index i = 0; i < last; ++i) {
+    if (set.known[static_cast<std::size_t>(i)]) sum += SizePrice(amplitudes[i] - set.mean[i]);
+  }
+  return sum;
+}
+
 MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
   Scored best{change, kImpossible, 0, {}};
   const SetOfColumns set = ColumnsOf(change);
@@ -168,14 +188,12 @@ MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     const bool is_in =
         std::ranges::find(change.removed, t) == change.removed.end();
-    if (is_in && !terms_[t].is_free) price += blocks_[terms_[t].block].price;
+    if (is_in) price += blocks_[terms_[t].block].price;
   }
   for (const std::size_t v : change.added) price += blocks_[kept_[v].block].price;
   for (std::size_t r = 0; r < grams_.size(); ++r) {
     SetFit fit = FitSet(grams_[r], set);
-    const double score =
-        fit.unseen + price +
-        (fit.amplitudes - set.mean).cwiseQuotient(set.sd).squaredNorm();
+    const double score = fit.unseen + price + SizesOf(change, set, fit.amplitudes);
     if (!(score < best.score)) continue;
     best.score = score;
     best.noise = r;
@@ -229,7 +247,7 @@ Moves MoveSearch::Run() {
   std::erase_if(kept_, [&](const Variation& one) {
     return !blocks_[one.block].HasShape() &&
            std::ranges::any_of(terms_, [&](const Term& term) {
-             return !term.is_free && term.block == one.block;
+             return term.block == one.block;
            });
   });
   moves_.variations = std::ssize(kept_);
@@ -257,7 +275,6 @@ Moves MoveSearch::Run() {
   }
   changes.clear();
   for (std::size_t t = 0; t < terms_.size(); ++t) {
-    if (terms_[t].is_free) continue;
     changes.push_back({{t}, {}});
     for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{t}, {v}});
   }

@@ -25,14 +25,14 @@
 
 namespace mjdiag {
 
-/// What is in already: a member of the model, or what is always in.
+/// What is in already: a member of the model.
 struct Term {
   std::size_t block = 0;
   std::vector<Column> columns;  ///< by every coordinate of it
   Eigen::VectorXd sd;           ///< of what is still to be added to each
   Eigen::VectorXd mean;
-  Column removed;        ///< what the machine would do without it
-  bool is_free = false;  ///< it is no member: no price, never taken out
+  std::vector<bool> known;  ///< whether `mean` is where it is known to be, within 1
+  Column removed;  ///< what the machine would do without it
 };
 
 struct Added {

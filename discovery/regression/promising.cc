@@ -18,7 +18,7 @@ namespace {
 
 // White noises that measure how large a column is: to a quarter of it.
 constexpr Index kProbes = 32;
-constexpr std::size_t kOfBlock = 4;
+constexpr std::size_t kOfBlock = 3;
 
 MatrixXd WhiteNoise(Index rows, Index columns) {
   std::mt19937_64 generator(1);
@@ -87,7 +87,7 @@ std::vector<Variation> PromisingVariations(const Machine& machine,
   std::vector<Variation> kept;
   for (std::size_t place = 0; place < promises.size(); ++place) {
     for (Promise& one : promises[place]) {
-      if (one.gain > 0.3 * blocks[place].price) {
+      if (one.gain > 0.5 * blocks[place].price) {
         kept.push_back(std::move(one.variation));
       }
     }

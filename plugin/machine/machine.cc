@@ -153,6 +153,31 @@ Machine Machine::WithSubsteps(int substeps) const {
   return changed;
 }
 
+Machine Machine::WithoutSteps() const {
+  const double half = 0.5 * plant_->opt.timestep;
+  Changes late;
+  for (const ActuatorSetup& actuator : setup_->channels.actuators) {
+    late.effects.push_back(Place("input_delay", actuator.element, {{"delay", half}}));
+  }
+  Machine changed = With(late);
+  ModelPtr model = CopyModel(*changed.plant_);
+  for (int dof = 0; dof < model->nv; ++dof) {
+    model->dof_armature[dof] -= half * model->dof_damping[dof];
+  }
+  for (int actuator = 0; actuator < model->nu; ++actuator) {
+    if (model->actuator_trntype[actuator] != mjTRN_JOINT) continue;
+    const int joint = model->actuator_trnid[2 * actuator];
+    if (model->jnt_type[joint] != mjJNT_SLIDE && model->jnt_type[joint] != mjJNT_HINGE) {
+      continue;
+    }
+    const double gear = model->actuator_gear[6 * actuator];
+    const double damping = -model->actuator_biasprm[mjNBIAS * actuator + 2];
+    model->dof_armature[model->jnt_dofadr[joint]] += half * gear * gear * damping;
+  }
+  changed.Adopt(std::move(model));
+  return changed;
+}
+
 Machine Machine::WithSetup(Setup setup) const {
   Machine changed = *this;
   changed.setup_ = std::make_shared<Setup>(std::move(setup));

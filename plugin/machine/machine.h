@@ -65,6 +65,14 @@ class Machine {
   Machine WithNumbers(const NumberFactors& factors) const;
   /// The same physics in that many steps a control tick.
   Machine WithSubsteps(int substeps) const;
+  /// The same physics as if its steps h were none, to second order: semi-implicit Euler is a
+  /// leapfrog, whose velocities are half a step behind its positions,
+  ///
+  ///   (M + h D / 2) (v' - v) / h = f - D (v + v') / 2
+  ///
+  /// of dampers D that it takes at the end of a step, (M - h D / 2) of those that it takes at
+  /// the beginning: inputs act h / 2 later here, and rotors make up for what damps.
+  Machine WithoutSteps() const;
   /// The same plant, resting where it does, under another setup that names the same
   /// channels.
   Machine WithSetup(Setup setup) const;

@@ -32,13 +32,20 @@ double Declared(const mjModel& model, const std::string& name) {
 /// What a plant declares of a number itself, and of all that it does not.
 struct Declarations {
   double own = -1.0;
+  double of_kind = -1.0;
   double of_all = -1.0;
+  /// That which says most of it; -1: none.
+  double Closest() const {
+    return own >= 0.0 ? own : of_kind >= 0.0 ? of_kind : of_all;
+  }
 };
 
 Declarations DeclarationsOf(const mjModel& model, const PlantNumber& number) {
   const std::string name(kDeclaration);
-  Declarations declared{Declared(model, name + "." + PlantNumberName(model, number)),
-                        Declared(model, name)};
+  Declarations declared{
+      Declared(model, name + "." + PlantNumberName(model, number)),
+      Declared(model, name + "." + std::string(WordOf(number.kind))),
+      Declared(model, name)};
   // No part of anything, it is known to a distance of its own.
   if (number.kind == PlantNumberKind::kRef && declared.of_all > 0.0) {
     declared.of_all = -1.0;
@@ -190,15 +197,13 @@ std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string&
 }
 
 double SpreadOf(const mjModel& model, const PlantNumber& number) {
-  const Declarations declared = DeclarationsOf(model, number);
-  if (declared.own >= 0.0) return declared.own;
-  return declared.of_all >= 0.0 ? declared.of_all : UsualSpread(number.kind);
+  const double declared = DeclarationsOf(model, number).Closest();
+  return declared >= 0.0 ? declared : UsualSpread(number.kind);
 }
 
 double DoubtOf(const mjModel& model, const PlantNumber& number) {
-  const Declarations declared = DeclarationsOf(model, number);
-  if (declared.own > 0.0) return declared.own;
-  return declared.of_all > 0.0 ? declared.of_all : UsualDoubt(number.kind);
+  const double declared = DeclarationsOf(model, number).Closest();
+  return declared > 0.0 ? declared : UsualDoubt(number.kind);
 }
 
 bool IsExact(const mjModel& model) {
@@ -210,6 +215,10 @@ void CheckKnownNumbers(const mjModel& model) {
   for (int id = 0; id < model.nnumeric; ++id) {
     const std::string name = ElementName(model, mjOBJ_NUMERIC, id);
     if (!name.starts_with(prefix)) continue;
+    if (FindKind(name.substr(prefix.size()))) {
+      Declared(model, name);
+      continue;
+    }
     try {
       SpreadOf(model, FindPlantNumber(model, name.substr(prefix.size())));
     } catch (const InputError& error) {

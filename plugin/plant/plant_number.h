@@ -4,8 +4,8 @@
 //
 // A plant says how well one is known by a relative standard deviation of its own,
 //   <custom><numeric name="known.stiffness@X" data="0.02"/></custom>
-// or of all that have none, `known` (0: a plant that is what it says, as a simulated
-// one). Without either it is known as its kind usually is (UsualSpread).
+// or of a whole kind, `known.mass`, or of all that have none, `known` (0: a plant that is
+// what it says, as a simulated one). Without either it is known as its kind usually is (UsualSpread).
 
 #include <mujoco/mujoco.h>
 

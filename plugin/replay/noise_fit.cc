@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -23,11 +24,37 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// -2 ln L of all records, of every sensor.
-VectorXd DeviancesOf(const FilterPath& path, const FilterNoise& noise) {
+/// Samples first .. first + count - 1 of a record.
+struct Stretch {
+  Index first = 0;
+  Index count = 0;
+};
+
+// Of so many readings, in some pieces of every record, the noise is known as well as anybody
+// needs it: its logarithm to sqrt(2 / 3600) = 0.024.
+constexpr Index kEnough = 3600;
+constexpr Index kPieces = 4;
+constexpr Index kShortest = 100;
+
+/// Four pieces of a record, of `of_all` samples of `sensors` of a run; of a short one all of
+/// it.
+std::vector<Stretch> PiecesOf(Index first, Index count, Index of_all, Index sensors) {
+  const Index enough = kEnough / sensors;
+  const Index piece = std::max(kShortest, enough * count / of_all / kPieces);
+  if (of_all <= enough || piece * kPieces >= count) return {{first, count}};
+  std::vector<Stretch> pieces;
+  for (Index i = 0; i < kPieces; ++i) {
+    pieces.push_back({first + (count - piece) * i / (kPieces - 1), piece});
+  }
+  return pieces;
+}
+
+/// -2 ln L of some pieces, of every sensor.
+VectorXd DeviancesOf(const FilterPath& path, const std::vector<Stretch>& pieces,
+                     const FilterNoise& noise) {
   VectorXd sum = VectorXd::Zero(path.sensors());
-  for (std::size_t r = 0; r < path.first.size(); ++r) {
-    sum += Score(path, noise, path.first[r], path.EndOf(r) - path.first[r]).deviance;
+  for (const Stretch& piece : pieces) {
+    sum += Score(path, noise, piece.first, piece.count).deviance;
   }
   if (!sum.allFinite()) sum.setConstant(std::numeric_limits<double>::infinity());
   return sum;
@@ -67,6 +94,11 @@ class NoiseSearch {
  public:
   NoiseSearch(const FilterPath& path, const VectorXd& reading_sd)
       : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
+    for (std::size_t r = 0; r < path.first.size(); ++r) {
+      std::ranges::copy(PiecesOf(path.first[r], path.EndOf(r) - path.first[r],
+                                 path.samples(), ny_),
+                        std::back_inserter(pieces_));
+    }
     const double tick = path.sample_time;
     const double duration = tick * static_cast<double>(path.samples());
     const Shown shown = ShownBy(path.tangents.front(), path.dofs, reading_sd);
@@ -142,7 +174,7 @@ class NoiseSearch {
         std::log(noise.clock), std::log(noise.clock_memory);
     Point best = Evaluate(x);
     for (; step >= last; step /= 3.0) {
-      constexpr int kRounds = 3;
+      constexpr int kRounds = 2;
       for (int round = 0; round < kRounds; ++round) {
         bool moved = false;
         for (const auto& kind : kinds_) moved |= Move(kind, step, best);
@@ -155,7 +187,7 @@ class NoiseSearch {
  private:
   Point Evaluate(const VectorXd& x) const {
     Point point{x.cwiseMax(lower_).cwiseMin(upper_), {}};
-    point.deviances = DeviancesOf(path_, NoiseOf(point.x));
+    point.deviances = DeviancesOf(path_, pieces_, NoiseOf(point.x));
     return point;
   }
 
@@ -203,6 +235,7 @@ class NoiseSearch {
   }
 
   const FilterPath& path_;
+  std::vector<Stretch> pieces_;
   Index nf_;
   Index ny_;
   VectorXd unit_;
@@ -264,25 +297,14 @@ FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd) 
   return search.NoiseOf(slow.deviance() < fast.deviance() ? slow.x : fast.x);
 }
 
-/// Four pieces of every record, each a record of its own, of 2400 samples in all; of a short
-/// run all of it.
+/// Pieces of every record, each a record of its own.
 MeasuredRun PiecesOf(const MeasuredRun& run) {
-  constexpr Index kSamples = 2400;
-  constexpr Index kPieces = 4;
-  constexpr Index kShortest = 100;
-  const bool is_short = run.samples() <= kSamples;
   std::vector<MeasuredRun> pieces;
   for (std::size_t r = 0; r < run.records.size(); ++r) {
     const Index first = run.records[r].sample;
-    const Index count = run.SamplesOf(r);
-    const Index piece = std::max(kShortest, kSamples * count / run.samples() / kPieces);
-    if (is_short || piece * kPieces >= count) {
-      pieces.push_back(Excerpt(run, first, count));
-      continue;
-    }
-    for (Index i = 0; i < kPieces; ++i) {
-      pieces.push_back(
-          Excerpt(run, first + (count - piece) * i / (kPieces - 1), piece));
+    for (const Stretch& piece : PiecesOf(first, run.SamplesOf(r), run.samples(),
+                                        run.outputs.rows())) {
+      pieces.push_back(Excerpt(run, piece.first, piece.count));
     }
   }
   return Joined(pieces);
@@ -336,14 +358,25 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
 }
 
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
-                               const VectorXd& reading_sd, const FilterNoise& near) {
+                               const VectorXd& reading_sd,
+                               const std::vector<FilterNoise>& near) {
   const std::vector<Index> dofs = LatentDofs(machine, run);
-  const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   const MeasuredRun pieces = PiecesOf(run);
-  const FilterPath of_pieces = RunForceFilter(
-      machine, pieces, dofs, FilterStarts(machine, pieces, reading_sd), near);
-  const FilterNoise found = Refined(of_pieces, reading_sd, kCoarse);
-  FilterPath path = RunForceFilter(machine, run, dofs, starts, found);
+  const std::vector<FilterStart> of_pieces =
+      FilterStarts(machine, pieces, reading_sd);
+  std::optional<FilterPath> best;
+  for (const FilterNoise& noise : near) {
+    try {
+      FilterPath path = RunForceFilter(machine, pieces, dofs, of_pieces, noise);
+      path = RunForceFilter(machine, pieces, dofs, of_pieces,
+                            Refined(path, reading_sd, kCoarse));
+      if (!best || path.deviance < best->deviance) best = std::move(path);
+    } catch (const NumericalError&) {
+    }
+  }
+  if (!best) throw NumericalError("replay: diverged");
+  const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
+  FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
   FilterPath refined =
       RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, kMedium));
   return refined.deviance < path.deviance ? refined : path;

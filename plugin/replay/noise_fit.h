@@ -8,8 +8,7 @@
 // Searched are logarithms, a kind of noise at a time (sizes, memories, both along the same
 // random walk, white forces, readings, the clock), by steps of 64 down to 1.15: every joint
 // goes to where the parabola through -2 ln L of the sensor that shows it best is least, all
-// at once, if the whole gains by that. On 2400 samples in four pieces first, then on all of
-// the run.
+// at once, if the whole gains by that. On 3600 readings in pieces of every record.
 
 #include <Eigen/Core>
 #include <vector>
@@ -34,9 +33,9 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
 FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const Eigen::VectorXd& reading_sd);
 
-/// The path of a run with the noise that is most likely from a near one on.
+/// The path of a run with the noise that is most likely from some near ones on.
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
-                               const FilterNoise& near);
+                               const std::vector<FilterNoise>& near);
 
 }  // namespace mjdiag
