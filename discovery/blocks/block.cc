@@ -118,7 +118,7 @@ void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t p
   } else {
     for (const Trial& trial : MakeTrials(machine, candidate, along.motion)) one(trial);
   }
-  block.price = -2.0 * std::log(kMissing * candidate.effect->odds()) +
+  block.price = kClaim - 2.0 * std::log(kMissing * candidate.effect->odds()) +
                 2.0 * std::log(std::max<double>(1.0, static_cast<double>(count)));
 }
 
@@ -133,7 +133,7 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
     if (force.col(dof).isZero(0.0)) continue;
     variation.columns.front().forces.emplace_back(dof, force.col(dof));
   }
-  block.price = -2.0 * std::log(kMissing);
+  block.price = kClaim - 2.0 * std::log(kMissing);
   if (variation.columns.front().forces.empty()) return;
   variation.sd = VectorXd::Constant(1, kWide * block.doubt);
   variation.values = [](const Amplitudes& a) -> TrialValues {

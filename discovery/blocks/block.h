@@ -4,7 +4,7 @@
 // grid (variations), and numbers of the plant.
 //
 // The price is -2 ln of how often it is what is missing, kMissing times the odds of its
-// effect, and 2 ln of how many shapes it has; sizes are known beforehand to a spread, which
+// effect, 2 ln of how many shapes it has, and what a claim has to be worth, odds of 20; sizes are known beforehand to a spread, which
 // follows from the machine's own scales (Effect::Spread).
 
 #include <Eigen/Core>
@@ -57,6 +57,9 @@ struct BlockMotion {
 
 /// Whether values are such as its law, or the number, can have.
 bool IsAllowed(const Block& block, const TrialValues& values);
+
+/// 2 ln 20
+inline constexpr double kClaim = 6.0;
 
 /// What a size costs that is x of its standard deviations from what is known beforehand, in
 /// -2 ln: Student's t of two degrees of freedom. What is known is mostly right, and where it

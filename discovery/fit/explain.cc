@@ -177,7 +177,7 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
                         found_.fit.prior + found_.fit.occam;
   if (as_it_is.score() > before - kLeastGain) return false;
   Settled settled = Settle(as_it_is, moves.noises[moves.noise]);
-  if (settled.score() > found_.score - 0.5 * kLeastGain) return false;
+  if (settled.score() > found_.score - kLeastGain) return false;
   Say("settled: " + Difference(settled.score()));
   Adopt(std::move(settled));
   return true;
@@ -210,7 +210,7 @@ bool Search::Step() {
   constexpr std::size_t kMost = 4;
   for (const ModelMove& move : moves.best) {
     if (tried.size() == kMost || IsOver()) break;
-    if (move.score > moves.score - kLeastGain) break;
+    if (move.score > moves.score - kLeastGain) continue;
     try {
       ModelFit fit = fitted(After(move), move.noise);
       const double gain = base(move.noise).score() - fit.score();

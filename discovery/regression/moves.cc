@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <utility>
@@ -20,7 +21,9 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kImpossible = std::numeric_limits<double>::infinity();
-constexpr int kFolds = 40;
+constexpr int kFolds = 20;
+// Of what a move gains, what is of second order.
+constexpr double kShare = 0.1;
 
 /// Smaller and smaller latent forces.
 std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
@@ -64,6 +67,7 @@ class MoveSearch {
   struct Scored {
     Change change;
     double score = kImpossible;
+    double rank = kImpossible;
     std::size_t noise = 0;
     SetFit fit;
   };
@@ -73,9 +77,18 @@ class MoveSearch {
   /// What sizes cost.
   double SizesOf(const Change& change, const SetOfColumns& set,
                  const VectorXd& amplitudes) const;
+  /// Whether a variation can come in beside those of a change.
+  bool IsApart(const Change& change, std::size_t variation) const;
+  static Change With(Change change, std::size_t variation) {
+    change.added.push_back(variation);
+    return change;
+  }
   /// With what a group that comes in takes the place of.
   Change Completed(Change change) const;
   Scored ScoreOf(const Change& change) const;
+  /// A score, and the share of what is gained for every law with a shape: to first order the
+  /// wrong shape may seem to be better by that, and what is simple comes first.
+  double RankOf(const Scored& scored) const;
   std::vector<Scored> ScoresOf(std::vector<Change> changes) const;
   void Keep(const std::vector<Scored>& scored);
 
@@ -106,6 +119,13 @@ void MoveSearch::Whiten() {
   for (const auto& whitening : moves_.whitenings) {
     grams_.push_back(GramOf(*whitening, columns, kFolds));
   }
+}
+
+bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
+  const std::string& group = blocks_[kept_[variation].block].group;
+  return std::ranges::none_of(change.added, [&](std::size_t v) {
+    return v == variation || (!group.empty() && group == blocks_[kept_[v].block].group);
+  });
 }
 
 Change MoveSearch::Completed(Change change) const {
@@ -182,7 +202,8 @@ double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
 }
 
 MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
-  Scored best{change, kImpossible, 0, {}};
+  Scored best;
+  best.change = change;
   const SetOfColumns set = ColumnsOf(change);
   double price = 0.0;
   for (std::size_t t = 0; t < terms_.size(); ++t) {
@@ -203,19 +224,25 @@ MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
   return best;
 }
 
+double MoveSearch::RankOf(const Scored& scored) const {
+  if (!(scored.score < moves_.score)) return scored.score;
+  return scored.score;
+}
+
 std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(std::vector<Change> changes) const {
   std::vector<Scored> scored(changes.size());
   ParallelFor(static_cast<int>(changes.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     scored[i] = ScoreOf(Completed(std::move(changes[i])));
   });
-  std::ranges::sort(scored, {}, &Scored::score);
+  for (Scored& one : scored) one.rank = RankOf(one);
+  std::ranges::sort(scored, {}, &Scored::rank);
   return scored;
 }
 
 void MoveSearch::Keep(const std::vector<Scored>& scored) {
   for (const Scored& one : scored) {
-    if (!(one.score < moves_.score)) break;
+    if (!(one.score < moves_.score)) continue;
     ModelMove move{one.change.removed, {}, one.score, one.noise};
     Index last = one.fit.amplitudes.size();
     for (std::size_t i = one.change.added.size(); i-- > 0;) {
@@ -260,18 +287,28 @@ Moves MoveSearch::Run() {
   constexpr std::size_t kBeam = 12;
   changes.clear();
   for (std::size_t i = 0; i < std::min(kBeam, all.size()); ++i) {
-    const std::size_t first = all[i].change.added.front();
     for (std::size_t v = 0; v < kept_.size(); ++v) {
-      const std::string& group = blocks_[kept_[v].block].group;
-      if (v == first) continue;
-      if (!group.empty() && group == blocks_[kept_[first].block].group) continue;
-      changes.push_back({{}, {first, v}});
+      if (IsApart(all[i].change, v)) changes.push_back(With(all[i].change, v));
     }
   }
-  for (Scored& pair : ScoresOf(changes)) {
-    // Another member has to bring what it costs.
-    pair.score += kLeastGain;
-    all.push_back(std::move(pair));
+  std::ranges::move(ScoresOf(changes), std::back_inserter(all));
+  std::ranges::sort(all, {}, &Scored::rank);
+  // Six joints that rub are no six moves: further members come in at once as long as each
+  // brings a tenth of what the others do, beside which what is of second order is little.
+  while (!all.empty()) {
+    const Scored& best = all.front();
+    if (!(best.score < moves_.score)) break;
+    changes.clear();
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      if (IsApart(best.change, v)) changes.push_back(With(best.change, v));
+    }
+    std::vector<Scored> further = ScoresOf(changes);
+    if (further.empty()) break;
+    const double gained = moves_.score - best.score;
+    const bool goes_on = further.front().rank < best.rank - kShare * gained;
+    all.insert(all.begin(), std::make_move_iterator(further.begin()),
+               std::make_move_iterator(further.begin() + 1));
+    if (!goes_on) break;
   }
   changes.clear();
   for (std::size_t t = 0; t < terms_.size(); ++t) {
@@ -279,7 +316,7 @@ Moves MoveSearch::Run() {
     for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{t}, {v}});
   }
   std::ranges::move(ScoresOf(changes), std::back_inserter(all));
-  std::ranges::sort(all, {}, &Scored::score);
+  std::ranges::sort(all, {}, &Scored::rank);
   Keep(all);
   // The best of those that say the same.
   std::set<std::pair<std::vector<std::size_t>, std::multiset<std::size_t>>> seen;

@@ -60,7 +60,7 @@ struct Moves {
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
               std::vector<Block>& blocks, const std::vector<Term>& terms);
 
-/// What a move has to promise, in -2 ln: odds of 20.
-inline constexpr double kLeastGain = 6.0;
+/// Less gain, in -2 ln, is noise of fits.
+inline constexpr double kLeastGain = 1.0;
 
 }  // namespace mjdiag

@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <random>
+#include <string>
 #include <utility>
 
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -19,6 +21,8 @@ namespace {
 // White noises that measure how large a column is: to a quarter of it.
 constexpr Index kProbes = 32;
 constexpr std::size_t kOfBlock = 3;
+// Of a group, which are alike.
+constexpr std::size_t kOfGroup = 4;
 
 MatrixXd WhiteNoise(Index rows, Index columns) {
   std::mt19937_64 generator(1);
@@ -84,13 +88,19 @@ std::vector<Variation> PromisingVariations(const Machine& machine,
       if (best.size() > kOfBlock) best.pop_back();
     });
   });
-  std::vector<Variation> kept;
+  std::vector<Promise> all;
   for (std::size_t place = 0; place < promises.size(); ++place) {
     for (Promise& one : promises[place]) {
-      if (one.gain > 0.5 * blocks[place].price) {
-        kept.push_back(std::move(one.variation));
-      }
+      if (one.gain > 0.5 * blocks[place].price) all.push_back(std::move(one));
     }
+  }
+  std::ranges::stable_sort(all, std::greater<>(), &Promise::gain);
+  std::map<std::string, std::size_t> of_group;
+  std::vector<Variation> kept;
+  for (Promise& one : all) {
+    const std::string& group = blocks[one.variation.block].group;
+    if (!group.empty() && ++of_group[group] > kOfGroup) continue;
+    kept.push_back(std::move(one.variation));
   }
   return kept;
 }
