@@ -1,7 +1,7 @@
 // extended_plants FOLDER: writes an extended plant of every machine of mjcf/ with every effect
 // by itself, and with all of them, each into a folder of its own. Beside it, in steps.json,
-// what that effect does along a motion (active_effect.h): what programs that are no mjdiag
-// have to make of plant.xml and effects.py.
+// what that effect does along a motion (active_effect.h), and in stock.json how MuJoCo moves
+// plant.xml by itself: what programs that are no mjdiag have to make of it and of effects.py.
 
 #include <mujoco/mujoco.h>
 
@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr int kSteps = 60;
+constexpr int kStockSteps = 100;
 
 /// A machine, what to put into it, and how far and fast it is moved.
 struct Subject {
@@ -182,6 +183,22 @@ Json StepJson(const Machine& machine, mjData& d, ActiveEffects& effects) {
   return json;
 }
 
+/// Where MuJoCo itself, which ignores what is not its own, moves the plant from qpos0.
+Json StockMotion(const Subject& subject, const mjModel& m) {
+  const DataPtr data = MakeData(m);
+  Json commands = Json::array();
+  for (int step = 0; step < kStockSteps; ++step) {
+    for (int i = 0; i < m.nu; ++i) {
+      data->ctrl[i] = subject.command * std::sin(0.13 * step + i);
+    }
+    commands.push_back(List(data->ctrl, m.nu));
+    mj_step(&m, data.get());
+  }
+  return {{"commands", commands},
+          {"qpos", List(data->qpos, m.nq)},
+          {"qvel", List(data->qvel, m.nv)}};
+}
+
 void Write(const fs::path& folder, const Subject& subject,
            const std::vector<std::string>& effects) {
   const std::string setup = MJDIAG_SOURCE_DIR "/mjcf/" + subject.machine;
@@ -194,8 +211,10 @@ void Write(const fs::path& folder, const Subject& subject,
     Move(subject, machine.plant(), *data, step);
     steps.push_back(StepJson(machine, *data, active));
   }
+  const ModelPtr stock = LoadModel(folder / "plant.xml");
+  WriteTextFile(folder / "stock.json", StockMotion(subject, *stock).dump());
   const Json json = {{"effects", effects},
-                     {"model", ModelJson(*LoadModel(folder / "plant.xml"))},
+                     {"model", ModelJson(*stock)},
                      {"prepared", Changing(machine.plant())},
                      {"steps", steps}};
   WriteTextFile(folder / "steps.json", json.dump());
