@@ -1,10 +1,12 @@
 // extended_plants FOLDER: writes an extended plant of every machine of mjcf/ with every effect
 // by itself, and with all of them, each into a folder of its own. Beside it, in steps.json,
-// what that effect does along a motion (active_effect.h), and in stock.json how MuJoCo moves
-// plant.xml by itself: what programs that are no mjdiag have to make of it and of effects.py.
+// what that effect does along a motion (active_effect.h), and how the plant is moved by its
+// motors, in stock.json by MuJoCo alone and in moved.json with the effect: what programs that
+// are no mjdiag have to make of plant.xml and effects.py.
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -16,6 +18,7 @@
 
 #include "mjdiag/discovery/extension/setup_folder.h"
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/text_file.h"
 #include "support/changes.h"
@@ -199,6 +202,24 @@ Json StockMotion(const Subject& subject, const mjModel& m) {
           {"qvel", List(data->qvel, m.nv)}};
 }
 
+/// Where the effects move it, by the same commands; nothing where it runs away.
+Json EffectMotion(const Machine& machine, const Json& commands) {
+  const mjModel& m = machine.plant();
+  const DataPtr data = MakeData(m);
+  ActiveEffects effects(machine.channels(), m, machine.effects());
+  for (const Json& command : commands) {
+    mj_step1(&m, data.get());
+    const auto values = command.get<std::vector<mjtNum>>();
+    std::ranges::copy(values, data->ctrl);
+    effects.Act(m, *data);
+    mj_step2(&m, data.get());
+  }
+  if (HasDiverged(*data)) return nullptr;
+  return {{"commands", commands},
+          {"qpos", List(data->qpos, m.nq)},
+          {"qvel", List(data->qvel, m.nv)}};
+}
+
 void Write(const fs::path& folder, const Subject& subject,
            const std::vector<std::string>& effects) {
   const std::string setup = MJDIAG_SOURCE_DIR "/mjcf/" + subject.machine;
@@ -212,7 +233,10 @@ void Write(const fs::path& folder, const Subject& subject,
     steps.push_back(StepJson(machine, *data, active));
   }
   const ModelPtr stock = LoadModel(folder / "plant.xml");
-  WriteTextFile(folder / "stock.json", StockMotion(subject, *stock).dump());
+  const Json motion = StockMotion(subject, *stock);
+  WriteTextFile(folder / "stock.json", motion.dump());
+  WriteTextFile(folder / "moved.json",
+                EffectMotion(machine, motion["commands"]).dump());
   const Json json = {{"effects", effects},
                      {"model", ModelJson(*stock)},
                      {"prepared", Changing(machine.plant())},

@@ -7,55 +7,15 @@
 
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
-import {createRequire} from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
-import {pathToFileURL} from 'node:url';
 
-const SKIPPED = 77;
+import {SKIPPED, loadMujoco, mirror, offBy} from './newer_mujoco.mjs';
+
 const STEPS = 100;
 // Of positions and velocities, relative to the largest: rounding, and friction constraints that
 // either version solves to its own tolerance.
 const SAME = 1e-8;
-
-/** The module, or null: where Node looks by itself, and where npm -g puts it. */
-async function loadMujoco() {
-  const global = path.join(path.dirname(process.execPath), '..', 'lib', 'node_modules');
-  const others = ['/usr/local/lib/node_modules', '/usr/lib/node_modules'];
-  const require = createRequire(import.meta.url);
-  try {
-    const here = require.resolve.paths('mujoco-js');
-    const file = require.resolve('mujoco-js', {paths: [...here, global, ...others]});
-    return await (await import(pathToFileURL(file))).default();
-  } catch (error) {
-    if (error.code !== 'MODULE_NOT_FOUND') throw error;
-    return null;
-  }
-}
-
-/** All files below a folder. */
-function* filesOf(folder) {
-  for (const entry of fs.readdirSync(folder, {withFileTypes: true})) {
-    const file = path.join(folder, entry.name);
-    if (entry.isDirectory()) {
-      yield* filesOf(file);
-    } else {
-      yield file;
-    }
-  }
-}
-
-/** Copies a folder into MuJoCo's own file system, as its root; returns the plants. */
-function mirror(mujoco, root) {
-  const plants = [];
-  for (const file of filesOf(root)) {
-    const name = '/' + path.relative(root, file);
-    mujoco.FS.mkdirTree(path.dirname(name));
-    mujoco.FS.writeFile(name, fs.readFileSync(file));
-    if (path.basename(name) === 'plant.xml') plants.push(name);
-  }
-  return plants;
-}
 
 /** Steps a plant by those commands, or without any; returns what is wrong, or nothing. */
 function faultOf(mujoco, name, stock) {
@@ -70,13 +30,7 @@ function faultOf(mujoco, name, stock) {
     // What diverges MuJoCo begins anew.
     const time = steps * model.opt.timestep;
     if (Math.abs(data.time - time) > 1e-9 * time) return 'diverges';
-    for (const kind of stock ? ['qpos', 'qvel'] : []) {
-      const got = Array.from(data[kind]);
-      const largest = Math.max(...stock[kind].map(Math.abs));
-      const error = Math.max(...got.map((x, i) => Math.abs(x - stock[kind][i])));
-      if (!(error <= SAME * largest)) return `${kind} is off by ${error} of ${largest}`;
-    }
-    return '';
+    return stock ? offBy(data, stock, SAME) : '';
   } finally {
     data.delete();
     model.delete();
@@ -95,10 +49,7 @@ function writePlants(folder, extendedPlants, discoveryTest) {
 
 async function main(extendedPlants, discoveryTest) {
   const mujoco = await loadMujoco();
-  if (!mujoco) {
-    console.log('skipped: Node has no module mujoco-js (npm install -g mujoco-js)');
-    return SKIPPED;
-  }
+  if (!mujoco) return SKIPPED;
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'mjdiag-plants-'));
   let failures = 0;
   let compared = 0;
