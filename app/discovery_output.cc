@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/format.h"
+#include "mjdiag/discovery/extension/effects_file.h"
 #include "mjdiag/discovery/extension/setup_folder.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"
@@ -70,6 +71,7 @@ void RemoveExtendedPlant(const std::string& folder, const std::string& setup) {
   }
   for (const char* file : {"plant.xml", "setup.toml"})
     fs::remove(extended / file, none);
+  RemoveEffectsFile(extended);
   fs::remove(extended, none);  // where nothing else is in it
 }
 

@@ -4,6 +4,7 @@
 
 #include "mjdiag/diagnosis/filters_file.h"
 #include "mjdiag/discovery/extension/calibrated_setup.h"
+#include "mjdiag/discovery/extension/effects_file.h"
 #include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/discovery/extension/setup_following.h"
 #include "mjdiag/plugin/design/diagnosis.h"
@@ -50,7 +51,11 @@ fs::path WriteExtendedSetup(const fs::path& folder, const fs::path& setup,
   const std::string text = ExtendSetup(setup, machine.setup(), changes.effects, folder);
   WriteTextFile(folder / "plant.xml", plant);
   WriteTextFile(folder / "setup.toml", text);
+  const bool needs_python =
+      NeedEffectsFile(EffectsOf(machine.plant())) || NeedEffectsFile(changes.effects);
+  if (needs_python) WriteTextFile(folder / kEffectsFile, EffectsPython());
   update.Commit();
+  if (!needs_python) RemoveEffectsFile(folder);
   return folder / "plant.xml";
 }
 

@@ -17,11 +17,12 @@ namespace mjdiag {
 std::filesystem::path FileForOther(const std::filesystem::path& setup,
                                    const std::filesystem::path& folder);
 
-/// Makes a folder with plant.xml and setup.toml of a machine with those changes.
+/// Makes a folder with plant.xml and setup.toml of a machine with those changes, and
+/// effects.py where plant.xml carries effects that MuJoCo does not have (effects_file.h).
 /// @param setup    of the machine, a file or its folder
 /// @param machine  as that setup has it
-/// @return plant.xml. InputError as ExtendMjcf and ExtendSetup; neither file is written
-///         if one of them cannot be made
+/// @return plant.xml. InputError as ExtendMjcf and ExtendSetup; no file is written if one
+///         of them cannot be made
 std::filesystem::path WriteExtendedSetup(const std::filesystem::path& folder,
                                          const std::filesystem::path& setup,
                                          const Machine& machine,

@@ -7,6 +7,7 @@
 #include "mjdiag/discovery/extension/extended_plant.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
+#include "support/kept_folder.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -31,6 +32,7 @@ class ExtendedMjcf : public ::testing::Test {
     }
     std::string text = ExtendMjcf(file, *plant, {faults, specs}, extended_.path());
     model_ = LoadModel(extended_.Write("plant.xml", text));
+    for (const auto* folder : {&nominal_, &extended_}) test::KeepFolder(folder->path());
     return text;
   }
 

@@ -14,6 +14,7 @@
 #include "mjdiag/signals/text_file.h"
 #include "support/changes.h"
 #include "support/every_effect.h"
+#include "support/kept_folder.h"
 #include "support/message_of.h"
 #include "support/numbered_plant.h"
 #include "support/temporary_folder.h"
@@ -62,6 +63,7 @@ class Extension {
                                              temporary_.path()));
     temporary_.Write("setup.toml", ExtendSetup(nominal_ / "setup.toml", setup(),
                                                causes.effects, temporary_.path()));
+    test::KeepFolder(temporary_.path());
   }
 
   /// Largest difference between the nominal machine with the causes put in and
@@ -149,6 +151,7 @@ TEST(ExtendedPlant, HasTheRotorAndTheWindingThatWereFound) {
   const std::string text =
       ExtendMjcf(plant, servo.plant(), {{}, {}, numbers}, folder.path());
   const ModelPtr read = LoadModel(folder.Write("plant.xml", text));
+  test::KeepFolder(folder.path());
   EXPECT_DOUBLE_EQ(read->dof_armature[0], 1.125 * servo.plant().dof_armature[0]);
   EXPECT_DOUBLE_EQ(read->actuator_gainprm[0],
                    1.125 * servo.plant().actuator_gainprm[0]);
@@ -162,9 +165,11 @@ ModelPtr ReadWith(const std::string& mjcf, const NumberFactors& factors) {
   const test::TemporaryFolder folder;
   const std::filesystem::path plant = folder.Write("nominal.xml", mjcf);
   const ModelPtr nominal = LoadModel(plant);
-  return LoadModel(folder.Write(
+  const std::filesystem::path extended = folder.Write(
       "plant.xml",
-      ExtendMjcf(plant, *nominal, {{}, {}, factors}, folder.path() / "extended")));
+      ExtendMjcf(plant, *nominal, {{}, {}, factors}, folder.path() / "extended"));
+  test::KeepFolder(folder.path());
+  return LoadModel(extended);
 }
 
 TEST(ExtendedPlant, HasEveryNumberThatIsAnother) {

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <string>
 
+#include "mjdiag/discovery/extension/effects_file.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {
@@ -26,6 +28,37 @@ TEST(SetupFolder, OfAnExtendedPlantIsThatMachine) {
   const Machine read(ReadSetup(extended));
   EXPECT_EQ(read.effects(), changes.effects);
   EXPECT_EQ(read.linear().D, coil.With(changes).linear().D);
+}
+
+TEST(SetupFolder, HasAPythonFileWhereThePlantCarriesWhatMujocoDoesNotHave) {
+  const test::TemporaryFolder folder;
+  const Machine coil(ReadSetup(kCoil));
+  const auto write = [&](const std::string& effect) {
+    WriteExtendedSetup(folder.path(), kCoil, coil, {{}, {ParseEffect(effect)}});
+    return std::filesystem::exists(folder / kEffectsFile);
+  };
+  EXPECT_TRUE(write("cubic_stiffness@stage:coefficient=4e6"));
+  EXPECT_EQ(ReadTextFile(folder / kEffectsFile), EffectsPython());
+  // Of the plant before.
+  EXPECT_FALSE(write("viscous_friction@stage:coefficient=1"));
+  EXPECT_FALSE(write("encoder_noise@encoder:sd=1e-8"));
+}
+
+TEST(SetupFolder, LeavesAFileOfSomebodyElseWhereNoneIsNeeded) {
+  const test::TemporaryFolder folder;
+  folder.Write(kEffectsFile, "import mujoco\n");
+  WriteExtendedSetup(folder.path(), kCoil, Machine(ReadSetup(kCoil)), {});
+  EXPECT_EQ(ReadTextFile(folder / kEffectsFile), "import mujoco\n");
+}
+
+TEST(SetupFolder, OfAPlantThatCarriesEffectsAlreadyHasThePythonFile) {
+  const test::TemporaryFolder folder;
+  const Machine coil(ReadSetup(kCoil));
+  WriteExtendedSetup(folder / "once", kCoil, coil,
+                     {{}, {ParseEffect("force_offset@stage:force=0.1")}});
+  WriteExtendedSetup(folder / "twice", folder / "once",
+                     Machine(ReadSetup(folder / "once")), {});
+  EXPECT_TRUE(std::filesystem::exists(folder / "twice" / kEffectsFile));
 }
 
 TEST(SetupFolder, OfAPlantInFinerStepsHasThese) {
