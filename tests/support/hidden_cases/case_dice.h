@@ -1,0 +1,32 @@
+#pragma once
+// Draws of a case: the same name and seed, the same draws, whatever other cases there are.
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace mjdiag::test {
+
+class CaseDice {
+ public:
+  CaseDice(const std::string& name, std::uint64_t seed) {
+    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a, the same everywhere
+    for (const char letter : name) {
+      hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211ull;
+    }
+    generator_.seed(hash + seed);
+  }
+  /// Evenly in [low, high).
+  double Even(double low, double high) {
+    return low + (high - low) * static_cast<double>(generator_() >> 11) * 0x1p-53;
+  }
+  /// About a size, up to half as much again or two thirds of it, evenly in the logarithm.
+  double About(double size) { return size * std::pow(1.5, Even(-1.0, 1.0)); }
+  double Sign() { return Even(-1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+}  // namespace mjdiag::test
