@@ -15,7 +15,12 @@ class CaseDice {
     for (const char letter : name) {
       hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211ull;
     }
-    generator_.seed(hash + seed);
+    // Neighbours among seeds would begin alike (splitmix64).
+    hash += seed * 0x9e3779b97f4a7c15ull;
+    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
+    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
+    generator_.seed(hash ^ (hash >> 31));
+    generator_.discard(16);
   }
   /// Evenly in [low, high).
   double Even(double low, double high) {
