@@ -60,8 +60,9 @@ NamedFactors Off(const std::string& name) {
   const NamedFactors z = {
       {"mass@arm", 0.99}, {"damping@Z", 1.08}, {"stiffness@u2", 0.95}};
   const std::map<std::string, NamedFactors> others = {
-      {"late_drive", y}, {"soft_mount", y},      {"across", y},
-      {"eddy_brake", y}, {"seal_and_ripple", z}, {"motor_damper_drift", z},
+      {"soft_mount", y},         {"across", y},
+      {"eddy_brake", y},         {"seal_and_ripple", z},
+      {"motor_damper_drift", z},
   };
   const auto found = others.find(name);
   return found == others.end() ? x : found->second;
