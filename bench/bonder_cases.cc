@@ -3,7 +3,8 @@
 //
 // Each is a folder with a setup, record.csv, unseen.csv and truth.json. What the catalogue
 // of effects has is there once with the plant as it is and, as NAME_off, once with three
-// numbers of the given plant 1, 8 and 5 % off; laws of no list are there once.
+// numbers of the given plant 1, 8 and 5 % off; laws of no list are there once. Three
+// small machines are there once with nothing and once with one thing hidden.
 // scripts/bonder-cases asks for causes and judges the answers.
 
 #include <cstdint>
@@ -14,10 +15,13 @@
 #include <vector>
 
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/text_file.h"
 #include "support/bonder.h"
 #include "support/hidden_cases/bonder_motion.h"
 #include "support/hidden_cases/bonder_run.h"
 #include "support/hidden_cases/case_files.h"
+#include "support/hidden_cases/own_simulator.h"
+#include "support/hidden_cases/small_machines.h"
 
 namespace mjdiag {
 namespace {
@@ -83,12 +87,42 @@ void Write(const Options& options, const HiddenCase& hidden, bool may_be_off) {
   CaseDice dice(hidden.name, options.seed);
   const std::vector<test::TrueCause> truth = hidden.draw(machine, dice).truth;
   const auto write = [&](const std::string& name, const NamedFactors& numbers) {
-    WriteCase(options.out + "/" + name,
-              {hidden, name, options.seed, machine.setup().folder, numbers}, machine,
-              truth, record, unseen);
+    const std::string folder = options.out + "/" + name;
+    test::WriteGivenSetup(folder, machine.setup().folder, machine, numbers);
+    test::WriteCase(folder, {hidden, options.seed, truth, numbers}, machine, record,
+                    unseen);
   };
   write(hidden.name, {});
   if (may_be_off) write(hidden.name + "_off", Off(hidden.name));
+  std::printf("%s: %s\n", hidden.name.c_str(), hidden.words.c_str());
+  std::fflush(stdout);
+}
+
+Record Measure(const test::SmallMachine& small, const Machine& machine,
+               const test::HiddenPhysics& hidden, std::uint64_t seed) {
+  const auto ticks =
+      static_cast<Eigen::Index>(small.duration * machine.rates().control + 0.5);
+  test::OwnComputer computer(machine.setup(),
+                             small.controller(CaseDice("motion", seed)), ticks, seed);
+  const int steps = 16 * machine.rates().substeps;
+  test::RunOwn(machine, hidden, computer, {ticks, steps, small.start});
+  return computer.ToRecord();
+}
+
+void Write(const Options& options, const test::SmallMachine& small,
+           const HiddenCase& hidden) {
+  const std::string folder = options.out + "/" + hidden.name;
+  MakeOutputFolder(folder);
+  WriteTextFile(folder + "/plant.xml", small.plant);
+  WriteTextFile(folder + "/setup.toml", small.setup);
+  const Machine machine(ReadSetup(folder));
+  const auto draw = [&] {
+    CaseDice dice(hidden.name, options.seed);
+    return hidden.draw(machine, dice);
+  };
+  test::WriteCase(folder, {hidden, options.seed, draw().truth}, machine,
+                  Measure(small, machine, draw().physics, 2 * options.seed),
+                  Measure(small, machine, draw().physics, 2 * options.seed + 1));
   std::printf("%s: %s\n", hidden.name.c_str(), hidden.words.c_str());
   std::fflush(stdout);
 }
@@ -104,6 +138,13 @@ void Main(const std::vector<std::string>& words) {
   };
   write(test::BonderCatalogueCases(), true);
   write(test::BonderInventedCases(), false);
+  for (const test::SmallMachine& small : test::SmallMachines()) {
+    for (const HiddenCase& hidden : small.cases) {
+      if (options.name.empty() || options.name == hidden.name) {
+        Write(options, small, hidden);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -74,22 +74,41 @@ def off_numbers(answer):
     return [number["name"] for number in answer["calibration"] if number.get("off")]
 
 
+KIND_OF_NUMBER = {"mass": "inertia", "inertia": "inertia", "armature": "inertia",
+                  "damping": "viscous friction", "stiffness": "compliance",
+                  "friction": "dry friction", "gear": "drive gain"}
+
+
+def false_kinds(answer, truth):
+    """Kinds that are sure and are neither of a cause nor of a number that is off."""
+    places = [(set(cause["kinds"]), cause["sites"]) for cause in truth["causes"]]
+    places += [({KIND_OF_NUMBER[name.split("@")[0]]}, number["sites"])
+               for name, number in truth["numbers"].items()]
+    return [f"{kind['kind']}@{kind['site']}" for kind in answer["kinds"]
+            if (kind["probability"] or 0.0) > SURE and
+            not any(kind["kind"] in kinds and kind["site"] in sites
+                    for kinds, sites in places)]
+
+
 def judge_listed(answer, truth, tolerance):
     """Causes of the catalogue: each with its size, and nothing else."""
     faults = []
     left = named(answer)
     numbers = set(off_numbers(answer))
-    expected = dict(truth["numbers"])
     for cause in truth["causes"]:
-        by_cause = [(one, form) for one in left for form in cause["forms"]
+        by_cause = [(one, form) for one in answer["causes"] for form in cause["forms"]
                     if says(one, form)]
         by_number = [form for form in cause["forms"] if form["name"] == "number"
                      and form["site"] in numbers]
         if by_cause:
             one, form = by_cause[0]
-            left.remove(one)
+            if one in left:
+                left.remove(one)
+            else:
+                faults.append(f"unsure of {one['effect']}@{one['site']} "
+                              f"({short(one['probability'])})")
             if not values_near(one["parameters"], form["values"], tolerance):
-                faults.append(f"size of {form['name']}@{one['site']}")
+                faults.append(f"size of {one['effect']}@{one['site']}")
         elif by_number:
             form = by_number[0]
             numbers.discard(form["site"])
@@ -97,11 +116,12 @@ def judge_listed(answer, truth, tolerance):
                 faults.append(f"size of {form['site']}")
         else:
             faults.append(f"no {cause['effect'].split(':')[0]}")
-    for name, factor in expected.items():
+    for name, number in truth["numbers"].items():
         numbers.discard(name)
-        if not number_near(answer, name, factor, tolerance):
+        if not number_near(answer, name, number["factor"], tolerance):
             faults.append(f"size of {name}")
     extra = [f"{one['effect']}@{one['site']}" for one in left] + sorted(numbers)
+    extra += false_kinds(answer, truth) if not extra else []
     faults += [f"false {one}" for one in extra]
     return Verdict(not faults, faults, false=bool(extra))
 
@@ -157,5 +177,5 @@ def truth_text(truth):
     parts = [cause["effect"] or
              f"{' or '.join(cause['kinds'])}@{' or '.join(cause['sites'])}"
              for cause in truth["causes"]]
-    parts += [f"{name} x {factor:g}" for name, factor in truth["numbers"].items()]
+    parts += [f"{name} x {number['factor']:g}" for name, number in truth["numbers"].items()]
     return " + ".join(parts) or "nothing"

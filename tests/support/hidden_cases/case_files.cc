@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
@@ -26,15 +27,28 @@ json ToJson(const TrueCause& cause) {
           {"effect", cause.effect}};
 }
 
-json TruthOf(const WrittenCase& written, const std::vector<TrueCause>& truth) {
+/// Where a number may be said to be: its element, and the joints of a body.
+std::vector<std::string> PlacesOf(const mjModel& plant, const std::string& number) {
+  std::vector<std::string> places = {number.substr(number.find('@') + 1)};
+  const int body = mj_name2id(&plant, mjOBJ_BODY, places[0].c_str());
+  for (int j = 0; body > 0 && j < plant.njnt; ++j) {
+    if (plant.jnt_bodyid[j] == body)
+      places.push_back(ElementName(plant, mjOBJ_JOINT, j));
+  }
+  return places;
+}
+
+json ToJson(const CaseTruth& truth, const Machine& machine) {
   json causes = json::array();
-  for (const TrueCause& cause : truth) causes.push_back(ToJson(cause));
+  for (const TrueCause& cause : truth.causes) causes.push_back(ToJson(cause));
   json numbers = json::object();
-  for (const auto& [name, factor] : written.numbers) numbers[name] = factor;
+  for (const auto& [name, factor] : truth.numbers) {
+    numbers[name] = {{"factor", factor}, {"sites", PlacesOf(machine.plant(), name)}};
+  }
   return {{"schema", "mjdiag.hidden_case/1"},
-          {"case", written.hidden.name},
-          {"words", written.hidden.words},
-          {"seed", written.seed},
+          {"case", truth.hidden.name},
+          {"words", truth.hidden.words},
+          {"seed", truth.seed},
           {"causes", causes},
           {"numbers", numbers}};
 }
@@ -52,18 +66,21 @@ void TakeBackThatItIsExact(const fs::path& plant) {
 
 }  // namespace
 
-void WriteCase(const fs::path& folder, const WrittenCase& written,
-               const Machine& machine, const std::vector<TrueCause>& truth,
-               const Record& record, const Record& unseen) {
+void WriteGivenSetup(const fs::path& folder, const fs::path& setup,
+                     const Machine& machine, const NamedFactors& numbers) {
   Changes given;
-  for (const auto& [name, factor] : written.numbers) {
+  for (const auto& [name, factor] : numbers) {
     given.numbers.emplace_back(FindPlantNumber(machine.plant(), name), 1.0 / factor);
   }
-  const fs::path plant = WriteExtendedSetup(folder, written.setup, machine, given);
-  if (!written.numbers.empty()) TakeBackThatItIsExact(plant);
+  const fs::path plant = WriteExtendedSetup(folder, setup, machine, given);
+  if (!numbers.empty()) TakeBackThatItIsExact(plant);
+}
+
+void WriteCase(const fs::path& folder, const CaseTruth& truth, const Machine& machine,
+               const Record& record, const Record& unseen) {
   WriteRecord(folder / "record.csv", record, RecordFormat::kCsv);
   WriteRecord(folder / "unseen.csv", unseen, RecordFormat::kCsv);
-  WriteTextFile(folder / "truth.json", TruthOf(written, truth).dump(2) + "\n");
+  WriteTextFile(folder / "truth.json", ToJson(truth, machine).dump(2) + "\n");
 }
 
 }  // namespace mjdiag::test

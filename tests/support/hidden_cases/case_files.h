@@ -17,18 +17,23 @@ namespace mjdiag::test {
 /// Numbers of a plant by their names, and by what the machine's are larger.
 using NamedFactors = std::vector<std::pair<std::string, double>>;
 
-struct WrittenCase {
+struct CaseTruth {
   const HiddenCase& hidden;
-  std::string name;  ///< of the folder
   std::uint64_t seed = 1;
-  std::filesystem::path setup;  ///< of the machine
-  /// The machine's numbers over those of the plant that is written.
+  std::vector<TrueCause> causes = {};
+  /// The machine's numbers over those of the plant that is given.
   NamedFactors numbers = {};
 };
 
+/// The setup of a machine as somebody has it who does not know its numbers well.
+/// @param machine  as it is
+/// @param setup    its folder
+void WriteGivenSetup(const std::filesystem::path& folder,
+                     const std::filesystem::path& setup, const Machine& machine,
+                     const NamedFactors& numbers);
+
 /// @param machine  the machine that was measured, without what is hidden
-void WriteCase(const std::filesystem::path& folder, const WrittenCase& written,
-               const Machine& machine, const std::vector<TrueCause>& truth,
-               const Record& record, const Record& unseen);
+void WriteCase(const std::filesystem::path& folder, const CaseTruth& truth,
+               const Machine& machine, const Record& record, const Record& unseen);
 
 }  // namespace mjdiag::test
