@@ -7,6 +7,7 @@
 // small machines are there once with nothing and once with one thing hidden.
 // scripts/bonder-cases asks for causes and judges the answers.
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -104,7 +105,7 @@ Record Measure(const test::SmallMachine& small, const Machine& machine,
       static_cast<Eigen::Index>(small.duration * machine.rates().control + 0.5);
   test::OwnComputer computer(machine.setup(),
                              small.controller(CaseDice("motion", seed)), ticks, seed);
-  const int steps = 16 * machine.rates().substeps;
+  const int steps = std::max(32, 10 * machine.rates().substeps);
   test::RunOwn(machine, hidden, computer, {ticks, steps, small.start});
   return computer.ToRecord();
 }

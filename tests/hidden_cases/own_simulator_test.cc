@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <ostream>
 #include <string>
 
 #include "mjdiag/plugin/runtime/simulation.h"
@@ -90,6 +93,8 @@ TEST(OwnSimulator, RepeatsARunBitByBit) {
   EXPECT_EQ(OwnRecord(machine, {}).At("y").samples,
             OwnRecord(machine, {}).At("y").samples);
 }
+
+void PrintTo(const HiddenCase& one, std::ostream* out) { *out << one.name; }
 
 class CatalogueCase : public ::testing::TestWithParam<HiddenCase> {};
 

@@ -60,8 +60,8 @@ constexpr const char* kCartAndPole = R"(<mujoco model="cart_and_pole">
 
 constexpr const char* kLegOnABoom = R"(<mujoco model="leg_on_a_boom">
   <compiler angle="radian"/>
-  <!-- 8 kHz: a step of 0.5 ms alone makes the touchdowns wrong by newton metres. -->
-  <option timestep="0.000125" integrator="Euler" tolerance="1e-12"/>
+  <!-- 16 kHz: a step of 0.5 ms alone makes the touchdowns wrong by newton metres. -->
+  <option timestep="0.0000625" integrator="Euler" tolerance="1e-12"/>
   <worldbody>
     <geom name="floor" type="plane" size="3 3 0.1"/>
     <body name="boom" pos="0 0 0.42">
@@ -239,13 +239,13 @@ const std::vector<SmallMachine>& SmallMachines() {
         {"cart_and_pole_waves", "a belt that pulls by the place", WavyBelt}}},
       {"leg_on_a_boom",
        kLegOnABoom,
-       SetupOf("Leg on a boom", "control = 1000.0\nsubsteps = 8\n",
+       SetupOf("Leg on a boom", "control = 1000.0\nsubsteps = 16\n",
                {{"yaw", "rad", "5e-5", "1.918e-4"},
                 {"pitch", "rad", "5e-5", "1.918e-4"},
                 {"hip", "rad", "5e-5", "1.918e-4"},
                 {"knee", "rad", "5e-5", "1.918e-4"}},
                {{"hip_motor", "N m"}, {"knee_motor", "N m"}}),
-       5.0,
+       4.0,
        (VectorXd(4) << 0.0, -0.06, 0.5, -1.0).finished(),
        Hop,
        {{"leg_on_a_boom_nothing", "nothing is hidden", Nothing},
