@@ -18,6 +18,11 @@
 #include "support/hidden_cases/hidden_case.h"
 
 namespace mjdiag::test {
+
+/// What a test that failed is called by.
+void PrintTo(const HiddenCase& one, std::ostream* out);
+void PrintTo(const HiddenCase& one, std::ostream* out) { *out << one.name; }
+
 namespace {
 
 constexpr const char* kSensors[] = {"x", "y", "z"};
@@ -93,8 +98,6 @@ TEST(OwnSimulator, RepeatsARunBitByBit) {
   EXPECT_EQ(OwnRecord(machine, {}).At("y").samples,
             OwnRecord(machine, {}).At("y").samples);
 }
-
-void PrintTo(const HiddenCase& one, std::ostream* out) { *out << one.name; }
 
 class CatalogueCase : public ::testing::TestWithParam<HiddenCase> {};
 
