@@ -1,0 +1,86 @@
+#include "support/hidden_cases/case_files.h"
+
+#include <nlohmann/json.hpp>
+
+#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/signals/error.h"
+#include "mjdiag/signals/record_file.h"
+#include "mjdiag/signals/text_file.h"
+
+namespace mjdiag::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json ToJson(const TrueCause& cause) {
+  json forms = json::array();
+  for (const TrueForm& form : cause.forms) {
+    forms.push_back(
+        {{"name", form.name}, {"site", form.site}, {"values", form.values}});
+  }
+  return {{"kinds", cause.kinds},
+          {"sites", cause.sites},
+          {"forms", forms},
+          {"effect", cause.effect}};
+}
+
+/// Where a number may be said to be: its element, and the joints of a body.
+std::vector<std::string> PlacesOf(const mjModel& plant, const std::string& number) {
+  std::vector<std::string> places = {number.substr(number.find('@') + 1)};
+  const int body = mj_name2id(&plant, mjOBJ_BODY, places[0].c_str());
+  for (int j = 0; body > 0 && j < plant.njnt; ++j) {
+    if (plant.jnt_bodyid[j] == body)
+      places.push_back(ElementName(plant, mjOBJ_JOINT, j));
+  }
+  return places;
+}
+
+json ToJson(const CaseTruth& truth, const Machine& machine) {
+  json causes = json::array();
+  for (const TrueCause& cause : truth.causes) causes.push_back(ToJson(cause));
+  json numbers = json::object();
+  for (const auto& [name, factor] : truth.numbers) {
+    numbers[name] = {{"factor", factor}, {"sites", PlacesOf(machine.plant(), name)}};
+  }
+  return {{"schema", "mjdiag.hidden_case/1"},
+          {"case", truth.hidden.name},
+          {"words", truth.hidden.words},
+          {"seed", truth.seed},
+          {"causes", causes},
+          {"numbers", numbers}};
+}
+
+/// A plant whose numbers are off does not say that it is what it says.
+void TakeBackThatItIsExact(const fs::path& plant) {
+  const std::string claim = R"(<numeric name="known" data="0"/>)";
+  std::string text = ReadTextFile(plant);
+  const std::size_t at = text.find(claim);
+  if (at == std::string::npos) {
+    throw InputError(plant.string(), "does not say that it is exact", claim);
+  }
+  WriteTextFile(plant, text.erase(at, claim.size()));
+}
+
+}  // namespace
+
+void WriteGivenSetup(const fs::path& folder, const fs::path& setup,
+                     const Machine& machine, const NamedFactors& numbers) {
+  Changes given;
+  for (const auto& [name, factor] : numbers) {
+    given.numbers.emplace_back(FindPlantNumber(machine.plant(), name), 1.0 / factor);
+  }
+  const fs::path plant = WriteExtendedSetup(folder, setup, machine, given);
+  if (!numbers.empty()) TakeBackThatItIsExact(plant);
+}
+
+void WriteCase(const fs::path& folder, const CaseTruth& truth, const Machine& machine,
+               const Record& record, const Record& unseen) {
+  WriteRecord(folder / "record.csv", record, RecordFormat::kCsv);
+  WriteRecord(folder / "unseen.csv", unseen, RecordFormat::kCsv);
+  WriteTextFile(folder / "truth.json", ToJson(truth, machine).dump(2) + "\n");
+}
+
+}  // namespace mjdiag::test
