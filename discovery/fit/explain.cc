@@ -12,6 +12,7 @@
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/signals/error.h"
 
@@ -44,6 +45,8 @@ class Search {
     double score() const { return path.deviance + fit.prior + fit.occam; }
   };
   Settled Settle(ModelFit fit, const FilterNoise& near) const;
+  using Fitted = std::function<ModelFit(const Model&)>;
+  ModelFit Simplified(ModelFit fit, const Fitted& fitted) const;
   void Adopt(Settled settled);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
   std::string Difference(double score) const {
@@ -81,6 +84,13 @@ class Search {
   Clock::time_point begin_ = Clock::now();
   Explained found_;
 };
+
+bool IsResistance(const Block& block) {
+  const Kind kind = block.candidate->effect->kind();
+  return block.candidate->effect->family() == Family::kFriction &&
+         (kind == Kind::kDryFriction || kind == Kind::kLoadFriction ||
+          kind == Kind::kViscousFriction);
+}
 
 /// One coordinate further.
 constexpr double kStep = 1e-3;
@@ -138,6 +148,44 @@ Model Search::After(const ModelMove& move) const {
         {added.variation.block, *added.variation.values(added.amplitudes)});
   }
   return model;
+}
+
+/// With every resistance as the simplest that is no worse, of all that the first order of
+/// the motion does not tell apart: constant, or proportional to the velocity.
+ModelFit Search::Simplified(ModelFit fit, const Fitted& fitted) const {
+  for (std::size_t m = 0; m < fit.model.size(); ++m) {
+    if (IsOver()) break;
+    const Block& block = found_.blocks[fit.model[m].block];
+    if (!block.candidate || !block.HasShape() || !IsResistance(block)) continue;
+    for (std::size_t other = 0; other < found_.blocks.size(); ++other) {
+      const Block& simple = found_.blocks[other];
+      if (!simple.candidate || !IsResistance(simple) || simple.HasShape()) continue;
+      if (simple.candidate->site != block.candidate->site) continue;
+      if (simple.candidate->parameters.size() != 1) continue;
+      Model model = fit.model;
+      const auto group = std::ranges::find_if(model, [&](const Member& member) {
+        return &member != &model[m] &&
+               found_.blocks[member.block].group == simple.group;
+      });
+      // A tenth of what such a law is usually: the fit finds the rest.
+      model[m] = {other, Eigen::VectorXd::Constant(
+                             1, 0.1 * simple.candidate->parameters.front().spread)};
+      if (group != model.end()) model.erase(model.begin() + static_cast<std::ptrdiff_t>(m));
+      try {
+        ModelFit tried = fitted(model);
+        if (tried.score() > fit.score()) continue;
+        Say("    simpler: " + std::to_string(tried.score() - fit.score()) + "  " +
+            Describe(found_.blocks, tried.model));
+        fit = std::move(tried);
+        m = static_cast<std::size_t>(-1);
+        break;
+      } catch (const NumericalError&) {
+      } catch (const InputError&) {
+      }
+    }
+    if (m == static_cast<std::size_t>(-1)) continue;
+  }
+  return fit;
 }
 
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
@@ -232,7 +280,10 @@ bool Search::Step() {
       continue;
     }
     try {
-      Settled settled = Settle(one.fit, moves.noises[one.noise]);
+      Settled settled = Settle(
+          Simplified(one.fit,
+                     [&](const Model& model) { return fitted(model, one.noise); }),
+          moves.noises[one.noise]);
       Say("  filtered: " + Difference(settled.score()));
       if (settled.score() > found_.score - kLeastGain) continue;
       Adopt(std::move(settled));
@@ -262,7 +313,7 @@ Explained Search::Run() {
   found_.nothing = found_.path;
   found_.score = found_.path.deviance;
   ChooseSteps();
-  std::vector<Candidate> candidates = ListCandidates(machine_);
+  std::vector<Candidate> candidates = ListCandidates(machine_, true);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates, machine_, run_);
   found_.blocks = BlocksOf(machine_, candidates);

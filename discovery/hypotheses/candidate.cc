@@ -44,8 +44,8 @@ std::string Describe(const Candidate& candidate) {
   return candidate.effect->IsFault() ? name : name + "@" + candidate.site;
 }
 
-std::vector<Candidate> AllSites(const Machine& machine) {
-  const SiteMap map(machine.plant(), machine.linear(), machine.channels());
+std::vector<Candidate> AllSites(const Machine& machine, bool with_seen) {
+  const SiteMap map(machine.plant(), machine.linear(), machine.channels(), with_seen);
   std::vector<Candidate> candidates;
   for (const PlacedEffect& fault : FaultEffects(machine.plant())) {
     AddSitesOf(fault.effect, map, candidates);
@@ -56,8 +56,8 @@ std::vector<Candidate> AllSites(const Machine& machine) {
   return candidates;
 }
 
-std::vector<Candidate> ListCandidates(const Machine& machine) {
-  std::vector<Candidate> candidates = AllSites(machine);
+std::vector<Candidate> ListCandidates(const Machine& machine, bool with_seen) {
+  std::vector<Candidate> candidates = AllSites(machine, with_seen);
   const std::vector<Candidate> all = candidates;
   std::erase_if(candidates, [&](const Candidate& candidate) {
     return std::ranges::any_of(

@@ -54,9 +54,10 @@ Eigen::Index PeriodPlace(const Candidate& candidate);
 /// "coulomb_friction@X", "zeta_x".
 std::string Describe(const Candidate& candidate);
 
-std::vector<Candidate> ListCandidates(const Machine& machine);
+/// @param with_seen  at joints that are only seen, too
+std::vector<Candidate> ListCandidates(const Machine& machine, bool with_seen = false);
 
 /// The same with those effects that a fault parameter stands for.
-std::vector<Candidate> AllSites(const Machine& machine);
+std::vector<Candidate> AllSites(const Machine& machine, bool with_seen = false);
 
 }  // namespace mjdiag

@@ -67,7 +67,6 @@ class MoveSearch {
   struct Scored {
     Change change;
     double score = kImpossible;
-    double rank = kImpossible;
     std::size_t noise = 0;
     SetFit fit;
   };
@@ -86,9 +85,6 @@ class MoveSearch {
   /// With what a group that comes in takes the place of.
   Change Completed(Change change) const;
   Scored ScoreOf(const Change& change) const;
-  /// A score, and the share of what is gained for every law with a shape: to first order the
-  /// wrong shape may seem to be better by that, and what is simple comes first.
-  double RankOf(const Scored& scored) const;
   std::vector<Scored> ScoresOf(std::vector<Change> changes) const;
   void Keep(const std::vector<Scored>& scored);
 
@@ -224,19 +220,13 @@ MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
   return best;
 }
 
-double MoveSearch::RankOf(const Scored& scored) const {
-  if (!(scored.score < moves_.score)) return scored.score;
-  return scored.score;
-}
-
 std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(std::vector<Change> changes) const {
   std::vector<Scored> scored(changes.size());
   ParallelFor(static_cast<int>(changes.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     scored[i] = ScoreOf(Completed(std::move(changes[i])));
   });
-  for (Scored& one : scored) one.rank = RankOf(one);
-  std::ranges::sort(scored, {}, &Scored::rank);
+  std::ranges::sort(scored, {}, &Scored::score);
   return scored;
 }
 
@@ -284,7 +274,7 @@ Moves MoveSearch::Run() {
   for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{}, {v}});
   std::vector<Scored> all = ScoresOf(changes);
   // Two that say something together only.
-  constexpr std::size_t kBeam = 12;
+  constexpr std::size_t kBeam = 6;
   changes.clear();
   for (std::size_t i = 0; i < std::min(kBeam, all.size()); ++i) {
     for (std::size_t v = 0; v < kept_.size(); ++v) {
@@ -292,7 +282,7 @@ Moves MoveSearch::Run() {
     }
   }
   std::ranges::move(ScoresOf(changes), std::back_inserter(all));
-  std::ranges::sort(all, {}, &Scored::rank);
+  std::ranges::sort(all, {}, &Scored::score);
   // Six joints that rub are no six moves: further members come in at once as long as each
   // brings a tenth of what the others do, beside which what is of second order is little.
   while (!all.empty()) {
@@ -305,7 +295,7 @@ Moves MoveSearch::Run() {
     std::vector<Scored> further = ScoresOf(changes);
     if (further.empty()) break;
     const double gained = moves_.score - best.score;
-    const bool goes_on = further.front().rank < best.rank - kShare * gained;
+    const bool goes_on = further.front().score < best.score - kShare * gained;
     all.insert(all.begin(), std::make_move_iterator(further.begin()),
                std::make_move_iterator(further.begin() + 1));
     if (!goes_on) break;
@@ -316,7 +306,7 @@ Moves MoveSearch::Run() {
     for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{t}, {v}});
   }
   std::ranges::move(ScoresOf(changes), std::back_inserter(all));
-  std::ranges::sort(all, {}, &Scored::rank);
+  std::ranges::sort(all, {}, &Scored::score);
   Keep(all);
   // The best of those that say the same.
   std::set<std::pair<std::vector<std::size_t>, std::multiset<std::size_t>>> seen;

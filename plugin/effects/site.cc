@@ -44,11 +44,14 @@ std::vector<Index> SeenJoints(const MechanicalModel& model) {
 }
 
 SiteMap::SiteMap(const mjModel& plant, const MechanicalModel& model,
-                 const Channels& channels)
+                 const Channels& channels, bool with_seen)
     : plant_(plant),
       model_(model),
       channels_(channels),
-      driven_(Unique(DrivenJoints(model))) {}
+      driven_(DrivenJoints(model)) {
+  if (with_seen) std::ranges::copy(SeenJoints(model), std::back_inserter(driven_));
+  driven_ = Unique(std::move(driven_));
+}
 
 std::vector<Site> SiteMap::Actuators() const {
   const std::vector<Index> driven = DrivenJoints(model_);

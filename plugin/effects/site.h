@@ -30,7 +30,10 @@ std::vector<Eigen::Index> SeenJoints(const MechanicalModel& model);
 /// A machine as effects look for their sites on it. Does not own what it is made of.
 class SiteMap {
  public:
-  SiteMap(const mjModel& plant, const MechanicalModel& model, const Channels& channels);
+  /// @param with_seen  joints that sensors see count as driven: what hangs on a machine rubs
+  ///                   too
+  SiteMap(const mjModel& plant, const MechanicalModel& model, const Channels& channels,
+          bool with_seen = false);
 
   const mjModel& plant() const { return plant_; }
   const MechanicalModel& model() const { return model_; }
