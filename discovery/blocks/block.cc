@@ -165,13 +165,11 @@ std::vector<Block> BlocksOf(const Machine& machine,
   for (const Candidate& candidate : candidates) {
     const std::string name = Describe(candidate);
     const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
-    const bool repeats =
-        PeriodPlace(candidate) < std::ssize(candidate.parameters);
-    blocks.push_back(
-        {.name = name,
-         .candidate = candidate,
-         .number = std::nullopt,
-         .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
+    const bool repeats = PeriodPlace(candidate) < std::ssize(candidate.parameters);
+    blocks.push_back({.name = name,
+                      .candidate = candidate,
+                      .number = std::nullopt,
+                      .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
     // A factor of a number is known as well as the number.
     for (FitParameter& parameter : blocks.back().candidate->parameters) {
       if (number && parameter.role == Role::kFactor) {

@@ -30,10 +30,7 @@ class Search {
  public:
   Search(const Machine& machine, const MeasuredRun& run, const VectorXd& reading_sd,
          const ExplainOptions& options)
-      : machine_(machine),
-        run_(run),
-        reading_sd_(reading_sd),
-        options_(options) {}
+      : machine_(machine), run_(run), reading_sd_(reading_sd), options_(options) {}
 
   Explained Run();
 
@@ -46,6 +43,7 @@ class Search {
   };
   Settled Settle(ModelFit fit, const FilterNoise& near) const;
   using Fitted = std::function<ModelFit(const Model&)>;
+  Model WithSimple(Model model, std::size_t place, std::size_t block) const;
   ModelFit Simplified(ModelFit fit, const Fitted& fitted) const;
   void Adopt(Settled settled);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
@@ -65,16 +63,14 @@ class Search {
     if (options_.progress) options_.progress(text);
   }
 
-  Machine With(const Model& model) const {
-    return With(model, steps_);
-  }
+  Machine With(const Model& model) const { return With(model, steps_); }
   Machine With(const Model& model, bool steps) const {
     const Machine machine = machine_.With(ChangesOf(found_.blocks, model));
     return steps ? machine : machine.WithoutSteps();
   }
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, or of one that has none?
-  void ChooseSteps();
+  bool ChooseSteps();
 
   const Machine& machine_;
   bool steps_ = true;
@@ -86,6 +82,7 @@ class Search {
 };
 
 bool IsResistance(const Block& block) {
+  if (!block.candidate) return false;
   const Kind kind = block.candidate->effect->kind();
   return block.candidate->effect->family() == Family::kFriction &&
          (kind == Kind::kDryFriction || kind == Kind::kLoadFriction ||
@@ -107,8 +104,7 @@ std::vector<Term> Search::Terms() const {
     if (x[place] + step > one.upper) step = -step;
     VectorXd moved = x;
     moved[place] += step;
-    others.push_back(
-        {With(At(coordinates, model, moved)), step});
+    others.push_back({With(At(coordinates, model, moved)), step});
   }
   for (std::size_t m = 0; m < model.size(); ++m) {
     Model without = model;
@@ -144,46 +140,52 @@ Model Search::After(const ModelMove& move) const {
     }
   }
   for (const Added& added : move.added) {
-    model.push_back(
-        {added.variation.block, *added.variation.values(added.amplitudes)});
+    model.push_back({added.variation.block, *added.variation.values(added.amplitudes)});
   }
   return model;
 }
 
-/// With every resistance as the simplest that is no worse, of all that the first order of
-/// the motion does not tell apart: constant, or proportional to the velocity.
+/// With a member as a simple law of the same joint.
+Model Search::WithSimple(Model model, std::size_t place, std::size_t block) const {
+  const Block& simple = found_.blocks[block];
+  const bool has_one = std::ranges::any_of(model, [&](const Member& member) {
+    return &member != &model[place] &&
+           found_.blocks[member.block].group == simple.group;
+  });
+  if (has_one) {
+    model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
+    return model;
+  }
+  // The fit finds its size from a tenth of what is usual on.
+  const double size = 0.1 * simple.candidate->parameters.front().spread;
+  model[place] = {block, VectorXd::Constant(1, size)};
+  return model;
+}
+
+/// With every resistance as the simplest that is no worse, constant or proportional to the
+/// velocity: columns of first order seldom tell which of its shapes it is, for they know the
+/// velocity no better than the filter does where it changes its sign.
 ModelFit Search::Simplified(ModelFit fit, const Fitted& fitted) const {
-  for (std::size_t m = 0; m < fit.model.size(); ++m) {
-    if (IsOver()) break;
+  for (std::size_t m = 0; m < fit.model.size() && !IsOver(); ++m) {
     const Block& block = found_.blocks[fit.model[m].block];
-    if (!block.candidate || !block.HasShape() || !IsResistance(block)) continue;
+    if (!IsResistance(block) || !block.HasShape()) continue;
     for (std::size_t other = 0; other < found_.blocks.size(); ++other) {
       const Block& simple = found_.blocks[other];
-      if (!simple.candidate || !IsResistance(simple) || simple.HasShape()) continue;
-      if (simple.candidate->site != block.candidate->site) continue;
-      if (simple.candidate->parameters.size() != 1) continue;
-      Model model = fit.model;
-      const auto group = std::ranges::find_if(model, [&](const Member& member) {
-        return &member != &model[m] &&
-               found_.blocks[member.block].group == simple.group;
-      });
-      // A tenth of what such a law is usually: the fit finds the rest.
-      model[m] = {other, Eigen::VectorXd::Constant(
-                             1, 0.1 * simple.candidate->parameters.front().spread)};
-      if (group != model.end()) model.erase(model.begin() + static_cast<std::ptrdiff_t>(m));
+      if (!IsResistance(simple) || simple.candidate->parameters.size() != 1 ||
+          simple.candidate->site != block.candidate->site) {
+        continue;
+      }
       try {
-        ModelFit tried = fitted(model);
+        ModelFit tried = fitted(WithSimple(fit.model, m, other));
         if (tried.score() > fit.score()) continue;
-        Say("    simpler: " + std::to_string(tried.score() - fit.score()) + "  " +
-            Describe(found_.blocks, tried.model));
+        if (tried.model.size() < fit.model.size()) --m;
         fit = std::move(tried);
-        m = static_cast<std::size_t>(-1);
+        Say("    simpler: " + Describe(found_.blocks, fit.model));
         break;
       } catch (const NumericalError&) {
       } catch (const InputError&) {
       }
     }
-    if (m == static_cast<std::size_t>(-1)) continue;
   }
   return fit;
 }
@@ -199,8 +201,8 @@ Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
   for (int round = 0; round < kRounds && !IsOver(); ++round) {
     const FilterPath& path = settled.path;
     const KeptGains gains = KeepGains(path, path.noise, InflationAlong(path));
-    Settled next{FitModel([this](const Model& model) { return With(model); }, run_, path, gains, found_.blocks,
-                          settled.fit.model, 4),
+    Settled next{FitModel([this](const Model& model) { return With(model); }, run_,
+                          path, gains, found_.blocks, settled.fit.model, 4),
                  {}};
     next.path = filter(next.fit.model, {path.noise});
     const double gain = settled.score() - next.score();
@@ -232,26 +234,34 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
 }
 
 bool Search::Step() {
+  const Machine own = With(found_.fit.model);
+  const Column other_steps =
+      TickColumns(own, run_, found_.path, {{With(found_.fit.model, !steps_)}}).front();
   const Moves moves =
-      MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks, Terms());
+      MovesOf(own, run_, found_.path, found_.blocks, Terms(), other_steps);
+  if (moves.other_steps && ChooseSteps()) return true;
   constexpr int kIterations = 6;
-  const auto fitted = [&](const Model& model, std::size_t noise) {
-    return FitModel([this](const Model& one) { return With(one); }, run_, found_.path,
-                    moves.whitenings[noise]->gains(), found_.blocks, model, kIterations);
+  /// Behind which gains, and whether with other steps.
+  using Judged = std::pair<std::size_t, bool>;
+  const auto fitted = [&](const Model& model, const Judged& judged) {
+    const bool steps = steps_ != judged.second;
+    return FitModel([&](const Model& one) { return With(one, steps); }, run_,
+                    found_.path, moves.whitenings[judged.first]->gains(), found_.blocks,
+                    model, kIterations);
   };
   // Moves are compared with the model as it is behind the same gains.
-  std::map<std::size_t, ModelFit> as_it_is;
-  const auto base = [&](std::size_t noise) -> const ModelFit& {
-    const auto known = as_it_is.find(noise);
+  std::map<Judged, ModelFit> as_it_is;
+  const auto base = [&](const Judged& judged) -> const ModelFit& {
+    const auto known = as_it_is.find(judged);
     if (known != as_it_is.end()) return known->second;
-    return as_it_is.emplace(noise, fitted(found_.fit.model, noise)).first->second;
+    return as_it_is.emplace(judged, fitted(found_.fit.model, judged)).first->second;
   };
-  if (Resettle(moves, base(moves.noise))) return true;
-  Say(std::to_string(moves.variations) + " shapes, " + std::to_string(moves.best.size()) +
-      " moves");
+  if (Resettle(moves, base({moves.noise, false}))) return true;
+  Say(std::to_string(moves.variations) + " shapes, " +
+      std::to_string(moves.best.size()) + " moves");
   struct Tried {
     ModelFit fit;
-    std::size_t noise = 0;
+    Judged judged;
     double gain = 0.0;
   };
   std::vector<Tried> tried;
@@ -260,13 +270,14 @@ bool Search::Step() {
     if (tried.size() == kMost || IsOver()) break;
     if (move.score > moves.score - kLeastGain) continue;
     try {
-      ModelFit fit = fitted(After(move), move.noise);
-      const double gain = base(move.noise).score() - fit.score();
+      const Judged judged{move.noise, move.other_steps};
+      ModelFit fit = fitted(After(move), judged);
+      const double gain = base(judged).score() - fit.score();
       char text[80];
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
       Say(text + Describe(found_.blocks, fit.model));
-      tried.push_back({std::move(fit), move.noise, gain});
+      tried.push_back({std::move(fit), judged, gain});
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
@@ -279,33 +290,37 @@ bool Search::Step() {
         })) {
       continue;
     }
+    const bool before = steps_;
     try {
-      Settled settled = Settle(
-          Simplified(one.fit,
-                     [&](const Model& model) { return fitted(model, one.noise); }),
-          moves.noises[one.noise]);
+      ModelFit simple = Simplified(
+          one.fit, [&](const Model& model) { return fitted(model, one.judged); });
+      steps_ = steps_ != one.judged.second;
+      Settled settled = Settle(std::move(simple), moves.noises[one.judged.first]);
       Say("  filtered: " + Difference(settled.score()));
-      if (settled.score() > found_.score - kLeastGain) continue;
-      Adopt(std::move(settled));
-      return true;
+      if (settled.score() < found_.score - kLeastGain) {
+        Adopt(std::move(settled));
+        return true;
+      }
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
+    steps_ = before;
   }
   return false;
 }
 
-void Search::ChooseSteps() {
+bool Search::ChooseSteps() {
   FilterPath path =
       RunForceFilter(With(found_.fit.model, !steps_), run_, found_.path.dofs,
                      found_.path.starts, found_.path.noise);
   const double gain = found_.path.deviance - path.deviance;
-  if (gain < kLeastGain) return;
+  if (gain < kLeastGain) return false;
   steps_ = !steps_;
   Say((steps_ ? "with physics steps: " : "without physics steps: ") +
       std::to_string(-gain));
   found_.score -= gain;
   found_.path = std::move(path);
+  return true;
 }
 
 Explained Search::Run() {

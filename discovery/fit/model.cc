@@ -121,7 +121,8 @@ VectorXd Place(const std::vector<Coordinate>& coordinates, const Model& model) {
   VectorXd x(std::ssize(coordinates));
   for (Index i = 0; i < x.size(); ++i) {
     const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
-    x[i] = std::clamp(one.ToX(model[one.member].values[one.value]), one.lower, one.upper);
+    x[i] =
+        std::clamp(one.ToX(model[one.member].values[one.value]), one.lower, one.upper);
   }
   return x;
 }

@@ -60,7 +60,8 @@ class Innovations {
 
  private:
   VectorXd RunAt(const VectorXd& x) const {
-    return PredictAlong(machine_with_(At(coordinates_, model_, x)), run_, path_, gains_);
+    return PredictAlong(machine_with_(At(coordinates_, model_, x)), run_, path_,
+                        gains_);
   }
 
   const MachineWith& machine_with_;
@@ -130,8 +131,8 @@ class KnownCost final : public ceres::CostFunction {
 
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
-                  const std::vector<Block>& blocks,
-                  const Model& start, int iterations) {
+                  const std::vector<Block>& blocks, const Model& start,
+                  int iterations) {
   const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, start);
   Innovations innovations(machine_with, run, path, gains, start, coordinates);
   VectorXd x = Place(coordinates, start);
@@ -164,8 +165,7 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = iterations;
     // A hundredth of what one innovation tells.
-    solver.function_tolerance =
-        0.01 / std::max(1.0, innovations.Of(x).squaredNorm());
+    solver.function_tolerance = 0.01 / std::max(1.0, innovations.Of(x).squaredNorm());
     solver.parameter_tolerance = 1e-7;
     solver.logging_type = ceres::SILENT;
     solver.line_search_interpolation_type = ceres::QUADRATIC;
@@ -180,17 +180,16 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
   fit.model = At(coordinates, start, x);
   fit.deviance = innovations.Of(x).squaredNorm() + gains.log_determinant;
   for (const Member& member : fit.model) {
-    fit.prior += blocks[member.block].price +
-                 SizePrice(blocks[member.block], member.values);
+    fit.prior +=
+        blocks[member.block].price + SizePrice(blocks[member.block], member.values);
   }
   if (x.size() > 0) {
     const MatrixXd J = innovations.Jacobian(x);
     const MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
     const Eigen::LLT<MatrixXd> solved(H);
     fit.occam = 2.0 * solved.matrixLLT().diagonal().array().log().sum();
-    fit.sd = solved.solve(MatrixXd::Identity(x.size(), x.size()))
-                 .diagonal()
-                 .cwiseSqrt();
+    fit.sd =
+        solved.solve(MatrixXd::Identity(x.size(), x.size())).diagonal().cwiseSqrt();
   }
   return fit;
 }

@@ -34,7 +34,6 @@ using MachineWith = std::function<Machine(const Model&)>;
 /// cannot be so.
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
-                  const std::vector<Block>& blocks,
-                  const Model& start, int iterations);
+                  const std::vector<Block>& blocks, const Model& start, int iterations);
 
 }  // namespace mjdiag

@@ -57,7 +57,8 @@ std::vector<Column> TickColumns(const Machine& machine, const MeasuredRun& run,
   const Index ns = TangentSize(model);
   const Index samples = path.samples();
   std::vector<MatrixXd> states(others.size(), MatrixXd::Zero(samples, ns));
-  std::vector<MatrixXd> readings(others.size(), MatrixXd::Zero(samples, path.sensors()));
+  std::vector<MatrixXd> readings(others.size(),
+                                 MatrixXd::Zero(samples, path.sensors()));
   for (std::size_t record = 0; record < path.first.size(); ++record) {
     const Ticks own = TicksAlong(machine, run, path, record);
     ParallelFor(static_cast<int>(others.size()), [&](int number) {

@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -19,21 +20,26 @@ void Narrow(FitParameter& parameter, double lower, double upper) {
   parameter.upper = std::min(parameter.upper, upper);
 }
 
-/// The step in which a reading is written, 0 where it has none: where values come again, the
-/// usual distance from one to the next.
+/// The step in which a reading is written, 0 where it has none: distances from a value to the
+/// next are one of it, or a few.
 double StepOf(VectorXd values) {
-  const Index samples = values.size();
   std::ranges::sort(values);
-  const double least = 1e-9 * (values[samples - 1] - values[0]);
+  const double least = 1e-9 * (values[values.size() - 1] - values[0]);
   std::vector<double> gaps;
-  for (Index k = 1; k < samples; ++k) {
+  for (Index k = 1; k < values.size(); ++k) {
     if (values[k] - values[k - 1] > least) gaps.push_back(values[k] - values[k - 1]);
   }
-  if (gaps.empty() || 2 * std::ssize(gaps) > samples) return 0.0;
-  // Places that were left out make gaps of several steps.
-  const auto tenth = gaps.begin() + std::ssize(gaps) / 10;
-  std::ranges::nth_element(gaps, tenth);
-  return *tenth;
+  if (gaps.empty()) return 0.0;
+  const double step = *std::ranges::min_element(gaps);
+  constexpr double kFew = 5.5;
+  std::erase_if(gaps, [&](double gap) { return gap > kFew * step; });
+  const auto whole = std::ranges::count_if(gaps, [&](double gap) {
+    return std::abs(gap / step - std::round(gap / step)) < 0.05;
+  });
+  // Of a reading without steps a tenth is so by chance.
+  constexpr double kNearlyAll = 0.9;
+  const auto few = static_cast<double>(gaps.size());
+  return few > 1.0 && static_cast<double>(whole) > kNearlyAll * few ? step : 0.0;
 }
 
 }  // namespace

@@ -46,7 +46,9 @@ SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   const auto product = [&](const MatrixXd& of) -> VectorXd {
     return sd.cwiseProduct(VectorXd(of(places, Eigen::all) * given));
   };
-  const auto square = [&](const MatrixXd& of) -> double { return given.dot(of * given); };
+  const auto square = [&](const MatrixXd& of) -> double {
+    return given.dot(of * given);
+  };
   SetFit fit;
   const MatrixXd G = part(gram.sum);
   const VectorXd b = product(gram.sum);

@@ -23,7 +23,8 @@ FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& co
 /// Columns that are in, with what is known of their amplitudes beforehand, and others that
 /// are in as they are, with an amplitude of 1.
 struct SetOfColumns {
-  std::vector<Eigen::Index> columns;  ///< places in the Gram matrix, without the first row
+  std::vector<Eigen::Index>
+      columns;  ///< places in the Gram matrix, without the first row
   Eigen::VectorXd sd;
   Eigen::VectorXd mean;
   std::vector<Eigen::Index> given;

@@ -45,12 +45,14 @@ struct Change {
 class MoveSearch {
  public:
   MoveSearch(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-             std::vector<Block>& blocks, const std::vector<Term>& terms)
+             std::vector<Block>& blocks, const std::vector<Term>& terms,
+             const Column& other_steps)
       : machine_(machine),
         along_{MotionAlong(machine, run, path), path.noise.reading,
                run.Time().maxCoeff()},
         blocks_(blocks),
-        terms_(terms) {
+        terms_(terms),
+        other_steps_(other_steps) {
     const MatrixXd inflation = InflationAlong(path);
     moves_.noises = NoisesFrom(path.noise);
     moves_.whitenings.resize(moves_.noises.size());
@@ -68,9 +70,16 @@ class MoveSearch {
     Change change;
     double score = kImpossible;
     std::size_t noise = 0;
+    bool other_steps = false;
     SetFit fit;
   };
   void Whiten();
+  /// Behind those of the terms.
+  Index OtherStepsColumn() const {
+    return terms_.empty()
+               ? 0
+               : first_of_term_.back() + std::ssize(terms_.back().columns) + 1;
+  }
   SetOfColumns ColumnsOf(const Change& change) const;
   bool IsWithinBounds(const Change& change, const VectorXd& amplitudes) const;
   /// What sizes cost.
@@ -92,6 +101,7 @@ class MoveSearch {
   BlockMotion along_;
   std::vector<Block>& blocks_;
   const std::vector<Term>& terms_;
+  const Column& other_steps_;
   std::vector<Variation> kept_;
   std::vector<Index> first_of_term_, first_of_kept_;
   std::vector<FoldGram> grams_;
@@ -107,6 +117,7 @@ void MoveSearch::Whiten() {
     for (const Column& column : term.columns) columns.push_back(&column);
     columns.push_back(&term.removed);
   }
+  columns.push_back(&other_steps_);
   for (const Variation& one : kept_) {
     first_of_kept_.push_back(std::ssize(columns));
     for (const Column& column : one.columns) columns.push_back(&column);
@@ -169,7 +180,8 @@ SetOfColumns MoveSearch::ColumnsOf(const Change& change) const {
 }
 
 /// @param amplitudes  of all columns, those of what comes in last
-bool MoveSearch::IsWithinBounds(const Change& change, const VectorXd& amplitudes) const {
+bool MoveSearch::IsWithinBounds(const Change& change,
+                                const VectorXd& amplitudes) const {
   Index last = amplitudes.size();
   for (std::size_t i = change.added.size(); i-- > 0;) {
     const Variation& one = kept_[change.added[i]];
@@ -192,7 +204,8 @@ double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
     if (values) sum += SizePrice(blocks_[one.block], *values);
   }
   for (Index i = 0; i < last; ++i) {
-    if (set.known[static_cast<std::size_t>(i)]) sum += SizePrice(amplitudes[i] - set.mean[i]);
+    if (set.known[static_cast<std::size_t>(i)])
+      sum += SizePrice(amplitudes[i] - set.mean[i]);
   }
   return sum;
 }
@@ -200,27 +213,31 @@ double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
 MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
   Scored best;
   best.change = change;
-  const SetOfColumns set = ColumnsOf(change);
+  SetOfColumns set = ColumnsOf(change);
   double price = 0.0;
   for (std::size_t t = 0; t < terms_.size(); ++t) {
-    const bool is_in =
-        std::ranges::find(change.removed, t) == change.removed.end();
+    const bool is_in = std::ranges::find(change.removed, t) == change.removed.end();
     if (is_in) price += blocks_[terms_[t].block].price;
   }
   for (const std::size_t v : change.added) price += blocks_[kept_[v].block].price;
-  for (std::size_t r = 0; r < grams_.size(); ++r) {
-    SetFit fit = FitSet(grams_[r], set);
-    const double score = fit.unseen + price + SizesOf(change, set, fit.amplitudes);
-    if (!(score < best.score)) continue;
-    best.score = score;
-    best.noise = r;
-    best.fit = std::move(fit);
+  for (const bool other_steps : {false, true}) {
+    if (other_steps) set.given.push_back(OtherStepsColumn());
+    for (std::size_t r = 0; r < grams_.size(); ++r) {
+      SetFit fit = FitSet(grams_[r], set);
+      const double score = fit.unseen + price + SizesOf(change, set, fit.amplitudes);
+      if (!(score < best.score)) continue;
+      best.score = score;
+      best.noise = r;
+      best.other_steps = other_steps;
+      best.fit = std::move(fit);
+    }
   }
   if (!IsWithinBounds(change, best.fit.amplitudes)) best.score = kImpossible;
   return best;
 }
 
-std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(std::vector<Change> changes) const {
+std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(
+    std::vector<Change> changes) const {
   std::vector<Scored> scored(changes.size());
   ParallelFor(static_cast<int>(changes.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
@@ -233,7 +250,7 @@ std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(std::vector<Change> changes
 void MoveSearch::Keep(const std::vector<Scored>& scored) {
   for (const Scored& one : scored) {
     if (!(one.score < moves_.score)) continue;
-    ModelMove move{one.change.removed, {}, one.score, one.noise};
+    ModelMove move{one.change.removed, {}, one.score, one.noise, one.other_steps};
     Index last = one.fit.amplitudes.size();
     for (std::size_t i = one.change.added.size(); i-- > 0;) {
       const Variation& variation = kept_[one.change.added[i]];
@@ -250,6 +267,7 @@ Moves MoveSearch::Run() {
   const Scored here = ScoreOf({});
   moves_.score = here.score;
   moves_.noise = here.noise;
+  moves_.other_steps = here.other_steps;
   const Whitening& whitening = *moves_.whitenings[here.noise];
   const SetOfColumns set = ColumnsOf({});
   std::vector<const Column*> columns;
@@ -263,9 +281,8 @@ Moves MoveSearch::Run() {
   // What has no shape is in with all that it can be.
   std::erase_if(kept_, [&](const Variation& one) {
     return !blocks_[one.block].HasShape() &&
-           std::ranges::any_of(terms_, [&](const Term& term) {
-             return term.block == one.block;
-           });
+           std::ranges::any_of(
+               terms_, [&](const Term& term) { return term.block == one.block; });
   });
   moves_.variations = std::ssize(kept_);
   Whiten();
@@ -321,8 +338,9 @@ Moves MoveSearch::Run() {
 }  // namespace
 
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-              std::vector<Block>& blocks, const std::vector<Term>& terms) {
-  return MoveSearch(machine, run, path, blocks, terms).Run();
+              std::vector<Block>& blocks, const std::vector<Term>& terms,
+              const Column& other_steps) {
+  return MoveSearch(machine, run, path, blocks, terms, other_steps).Run();
 }
 
 }  // namespace mjdiag

@@ -32,7 +32,7 @@ struct Term {
   Eigen::VectorXd sd;           ///< of what is still to be added to each
   Eigen::VectorXd mean;
   std::vector<bool> known;  ///< whether `mean` is where it is known to be, within 1
-  Column removed;  ///< what the machine would do without it
+  Column removed;           ///< what the machine would do without it
 };
 
 struct Added {
@@ -44,21 +44,26 @@ struct ModelMove {
   std::vector<std::size_t> removed;  ///< places of terms
   std::vector<Added> added;
   double score = 0.0;
-  std::size_t noise = 0;  ///< the whitening behind which it is best
+  std::size_t noise = 0;     ///< the whitening behind which it is best
+  bool other_steps = false;  ///< with what the machine does with other physics steps
 };
 
 struct Moves {
   std::vector<FilterNoise> noises;
   std::vector<std::shared_ptr<const Whitening>> whitenings;  ///< behind each
-  double score = 0.0;  ///< of the model as it is
+  double score = 0.0;                                        ///< of the model as it is
   std::size_t noise = 0;
+  bool other_steps = false;
   std::vector<ModelMove> best;  ///< by score, no two with the same blocks
   Eigen::Index variations = 0;
 };
 
-/// @param blocks  receive the prices of their shapes
+/// @param blocks       receive the prices of their shapes
+/// @param other_steps  what the machine does otherwise with other physics steps, which costs
+///                     nothing
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-              std::vector<Block>& blocks, const std::vector<Term>& terms);
+              std::vector<Block>& blocks, const std::vector<Term>& terms,
+              const Column& other_steps);
 
 /// Less gain, in -2 ln, is noise of fits.
 inline constexpr double kLeastGain = 1.0;

@@ -13,12 +13,9 @@ namespace mjdiag {
 /// @param W       whitened columns that are in, rows x k
 /// @param sd      of their amplitudes beforehand
 /// @param blocks  receive the prices of their shapes
-std::vector<Variation> PromisingVariations(const Machine& machine,
-                                           const BlockMotion& along,
-                                           const Whitening& whitening,
-                                           const Eigen::VectorXd& left,
-                                           const Eigen::MatrixXd& W,
-                                           const Eigen::VectorXd& sd,
-                                           std::vector<Block>& blocks);
+std::vector<Variation> PromisingVariations(
+    const Machine& machine, const BlockMotion& along, const Whitening& whitening,
+    const Eigen::VectorXd& left, const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
+    std::vector<Block>& blocks);
 
 }  // namespace mjdiag

@@ -59,7 +59,8 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
       }
       const KeptGains::Tick& tick = gains_.ticks[static_cast<std::size_t>(k)];
       for (Index row = tick.first; row < tick.end; ++row) {
-        const KeptGains::Reading& reading = gains_.readings[static_cast<std::size_t>(row)];
+        const KeptGains::Reading& reading =
+            gains_.readings[static_cast<std::size_t>(row)];
         y.noalias() = gains_.C.col(row).transpose() * d;
         if (reading.late) y += tangent.D.row(reading.sensor) * F;
         if (any_reading) {
@@ -135,7 +136,8 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
         l = moved;
         const KeptGains::Tick& tick = gains_.ticks[static_cast<std::size_t>(k)];
         for (Index row = tick.end; row-- > tick.first;) {
-          const KeptGains::Reading& reading = gains_.readings[static_cast<std::size_t>(row)];
+          const KeptGains::Reading& reading =
+              gains_.readings[static_cast<std::size_t>(row)];
           y = u.row(row).segment(first, count) * gains_.inverse_sd[row];
           y.noalias() -= gains_.K.col(row).transpose() * l;
           l.noalias() += gains_.C.col(row) * y;

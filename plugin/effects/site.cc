@@ -45,10 +45,7 @@ std::vector<Index> SeenJoints(const MechanicalModel& model) {
 
 SiteMap::SiteMap(const mjModel& plant, const MechanicalModel& model,
                  const Channels& channels, bool with_seen)
-    : plant_(plant),
-      model_(model),
-      channels_(channels),
-      driven_(DrivenJoints(model)) {
+    : plant_(plant), model_(model), channels_(channels), driven_(DrivenJoints(model)) {
   if (with_seen) std::ranges::copy(SeenJoints(model), std::back_inserter(driven_));
   driven_ = Unique(std::move(driven_));
 }

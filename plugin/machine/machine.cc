@@ -167,7 +167,8 @@ Machine Machine::WithoutSteps() const {
   for (int actuator = 0; actuator < model->nu; ++actuator) {
     if (model->actuator_trntype[actuator] != mjTRN_JOINT) continue;
     const int joint = model->actuator_trnid[2 * actuator];
-    if (model->jnt_type[joint] != mjJNT_SLIDE && model->jnt_type[joint] != mjJNT_HINGE) {
+    if (model->jnt_type[joint] != mjJNT_SLIDE &&
+        model->jnt_type[joint] != mjJNT_HINGE) {
       continue;
     }
     const double gear = model->actuator_gear[6 * actuator];

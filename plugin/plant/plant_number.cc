@@ -42,10 +42,9 @@ struct Declarations {
 
 Declarations DeclarationsOf(const mjModel& model, const PlantNumber& number) {
   const std::string name(kDeclaration);
-  Declarations declared{
-      Declared(model, name + "." + PlantNumberName(model, number)),
-      Declared(model, name + "." + std::string(WordOf(number.kind))),
-      Declared(model, name)};
+  Declarations declared{Declared(model, name + "." + PlantNumberName(model, number)),
+                        Declared(model, name + "." + std::string(WordOf(number.kind))),
+                        Declared(model, name)};
   // No part of anything, it is known to a distance of its own.
   if (number.kind == PlantNumberKind::kRef && declared.of_all > 0.0) {
     declared.of_all = -1.0;

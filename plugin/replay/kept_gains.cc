@@ -41,7 +41,9 @@ KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,
   for (std::size_t record = 0; record < path.first.size(); ++record) {
     LinearPass pass(path, noise);
     pass.inflation = &inflation;
-    pass.at_tick = [&](Index k) { kept.ticks[static_cast<std::size_t>(k)].first = row; };
+    pass.at_tick = [&](Index k) {
+      kept.ticks[static_cast<std::size_t>(k)].first = row;
+    };
     pass.at_reading = [&](Index sensor, Index sample, bool late, double) {
       kept.readings.push_back({sensor, sample, late});
       kept.K.col(row) = pass.kalman.gain;
@@ -51,7 +53,9 @@ KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,
       kept.log_determinant += std::log(pass.kalman.variance);
       ++row;
     };
-    pass.at_advance = [&](Index k) { kept.ticks[static_cast<std::size_t>(k)].end = row; };
+    pass.at_advance = [&](Index k) {
+      kept.ticks[static_cast<std::size_t>(k)].end = row;
+    };
     const Index first = path.first[record];
     pass.Over(first, path.EndOf(record) - first);
     kept.rho = pass.kalman.rho();

@@ -95,9 +95,9 @@ class NoiseSearch {
   NoiseSearch(const FilterPath& path, const VectorXd& reading_sd)
       : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
     for (std::size_t r = 0; r < path.first.size(); ++r) {
-      std::ranges::copy(PiecesOf(path.first[r], path.EndOf(r) - path.first[r],
-                                 path.samples(), ny_),
-                        std::back_inserter(pieces_));
+      std::ranges::copy(
+          PiecesOf(path.first[r], path.EndOf(r) - path.first[r], path.samples(), ny_),
+          std::back_inserter(pieces_));
     }
     const double tick = path.sample_time;
     const double duration = tick * static_cast<double>(path.samples());
@@ -302,8 +302,8 @@ MeasuredRun PiecesOf(const MeasuredRun& run) {
   std::vector<MeasuredRun> pieces;
   for (std::size_t r = 0; r < run.records.size(); ++r) {
     const Index first = run.records[r].sample;
-    for (const Stretch& piece : PiecesOf(first, run.SamplesOf(r), run.samples(),
-                                        run.outputs.rows())) {
+    for (const Stretch& piece :
+         PiecesOf(first, run.SamplesOf(r), run.samples(), run.outputs.rows())) {
       pieces.push_back(Excerpt(run, piece.first, piece.count));
     }
   }
@@ -362,8 +362,7 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const std::vector<FilterNoise>& near) {
   const std::vector<Index> dofs = LatentDofs(machine, run);
   const MeasuredRun pieces = PiecesOf(run);
-  const std::vector<FilterStart> of_pieces =
-      FilterStarts(machine, pieces, reading_sd);
+  const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
   std::optional<FilterPath> best;
   for (const FilterNoise& noise : near) {
     try {

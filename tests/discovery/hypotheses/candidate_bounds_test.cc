@@ -37,6 +37,24 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
             Parameter(before, "coulomb_friction@load", "force").upper);
 }
 
+// An encoder of 1 um says nothing of waves that repeat with it, or are smaller than half.
+TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
+  const test::StageUnderTest stage;
+  auto candidates = ListCandidates(stage.machine);
+  MeasuredRun run = ToMeasuredRun(stage.machine.setup(), stage.Measure({}));
+  constexpr double kStep = 1e-6;
+  run.outputs = (run.outputs / kStep).array().round() * kStep;
+  BoundByReadings(candidates, stage.machine, run);
+  const auto wave = std::ranges::find_if(candidates, [](const Candidate& candidate) {
+    return candidate.effect->name() == "encoder_periodic_error";
+  });
+  ASSERT_NE(wave, candidates.end());
+  const std::string name = Describe(*wave);
+  EXPECT_NEAR(Parameter(candidates, name, "period").lower, 4.0 * kStep, 1e-3 * kStep);
+  EXPECT_NEAR(Parameter(candidates, name, "amplitude").least_size, 0.5 * kStep,
+              1e-3 * kStep);
+}
+
 TEST(ListCandidates, EndWhereALawBecomesOtherPhysics) {
   const test::StageUnderTest stage;
   const auto candidates = ListCandidates(stage.machine);

@@ -46,8 +46,8 @@ Column SomeColumn(const FollowedArm& followed, unsigned seed, bool reading) {
 
 TEST(Whitening, IsTheTransposeOfItsTransposed) {
   const FollowedArm followed({});
-  const Whitening whitening(followed.path, followed.path.noise,
-                            InflationAlong(followed.path));
+  const FilterPath& path = followed.path;
+  const Whitening whitening(path, KeepGains(path, path.noise, InflationAlong(path)));
   for (const bool reading : {false, true}) {
     const Column column = SomeColumn(followed, 1, reading);
     const VectorXd there = whitening.Of({&column}).col(0);
@@ -67,14 +67,14 @@ TEST(Whitening, SaysWhatAForceLeavesInTheInnovations) {
   FilterNoise noise = without.path.noise;
   noise.size.setConstant(0.05);
   noise.white.setConstant(1e-3);
-  const Whitening before(without.path, noise, inflation);
-  const Whitening after(with.path, noise, inflation);
+  const Whitening before(without.path, KeepGains(without.path, noise, inflation));
+  const KeptGains after = KeepGains(with.path, noise, inflation);
   Column column;
   column.forces = {{1, VectorXd::Constant(without.path.samples(), 0.01)}};
   // A start at rest, where the force acts already, takes a while to be forgotten.
   const Index rows = before.rows() - 400;
   const VectorXd expected = before.Of({&column}).col(0).tail(rows);
-  const VectorXd left = (after.left() - before.left()).tail(rows);
+  const VectorXd left = (after.left - before.gains().left).tail(rows);
   EXPECT_GT(expected.norm(), 0.1);
   EXPECT_LT((left - expected).norm(), 0.03 * expected.norm());
 }

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
@@ -212,6 +213,27 @@ TEST(Machine, NamesASensorThatThePlantLacks) {
   EXPECT_THAT(test::MessageOf<InputError>(
                   [] { StageWith("name=\"load_encoder\"", "name=\"other_encoder\""); }),
               HasSubstr("load_encoder"));
+}
+
+// Against the same machine with steps a sixteenth as long, from which a sixteenth of the
+// first order is left: a tenth covers that and the second order.
+TEST(Machine, WithoutStepsIsWhatFinerAndFinerOnesComeTo) {
+  const Machine machine = test::Bonder();
+  RunOptions options;
+  options.noise_scale = 0.0;
+  const auto outputs = [&](const Machine& one) {
+    return ToMeasuredRun(machine.setup(),
+                         Simulate(one, DefaultMotion(machine.setup()), options))
+        .outputs;
+  };
+  const Eigen::MatrixXd fine =
+      outputs(machine.WithSubsteps(16 * machine.rates().substeps));
+  const Eigen::MatrixXd of_steps = outputs(machine) - fine;
+  const Eigen::MatrixXd left = outputs(machine.WithoutSteps()) - fine;
+  for (Eigen::Index sensor = 0; sensor < fine.rows(); ++sensor) {
+    EXPECT_GT(of_steps.row(sensor).norm(), 0.0) << sensor;
+    EXPECT_LT(left.row(sensor).norm(), 0.1 * of_steps.row(sensor).norm()) << sensor;
+  }
 }
 
 }  // namespace

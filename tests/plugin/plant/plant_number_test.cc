@@ -123,6 +123,19 @@ TEST(PlantNumber, IsAReferenceOnlyIfItIsAskedFor) {
   EXPECT_EQ(SpreadOf(*declares, FindPlantNumber(*declares, "ref@elbow")), 2e-4);
 }
 
+TEST(PlantNumber, IsKnownAsItsPlantSaysOfItsKindButForThoseThatAreNamed) {
+  const ModelPtr plant =
+      test::SmallPlant(test::NumberedMjcf(test::kNumberedValues,
+                                          R"(<custom><numeric name="known" data="0.3"/>
+         <numeric name="known.damping" data="0.07"/>
+         <numeric name="known.damping@shoulder" data="0.01"/></custom>)"));
+  CheckKnownNumbers(*plant);
+  EXPECT_EQ(SpreadOf(*plant, FindPlantNumber(*plant, "damping@shoulder")), 0.01);
+  EXPECT_EQ(SpreadOf(*plant, FindPlantNumber(*plant, "damping@slide")), 0.07);
+  EXPECT_EQ(DoubtOf(*plant, FindPlantNumber(*plant, "damping@slide")), 0.07);
+  EXPECT_EQ(SpreadOf(*plant, FindPlantNumber(*plant, "armature@shoulder")), 0.3);
+}
+
 TEST(PlantNumber, IsKnownAsItsPlantSaysIfThatNamesOne) {
   const auto with = [](const std::string& name) {
     return test::SmallPlant(test::NumberedMjcf(
