@@ -7,6 +7,7 @@
 
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/plugin/plant/linearize.h"
@@ -157,7 +158,8 @@ Machine Machine::WithoutSteps() const {
   const double half = 0.5 * plant_->opt.timestep;
   Changes late;
   for (const ActuatorSetup& actuator : setup_->channels.actuators) {
-    late.effects.push_back(Place("input_delay", actuator.element, {{"delay", half}}));
+    late.effects.push_back(
+        {Lasting(InputDelay()), actuator.element, Eigen::VectorXd::Constant(1, half)});
   }
   Machine changed = With(late);
   ModelPtr model = CopyModel(*changed.plant_);
