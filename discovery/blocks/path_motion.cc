@@ -38,9 +38,7 @@ ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
       const PlantState& state = path.states[static_cast<std::size_t>(k)];
       motion.position.col(k) = Deviation(model, drawn, state).head(nv);
       motion.velocity.col(k) = state.velocity;
-      for (std::size_t j = 0; j < path.dofs.size(); ++j) {
-        forces[path.dofs[j]] = path.forces(static_cast<Index>(j), k);
-      }
+      forces(path.dofs) = path.forces.col(k);
       inputs.StayAt(k);
       const Index tick = run.TickOf(k);
       motion.acceleration.col(k) =

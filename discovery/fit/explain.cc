@@ -35,7 +35,12 @@ class Search {
   Explained Run();
 
  private:
-  std::vector<Term> Terms() const;
+  /// What members do, and what other physics steps do.
+  struct Exact {
+    std::vector<Term> terms;
+    Column other_steps;
+  };
+  Exact ExactColumns() const;
   struct Settled {
     ModelFit fit;
     FilterPath path;
@@ -92,7 +97,7 @@ bool IsResistance(const Block& block) {
 /// One coordinate further.
 constexpr double kStep = 1e-3;
 
-std::vector<Term> Search::Terms() const {
+Search::Exact Search::ExactColumns() const {
   const Model& model = found_.fit.model;
   const std::vector<Coordinate> coordinates = CoordinatesOf(found_.blocks, model);
   const VectorXd x = Place(coordinates, model);
@@ -111,8 +116,10 @@ std::vector<Term> Search::Terms() const {
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
     others.push_back({With(without)});
   }
+  others.push_back({With(model, !steps_)});
   std::vector<Column> columns = TickColumns(With(model), run_, found_.path, others);
-  std::vector<Term> terms(model.size());
+  Exact exact{std::vector<Term>(model.size()), std::move(columns.back())};
+  std::vector<Term>& terms = exact.terms;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     Term& term = terms[coordinates[i].member];
     term.columns.push_back(std::move(columns[i]));
@@ -129,7 +136,7 @@ std::vector<Term> Search::Terms() const {
     terms[m].sd = VectorXd::Constant(terms[m].mean.size(), kWide);
     terms[m].removed = std::move(columns[coordinates.size() + m]);
   }
-  return terms;
+  return exact;
 }
 
 Model Search::After(const ModelMove& move) const {
@@ -200,7 +207,7 @@ Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds && !IsOver(); ++round) {
     const FilterPath& path = settled.path;
-    const KeptGains gains = KeepGains(path, path.noise, InflationAlong(path));
+    const KeptGains gains = KeepGains(path);
     Settled next{FitModel([this](const Model& model) { return With(model); }, run_,
                           path, gains, found_.blocks, settled.fit.model, 4),
                  {}};
@@ -234,11 +241,9 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
 }
 
 bool Search::Step() {
-  const Machine own = With(found_.fit.model);
-  const Column other_steps =
-      TickColumns(own, run_, found_.path, {{With(found_.fit.model, !steps_)}}).front();
-  const Moves moves =
-      MovesOf(own, run_, found_.path, found_.blocks, Terms(), other_steps);
+  const Exact exact = ExactColumns();
+  const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
+                              exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return true;
   constexpr int kIterations = 6;
   /// Behind which gains, and whether with other steps.

@@ -10,7 +10,6 @@
 
 #include "mjdiag/discovery/fit/model.h"
 #include "mjdiag/discovery/fit/model_fit.h"
-#include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {

@@ -30,9 +30,7 @@ Ticks TicksAlong(const Machine& machine, const MeasuredRun& run, const FilterPat
   Ticks ticks{{}, MatrixXd::Zero(path.sensors(), end - first)};
   for (Index k = first; k < end; ++k) {
     const PlantState& state = path.states[static_cast<std::size_t>(k)];
-    for (std::size_t j = 0; j < path.dofs.size(); ++j) {
-      forces[path.dofs[j]] = path.forces(static_cast<Index>(j), k);
-    }
+    forces(path.dofs) = path.forces.col(k);
     const VectorXd read = map.Read(state, run.TickOf(k));
     inputs.StayAt(k);
     const TickMap::Result& ticked = map.Run(state, forces, run.TickOf(k), inputs);

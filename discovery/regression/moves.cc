@@ -81,6 +81,10 @@ class MoveSearch {
                : first_of_term_.back() + std::ssize(terms_.back().columns) + 1;
   }
   SetOfColumns ColumnsOf(const Change& change) const;
+  /// What comes in with its amplitudes, the last first.
+  /// @param amplitudes  of all columns, those of what comes in last
+  std::vector<std::pair<const Variation&, VectorXd>> AddedOf(
+      const Change& change, const VectorXd& amplitudes) const;
   bool IsWithinBounds(const Change& change, const VectorXd& amplitudes) const;
   /// What sizes cost.
   double SizesOf(const Change& change, const SetOfColumns& set,
@@ -179,14 +183,21 @@ SetOfColumns MoveSearch::ColumnsOf(const Change& change) const {
   return set;
 }
 
-/// @param amplitudes  of all columns, those of what comes in last
-bool MoveSearch::IsWithinBounds(const Change& change,
-                                const VectorXd& amplitudes) const {
+std::vector<std::pair<const Variation&, VectorXd>> MoveSearch::AddedOf(
+    const Change& change, const VectorXd& amplitudes) const {
+  std::vector<std::pair<const Variation&, VectorXd>> added;
   Index last = amplitudes.size();
   for (std::size_t i = change.added.size(); i-- > 0;) {
     const Variation& one = kept_[change.added[i]];
     last -= one.sd.size();
-    const VectorXd a = amplitudes.segment(last, one.sd.size());
+    added.emplace_back(one, amplitudes.segment(last, one.sd.size()));
+  }
+  return added;
+}
+
+bool MoveSearch::IsWithinBounds(const Change& change,
+                                const VectorXd& amplitudes) const {
+  for (const auto& [one, a] : AddedOf(change, amplitudes)) {
     if (one.least.size() > 0 && (a.array() < one.least.array()).any()) return false;
     if (!IsAllowed(blocks_[one.block], one.values(a))) return false;
   }
@@ -196,16 +207,13 @@ bool MoveSearch::IsWithinBounds(const Change& change,
 double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
                            const VectorXd& amplitudes) const {
   double sum = 0.0;
-  Index last = amplitudes.size();
-  for (std::size_t i = change.added.size(); i-- > 0;) {
-    const Variation& one = kept_[change.added[i]];
-    last -= one.sd.size();
-    const TrialValues values = one.values(amplitudes.segment(last, one.sd.size()));
+  for (const auto& [one, a] : AddedOf(change, amplitudes)) {
+    const TrialValues values = one.values(a);
     if (values) sum += SizePrice(blocks_[one.block], *values);
   }
-  for (Index i = 0; i < last; ++i) {
-    if (set.known[static_cast<std::size_t>(i)])
-      sum += SizePrice(amplitudes[i] - set.mean[i]);
+  for (std::size_t i = 0; i < set.known.size(); ++i) {
+    const auto place = static_cast<Index>(i);
+    if (set.known[i]) sum += SizePrice(amplitudes[place] - set.mean[place]);
   }
   return sum;
 }
@@ -251,12 +259,8 @@ void MoveSearch::Keep(const std::vector<Scored>& scored) {
   for (const Scored& one : scored) {
     if (!(one.score < moves_.score)) continue;
     ModelMove move{one.change.removed, {}, one.score, one.noise, one.other_steps};
-    Index last = one.fit.amplitudes.size();
-    for (std::size_t i = one.change.added.size(); i-- > 0;) {
-      const Variation& variation = kept_[one.change.added[i]];
-      last -= variation.sd.size();
-      move.added.push_back(
-          {variation, one.fit.amplitudes.segment(last, variation.sd.size())});
+    for (const auto& [variation, a] : AddedOf(one.change, one.fit.amplitudes)) {
+      move.added.push_back({variation, a});
     }
     moves_.best.push_back(std::move(move));
   }

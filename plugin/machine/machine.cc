@@ -163,19 +163,9 @@ Machine Machine::WithoutSteps() const {
   }
   Machine changed = With(late);
   ModelPtr model = CopyModel(*changed.plant_);
+  const Eigen::VectorXd of_motors = MotorBiasAtQpos0(*model).damping.diagonal();
   for (int dof = 0; dof < model->nv; ++dof) {
-    model->dof_armature[dof] -= half * model->dof_damping[dof];
-  }
-  for (int actuator = 0; actuator < model->nu; ++actuator) {
-    if (model->actuator_trntype[actuator] != mjTRN_JOINT) continue;
-    const int joint = model->actuator_trnid[2 * actuator];
-    if (model->jnt_type[joint] != mjJNT_SLIDE &&
-        model->jnt_type[joint] != mjJNT_HINGE) {
-      continue;
-    }
-    const double gear = model->actuator_gear[6 * actuator];
-    const double damping = -model->actuator_biasprm[mjNBIAS * actuator + 2];
-    model->dof_armature[model->jnt_dofadr[joint]] += half * gear * gear * damping;
+    model->dof_armature[dof] += half * (of_motors[dof] - model->dof_damping[dof]);
   }
   changed.Adopt(std::move(model));
   return changed;

@@ -84,9 +84,7 @@ void RecordFilter::Take(Index k, bool late) {
 }
 
 const TickMap::Result& RecordFilter::Tick(Index k) {
-  for (std::size_t j = 0; j < path_.dofs.size(); ++j) {
-    applied_[path_.dofs[j]] = latent_[static_cast<Index>(j)];
-  }
+  applied_(path_.dofs) = latent_;
   inputs_.StayAt(first_ + k);
   return map_.Run(state_, applied_, clock_begins_ + k, inputs_);
 }

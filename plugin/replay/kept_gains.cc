@@ -27,6 +27,10 @@ MatrixXd InflationAlong(const FilterPath& path) {
   return inflation;
 }
 
+KeptGains KeepGains(const FilterPath& path) {
+  return KeepGains(path, path.noise, InflationAlong(path));
+}
+
 KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,
                     const MatrixXd& inflation) {
   KeptGains kept;
@@ -109,9 +113,7 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
       state = Moved(model, state, z);
       latent += z.segment(ns, nf);
       clock += z[ns + nf];
-      for (Index j = 0; j < nf; ++j) {
-        applied[path.dofs[static_cast<std::size_t>(j)]] = latent[j];
-      }
+      applied(path.dofs) = latent;
       inputs.StayAt(k);
       const TickMap::Result& ticked = map.Run(state, applied, tick, inputs);
       if (ticked.diverged) throw NumericalError("fit: the run diverges");

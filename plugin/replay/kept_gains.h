@@ -42,6 +42,8 @@ struct KeptGains {
 ///                   on the same data
 KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,
                     const Eigen::MatrixXd& inflation);
+/// Behind the path's own noise.
+KeptGains KeepGains(const FilterPath& path);
 
 /// Innovations of another machine along the run of the path, over sqrt(S), rows.
 /// NumericalError if it diverges.

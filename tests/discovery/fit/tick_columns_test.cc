@@ -21,7 +21,7 @@ TEST(TickColumns, AreTheDerivativesOfARunWithKeptGains) {
   const MeasuredRun run = ToMeasuredRun(arm.setup(), test::Arm::Measure());
   const VectorXd sd = VectorXd::Constant(2, test::Arm::kNoise);
   const FilterPath path = FilterLikeliest(arm.machine, run, sd);
-  const Whitening whitening(path, KeepGains(path, path.noise, InflationAlong(path)));
+  const Whitening whitening(path, KeepGains(path));
   const VectorXd own = PredictAlong(arm.machine, run, path, whitening.gains());
   // An encoder's error is next to what the machine may do: what it leaves is the small
   // difference, of which tangents that are 10 ms old miss a part.

@@ -47,7 +47,7 @@ Column SomeColumn(const FollowedArm& followed, unsigned seed, bool reading) {
 TEST(Whitening, IsTheTransposeOfItsTransposed) {
   const FollowedArm followed({});
   const FilterPath& path = followed.path;
-  const Whitening whitening(path, KeepGains(path, path.noise, InflationAlong(path)));
+  const Whitening whitening(path, KeepGains(path));
   for (const bool reading : {false, true}) {
     const Column column = SomeColumn(followed, 1, reading);
     const VectorXd there = whitening.Of({&column}).col(0);

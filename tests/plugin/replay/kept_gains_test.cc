@@ -34,7 +34,7 @@ struct Followed {
 TEST(KeptGains, PredictWithTheMachineOfThePathWhatItsFilterDid) {
   const Followed followed;
   const FilterPath& path = followed.path;
-  const KeptGains own = KeepGains(path, path.noise, InflationAlong(path));
+  const KeptGains own = KeepGains(path);
   const VectorXd left = PredictAlong(followed.arm.machine, followed.run, path, own);
   EXPECT_LT((left - own.left).norm(), 1e-6 * own.left.norm());
 }
