@@ -240,7 +240,10 @@ MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
       best.fit = std::move(fit);
     }
   }
-  if (!IsWithinBounds(change, best.fit.amplitudes)) best.score = kImpossible;
+  // Without a fit there are no amplitudes.
+  if (best.score < kImpossible && !IsWithinBounds(change, best.fit.amplitudes)) {
+    best.score = kImpossible;
+  }
   return best;
 }
 
