@@ -91,35 +91,15 @@ VectorXd SpansOf(const ObservedMotion& motion) {
 
 void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t place,
                  Block& block, const std::function<void(Variation&&)>& take) {
-  const Candidate& candidate = *block.candidate;
-  const Site site{candidate.site, candidate.joint, candidate.channel};
-  const Scales scales = ScalesOf(At(machine, along.motion, site));
-  const VectorXd spans = SpansOf(along.motion);
-  std::size_t count = 0;
   std::size_t shape = 0;
-  const auto one = [&](const Trial& trial) {
-    Variation variation{place, shape++,     ColumnsOf(trial, candidate.channel),
-                        {},    trial.least, trial.values};
-    const auto amplitudes = std::ssize(variation.columns);
-    for (const Column& column : variation.columns) {
-      if (column.forces.empty() && column.readings.empty()) return;
-    }
-    variation.sd = SpreadOf(candidate, trial, scales, trial.summed ? 1 : amplitudes,
-                            variation.columns, spans);
+  Index count = 0;
+  for (const Trial& trial : MakeTrials(machine, *block.candidate, along.motion)) {
+    Variation variation = VariationOf(machine, along, place, block, trial, shape++);
+    if (variation.columns.empty()) continue;
     ++count;
     take(std::move(variation));
-  };
-  if (const auto sweep = MakeSweep(machine, candidate, along.motion, along.duration)) {
-    const FitParameter& period =
-        candidate.parameters[static_cast<std::size_t>(PeriodPlace(candidate))];
-    for (const double value : sweep->values) {
-      if (value >= period.lower && value <= period.upper) one(sweep->make(value));
-    }
-  } else {
-    for (const Trial& trial : MakeTrials(machine, candidate, along.motion)) one(trial);
   }
-  block.price = kClaim - 2.0 * std::log(kMissing * candidate.effect->odds()) +
-                2.0 * std::log(std::max<double>(1.0, static_cast<double>(count)));
+  block.price = PriceOf(block, count);
 }
 
 void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t place,
@@ -133,7 +113,7 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
     if (force.col(dof).isZero(0.0)) continue;
     variation.columns.front().forces.emplace_back(dof, force.col(dof));
   }
-  block.price = kClaim - 2.0 * std::log(kMissing);
+  block.price = PriceOf(block, 1);
   if (variation.columns.front().forces.empty()) return;
   variation.sd = VectorXd::Constant(1, kWide * block.doubt);
   variation.values = [](const Amplitudes& a) -> TrialValues {
@@ -172,9 +152,11 @@ std::vector<Block> BlocksOf(const Machine& machine,
                       .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
     // A factor of a number is known as well as the number.
     for (FitParameter& parameter : blocks.back().candidate->parameters) {
-      if (number && parameter.role == Role::kFactor) {
-        parameter.spread = DoubtOf(machine.plant(), *number);
-      }
+      if (parameter.role != Role::kFactor) continue;
+      if (number) parameter.spread = DoubtOf(machine.plant(), *number);
+      const double farthest = std::exp(kFarthest * parameter.spread);
+      parameter.lower = std::max(parameter.lower, 1.0 / farthest);
+      parameter.upper = std::min(parameter.upper, farthest);
     }
     if (number) stood_for.push_back(*number);
   }
@@ -231,6 +213,37 @@ double SizePrice(const Block& block, const VectorXd& values) {
     }
   }
   return sum;
+}
+
+double PriceOf(const Block& block, Index shapes) {
+  const double odds = block.candidate ? block.candidate->effect->odds() : 1.0;
+  return kClaim - 2.0 * std::log(kMissing * odds) +
+         2.0 * std::log(std::max(1.0, static_cast<double>(shapes)));
+}
+
+std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
+                             const Block& block) {
+  if (!block.candidate) return std::nullopt;
+  return MakeSweep(machine, *block.candidate, along.motion, along.duration);
+}
+
+Variation VariationOf(const Machine& machine, const BlockMotion& along,
+                      std::size_t place, const Block& block, const Trial& trial,
+                      std::size_t shape) {
+  const Candidate& candidate = *block.candidate;
+  Variation variation{place, shape,       ColumnsOf(trial, candidate.channel),
+                      {},    trial.least, trial.values};
+  for (const Column& column : variation.columns) {
+    if (!column.forces.empty() || !column.readings.empty()) continue;
+    variation.columns.clear();
+    return variation;
+  }
+  const Site site{candidate.site, candidate.joint, candidate.channel};
+  const Scales scales = ScalesOf(At(machine, along.motion, site));
+  const auto amplitudes = std::ssize(variation.columns);
+  variation.sd = SpreadOf(candidate, trial, scales, trial.summed ? 1 : amplitudes,
+                          variation.columns, SpansOf(along.motion));
+  return variation;
 }
 
 void ForEachVariation(const Machine& machine, const BlockMotion& along,

@@ -58,6 +58,8 @@ struct BlockMotion {
 /// Whether values are such as its law, or the number, can have.
 bool IsAllowed(const Block& block, const TrialValues& values);
 
+/// Nine times what is doubted of a factor, in logarithms, is another machine.
+inline constexpr double kFarthest = 9.0;
 /// 2 ln 20
 inline constexpr double kClaim = 6.0;
 
@@ -72,8 +74,17 @@ double SizePrice(const Block& block, const Eigen::VectorXd& values);
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates);
 
-/// Hands out every variation of a block that the motion shows.
-/// @param price  of the block, receives what its many shapes cost on top
+/// The sweep of a block that repeats itself over a period or a frequency, if it does.
+std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
+                             const Block& block);
+/// One shape of a block with a sweep; of no columns if it does nothing.
+Variation VariationOf(const Machine& machine, const BlockMotion& along, std::size_t place,
+                      const Block& block, const Trial& trial, std::size_t shape);
+/// What it costs that a block is what is missing, in as many shapes.
+double PriceOf(const Block& block, Eigen::Index shapes);
+
+/// Hands out every variation of a block without a sweep that the motion shows.
+/// @param block  its price receives what its many shapes cost on top
 void ForEachVariation(const Machine& machine, const BlockMotion& along,
                       std::size_t place, Block& block,
                       const std::function<void(Variation&&)>& take);

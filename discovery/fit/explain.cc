@@ -4,15 +4,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/replay/input_noise.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/signals/error.h"
 
@@ -30,7 +34,11 @@ class Search {
  public:
   Search(const Machine& machine, const MeasuredRun& run, const VectorXd& reading_sd,
          const ExplainOptions& options)
-      : machine_(machine), run_(run), reading_sd_(reading_sd), options_(options) {}
+      : machine_(machine),
+        as_measured_(run),
+        run_(run),
+        reading_sd_(reading_sd),
+        options_(options) {}
 
   Explained Run();
 
@@ -76,10 +84,13 @@ class Search {
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, or of one that has none?
   bool ChooseSteps();
+  /// How much of its inputs did the machine not feel?
+  bool SmoothInputs();
 
   const Machine& machine_;
   bool steps_ = true;
-  const MeasuredRun& run_;
+  const MeasuredRun& as_measured_;
+  MeasuredRun run_;  // with its inputs smoothed
   const VectorXd& reading_sd_;
   const ExplainOptions& options_;
   Clock::time_point begin_ = Clock::now();
@@ -264,6 +275,14 @@ bool Search::Step() {
   if (Resettle(moves, base({moves.noise, false}))) return true;
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
+  if (std::getenv("MOVES")) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(25, moves.best.size()); ++i) {
+      std::string t;
+      for (auto r : moves.best[i].removed) t += " -" + found_.blocks[found_.fit.model[r].block].name;
+      for (auto& a : moves.best[i].added) t += " +" + found_.blocks[a.variation.block].name;
+      Say("      move " + std::to_string(moves.best[i].score - moves.score) + " noise " + std::to_string(moves.best[i].noise) + t);
+    }
+  }
   struct Tried {
     ModelFit fit;
     Judged judged;
@@ -276,6 +295,11 @@ bool Search::Step() {
     if (move.score > moves.score - kLeastGain) continue;
     try {
       const Judged judged{move.noise, move.other_steps};
+      if (std::getenv("MOVES")) {
+        Say("      start " + Describe(found_.blocks, After(move)));
+        ModelFit zero = FitModel([&](const Model& one) { return With(one, steps_ != judged.second); }, run_, found_.path, moves.whitenings[judged.first]->gains(), found_.blocks, After(move), 0);
+        Say("      at start " + std::to_string(zero.score() - base(judged).score()) + " dev " + std::to_string(zero.deviance - base(judged).deviance));
+      }
       ModelFit fit = fitted(After(move), judged);
       const double gain = base(judged).score() - fit.score();
       char text[80];
@@ -288,30 +312,38 @@ bool Search::Step() {
     }
   }
   std::ranges::sort(tried, std::greater<>(), &Tried::gain);
+  // Kept gains are those of what the machine was without a move: which is the best is said
+  // by the filters of the machines with each.
+  const bool steps = steps_;
+  std::optional<Settled> best;
+  bool best_steps = steps;
   for (const Tried& one : tried) {
-    if (one.gain < kLeastGain) break;
+    if (one.gain < kLeastGain || (best && IsOver())) break;
     if (!std::ranges::all_of(one.fit.model, [&](const Member& member) {
           return IsAllowed(found_.blocks[member.block], member.values);
         })) {
       continue;
     }
-    const bool before = steps_;
     try {
       ModelFit simple = Simplified(
           one.fit, [&](const Model& model) { return fitted(model, one.judged); });
-      steps_ = steps_ != one.judged.second;
+      steps_ = steps != one.judged.second;
       Settled settled = Settle(std::move(simple), moves.noises[one.judged.first]);
-      Say("  filtered: " + Difference(settled.score()));
-      if (settled.score() < found_.score - kLeastGain) {
-        Adopt(std::move(settled));
-        return true;
+      Say("  filtered: " + Difference(settled.score()) + "  " +
+          Describe(found_.blocks, settled.fit.model));
+      if (settled.score() < (best ? best->score() : found_.score - kLeastGain)) {
+        best = std::move(settled);
+        best_steps = steps_;
       }
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
-    steps_ = before;
+    steps_ = steps;
   }
-  return false;
+  if (!best) return false;
+  steps_ = best_steps;
+  Adopt(std::move(*best));
+  return true;
 }
 
 bool Search::ChooseSteps() {
@@ -328,16 +360,39 @@ bool Search::ChooseSteps() {
   return true;
 }
 
+bool Search::SmoothInputs() {
+  const Machine machine = With(found_.fit.model);
+  const InputChoice choice =
+      ChooseInputs(machine, as_measured_, found_.path, found_.widths);
+  if (choice.widths == found_.widths) return false;
+  MeasuredRun run = WithSmoothedInputs(as_measured_, choice.widths);
+  FilterPath path = FilterLikeliestFrom(machine, run, reading_sd_,
+                                        {choice.noise, found_.path.noise});
+  const double gain = found_.path.deviance + PriceOfWidths(found_.widths) -
+                      path.deviance - PriceOfWidths(choice.widths);
+  if (gain < kLeastGain) return false;
+  std::string text = "inputs over";
+  for (const double width : choice.widths) text += " " + std::to_string(width);
+  Say(text + " ticks: " + std::to_string(-gain));
+  found_.score += path.deviance - found_.path.deviance;
+  found_.path = std::move(path);
+  found_.widths = choice.widths;
+  run_ = std::move(run);
+  return true;
+}
+
 Explained Search::Run() {
   found_.path = FilterLikeliest(machine_, run_, reading_sd_);
   found_.nothing = found_.path;
   found_.score = found_.path.deviance;
+  found_.widths = VectorXd::Zero(run_.inputs.rows());
   ChooseSteps();
+  SmoothInputs();
   std::vector<Candidate> candidates = ListCandidates(machine_, true);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates, machine_, run_);
   found_.blocks = BlocksOf(machine_, candidates);
-  while (!IsOver() && Step()) {
+  while (!IsOver() && (Step() || SmoothInputs())) {
     char text[80];
     std::snprintf(text, sizeof text, "%.1f  ", found_.score);
     Say(text + Describe(found_.blocks, found_.fit.model));

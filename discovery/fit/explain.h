@@ -25,7 +25,8 @@ struct Explained {
   ModelFit fit;
   FilterPath nothing;  ///< of the machine as given
   FilterPath path;     ///< of that with the model
-  double score = 0.0;  ///< -2 ln L and what the model costs
+  Eigen::VectorXd widths;  ///< over which every input is smoothed [ticks]
+  double score = 0.0;      ///< -2 ln L and what the model costs
 };
 
 /// @param reading_sd  of every sensor, by itself

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
+#include "mjdiag/plugin/effects/wave.h"
 
 namespace mjdiag {
 
@@ -39,6 +40,12 @@ Coordinate OfParameter(const FitParameter& parameter, double theta) {
     case Role::kFrequency:
       one.is_log = parameter.lower >= 0.0 && theta > 0.0;
       one.unit = one.is_log ? 1.0 : size;
+      if (one.is_log && parameter.extent > 0.0) {
+        // A turn of the phase along all that was seen.
+        const double turns = parameter.role == Role::kPeriod ? parameter.extent / theta
+                                                             : parameter.extent * theta;
+        one.unit = std::min(1.0, 1.0 / (kTurn * turns));
+      }
       break;
     case Role::kPhase:
     case Role::kRatio:
@@ -99,8 +106,6 @@ std::vector<Coordinate> CoordinatesOf(const std::vector<Block>& blocks,
   for (std::size_t m = 0; m < model.size(); ++m) {
     const Block& block = blocks[model[m].block];
     if (block.number) {
-      // Nine times the doubt is another machine.
-      constexpr double kFarthest = 9.0;
       all.push_back({m, 0, true, block.doubt, true, -kFarthest, kFarthest});
       continue;
     }

@@ -4,7 +4,9 @@
 // standard deviation of 1 and in which what acts alike lies on a straight line,
 //
 //   theta = u x         of sizes, u the spread that is expected
-//   theta = exp(u x)    of factors, by their spread, and of what shapes a law
+//   theta = exp(u x)    of factors, by their spread, and of what shapes a law; u of a
+//                       period or a frequency is a radian of its phase along all that was
+//                       seen
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -30,6 +30,9 @@ struct FitParameter {
   double spread = std::numeric_limits<double>::infinity();
   /// How far from `nothing` it is at least: less is not told from nothing.
   double least_size = 0.0;
+  /// Of the period of a wave, the stroke that it goes through; of its frequency, the time:
+  /// what tells it from its neighbours. 0 of anything else.
+  double extent = 0.0;
 };
 
 /// An effect and where it acts, without values.

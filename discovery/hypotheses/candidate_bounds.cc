@@ -85,6 +85,9 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
     const VectorXd spread = candidate.effect->Spread(own);
     Index place = 0;
     const VectorXd q = at.q();
+    const double stroke =
+        candidate.effect->site() == SiteKind::kSensor ? Range(at.y()) : own.stroke;
+    const Index wave = PeriodPlace(candidate);
     for (FitParameter& parameter : candidate.parameters) {
       const double expected = spread[place++];
       if (expected > 0.0) parameter.spread = expected;
@@ -102,9 +105,7 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
           Narrow(parameter, kSwings / motion.time.maxCoeff(), 0.5 / motion.sample_time);
           break;
         case Role::kPeriod:
-          Narrow(parameter, 0.0,
-                 kOnce * (candidate.effect->site() == SiteKind::kSensor ? Range(at.y())
-                                                                        : own.stroke));
+          Narrow(parameter, 0.0, kOnce * stroke);
           break;
         case Role::kTime:
           // What is later than that follows nothing any more.
@@ -116,6 +117,9 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
         default:
           break;
       }
+      if (place - 1 != wave) continue;
+      parameter.extent =
+          parameter.role == Role::kPeriod ? stroke : motion.time.maxCoeff();
     }
   }
 }

@@ -25,17 +25,6 @@ constexpr int kFolds = 20;
 // Of what a move gains, what is of second order.
 constexpr double kShare = 0.1;
 
-/// Smaller and smaller latent forces.
-std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
-  std::vector<FilterNoise> noises;
-  for (const double part : {1.0, 0.2, 0.02, 1e-6}) {
-    noises.push_back(found);
-    noises.back().size *= part;
-    noises.back().white *= part;
-  }
-  return noises;
-}
-
 /// A change of the model: terms that leave it, variations that come in.
 struct Change {
   std::vector<std::size_t> removed;
@@ -343,6 +332,16 @@ Moves MoveSearch::Run() {
 }
 
 }  // namespace
+
+std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
+  std::vector<FilterNoise> noises;
+  for (const double part : {1.0, 0.2, 0.02, 1e-6}) {
+    noises.push_back(found);
+    noises.back().size *= part;
+    noises.back().white *= part;
+  }
+  return noises;
+}
 
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
               std::vector<Block>& blocks, const std::vector<Term>& terms,

@@ -25,6 +25,9 @@
 
 namespace mjdiag {
 
+/// Smaller and smaller latent forces.
+std::vector<FilterNoise> NoisesFrom(const FilterNoise& found);
+
 /// What is in already: a member of the model.
 struct Term {
   std::size_t block = 0;

@@ -115,8 +115,8 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
     const Index count = std::min(kTogether, u.cols() - first);
     for (Index j = 0; j < count; ++j) {
       Transposed& one = all[static_cast<std::size_t>(first + j)];
-      one.forces = MatrixXd::Zero(nv, path_.samples());
-      one.readings = MatrixXd::Zero(path_.sensors(), path_.samples());
+      one.forces = MatrixXd::Zero(path_.samples(), nv);
+      one.readings = MatrixXd::Zero(path_.samples(), path_.sensors());
     }
     MatrixXd l(n, count);
     MatrixXd moved(n, count);
@@ -145,12 +145,13 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
             F.noalias() += tangent.D.row(reading.sensor).transpose() * y;
           }
           for (Index j = 0; j < count; ++j) {
-            all[static_cast<std::size_t>(first + j)].readings(reading.sensor,
-                                                              reading.sample) += y[j];
+            all[static_cast<std::size_t>(first + j)].readings(reading.sample,
+                                                              reading.sensor) += y[j];
           }
         }
         for (Index j = 0; j < count; ++j) {
-          all[static_cast<std::size_t>(first + j)].forces.col(k) = F.col(j);
+          all[static_cast<std::size_t>(first + j)].forces.row(k) =
+              F.col(j).transpose();
         }
       }
     }
@@ -158,11 +159,22 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
   return all;
 }
 
+VectorXd Whitening::Transposed::Along(const Column& column) const {
+  VectorXd along = VectorXd::Zero(forces.rows());
+  for (const auto& [dof, signal] : column.forces) {
+    along += forces.col(dof).cwiseProduct(signal);
+  }
+  for (const auto& [sensor, signal] : column.readings) {
+    along += readings.col(sensor).cwiseProduct(signal);
+  }
+  return along;
+}
+
 double Whitening::Transposed::Times(const Column& column) const {
   double sum = 0.0;
-  for (const auto& [dof, signal] : column.forces) sum += forces.row(dof).dot(signal);
+  for (const auto& [dof, signal] : column.forces) sum += forces.col(dof).dot(signal);
   for (const auto& [sensor, signal] : column.readings) {
-    sum += readings.row(sensor).dot(signal);
+    sum += readings.col(sensor).dot(signal);
   }
   return sum;
 }

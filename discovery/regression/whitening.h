@@ -33,8 +33,10 @@ class Whitening {
   /// W^T u: the inner product of u with W times a column of forces and errors of readings
   /// is that of this with the column.
   struct Transposed {
-    Eigen::MatrixXd forces;    ///< nv x samples
-    Eigen::MatrixXd readings;  ///< ny x samples
+    Eigen::MatrixXd forces;    ///< samples x nv
+    Eigen::MatrixXd readings;  ///< samples x ny
+    /// What of the inner product with a column comes from every sample.
+    Eigen::VectorXd Along(const Column& column) const;
     double Times(const Column& column) const;
   };
   /// Of every column of u, rows x any.

@@ -38,6 +38,9 @@ struct Trial {
 /// is the sine and the cosine of an angle, which grows evenly from one to the next.
 struct Sweep {
   std::vector<double> values;  ///< slowest first, close enough to miss no maximum
+  /// How many there are as far as the motion tells them apart, and which they are.
+  Eigen::Index count = 0;
+  std::function<double(Eigen::Index)> value;
   Eigen::VectorXd angle;       ///< of the first value, samples [rad]
   Eigen::VectorXd increment;   ///< from one value to the next, samples [rad]
   std::function<Trial(double)> make;

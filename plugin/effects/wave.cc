@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/trial_signals.h"
@@ -23,14 +24,38 @@ Trial WaveTrial(const VectorXd& entry, const VectorXd& angle, double value) {
   return trial;
 }
 
+namespace {
+
+// What does not come round once is no wave.
+constexpr Index kCoarsest = 4;
+
+/// Quarters of a period over the stroke, as many as a motion tells apart that goes through
+/// a period in no less than four samples half of the time that it moves.
+Index FinestOf(const VectorXd& x) {
+  constexpr Index kMostQuarters = 40000;
+  std::vector<double> moves;
+  for (Index k = 1; k < x.size(); ++k) {
+    const double move = std::abs(x[k] - x[k - 1]);
+    if (move > 1e-9 * Range(x)) moves.push_back(move);
+  }
+  if (moves.empty()) return kCoarsest;
+  std::ranges::nth_element(moves, moves.begin() + std::ssize(moves) / 2);
+  const double finest = Range(x) / moves[moves.size() / 2];
+  return std::clamp(static_cast<Index>(finest), kCoarsest, kMostQuarters);
+}
+
+}  // namespace
+
 Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step) {
   const double range = Range(x);
   Sweep sweep;
-  // What does not come round once is no wave.
-  constexpr int kCoarsest = 4;
-  for (int m = kCoarsest; m <= finest; m += step) {
-    sweep.values.push_back(4.0 * range / m);
+  for (Index m = kCoarsest; m <= finest; m += step) {
+    sweep.values.push_back(4.0 * range / static_cast<double>(m));
   }
+  sweep.count = (FinestOf(x) - kCoarsest) / step + 1;
+  sweep.value = [range, step](Index i) {
+    return 4.0 * range / static_cast<double>(kCoarsest + i * step);
+  };
   sweep.angle = kCoarsest * kTurn / (4.0 * range) * x;
   sweep.increment = step * kTurn / (4.0 * range) * x;
   sweep.make = [entry, x](double period) {
@@ -46,6 +71,8 @@ Sweep FrequencySweep(const VectorXd& entry, const ObservedMotion& motion,
   const double spacing = 0.7 / duration;
   Sweep sweep;
   for (double f = 2.0 * spacing; f < highest; f += spacing) sweep.values.push_back(f);
+  sweep.count = std::ssize(sweep.values);
+  sweep.value = [spacing](Index i) { return static_cast<double>(2 + i) * spacing; };
   const VectorXd& time = motion.time;
   sweep.angle = kTurn * 2.0 * spacing * time;
   sweep.increment = kTurn * spacing * time;

@@ -68,24 +68,33 @@ TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
   const Index nv = force_steps_.size();
   TickTangent tangent{MatrixXd(ns, ns), MatrixXd::Zero(ns, nv),
                       MatrixXd(map_.sensors(), ns), MatrixXd::Zero(map_.sensors(), nv)};
-  for (Index i = 0; i < ns; ++i) Column(from, forces, tick, control, i, tangent);
-  for (const Index dof : dofs_) ForceColumn(from, forces, tick, control, dof, tangent);
+  for (Index i = 0; i < ns; ++i) {
+    Column(from, forces, tick, control, i, steps_[i], tangent);
+  }
+  for (const Index dof : dofs_) {
+    ForceColumn(from, forces, tick, control, dof, force_steps_[dof], tangent);
+  }
   return tangent;
 }
 
 void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
                               std::int64_t tick, TickControl& control,
-                              std::span<const Index> dofs, TickTangent& tangent) {
+                              std::span<const Index> dofs, const VectorXd& sd,
+                              const VectorXd& force_sd, TickTangent& tangent) {
   for (const Index dof : dofs) {
-    Column(from, forces, tick, control, dof, tangent);
-    Column(from, forces, tick, control, force_steps_.size() + dof, tangent);
+    for (const Index state : {dof, force_steps_.size() + dof}) {
+      const double step = std::max(steps_[state], sd[state]);
+      Column(from, forces, tick, control, state, step, tangent);
+    }
+    if (std::ranges::find(dofs_, dof) == dofs_.end()) continue;
+    const double step = std::max(force_steps_[dof], force_sd[dof]);
+    ForceColumn(from, forces, tick, control, dof, step, tangent);
   }
 }
 
 void TickDifferences::Column(const PlantState& from, const VectorXd& forces,
                              std::int64_t tick, TickControl& control, Index state,
-                             TickTangent& tangent) {
-  const double h = steps_[state];
+                             double h, TickTangent& tangent) {
   VectorXd dx = VectorXd::Zero(steps_.size());
   dx[state] = h;
   const mjModel& model = map_.model();
@@ -99,8 +108,7 @@ void TickDifferences::Column(const PlantState& from, const VectorXd& forces,
 
 void TickDifferences::ForceColumn(const PlantState& from, const VectorXd& forces,
                                   std::int64_t tick, TickControl& control, Index dof,
-                                  TickTangent& tangent) {
-  const double h = force_steps_[dof];
+                                  double h, TickTangent& tangent) {
   VectorXd moved = forces;
   moved[dof] += h;
   const Outcome above = Checked(map_.Probe(from, moved, tick, control));

@@ -28,17 +28,29 @@ class TickDifferences {
   /// About the Run that was the last one. NumericalError if a tick beside it diverges.
   TickTangent Of(const PlantState& from, const Eigen::VectorXd& forces,
                  std::int64_t tick, TickControl& control);
-  /// Computes columns q and v of some degrees of freedom anew.
+  /// Computes columns q, v and w of some degrees of freedom anew, as secants over what is
+  /// not known of them:
+  ///   (F(x + sd_i e_i) - F(x - sd_i e_i)) / (2 sd_i)
+  /// M. Norgaard, N. K. Poulsen, O. Ravn, "New developments in state estimation for
+  /// nonlinear systems", Automatica 36(11), 2000.
+  /// @param sd        of the state, ns
+  /// @param force_sd  of the forces, nv
   void Refresh(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
                TickControl& control, std::span<const Eigen::Index> dofs,
+               const Eigen::VectorXd& sd, const Eigen::VectorXd& force_sd,
                TickTangent& tangent);
+  /// Velocity that a force of 1 gives a degree of freedom in a tick where the model is drawn.
+  double VelocityOf(Eigen::Index dof) const {
+    return steps_[force_steps_.size() + dof] / force_steps_[dof];
+  }
 
  private:
   void Column(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
-              TickControl& control, Eigen::Index state, TickTangent& tangent);
+              TickControl& control, Eigen::Index state, double step,
+              TickTangent& tangent);
   void ForceColumn(const PlantState& from, const Eigen::VectorXd& forces,
                    std::int64_t tick, TickControl& control, Eigen::Index dof,
-                   TickTangent& tangent);
+                   double step, TickTangent& tangent);
 
   TickMap& map_;
   std::vector<Eigen::Index> dofs_;

@@ -56,6 +56,14 @@ class RecordFilter {
         path_.counts(sensor, k) ? run_.outputs(sensor, k) - expected : 0.0;
   }
   const TickMap::Result& Tick(Index k);
+  /// Place of the tangent of the last tick.
+  std::size_t NextTangent(Index k) {
+    const Index nf = path_.dof_count();
+    const VectorXd sd = kalman_.P.diagonal().cwiseMax(0.0).cwiseSqrt();
+    VectorXd force_sd = VectorXd::Zero(applied_.size());
+    force_sd(path_.dofs) = sd.segment(sd.size() - nf - 1, nf);
+    return course_.Next(state_, applied_, clock_begins_ + k, inputs_, sd, force_sd);
+  }
 
   const Machine& machine_;
   const MeasuredRun& run_;
@@ -101,7 +109,7 @@ void RecordFilter::Run() {
     const Index at = first_ + k;
     if (k == 0) {
       Tick(0);
-      tangent = course_.Next(state_, applied_, clock_begins_, inputs_);
+      tangent = NextTangent(0);
     }
     kalman_.MoveTo(course_.tangents[tangent]);
     const VectorXd read = map_.Read(state_, clock_begins_ + k);
@@ -123,7 +131,7 @@ void RecordFilter::Run() {
     }
     PlantState next = ticked.state;
     const VectorXd ended = ticked.reading;
-    tangent = course_.Next(state_, applied_, clock_begins_ + k, inputs_);
+    tangent = NextTangent(k);
     path_.of_tick[static_cast<std::size_t>(at)] = tangent;
     kalman_.MoveTo(course_.tangents[tangent]);
     if (k + 1 < samples_) {

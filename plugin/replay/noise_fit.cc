@@ -92,7 +92,7 @@ struct Point {
 /// its memory.
 class NoiseSearch {
  public:
-  NoiseSearch(const FilterPath& path, const VectorXd& reading_sd)
+  NoiseSearch(const FilterPath& path, const VectorXd& reading_sd, double longest)
       : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
     for (std::size_t r = 0; r < path.first.size(); ++r) {
       std::ranges::copy(
@@ -100,7 +100,6 @@ class NoiseSearch {
           std::back_inserter(pieces_));
     }
     const double tick = path.sample_time;
-    const double duration = tick * static_cast<double>(path.samples());
     const Shown shown = ShownBy(path.tangents.front(), path.dofs, reading_sd);
     unit_ = shown.unit;
     // A size of nothing is as good as one that no record of that length would show.
@@ -112,7 +111,7 @@ class NoiseSearch {
         (0.5 * reading_sd).array().log().matrix(), std::log(1e-6 * tick),
         std::log(0.1 * tick);
     // A clock that is off for longer than ten ticks is a delay.
-    upper_ << huge, VectorXd::Constant(nf_, std::log(100.0 * duration)), huge,
+    upper_ << huge, VectorXd::Constant(nf_, std::log(std::max(longest, 4.0 * tick))), huge,
         (100.0 * reading_sd).array().log().matrix(), std::log(tick),
         std::log(10.0 * tick);
     const auto joints = [&](double size, double memory, double white) {
@@ -283,15 +282,24 @@ constexpr double kCoarse = 4.2;  // natural logarithm: a factor of 64
 constexpr double kMedium = 1.2;
 constexpr double kFine = 0.4;
 
+/// A latent force that lasts longer than a twentieth of a run is a number that costs
+/// nothing: what is constant all the time is for a law to say.
+double LongestMemory(const MeasuredRun& run) {
+  constexpr double kParts = 20.0;
+  return run.sample_time * static_cast<double>(run.samples()) / kParts;
+}
+
 /// The most likely noise along a path, from its own on.
-FilterNoise Refined(const FilterPath& path, const VectorXd& reading_sd, double step) {
-  const NoiseSearch search(path, reading_sd);
+FilterNoise Refined(const FilterPath& path, const VectorXd& reading_sd, double longest,
+                    double step) {
+  const NoiseSearch search(path, reading_sd, longest);
   return search.NoiseOf(search.Descend(path.noise, step, kFine / 3.0).x);
 }
 
 /// The same from two starts, its own and a slow one.
-FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd) {
-  const NoiseSearch search(path, reading_sd);
+FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd,
+                            double longest) {
+  const NoiseSearch search(path, reading_sd, longest);
   const Point fast = search.Descend(path.noise, kCoarse, kFine);
   const Point slow = search.Descend(search.Slow(path.noise), kCoarse, kFine);
   return search.NoiseOf(slow.deviance() < fast.deviance() ? slow.x : fast.x);
@@ -317,6 +325,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   const std::vector<Index> dofs = LatentDofs(machine, run);
   // Pieces tell the noise as well as all of a run.
   const MeasuredRun pieces = PiecesOf(run);
+  const double longest = LongestMemory(run);
   std::vector<FilterStart> starts = FilterStarts(machine, pieces, reading_sd);
   const FilterNoise fast = FollowingNoise(machine, pieces, dofs, starts, reading_sd);
   // A path that was followed fast sticks and slips with its noise: behind a slow filter it
@@ -331,14 +340,14 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   const FilterPath first = follow(fast);
   const auto refine = [&](const std::function<FilterNoise()>& begin) {
     try {
-      follow(Refined(follow(begin()), reading_sd, kFine));
+      follow(Refined(follow(begin()), reading_sd, longest, kFine));
     } catch (const NumericalError&) {
     }
   };
-  refine([&] { return RefinedFromBoth(first, reading_sd); });
+  refine([&] { return RefinedFromBoth(first, reading_sd, longest); });
   refine([&] {
-    const FilterPath slow = follow(NoiseSearch(first, reading_sd).Slow(fast));
-    return Refined(slow, reading_sd, kCoarse);
+    const FilterPath slow = follow(NoiseSearch(first, reading_sd, longest).Slow(fast));
+    return Refined(slow, reading_sd, longest, kCoarse);
   });
   starts = FilterStarts(machine, run, reading_sd);
   const FilterPath path = [&] {
@@ -350,7 +359,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   }();
   try {
     FilterPath refined =
-        RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, kMedium));
+        RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, longest, kMedium));
     if (refined.deviance < path.deviance) return refined;
   } catch (const NumericalError&) {
   }
@@ -362,13 +371,14 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const std::vector<FilterNoise>& near) {
   const std::vector<Index> dofs = LatentDofs(machine, run);
   const MeasuredRun pieces = PiecesOf(run);
+  const double longest = LongestMemory(run);
   const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
   std::optional<FilterPath> best;
   for (const FilterNoise& noise : near) {
     try {
       FilterPath path = RunForceFilter(machine, pieces, dofs, of_pieces, noise);
       path = RunForceFilter(machine, pieces, dofs, of_pieces,
-                            Refined(path, reading_sd, kCoarse));
+                            Refined(path, reading_sd, longest, kCoarse));
       if (!best || path.deviance < best->deviance) best = std::move(path);
     } catch (const NumericalError&) {
     }
@@ -377,7 +387,7 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
   FilterPath refined =
-      RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, kMedium));
+      RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, longest, kMedium));
   return refined.deviance < path.deviance ? refined : path;
 }
 

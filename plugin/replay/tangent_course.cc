@@ -8,6 +8,7 @@
 namespace mjdiag {
 
 using Eigen::Index;
+using Eigen::VectorXd;
 
 namespace {
 
@@ -56,18 +57,44 @@ std::vector<Index> DofsWithEffects(const Machine& machine) {
   return dofs;
 }
 
+std::vector<Index> DofsThatRub(const mjModel& model) {
+  std::vector<Index> dofs;
+  for (int dof = 0; dof < model.nv; ++dof) {
+    if (model.dof_frictionloss[dof] > 0.0) dofs.push_back(dof);
+  }
+  return dofs;
+}
+
 }  // namespace
 
 TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
                              const std::vector<Index>& dofs)
     : map_(map),
       differences_(map, machine.rates().tick(), dofs),
-      restless_(DofsWithEffects(machine)),
+      with_effects_(DofsWithEffects(machine)),
+      rubbing_(DofsThatRub(machine.plant())),
       shortest_(std::max<std::int64_t>(
           1, std::lround(kStretchTime * machine.rates().control))) {}
 
-std::size_t TangentCourse::Next(const PlantState& from, const Eigen::VectorXd& forces,
-                                std::int64_t tick, TickControl& control) {
+// A joint that may stick for all that is known of its velocity and of what pushes it moves
+// by neither of the two tangents, for only by what is between them does a filter that holds
+// it learn that it should not.
+std::vector<Index> TangentCourse::RestlessAt(const PlantState& from, const VectorXd& sd,
+                                             const VectorXd& force_sd) const {
+  constexpr double kMay = 3.0;  // standard deviations
+  std::vector<Index> dofs = with_effects_;
+  for (const Index dof : rubbing_) {
+    const double spread =
+        sd[from.velocity.size() + dof] + force_sd[dof] * differences_.VelocityOf(dof);
+    if (std::abs(from.velocity[dof]) > kMay * spread) continue;
+    if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);
+  }
+  return dofs;
+}
+
+std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
+                                std::int64_t tick, TickControl& control,
+                                const VectorXd& sd, const VectorXd& force_sd) {
   constexpr std::int64_t kLongest = 16;  // stretches
   if (tick < last_) known_.clear();
   last_ = tick;
@@ -83,12 +110,12 @@ std::size_t TangentCourse::Next(const PlantState& from, const Eigen::VectorXd& f
       known.stretch = shortest_;
       known.place = tangents.size();
       tangents.push_back(std::move(here));
-      return known.place;
     }
   }
-  if (restless_.empty()) return known.place;
+  const std::vector<Index> restless = RestlessAt(from, sd, force_sd);
+  if (restless.empty()) return known.place;
   TickTangent here = tangents[known.place];
-  differences_.Refresh(from, forces, tick, control, restless_, here);
+  differences_.Refresh(from, forces, tick, control, restless, sd, force_sd, here);
   tangents.push_back(std::move(here));
   return tangents.size() - 1;
 }

@@ -21,14 +21,23 @@ class TangentCourse {
                 const std::vector<Eigen::Index>& dofs);
 
   /// Place in `tangents` of the tangent of the map's last Run.
+  /// @param sd        of the state there, ns
+  /// @param force_sd  of the forces, nv
   std::size_t Next(const PlantState& from, const Eigen::VectorXd& forces,
-                   std::int64_t tick, TickControl& control);
+                   std::int64_t tick, TickControl& control, const Eigen::VectorXd& sd,
+                   const Eigen::VectorXd& force_sd);
   std::vector<TickTangent> tangents;
 
  private:
+  /// Degrees of freedom whose columns hold for this tick only.
+  std::vector<Eigen::Index> RestlessAt(const PlantState& from,
+                                       const Eigen::VectorXd& sd,
+                                       const Eigen::VectorXd& force_sd) const;
+
   TickMap& map_;
   TickDifferences differences_;
-  std::vector<Eigen::Index> restless_;  // degrees of freedom with effects
+  std::vector<Eigen::Index> with_effects_;
+  std::vector<Eigen::Index> rubbing_;  // with dry friction
   std::int64_t shortest_;               // stretch, in ticks
   std::int64_t last_ = 0;               // tick
   /// A tangent, from when on it is taken to hold, and for how long.

@@ -30,7 +30,7 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
     return {std::move(trial)};
   }
   // Rulers and gratings are right to a few parts in a thousand.
-  EffectValues Spread(const Scales&) const override { return ValuesOf({0.01}); }
+  EffectValues Spread(const Scales&) const override { return ValuesOf({0.003}); }
   Sized Draw(const Scales&, Random& r) const override {
     return AroundOne(r.Sign() * 0.01);
   }

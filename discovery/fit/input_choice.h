@@ -1,0 +1,27 @@
+#pragma once
+// How far the inputs of a run have to be smoothed for a machine (input_noise.h): by the
+// likelihood of its filter, to first order along its path, behind the noise that suits each.
+
+#include <Eigen/Core>
+
+#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/replay/force_filter.h"
+#include "mjdiag/plugin/replay/tracking.h"
+
+namespace mjdiag {
+
+struct InputChoice {
+  Eigen::VectorXd widths;  ///< of every actuator [ticks]
+  FilterNoise noise;       ///< that suits them
+};
+
+/// @param run     with the inputs as they were measured
+/// @param path    of the machine with some inputs
+/// @param widths  by which these are smoothed
+InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
+                         const FilterPath& path, const Eigen::VectorXd& widths);
+
+/// What it costs, in -2 ln, to have them so.
+double PriceOfWidths(const Eigen::VectorXd& widths);
+
+}  // namespace mjdiag

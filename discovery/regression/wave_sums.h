@@ -1,0 +1,17 @@
+#pragma once
+// Sums over a run of a signal times waves of many evenly spaced periods or frequencies,
+//
+//   s_m = sum over k of g_k exp(i (angle_k + m increment_k)),   m = 0 .. count - 1
+//
+// by one fast Fourier transform of the signal spread over the increments (non-uniform FFT of
+// type 1: A. Dutt, V. Rokhlin, "Fast Fourier transforms for nonequispaced data", SIAM J. Sci.
+// Comput. 14(6), 1993), linearly on a grid eight times as fine as the periods: right to 2 %.
+
+#include <Eigen/Core>
+
+namespace mjdiag {
+
+Eigen::VectorXcd WaveSums(const Eigen::VectorXd& g, const Eigen::VectorXd& angle,
+                          const Eigen::VectorXd& increment, Eigen::Index count);
+
+}  // namespace mjdiag
