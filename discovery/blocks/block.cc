@@ -184,6 +184,13 @@ bool Block::HasShape() const {
          });
 }
 
+bool Block::IsResistance() const {
+  if (!candidate || candidate->effect->family() != Family::kFriction) return false;
+  const Kind kind = candidate->effect->kind();
+  return kind == Kind::kDryFriction || kind == Kind::kLoadFriction ||
+         kind == Kind::kViscousFriction;
+}
+
 bool IsAllowed(const Block& block, const TrialValues& values) {
   if (!values || !values->allFinite()) return false;
   if (!block.candidate) return true;

@@ -46,6 +46,8 @@ struct Block {
   double price = 0.0;
 
   bool HasShape() const;
+  /// Of a joint, whatever it is proportional to.
+  bool IsResistance() const;
 };
 
 /// The motion of a run, and what of it does not change from block to block.

@@ -55,10 +55,14 @@ class Search {
     double score() const { return path.deviance + fit.prior + fit.occam; }
   };
   Settled Settle(ModelFit fit, const FilterNoise& near) const;
-  using Fitted = std::function<ModelFit(const Model&)>;
-  Model WithSimple(Model model, std::size_t place, std::size_t block) const;
-  ModelFit Simplified(ModelFit fit, const Fitted& fitted) const;
-  void Adopt(Settled settled);
+  /// What the search may go on from.
+  struct Proposal {
+    Settled settled;
+    bool steps = true;
+    VectorXd widths;  ///< of the inputs
+    MeasuredRun run;
+  };
+  void Adopt(Proposal proposal);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
   std::string Difference(double score) const {
     char text[40];
@@ -66,6 +70,13 @@ class Search {
     return text;
   }
   /// The best of some moves, fitted; none if none pays.
+  std::optional<Proposal> BestMove();
+  /// How much of its inputs did the machine not feel?
+  std::optional<Proposal> SmoothedInputs() const;
+  Proposal AsItIs() const {
+    return {{found_.fit, found_.path}, steps_, found_.widths, run_};
+  }
+  /// Takes what is better; false if nothing pays.
   bool Step();
   Model After(const ModelMove& move) const;
   bool IsOver() const {
@@ -84,9 +95,6 @@ class Search {
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, or of one that has none?
   bool ChooseSteps();
-  /// How much of its inputs did the machine not feel?
-  bool SmoothInputs();
-
   const Machine& machine_;
   bool steps_ = true;
   const MeasuredRun& as_measured_;
@@ -96,14 +104,6 @@ class Search {
   Clock::time_point begin_ = Clock::now();
   Explained found_;
 };
-
-bool IsResistance(const Block& block) {
-  if (!block.candidate) return false;
-  const Kind kind = block.candidate->effect->kind();
-  return block.candidate->effect->family() == Family::kFriction &&
-         (kind == Kind::kDryFriction || kind == Kind::kLoadFriction ||
-          kind == Kind::kViscousFriction);
-}
 
 /// One coordinate further.
 constexpr double kStep = 1e-3;
@@ -163,51 +163,6 @@ Model Search::After(const ModelMove& move) const {
   return model;
 }
 
-/// With a member as a simple law of the same joint.
-Model Search::WithSimple(Model model, std::size_t place, std::size_t block) const {
-  const Block& simple = found_.blocks[block];
-  const bool has_one = std::ranges::any_of(model, [&](const Member& member) {
-    return &member != &model[place] &&
-           found_.blocks[member.block].group == simple.group;
-  });
-  if (has_one) {
-    model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
-    return model;
-  }
-  // The fit finds its size from a tenth of what is usual on.
-  const double size = 0.1 * simple.candidate->parameters.front().spread;
-  model[place] = {block, VectorXd::Constant(1, size)};
-  return model;
-}
-
-/// With every resistance as the simplest that is no worse, constant or proportional to the
-/// velocity: columns of first order seldom tell which of its shapes it is, for they know the
-/// velocity no better than the filter does where it changes its sign.
-ModelFit Search::Simplified(ModelFit fit, const Fitted& fitted) const {
-  for (std::size_t m = 0; m < fit.model.size() && !IsOver(); ++m) {
-    const Block& block = found_.blocks[fit.model[m].block];
-    if (!IsResistance(block) || !block.HasShape()) continue;
-    for (std::size_t other = 0; other < found_.blocks.size(); ++other) {
-      const Block& simple = found_.blocks[other];
-      if (!IsResistance(simple) || simple.candidate->parameters.size() != 1 ||
-          simple.candidate->site != block.candidate->site) {
-        continue;
-      }
-      try {
-        ModelFit tried = fitted(WithSimple(fit.model, m, other));
-        if (tried.score() > fit.score()) continue;
-        if (tried.model.size() < fit.model.size()) --m;
-        fit = std::move(tried);
-        Say("    simpler: " + Describe(found_.blocks, fit.model));
-        break;
-      } catch (const NumericalError&) {
-      } catch (const InputError&) {
-      }
-    }
-  }
-  return fit;
-}
-
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
 Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
   const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
@@ -231,10 +186,13 @@ Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
   return settled;
 }
 
-void Search::Adopt(Settled settled) {
-  found_.fit = std::move(settled.fit);
-  found_.path = std::move(settled.path);
-  found_.score = settled.score();
+void Search::Adopt(Proposal proposal) {
+  found_.score = proposal.settled.score();
+  found_.fit = std::move(proposal.settled.fit);
+  found_.path = std::move(proposal.settled.path);
+  found_.widths = std::move(proposal.widths);
+  run_ = std::move(proposal.run);
+  steps_ = proposal.steps;
   ChooseSteps();
 }
 
@@ -247,15 +205,15 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
   Settled settled = Settle(as_it_is, moves.noises[moves.noise]);
   if (settled.score() > found_.score - kLeastGain) return false;
   Say("settled: " + Difference(settled.score()));
-  Adopt(std::move(settled));
+  Adopt({std::move(settled), steps_, found_.widths, run_});
   return true;
 }
 
-bool Search::Step() {
+std::optional<Search::Proposal> Search::BestMove() {
   const Exact exact = ExactColumns();
   const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
                               exact.terms, exact.other_steps);
-  if (moves.other_steps && ChooseSteps()) return true;
+  if (moves.other_steps && ChooseSteps()) return AsItIs();
   constexpr int kIterations = 6;
   /// Behind which gains, and whether with other steps.
   using Judged = std::pair<std::size_t, bool>;
@@ -272,7 +230,7 @@ bool Search::Step() {
     if (known != as_it_is.end()) return known->second;
     return as_it_is.emplace(judged, fitted(found_.fit.model, judged)).first->second;
   };
-  if (Resettle(moves, base({moves.noise, false}))) return true;
+  if (Resettle(moves, base({moves.noise, false}))) return AsItIs();
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
   if (std::getenv("MOVES")) {
@@ -318,17 +276,17 @@ bool Search::Step() {
   std::optional<Settled> best;
   bool best_steps = steps;
   for (const Tried& one : tried) {
-    if (one.gain < kLeastGain || (best && IsOver())) break;
+    // Kept gains tell what is gained to a factor of two.
+    if (one.gain < std::max(kLeastGain, 0.5 * tried.front().gain)) break;
+    if (best && IsOver()) break;
     if (!std::ranges::all_of(one.fit.model, [&](const Member& member) {
           return IsAllowed(found_.blocks[member.block], member.values);
         })) {
       continue;
     }
     try {
-      ModelFit simple = Simplified(
-          one.fit, [&](const Model& model) { return fitted(model, one.judged); });
       steps_ = steps != one.judged.second;
-      Settled settled = Settle(std::move(simple), moves.noises[one.judged.first]);
+      Settled settled = Settle(one.fit, moves.noises[one.judged.first]);
       Say("  filtered: " + Difference(settled.score()) + "  " +
           Describe(found_.blocks, settled.fit.model));
       if (settled.score() < (best ? best->score() : found_.score - kLeastGain)) {
@@ -340,10 +298,8 @@ bool Search::Step() {
     }
     steps_ = steps;
   }
-  if (!best) return false;
-  steps_ = best_steps;
-  Adopt(std::move(*best));
-  return true;
+  if (!best) return std::nullopt;
+  return Proposal{std::move(*best), best_steps, found_.widths, run_};
 }
 
 bool Search::ChooseSteps() {
@@ -360,24 +316,32 @@ bool Search::ChooseSteps() {
   return true;
 }
 
-bool Search::SmoothInputs() {
+std::optional<Search::Proposal> Search::SmoothedInputs() const {
   const Machine machine = With(found_.fit.model);
   const InputChoice choice =
       ChooseInputs(machine, as_measured_, found_.path, found_.widths);
-  if (choice.widths == found_.widths) return false;
+  if (choice.widths == found_.widths) return std::nullopt;
   MeasuredRun run = WithSmoothedInputs(as_measured_, choice.widths);
-  FilterPath path = FilterLikeliestFrom(machine, run, reading_sd_,
-                                        {choice.noise, found_.path.noise});
-  const double gain = found_.path.deviance + PriceOfWidths(found_.widths) -
-                      path.deviance - PriceOfWidths(choice.widths);
-  if (gain < kLeastGain) return false;
+  Settled settled{found_.fit,
+                  FilterLikeliestFrom(machine, run, reading_sd_,
+                                      {choice.noise, found_.path.noise})};
+  if (found_.path.deviance + PriceOfWidths(found_.widths) <
+      settled.path.deviance + PriceOfWidths(choice.widths) + kLeastGain) {
+    return std::nullopt;
+  }
   std::string text = "inputs over";
   for (const double width : choice.widths) text += " " + std::to_string(width);
-  Say(text + " ticks: " + std::to_string(-gain));
-  found_.score += path.deviance - found_.path.deviance;
-  found_.path = std::move(path);
-  found_.widths = choice.widths;
-  run_ = std::move(run);
+  Say(text + " ticks: " + Difference(settled.score()));
+  return Proposal{std::move(settled), steps_, choice.widths, std::move(run)};
+}
+
+bool Search::Step() {
+  std::optional<Proposal> smoothed = SmoothedInputs();
+  std::optional<Proposal> move = BestMove();
+  if (!smoothed && !move) return false;
+  const bool smooths =
+      !move || (smoothed && smoothed->settled.score() < move->settled.score());
+  Adopt(std::move(smooths ? *smoothed : *move));
   return true;
 }
 
@@ -387,12 +351,11 @@ Explained Search::Run() {
   found_.score = found_.path.deviance;
   found_.widths = VectorXd::Zero(run_.inputs.rows());
   ChooseSteps();
-  SmoothInputs();
   std::vector<Candidate> candidates = ListCandidates(machine_, true);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates, machine_, run_);
   found_.blocks = BlocksOf(machine_, candidates);
-  while (!IsOver() && (Step() || SmoothInputs())) {
+  while (!IsOver() && Step()) {
     char text[80];
     std::snprintf(text, sizeof text, "%.1f  ", found_.score);
     Say(text + Describe(found_.blocks, found_.fit.model));

@@ -34,24 +34,28 @@ SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   const Index n = std::ssize(set.columns);
   std::vector<Index> places;
   for (const Index column : set.columns) places.push_back(1 + column);
-  VectorXd given = VectorXd::Zero(gram.sum.cols());
-  given[0] = 1.0;
-  for (const Index column : set.given) given[1 + column] = -1.0;
   const VectorXd& sd = set.sd;
   const VectorXd mean = set.mean.cwiseQuotient(sd);
   // In units of what is known beforehand, what is given taken off.
   const auto part = [&](const MatrixXd& of) -> MatrixXd {
     return sd.asDiagonal() * of(places, places) * sd.asDiagonal();
   };
-  const auto product = [&](const MatrixXd& of) -> VectorXd {
-    return sd.cwiseProduct(VectorXd(of(places, Eigen::all) * given));
+  const auto with_left = [&](const MatrixXd& of) {
+    VectorXd column = of.col(0);
+    for (const Index given : set.given) column -= of.col(1 + given);
+    return column;
   };
-  const auto square = [&](const MatrixXd& of) -> double {
-    return given.dot(of * given);
+  const auto product = [&](const VectorXd& column) -> VectorXd {
+    return sd.cwiseProduct(VectorXd(column(places)));
+  };
+  const auto square = [&](const VectorXd& column) {
+    double sum = column[0];
+    for (const Index given : set.given) sum -= column[1 + given];
+    return sum;
   };
   SetFit fit;
   const MatrixXd G = part(gram.sum);
-  const VectorXd b = product(gram.sum);
+  const VectorXd b = product(with_left(gram.sum));
   const MatrixXd I = MatrixXd::Identity(n, n);
   const Eigen::LLT<MatrixXd> whole(G + I);
   const VectorXd a = whole.solve(b + mean);
@@ -59,15 +63,16 @@ SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   fit.sd = sd.cwiseProduct(whole.solve(I).diagonal().cwiseSqrt());
   fit.unseen = gram.log_determinant;
   for (const MatrixXd& fold : gram.folds) {
+    const VectorXd column = with_left(fold);
     if (n == 0) {
-      fit.unseen += square(fold);
+      fit.unseen += square(column);
       continue;
     }
     const MatrixXd Gf = part(fold);
-    const VectorXd bf = product(fold);
+    const VectorXd bf = product(column);
     const VectorXd of_others = Eigen::LLT<MatrixXd>(G - Gf + I).solve(b - bf + mean);
     fit.unseen +=
-        square(fold) - 2.0 * of_others.dot(bf) + of_others.dot(Gf * of_others);
+        square(column) - 2.0 * of_others.dot(bf) + of_others.dot(Gf * of_others);
   }
   return fit;
 }

@@ -84,6 +84,8 @@ class MoveSearch {
     change.added.push_back(variation);
     return change;
   }
+  /// Whether it is looked at beside what is in.
+  bool MayCome(const Block& block) const;
   /// With what a group that comes in takes the place of.
   Change Completed(Change change) const;
   Scored ScoreOf(const Change& change) const;
@@ -126,6 +128,19 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
   return std::ranges::none_of(change.added, [&](std::size_t v) {
     return v == variation || (!group.empty() && group == blocks_[kept_[v].block].group);
   });
+}
+
+// The shape of a resistance shows where the velocity changes its sign, which no filter
+// knows that lacks it: first the simplest comes in, and then, along the motion with that, the
+// others in its place. What has no shape is in with all that it can be.
+bool MoveSearch::MayCome(const Block& block) const {
+  const auto any = [&](const auto& is) {
+    return std::ranges::any_of(
+        terms_, [&](const Term& term) { return is(blocks_[term.block]); });
+  };
+  if (!block.HasShape()) return !any([&](const Block& in) { return &in == &block; });
+  return !block.IsResistance() ||
+         any([&](const Block& in) { return in.group == block.group; });
 }
 
 Change MoveSearch::Completed(Change change) const {
@@ -273,13 +288,8 @@ Moves MoveSearch::Run() {
   const MatrixXd W = whitening.Of(columns);
   VectorXd left = whitening.gains().left;
   if (W.cols() > 0) left -= W * here.fit.amplitudes;
-  kept_ = PromisingVariations(machine_, along_, whitening, left, W, set.sd, blocks_);
-  // What has no shape is in with all that it can be.
-  std::erase_if(kept_, [&](const Variation& one) {
-    return !blocks_[one.block].HasShape() &&
-           std::ranges::any_of(
-               terms_, [&](const Term& term) { return term.block == one.block; });
-  });
+  kept_ = PromisingVariations(machine_, along_, whitening, left, W, set.sd, blocks_,
+                              [this](const Block& block) { return MayCome(block); });
   moves_.variations = std::ssize(kept_);
   Whiten();
 
@@ -308,10 +318,8 @@ Moves MoveSearch::Run() {
     std::vector<Scored> further = ScoresOf(changes);
     if (further.empty()) break;
     const double gained = moves_.score - best.score;
-    const bool goes_on = further.front().score < best.score - kShare * gained;
-    all.insert(all.begin(), std::make_move_iterator(further.begin()),
-               std::make_move_iterator(further.begin() + 1));
-    if (!goes_on) break;
+    if (!(further.front().score < best.score - kShare * gained)) break;
+    all.front() = std::move(further.front());
   }
   changes.clear();
   for (std::size_t t = 0; t < terms_.size(); ++t) {

@@ -67,7 +67,9 @@ std::vector<Variation> PromisingVariations(const Machine& machine,
                                            const Whitening& whitening,
                                            const VectorXd& left, const MatrixXd& W,
                                            const VectorXd& sd,
-                                           std::vector<Block>& blocks) {
+                                           std::vector<Block>& blocks,
+                                           const std::function<bool(const Block&)>&
+                                               may_come) {
   const Index k = W.cols();
   MatrixXd u(W.rows(), 1 + k + kProbes);
   u << left, W, WhiteNoise(W.rows(), kProbes);
@@ -118,6 +120,7 @@ std::vector<Variation> PromisingVariations(const Machine& machine,
       if (best.size() > kOfBlock) best.pop_back();
     };
     Block& block = blocks[place];
+    if (!may_come(block)) return;
     const std::optional<Sweep> sweep = SweepOf(machine, along, block);
     if (!sweep) {
       ForEachVariation(machine, along, place, block, [&](Variation&& one) {

@@ -2,6 +2,7 @@
 // The most promising variations of every block along what a model leaves of a run.
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "mjdiag/discovery/blocks/block.h"
@@ -9,6 +10,7 @@
 
 namespace mjdiag {
 
+/// @param may_come  which blocks are looked at
 /// @param left    what is left, whitened
 /// @param W       whitened columns that are in, rows x k
 /// @param sd      of their amplitudes beforehand
@@ -16,6 +18,6 @@ namespace mjdiag {
 std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along, const Whitening& whitening,
     const Eigen::VectorXd& left, const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
-    std::vector<Block>& blocks);
+    std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come);
 
 }  // namespace mjdiag

@@ -374,16 +374,16 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
   const double longest = LongestMemory(run);
   const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
   std::optional<FilterPath> best;
-  for (const FilterNoise& noise : near) {
+  const auto follow = [&](const FilterNoise& noise) {
     try {
       FilterPath path = RunForceFilter(machine, pieces, dofs, of_pieces, noise);
-      path = RunForceFilter(machine, pieces, dofs, of_pieces,
-                            Refined(path, reading_sd, longest, kCoarse));
       if (!best || path.deviance < best->deviance) best = std::move(path);
     } catch (const NumericalError&) {
     }
-  }
+  };
+  for (const FilterNoise& noise : near) follow(noise);
   if (!best) throw NumericalError("replay: diverged");
+  follow(Refined(*best, reading_sd, longest, kCoarse));
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
   FilterPath refined =
