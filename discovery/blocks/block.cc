@@ -191,6 +191,11 @@ bool Block::IsResistance() const {
          kind == Kind::kViscousFriction;
 }
 
+bool Block::IsOfVelocityAlone() const {
+  return candidate && candidate->parameters.size() == 2 &&
+         candidate->parameters.back().role == Role::kVelocity;
+}
+
 bool IsAllowed(const Block& block, const TrialValues& values) {
   if (!values || !values->allFinite()) return false;
   if (!block.candidate) return true;

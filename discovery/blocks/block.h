@@ -48,6 +48,8 @@ struct Block {
   bool HasShape() const;
   /// Of a joint, whatever it is proportional to.
   bool IsResistance() const;
+  /// An amplitude over a velocity: without a memory, a load or a place.
+  bool IsOfVelocityAlone() const;
 };
 
 /// The motion of a run, and what of it does not change from block to block.

@@ -66,6 +66,11 @@ def eddy_current_brake(at, coefficient, velocity):
 
 
 @_law("force", 1)
+def smooth_coulomb_friction(at, force, velocity):
+    return -force * math.tanh(at.v / velocity)
+
+
+@_law("force", 1)
 def force_offset(at, force):
     return force
 

@@ -18,6 +18,7 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/input_noise.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -54,7 +55,7 @@ class Search {
     FilterPath path;
     double score() const { return path.deviance + fit.prior + fit.occam; }
   };
-  Settled Settle(ModelFit fit, const FilterNoise& near) const;
+  Settled Settle(ModelFit fit, const FilterNoise& near, bool steps) const;
   /// What the search may go on from.
   struct Proposal {
     Settled settled;
@@ -164,24 +165,36 @@ Model Search::After(const ModelMove& move) const {
 }
 
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
-Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
+Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near,
+                               bool steps) const {
   const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
-    return FilterLikeliestFrom(With(model), run_, reading_sd_, from);
+    return FilterLikeliestFrom(With(model, steps), run_, reading_sd_, from);
   };
   Settled settled{std::move(fit), {}};
   settled.path = filter(settled.fit.model, {near, found_.path.noise});
-  constexpr int kRounds = 3;
+  // Values that are off make latent forces large, behind which values are hardly seen:
+  // where fits behind the noise of the last filter gain no more, one behind a smaller may.
+  constexpr int kRounds = 6;
+  std::size_t smaller = 0;
   for (int round = 0; round < kRounds && !IsOver(); ++round) {
     const FilterPath& path = settled.path;
-    const KeptGains gains = KeepGains(path);
-    Settled next{FitModel([this](const Model& model) { return With(model); }, run_,
-                          path, gains, found_.blocks, settled.fit.model, 4),
-                 {}};
-    next.path = filter(next.fit.model, {path.noise});
-    const double gain = settled.score() - next.score();
-    if (!(gain > 0.0)) break;
-    settled = std::move(next);
-    if (gain < 1.0) break;
+    const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
+    const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
+    double gain = 0.0;
+    try {
+      Settled next{FitModel([&](const Model& model) { return With(model, steps); }, run_,
+                            path, gains, found_.blocks, settled.fit.model, 4),
+                   {}};
+      next.path = filter(next.fit.model, {path.noise, noises[smaller]});
+      gain = settled.score() - next.score();
+      if (gain > 0.0) settled = std::move(next);
+    } catch (const NumericalError&) {
+    }
+    if (gain >= kLeastGain) {
+      smaller = 0;
+    } else if (++smaller == noises.size() - 1) {
+      break;
+    }
   }
   return settled;
 }
@@ -202,7 +215,7 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
   const double before = own.left.squaredNorm() + own.log_determinant +
                         found_.fit.prior + found_.fit.occam;
   if (as_it_is.score() > before - kLeastGain) return false;
-  Settled settled = Settle(as_it_is, moves.noises[moves.noise]);
+  Settled settled = Settle(as_it_is, moves.noises[moves.noise], steps_);
   if (settled.score() > found_.score - kLeastGain) return false;
   Say("settled: " + Difference(settled.score()));
   Adopt({std::move(settled), steps_, found_.widths, run_});
@@ -233,6 +246,16 @@ std::optional<Search::Proposal> Search::BestMove() {
   if (Resettle(moves, base({moves.noise, false}))) return AsItIs();
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
+  if (std::getenv("LOSSES")) {
+    for (std::size_t t = 0; t < moves.losses.size(); ++t) {
+      const VectorXd& l = moves.losses[t];
+      const double mean = l.mean();
+      const double sd = std::sqrt((l.array() - mean).square().sum() / 19.0);
+      char text[200];
+      std::snprintf(text, sizeof text, "    loss %.1f t %.2f negative %d  ", l.sum(), mean / (sd / std::sqrt(20.0)), int((l.array() < 0).count()));
+      Say(text + Describe(found_.blocks, {found_.fit.model[t]}));
+    }
+  }
   if (std::getenv("MOVES")) {
     for (std::size_t i = 0; i < std::min<std::size_t>(25, moves.best.size()); ++i) {
       std::string t;
@@ -272,31 +295,34 @@ std::optional<Search::Proposal> Search::BestMove() {
   std::ranges::sort(tried, std::greater<>(), &Tried::gain);
   // Kept gains are those of what the machine was without a move: which is the best is said
   // by the filters of the machines with each.
-  const bool steps = steps_;
-  std::optional<Settled> best;
-  bool best_steps = steps;
-  for (const Tried& one : tried) {
+  std::erase_if(tried, [&](const Tried& one) {
     // Kept gains tell what is gained to a factor of two.
-    if (one.gain < std::max(kLeastGain, 0.5 * tried.front().gain)) break;
-    if (best && IsOver()) break;
-    if (!std::ranges::all_of(one.fit.model, [&](const Member& member) {
-          return IsAllowed(found_.blocks[member.block], member.values);
-        })) {
-      continue;
-    }
+    return one.gain < std::max(kLeastGain, 0.5 * tried.front().gain) ||
+           !std::ranges::all_of(one.fit.model, [&](const Member& member) {
+             return IsAllowed(found_.blocks[member.block], member.values);
+           });
+  });
+  std::vector<std::optional<Settled>> settled(tried.size());
+  ParallelForAll(static_cast<int>(tried.size()), [&](int number) {
+    const auto place = static_cast<std::size_t>(number);
+    const Tried& one = tried[place];
     try {
-      steps_ = steps != one.judged.second;
-      Settled settled = Settle(one.fit, moves.noises[one.judged.first]);
-      Say("  filtered: " + Difference(settled.score()) + "  " +
-          Describe(found_.blocks, settled.fit.model));
-      if (settled.score() < (best ? best->score() : found_.score - kLeastGain)) {
-        best = std::move(settled);
-        best_steps = steps_;
-      }
+      settled[place] = Settle(one.fit, moves.noises[one.judged.first],
+                              steps_ != one.judged.second);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
-    steps_ = steps;
+  });
+  std::optional<Settled> best;
+  bool best_steps = steps_;
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    if (!settled[i]) continue;
+    Say("  filtered: " + Difference(settled[i]->score()) + "  " +
+        Describe(found_.blocks, settled[i]->fit.model));
+    if (settled[i]->score() < (best ? best->score() : found_.score - kLeastGain)) {
+      best = std::move(settled[i]);
+      best_steps = steps_ != tried[i].judged.second;
+    }
   }
   if (!best) return std::nullopt;
   return Proposal{std::move(*best), best_steps, found_.widths, run_};

@@ -131,15 +131,16 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
 }
 
 // The shape of a resistance shows where the velocity changes its sign, which no filter
-// knows that lacks it: first the simplest comes in, and then, along the motion with that, the
-// others in its place. What has no shape is in with all that it can be.
+// knows that lacks it: first the simplest comes in, those that the velocity alone shapes, and
+// then, along the motion with that, the others in its place. What has no shape is in with all
+// that it can be.
 bool MoveSearch::MayCome(const Block& block) const {
   const auto any = [&](const auto& is) {
     return std::ranges::any_of(
         terms_, [&](const Term& term) { return is(blocks_[term.block]); });
   };
   if (!block.HasShape()) return !any([&](const Block& in) { return &in == &block; });
-  return !block.IsResistance() ||
+  return !block.IsResistance() || block.IsOfVelocityAlone() ||
          any([&](const Block& in) { return in.group == block.group; });
 }
 
@@ -279,6 +280,9 @@ Moves MoveSearch::Run() {
   moves_.score = here.score;
   moves_.noise = here.noise;
   moves_.other_steps = here.other_steps;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    moves_.losses.push_back(ScoreOf({{t}, {}}).fit.of_fold - here.fit.of_fold);
+  }
   const Whitening& whitening = *moves_.whitenings[here.noise];
   const SetOfColumns set = ColumnsOf({});
   std::vector<const Column*> columns;

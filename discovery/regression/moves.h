@@ -59,6 +59,8 @@ struct Moves {
   bool other_steps = false;
   std::vector<ModelMove> best;  ///< by score, no two with the same blocks
   Eigen::Index variations = 0;
+  /// Of every term, by how much worse each fold is predicted without it, in -2 ln.
+  std::vector<Eigen::VectorXd> losses;
 };
 
 /// @param blocks       receive the prices of their shapes

@@ -282,10 +282,10 @@ constexpr double kCoarse = 4.2;  // natural logarithm: a factor of 64
 constexpr double kMedium = 1.2;
 constexpr double kFine = 0.4;
 
-/// A latent force that lasts longer than a twentieth of a run is a number that costs
+/// A latent force that lasts longer than a fifth of a run is a number that costs
 /// nothing: what is constant all the time is for a law to say.
 double LongestMemory(const MeasuredRun& run) {
-  constexpr double kParts = 20.0;
+  constexpr double kParts = 5.0;
   return run.sample_time * static_cast<double>(run.samples()) / kParts;
 }
 

@@ -62,6 +62,13 @@ TEST(WarmingFriction, GoesAwayWithItsTimeConstant) {
   EXPECT_NEAR(Braking(effect, 0.0, 1.0, 0.6), 2.0 * std::exp(-6.0), 1e-3);
 }
 
+TEST(SmoothCoulombFriction, CreepsAndIsWholeAboveItsVelocity) {
+  EffectBench bench({"smooth_coulomb_friction@q:force=4,velocity=0.5"});
+  EXPECT_NEAR(bench.ForceAt(0.0, 0.5), -4.0 * std::tanh(1.0), 1e-12);
+  EXPECT_NEAR(bench.ForceAt(0.0, 1e-6), -8e-6, 1e-15);
+  EXPECT_NEAR(bench.ForceAt(0.0, -50.0), 4.0, 1e-12);
+}
+
 TEST(EddyCurrentBrake, IsLargestAtItsVelocity) {
   EffectBench bench({"eddy_current_brake@q:coefficient=4,velocity=0.5"});
   EXPECT_NEAR(bench.ForceAt(0.0, 0.5), -4.0 * 0.5 / 2.0, 1e-12);
