@@ -63,6 +63,8 @@ class Search {
     VectorXd widths;  ///< of the inputs
     MeasuredRun run;
   };
+  using Fitted = std::function<ModelFit(const Model&)>;
+  ModelFit Pruned(ModelFit fit, const Fitted& fitted) const;
   void Adopt(Proposal proposal);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
   std::string Difference(double score) const {
@@ -105,6 +107,10 @@ class Search {
   Clock::time_point begin_ = Clock::now();
   Explained found_;
 };
+
+bool SameBlocks(const Model& a, const Model& b) {
+  return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
+}
 
 /// One coordinate further.
 constexpr double kStep = 1e-3;
@@ -164,6 +170,34 @@ Model Search::After(const ModelMove& move) const {
   return model;
 }
 
+/// Without the members that a fit has made nothing of: a size that is known to be about 0
+/// and is now so close to it that the member costs more.
+ModelFit Search::Pruned(ModelFit fit, const Fitted& fitted) const {
+  for (bool again = true; again;) {
+    again = false;
+    const std::vector<Coordinate> coordinates = CoordinatesOf(found_.blocks, fit.model);
+    const VectorXd x = Place(coordinates, fit.model);
+    for (std::size_t m = 0; m < fit.model.size() && !again; ++m) {
+      double worth = 0.0;
+      bool is_sized = false;
+      for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const auto place = static_cast<Index>(i);
+        if (coordinates[i].member != m || !coordinates[i].is_known) continue;
+        is_sized = true;
+        worth += std::pow(x[place] / fit.sd[place], 2);
+      }
+      const double price = found_.blocks[fit.model[m].block].price;
+      if (!is_sized || worth > price) continue;
+      Model without = fit.model;
+      without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
+      ModelFit tried = fitted(without);
+      again = tried.score() < fit.score();
+      if (again) fit = std::move(tried);
+    }
+  }
+  return fit;
+}
+
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
 Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near,
                                bool steps) const {
@@ -182,9 +216,11 @@ Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near,
     const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
     double gain = 0.0;
     try {
-      Settled next{FitModel([&](const Model& model) { return With(model, steps); }, run_,
-                            path, gains, found_.blocks, settled.fit.model, 4),
-                   {}};
+      const Fitted fitted = [&](const Model& start) {
+        return FitModel([&](const Model& model) { return With(model, steps); }, run_,
+                        path, gains, found_.blocks, start, 4);
+      };
+      Settled next{Pruned(fitted(settled.fit.model), fitted), {}};
       next.path = filter(next.fit.model, {path.noise, noises[smaller]});
       gain = settled.score() - next.score();
       if (gain > 0.0) settled = std::move(next);
@@ -281,8 +317,15 @@ std::optional<Search::Proposal> Search::BestMove() {
         ModelFit zero = FitModel([&](const Model& one) { return With(one, steps_ != judged.second); }, run_, found_.path, moves.whitenings[judged.first]->gains(), found_.blocks, After(move), 0);
         Say("      at start " + std::to_string(zero.score() - base(judged).score()) + " dev " + std::to_string(zero.deviance - base(judged).deviance));
       }
-      ModelFit fit = fitted(After(move), judged);
+      ModelFit fit = Pruned(fitted(After(move), judged), [&](const Model& model) {
+        return fitted(model, judged);
+      });
       const double gain = base(judged).score() - fit.score();
+      if (std::ranges::any_of(tried, [&](const Tried& other) {
+            return SameBlocks(other.fit.model, fit.model);
+          })) {
+        continue;
+      }
       char text[80];
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
