@@ -150,13 +150,19 @@ std::vector<Block> BlocksOf(const Machine& machine,
                       .candidate = candidate,
                       .number = std::nullopt,
                       .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
-    // A factor of a number is known as well as the number.
+    // A factor of a number is known as well as the number. Sizes follow from the machine's
+    // own scales: nine times what is usual would drive it in the place of its motors.
     for (FitParameter& parameter : blocks.back().candidate->parameters) {
-      if (parameter.role != Role::kFactor) continue;
-      if (number) parameter.spread = DoubtOf(machine.plant(), *number);
-      const double farthest = std::exp(kFarthest * parameter.spread);
-      parameter.lower = std::max(parameter.lower, 1.0 / farthest);
-      parameter.upper = std::min(parameter.upper, farthest);
+      if (parameter.role == Role::kFactor) {
+        if (number) parameter.spread = DoubtOf(machine.plant(), *number);
+        const double farthest = std::exp(kFarthest * parameter.spread);
+        parameter.lower = std::max(parameter.lower, 1.0 / farthest);
+        parameter.upper = std::min(parameter.upper, farthest);
+      } else if (parameter.role == Role::kAmplitude) {
+        const double farthest = kFarthest * parameter.spread;
+        parameter.lower = std::max(parameter.lower, parameter.nothing - farthest);
+        parameter.upper = std::min(parameter.upper, parameter.nothing + farthest);
+      }
     }
     if (number) stood_for.push_back(*number);
   }

@@ -62,7 +62,7 @@ struct BlockMotion {
 /// Whether values are such as its law, or the number, can have.
 bool IsAllowed(const Block& block, const TrialValues& values);
 
-/// Nine times what is doubted of a factor, in logarithms, is another machine.
+/// So many spreads from what is known is another machine.
 inline constexpr double kFarthest = 9.0;
 /// 2 ln 20
 inline constexpr double kClaim = 6.0;

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <map>
 #include <optional>
@@ -282,24 +281,6 @@ std::optional<Search::Proposal> Search::BestMove() {
   if (Resettle(moves, base({moves.noise, false}))) return AsItIs();
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
-  if (std::getenv("LOSSES")) {
-    for (std::size_t t = 0; t < moves.losses.size(); ++t) {
-      const VectorXd& l = moves.losses[t];
-      const double mean = l.mean();
-      const double sd = std::sqrt((l.array() - mean).square().sum() / 19.0);
-      char text[200];
-      std::snprintf(text, sizeof text, "    loss %.1f t %.2f negative %d  ", l.sum(), mean / (sd / std::sqrt(20.0)), int((l.array() < 0).count()));
-      Say(text + Describe(found_.blocks, {found_.fit.model[t]}));
-    }
-  }
-  if (std::getenv("MOVES")) {
-    for (std::size_t i = 0; i < std::min<std::size_t>(25, moves.best.size()); ++i) {
-      std::string t;
-      for (auto r : moves.best[i].removed) t += " -" + found_.blocks[found_.fit.model[r].block].name;
-      for (auto& a : moves.best[i].added) t += " +" + found_.blocks[a.variation.block].name;
-      Say("      move " + std::to_string(moves.best[i].score - moves.score) + " noise " + std::to_string(moves.best[i].noise) + t);
-    }
-  }
   struct Tried {
     ModelFit fit;
     Judged judged;
@@ -312,11 +293,6 @@ std::optional<Search::Proposal> Search::BestMove() {
     if (move.score > moves.score - kLeastGain) continue;
     try {
       const Judged judged{move.noise, move.other_steps};
-      if (std::getenv("MOVES")) {
-        Say("      start " + Describe(found_.blocks, After(move)));
-        ModelFit zero = FitModel([&](const Model& one) { return With(one, steps_ != judged.second); }, run_, found_.path, moves.whitenings[judged.first]->gains(), found_.blocks, After(move), 0);
-        Say("      at start " + std::to_string(zero.score() - base(judged).score()) + " dev " + std::to_string(zero.deviance - base(judged).deviance));
-      }
       ModelFit fit = Pruned(fitted(After(move), judged), [&](const Model& model) {
         return fitted(model, judged);
       });

@@ -50,11 +50,18 @@ VectorXd Lagging(const VectorXd& signal, const MeasuredRun& run, double ticks) {
   return lagging;
 }
 
+/// Of the widths, those below 50 ms: what a torque does below 3 Hz a machine feels.
+bool IsNoise(double width, const MeasuredRun& run) {
+  constexpr double kLongest = 0.05;  // [s]
+  return width * run.sample_time <= kLongest;
+}
+
 /// What an input may be instead of what was measured. One that comes late is smooth, too,
 /// and no noise: where that says as much, the input stays.
 std::vector<std::function<VectorXd(const VectorXd&)>> WaysOf(const MeasuredRun& run) {
   std::vector<std::function<VectorXd(const VectorXd&)>> ways;
   for (const double width : kWidths) {
+    if (!IsNoise(width, run)) break;
     ways.emplace_back(
         [&run, width](const VectorXd& u) { return Smoothed(u, run, width); });
   }
@@ -96,6 +103,8 @@ InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
   for (const MeasuredRun& one : as_measured) others.push_back({machine, 1.0, &one});
   const std::vector<Column> columns = TickColumns(machine, smoothed, path, others);
   const auto ways = WaysOf(run);
+  const auto smooth = static_cast<std::size_t>(std::ranges::count_if(
+      kWidths, [&](double width) { return IsNoise(width, run); }));
   const auto count = static_cast<Index>(ways.size());
   std::vector<Column> changes;
   for (Index i = 0; i < widths.size(); ++i) {
@@ -143,7 +152,7 @@ InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
       for (Index w = 0; w < count; ++w) {
         place[static_cast<std::size_t>(i)] = i * count + w;
         const auto way = static_cast<std::size_t>(w);
-        chosen[i] = way < kWidths.size() ? kWidths[way] : 0.0;
+        chosen[i] = way < smooth ? kWidths[way] : 0.0;
         const double one = score();
         if (one < own) {
           own = one;

@@ -23,7 +23,7 @@ namespace {
 constexpr double kImpossible = std::numeric_limits<double>::infinity();
 constexpr int kFolds = 20;
 // Of what a move gains, what is of second order.
-constexpr double kShare = 0.1;
+constexpr double kShare = 0.03;
 
 /// A change of the model: terms that leave it, variations that come in.
 struct Change {
