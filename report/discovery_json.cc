@@ -40,6 +40,23 @@ json IdentityOf(const Cause& cause) {
           {"fault", cause.effect->IsFault()}};
 }
 
+json DecisionsOf(const Discovery& discovery) {
+  json decisions = json::array();
+  for (const Decision& one : discovery.decisions) {
+    decisions.push_back(
+        {{"tried", one.tried}, {"score", Finite(one.score)}, {"why", one.why}});
+  }
+  return decisions;
+}
+
+json NumbersInsteadOf(const FoundCause& found) {
+  json numbers = json::array();
+  for (const FoundCause::NumberInstead& one : found.numbers) {
+    numbers.push_back({{"name", one.name}, {"probability", Finite(one.probability)}});
+  }
+  return numbers;
+}
+
 json AlternativesOf(const FoundCause& found) {
   json alternatives = json::array();
   for (const Alternative& alternative : found.alternatives) {
@@ -58,6 +75,8 @@ json CausesOf(const Discovery& discovery) {
     cause["parameters"] = ParametersOf(found);
     cause["probability"] = Finite(found.probability);
     cause["alternatives"] = AlternativesOf(found);
+    cause["numbers_instead"] = NumbersInsteadOf(found);
+    cause["nothing_instead"] = Finite(found.none);
     cause["unnamed"] = TextOrNull(found.unnamed);
     causes.push_back(std::move(cause));
   }
@@ -213,6 +232,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
           {"complete", Finite(discovery.complete)},
+          {"force_left", discovery.force_left ? Finite(*discovery.force_left) : json()},
           {"kinds", KindsOf(discovery)},
           {"causes", CausesOf(discovery)},
           {"explanations", ExplanationList(discovery)},
@@ -246,6 +266,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
             {"limit", Finite(discovery.budget.limit)},
             {"stopped", discovery.budget.stopped},
             {"left_out", discovery.budget.left_out}}},
+          {"decisions", DecisionsOf(discovery)},
           {"notes", discovery.notes}};
 }
 

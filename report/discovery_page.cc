@@ -159,7 +159,7 @@ void AddPlots(Page& page, const std::vector<Plot>& plots) {
 void AddMismatch(Page& page, const Discovery& discovery) {
   const Table table = MismatchTable(discovery);
   if (table.rows.empty()) return;
-  const bool changed = !discovery.causes.empty();
+  const bool changed = HasFound(discovery);
   page.AddHeading(changed ? "Mismatch before and after" : "Mismatch");
   page.AddTable(table);
   page.AddParagraph(kHowToReadMismatch);
@@ -228,6 +228,19 @@ void AddSignature(Page& page, const Discovery& discovery) {
     page.AddPlot(SignaturePlot(signature, UnitOfRest(discovery)));
 }
 
+void AddDecisions(Page& page, const Discovery& discovery) {
+  const Table table = DecisionTable(discovery);
+  if (table.rows.empty()) return;
+  page.AddHeading("What was tried");
+  page.AddTable(table);
+  page.AddParagraph(
+      "In that order, each beside the best model before. The difference is -2 ln of "
+      "how "
+      "much more probable the record is beside it, with all that it costs: below zero "
+      "it "
+      "is better.");
+}
+
 void AddFaultLimits(Page& page, const Discovery& discovery) {
   if (discovery.fault_limits.empty()) return;
   page.AddHeading("What it is for: how small a fault is seen");
@@ -253,6 +266,7 @@ Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   AddSignature(page, discovery);
   AddUnexplained(page, discovery);
   AddFaultLimits(page, discovery);
+  AddDecisions(page, discovery);
   page.SetRun(run.run);
   return page;
 }

@@ -68,9 +68,16 @@ double SizePrice(double x);
 /// Of all sizes of a block with values.
 double SizePrice(const Block& block, const Eigen::VectorXd& values);
 
-/// Those of a machine: candidates, then numbers of the plant that no candidate stands for.
+/// Those of a machine: candidates, then numbers that no candidate stands for.
+std::vector<Block> BlocksOf(const Machine& machine,
+                            const std::vector<Candidate>& candidates,
+                            const std::vector<PlantNumber>& numbers);
+/// With all numbers of its plant that are in doubt.
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates);
+
+/// Numbers of a plant and centres of mass; none where it says that it is exact.
+std::vector<PlantNumber> NumbersInDoubt(const mjModel& plant);
 
 /// Hands out every variation of a block that the motion shows.
 /// @param price  of the block, receives what its many shapes cost on top

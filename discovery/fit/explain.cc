@@ -51,6 +51,7 @@ class Search {
   Model WithSimple(Model model, std::size_t place, std::size_t block) const;
   ModelFit Simplified(ModelFit fit, const Fitted& fitted) const;
   void Adopt(Settled settled);
+  void KeepRivals(const Moves& moves);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
   std::string Difference(double score) const {
     char text[40];
@@ -60,9 +61,19 @@ class Search {
   /// The best of some moves, fitted; none if none pays.
   bool Step();
   Model After(const ModelMove& move) const;
+  void Decide(const Model& tried, double score, const std::string& why) {
+    found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
+  }
+  bool HasTooManyCauses(const Model& model) const {
+    const auto causes = std::ranges::count_if(model, [&](const Member& member) {
+      return found_.blocks[member.block].candidate.has_value();
+    });
+    return static_cast<std::size_t>(causes) > options_.most_causes;
+  }
   bool IsOver() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count() >
-           options_.seconds;
+               options_.seconds ||
+           (options_.stop && options_.stop());
   }
   void Say(const std::string& text) const {
     if (options_.progress) options_.progress(text);
@@ -224,6 +235,7 @@ void Search::Adopt(Settled settled) {
   found_.fit = std::move(settled.fit);
   found_.path = std::move(settled.path);
   found_.score = settled.score();
+  found_.rivals.clear();  // of the model before
   ChooseSteps();
 }
 
@@ -245,6 +257,7 @@ bool Search::Step() {
   const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
                               exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return true;
+  KeepRivals(moves);
   constexpr int kIterations = 6;
   /// Behind which gains, and whether with other steps.
   using Judged = std::pair<std::size_t, bool>;
@@ -274,6 +287,7 @@ bool Search::Step() {
   for (const ModelMove& move : moves.best) {
     if (tried.size() == kMost || IsOver()) break;
     if (move.score > moves.score - kLeastGain) continue;
+    if (HasTooManyCauses(After(move))) continue;
     try {
       const Judged judged{move.noise, move.other_steps};
       ModelFit fit = fitted(After(move), judged);
@@ -282,6 +296,9 @@ bool Search::Step() {
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
       Say(text + Describe(found_.blocks, fit.model));
+      if (gain < kLeastGain) {
+        Decide(fit.model, -gain, "fitted, it is worth less than it costs");
+      }
       tried.push_back({std::move(fit), judged, gain});
     } catch (const NumericalError&) {
     } catch (const InputError&) {
@@ -293,6 +310,7 @@ bool Search::Step() {
     if (!std::ranges::all_of(one.fit.model, [&](const Member& member) {
           return IsAllowed(found_.blocks[member.block], member.values);
         })) {
+      Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
       continue;
     }
     const bool before = steps_;
@@ -302,16 +320,32 @@ bool Search::Step() {
       steps_ = steps_ != one.judged.second;
       Settled settled = Settle(std::move(simple), moves.noises[one.judged.first]);
       Say("  filtered: " + Difference(settled.score()));
-      if (settled.score() < found_.score - kLeastGain) {
+      const double score = settled.score() - found_.score;
+      if (score < -kLeastGain) {
+        Decide(settled.fit.model, score, "taken");
         Adopt(std::move(settled));
         return true;
       }
+      Decide(settled.fit.model, score,
+             "behind the noise that suits it, it is worth less than it costs");
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
     steps_ = before;
   }
   return false;
+}
+
+/// Of a model that nothing is better than. Where first order says that something is, and a
+/// fit does not, that is as good.
+void Search::KeepRivals(const Moves& moves) {
+  found_.rivals.clear();
+  for (const std::vector<ModelMove>* some : {&moves.best, &moves.near}) {
+    for (ModelMove move : *some) {
+      move.score = std::max(0.0, move.score - moves.score);
+      found_.rivals.push_back(std::move(move));
+    }
+  }
 }
 
 bool Search::ChooseSteps() {
@@ -333,15 +367,18 @@ Explained Search::Run() {
   found_.nothing = found_.path;
   found_.score = found_.path.deviance;
   ChooseSteps();
-  std::vector<Candidate> candidates = ListCandidates(machine_, true);
+  std::vector<Candidate> candidates = ChooseCandidates(machine_, options_.choice, true);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates, machine_, run_);
-  found_.blocks = BlocksOf(machine_, candidates);
+  found_.blocks = BlocksOf(machine_, candidates,
+                           options_.numbers.value_or(NumbersInDoubt(machine_.plant())));
   while (!IsOver() && Step()) {
     char text[80];
     std::snprintf(text, sizeof text, "%.1f  ", found_.score);
     Say(text + Describe(found_.blocks, found_.fit.model));
   }
+  found_.steps = steps_;
+  found_.is_cut_short = IsOver();
   return std::move(found_);
 }
 

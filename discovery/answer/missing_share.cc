@@ -1,0 +1,102 @@
+#include "mjdiag/discovery/answer/missing_share.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::VectorXd;
+
+namespace {
+
+/// A tenth in force is a hundredth in power: what people who identify machines take for the
+/// right model leaves 5 to 10 % of the force.
+constexpr double kSmall = 0.1;
+
+/// What latent forces of a joint cost, 2 ln 20 for the claim and for each of their three
+/// numbers what a parameter of a model costs that is told to a tenth.
+constexpr double kForcePrice = 6.0 + 3.0 * 4.6;
+
+/// Whether fitted data ask for latent forces beside a machine.
+bool AsksForForces(const Machine& machine, const MeasuredRun& run,
+                   const FilterPath& path) {
+  FilterNoise none = path.noise;
+  constexpr double kNone = 1e-6;
+  none.size *= kNone;
+  none.white *= kNone;
+  try {
+    const FilterPath without =
+        RunForceFilter(machine, run, path.dofs, path.starts, none);
+    return without.deviance - path.deviance >
+           kForcePrice * static_cast<double>(path.dof_count());
+  } catch (const NumericalError&) {
+    return true;  // it does not stay beside the run without them
+  }
+}
+
+/// Mean square in units of what drives the joints, less that of errors.
+double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual) {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < forces.size(); ++j) {
+    const MissingForce& force = forces[j];
+    const double square = force.rms * force.rms - force.sd * force.sd;
+    const double scale = usual[static_cast<Eigen::Index>(j)];
+    if (scale > 0.0) sum += std::max(0.0, square) / (scale * scale);
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
+                                       const FilterPath& path) {
+  return MissingForces(
+      changed, RunForceFilter(changed, run, path.dofs, path.starts, path.noise));
+}
+
+MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
+  const Machine given = data.With({});
+  const Model& model = judged.answer.fit.model;
+  MissingShare share;
+  share.is_missing = AsksForForces(given, data.run.seen, judged.nothing.seen);
+  if (model.empty()) {
+    share.left = 1.0;
+    share.is_left = share.is_missing;
+    return share;
+  }
+  const Machine changed = data.With(model);
+  share.is_left = AsksForForces(changed, data.run.seen, judged.answer.seen);
+  const VectorXd usual = FollowingNoise(given, data.run.seen, judged.nothing.seen.dofs,
+                                        judged.nothing.seen.starts, data.reading_sd)
+                             .size;
+  const auto share_along = [&](const MeasuredRun& run, const FilterPath& path) {
+    const double before = PowerOf(MissingForces(given, path), usual);
+    if (!(before > 0.0)) return std::numeric_limits<double>::infinity();
+    return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual) / before);
+  };
+  try {
+    share.left = share_along(data.run.unseen, judged.nothing.unseen);
+    // A machine that rests in what no fit saw lacks nothing there.
+    if (!std::isfinite(share.left)) {
+      share.left = share_along(data.run.seen, judged.nothing.seen);
+    }
+  } catch (const NumericalError&) {
+    share.left = 1.0;
+  }
+  return share;
+}
+
+DiscoveryVerdict VerdictOf(const MissingShare& share, bool has_model) {
+  if (!has_model) {
+    return share.is_missing ? DiscoveryVerdict::kUnexplained
+                            : DiscoveryVerdict::kNoDiscrepancy;
+  }
+  return !share.is_left || share.left < kSmall ? DiscoveryVerdict::kExplained
+                                               : DiscoveryVerdict::kPartlyExplained;
+}
+
+}  // namespace mjdiag
