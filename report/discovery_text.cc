@@ -81,7 +81,8 @@ std::string UnseenText(const Discovery& discovery) {
 /// ", 12 % of the force that was missing".
 std::string ForceLeftText(const Discovery& discovery) {
   if (!discovery.force_left || !std::isfinite(*discovery.force_left)) return "";
-  return ", " + FormatNumber(100.0 * *discovery.force_left, 2) +
+  const double percent = 100.0 * *discovery.force_left;
+  return ", " + (percent < 1.0 ? "less than 1" : FormatNumber(percent, 2)) +
          " % of the force that was missing";
 }
 
