@@ -184,6 +184,9 @@ struct Discovery {
     std::map<std::string, double> train;
     std::map<std::string, double> validation;
   };
+  /// Where no free simulation says anything, the mismatch is that of predictions over so
+  /// long from the filtered motion [s]; 0: of free simulation.
+  double horizon = 0.0;
   Figures mismatch_before;
   Figures mismatch_after;
   std::map<std::string, double> noise_floor;

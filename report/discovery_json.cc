@@ -241,6 +241,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"mismatch",
            {{"before", FiguresOf(discovery.mismatch_before)},
             {"after", FiguresOf(discovery.mismatch_after)}}},
+          {"horizon", Finite(discovery.horizon)},
           {"noise_floor", Finite(discovery.noise_floor)},
           {"units", discovery.unit},
           {"gain",

@@ -116,10 +116,11 @@ void AddNotes(Page& page, const Discovery& discovery) {
 }
 
 constexpr const char* kHowToReadLadder =
-    "Rest over noise: what an observer beside the plant fails to predict, over the "
-    "noise of the sensors, root mean square; 1 says that noise is all there is. The "
-    "errors are those of a replay of the whole record, relative to the measured "
-    "signal.";
+    "Rest over noise: what the filter of the whole answer fails to predict when it "
+    "runs "
+    "beside the plant with so much of it, over what that filter takes for noise, root "
+    "mean square; 1 says that noise is all there is. The errors are those of a replay "
+    "of the whole record, relative to the measured signal.";
 
 void AddLadder(Page& page, const Discovery& discovery) {
   if (discovery.ladder.empty()) return;
@@ -133,10 +134,13 @@ void AddLadder(Page& page, const Discovery& discovery) {
 }
 
 constexpr const char* kHowToReadMismatch =
-    "Mismatch is measured minus simulated, root mean square. Fitted: the part of the "
-    "record that fits saw. Unseen: the validation record if there is one, else the "
-    "rest of the record. The noise floor is what the sensor noise found in the record "
-    "explains.";
+    "Mismatch is measured minus simulated, root mean square. ";
+
+constexpr const char* kFittedAndUnseen =
+    "Fitted: the part of the record that fits saw. Unseen: the validation record if "
+    "there is one, else the rest of the record. The noise floor is what the sensor "
+    "noise "
+    "found in the record explains.";
 
 std::string Fell(double gain) {
   return gain < 0.0 ? "rose by " + GainText(-gain) : "fell by " + GainText(gain);
@@ -162,7 +166,15 @@ void AddMismatch(Page& page, const Discovery& discovery) {
   const bool changed = HasFound(discovery);
   page.AddHeading(changed ? "Mismatch before and after" : "Mismatch");
   page.AddTable(table);
-  page.AddParagraph(kHowToReadMismatch);
+  page.AddParagraph(
+      discovery.horizon > 0.0
+          ? "No free simulation says anything of this machine. Mismatch is "
+            "measured minus what is predicted over " +
+                FormatQuantity(discovery.horizon, "s") +
+                " from the filtered motion, root mean square; plots show "
+                "predictions over a tick. " +
+                kFittedAndUnseen
+          : kHowToReadMismatch + std::string(kFittedAndUnseen));
   if (changed) page.AddParagraph(GainParagraph(discovery));
   const Table records = RecordTable(discovery);
   if (!records.rows.empty()) {

@@ -17,6 +17,7 @@
 #include "mjdiag/discovery/answer/found_members.h"
 #include "mjdiag/discovery/answer/missing_share.h"
 #include "mjdiag/discovery/answer/posterior.h"
+#include "mjdiag/discovery/answer/prediction_figures.h"
 #include "mjdiag/discovery/answer/replay_figures.h"
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
@@ -184,6 +185,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     const Changes changes = ChangesOf(discovery);
     const bool follows = AddReplays(
         parts, changes, machine.setup().compare.skip_samples, options.seed, discovery);
+    if (follows) AddPredictions(data, judged, discovery);
     AddLadderOf(data, judged, parts, follows, discovery);
     AddFaultLimits(data, judged, discovery);
   }

@@ -140,6 +140,9 @@ VectorXd CoordinateSd(const AnswerData& data, const ModelOnRuns& answer) {
   }
   MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
   const Eigen::LLT<MatrixXd> solved(H);
+  // Not the fit's own: units of what has no spread go with the value (model.h), which was
+  // another one where the fit began.
+  const MatrixXd within = solved.solve(MatrixXd::Identity(x.size(), x.size()));
   MatrixXd between = MatrixXd::Zero(x.size(), x.size());
   for (Index f = 0; f < kFolds; ++f) {
     const Index first = left.size() * f / kFolds;
@@ -151,7 +154,7 @@ VectorXd CoordinateSd(const AnswerData& data, const ModelOnRuns& answer) {
   between *= static_cast<double>(kFolds) / (kFolds - 1);
   const MatrixXd root = solved.solve(between);
   const MatrixXd covariance = solved.solve(root.transpose());
-  return fit.sd.cwiseMax(covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
+  return within.diagonal().cwiseMax(covariance.diagonal()).cwiseSqrt();
 }
 
 void AddMembers(const AnswerData& data, const UnseenJudgement& judged,

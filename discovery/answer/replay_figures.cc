@@ -85,11 +85,7 @@ void AddMismatch(const Measurements& measurements, const Changes& changes, Index
     discovery.noise_floor[channel.name] = channel.noise_floor.rms;
     discovery.unit[channel.name] = channel.unit;
   }
-  discovery.gain_train = GainOf(discovery.mismatch_before.train,
-                                discovery.mismatch_after.train, discovery.noise_floor);
-  discovery.gain_validation =
-      GainOf(discovery.mismatch_before.validation, discovery.mismatch_after.validation,
-             discovery.noise_floor);
+  SetGains(discovery);
 }
 
 VectorXd ScaledAlong(const AnswerData& data, const Model& model, const MeasuredRun& run,
@@ -141,6 +137,14 @@ double ColourOf(const VectorXd& scaled, const KeptGains& gains, Index sensors) {
 }
 
 }  // namespace
+
+void SetGains(Discovery& discovery) {
+  discovery.gain_train = GainOf(discovery.mismatch_before.train,
+                                discovery.mismatch_after.train, discovery.noise_floor);
+  discovery.gain_validation =
+      GainOf(discovery.mismatch_before.validation, discovery.mismatch_after.validation,
+             discovery.noise_floor);
+}
 
 bool AddReplays(const Measurements& measurements, const Changes& changes, Index skip,
                 std::uint64_t seed, Discovery& discovery) {

@@ -27,11 +27,12 @@ FilterPath PathOfUnseen(const AnswerData& data, const Model& model,
 
 /// Values and noise of a model anew.
 ModelOnRuns Refitted(const AnswerData& data, const Model& model,
+                     const std::vector<Eigen::Index>& dofs,
                      const std::vector<FilterNoise>& near) {
   constexpr int kIterations = 4;
   ModelOnRuns one;
   const FilterPath path =
-      FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, near);
+      FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near);
   one.fit =
       FitModel([&](const Model& other) { return data.With(other); }, data.run.seen,
                path, KeepGains(path), data.blocks, model, kIterations);
@@ -43,11 +44,18 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
 
 ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
   ModelOnRuns nothing;
-  nothing.seen = data.steps || explained.fit.model.empty()
-                     ? explained.nothing
-                     : FilterLikeliestFrom(data.With({}), data.run.seen,
-                                           data.reading_sd, {explained.nothing.noise});
-  nothing.unseen = PathOfUnseen(data, {}, nothing.seen);
+  // Of an empty model the search has it with the physics steps that it chose.
+  nothing.seen = explained.fit.model.empty() ? explained.path
+                 : data.steps                ? explained.nothing
+                                             : FilterLikeliestFrom(
+                                                   data.With({}), data.run.seen, data.reading_sd,
+                                                   explained.nothing.dofs, {explained.nothing.noise});
+  try {
+    nothing.unseen = PathOfUnseen(data, {}, nothing.seen);
+  } catch (const NumericalError&) {
+    // Behind the noise of what fits saw it does not stay with the rest.
+    nothing.unseen = FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd);
+  }
   return nothing;
 }
 
@@ -104,7 +112,7 @@ UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
         break;
       }
       try {
-        ModelOnRuns without = Refitted(data, WithoutMember(model, m),
+        ModelOnRuns without = Refitted(data, WithoutMember(model, m), answer.seen.dofs,
                                        {answer.seen.noise, judged.nothing.seen.noise});
         judged.losses[m] = {without.Score() - answer.Score(),
                             without.unseen.deviance - answer.unseen.deviance};

@@ -211,7 +211,7 @@ ModelFit Search::Simplified(ModelFit fit, const Fitted& fitted) const {
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
 Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near) const {
   const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
-    return FilterLikeliestFrom(With(model), run_, reading_sd_, from);
+    return FilterLikeliestFrom(With(model), run_, reading_sd_, found_.path.dofs, from);
   };
   Settled settled{std::move(fit), {}};
   settled.path = filter(settled.fit.model, {near, found_.path.noise});

@@ -359,8 +359,8 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
 
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
+                               const std::vector<Index>& dofs,
                                const std::vector<FilterNoise>& near) {
-  const std::vector<Index> dofs = LatentDofs(machine, run);
   const MeasuredRun pieces = PiecesOf(run);
   const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
   std::optional<FilterPath> best;

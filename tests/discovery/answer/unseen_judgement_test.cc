@@ -21,7 +21,7 @@ constexpr const char* kOffset = "force_offset@shoulder:force=0.1";
 struct Judged {
   Judged(const std::vector<std::string>& seen, const std::vector<std::string>& unseen)
       : run{ToMeasuredRun(arm.setup(), test::Arm::Measure(seen, 1.0, 64)),
-            ToMeasuredRun(arm.setup(), test::Arm::Measure(unseen, 1.0, 64))},
+            ToMeasuredRun(arm.setup(), test::Arm::Measure(unseen, 1.0, 64, 2))},
         explained(Explain(arm.machine, run.seen, sd, {.seconds = 300.0})),
         data{arm.machine, run, sd, explained.blocks, explained.steps},
         judgement(JudgeUnseen(data, explained, [] { return false; })) {}
@@ -64,7 +64,7 @@ TEST(UnseenJudgement, LeavesOutAMemberThatAnotherRecordSpeaksAgainst) {
 }
 
 TEST(UnseenJudgement, HasNoModelThatPredictsNoBetterThanThePlantAsGiven) {
-  const Judged judged({kOffset}, {});
+  const Judged judged({kFriction}, {});
   ASSERT_FALSE(judged.explained.fit.model.empty());
   EXPECT_THAT(judged.judgement.answer.fit.model, IsEmpty());
   EXPECT_EQ(judged.Verdict(), DiscoveryVerdict::kUnexplained)
