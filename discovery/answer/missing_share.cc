@@ -17,6 +17,10 @@ namespace {
 /// right model leaves 5 to 10 % of the force.
 constexpr double kSmall = 0.1;
 
+/// Of what drives the joints: so much is what physics steps are off by, and no discrepancy
+/// that anybody means.
+constexpr double kNegligible = 1e-3;
+
 /// What latent forces of a joint cost, 2 ln 20 for the claim and for each of their three
 /// numbers what a parameter of a model costs that is told to a tenth.
 constexpr double kForcePrice = 6.0 + 3.0 * 4.6;
@@ -62,17 +66,21 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Machine given = data.With({});
   const Model& model = judged.answer.fit.model;
   MissingShare share;
-  share.is_missing = AsksForForces(given, data.run.seen, judged.nothing.seen);
+  const VectorXd usual = FollowingNoise(given, data.run.seen, judged.nothing.seen.dofs,
+                                        judged.nothing.seen.starts, data.reading_sd)
+                             .size;
+  const auto is_there = [&](const Machine& machine, const FilterPath& path) {
+    return AsksForForces(machine, data.run.seen, path) &&
+           PowerOf(MissingForces(machine, path), usual) > kNegligible * kNegligible;
+  };
+  share.is_missing = is_there(given, judged.nothing.seen);
   if (model.empty()) {
     share.left = 1.0;
     share.is_left = share.is_missing;
     return share;
   }
   const Machine changed = data.With(model);
-  share.is_left = AsksForForces(changed, data.run.seen, judged.answer.seen);
-  const VectorXd usual = FollowingNoise(given, data.run.seen, judged.nothing.seen.dofs,
-                                        judged.nothing.seen.starts, data.reading_sd)
-                             .size;
+  share.is_left = is_there(changed, judged.answer.seen);
   const auto share_along = [&](const MeasuredRun& run, const FilterPath& path) {
     const double before = PowerOf(MissingForces(given, path), usual);
     if (!(before > 0.0)) return std::numeric_limits<double>::infinity();

@@ -8,7 +8,8 @@
 //   share = sqrt( sum_j (left_j / s_j)^2 / sum_j (missing_j / s_j)^2 )
 //
 // Whether there is any at all says the likelihood of fitted data with the latent forces and
-// without them, each of which is a size, a memory and a white part per joint.
+// without them, each of which is a size, a memory and a white part per joint; and it has to
+// be more than a thousandth of what drives the joints.
 
 #include <Eigen/Core>
 #include <vector>

@@ -14,8 +14,8 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr const char* kFriction = "coulomb_friction@elbow:force=0.05";
-constexpr const char* kOffset = "force_offset@shoulder:force=0.1";
+constexpr const char* kDamper = "viscous_friction@elbow:coefficient=0.05";
+constexpr const char* kOther = "viscous_friction@shoulder:coefficient=0.2";
 
 /// What is found in one record of an arm, and what another says of it.
 struct Judged {
@@ -46,25 +46,25 @@ struct Judged {
 };
 
 TEST(UnseenJudgement, KeepsWhatAnotherRecordShowsAsWell) {
-  const Judged judged({kFriction}, {kFriction});
+  const Judged judged({kDamper}, {kDamper});
   EXPECT_THAT(judged.NamesOf(judged.judgement.answer.fit.model),
-              ElementsAre("coulomb_friction@elbow"));
+              ElementsAre("viscous_friction@elbow"));
   EXPECT_GT(judged.judgement.losses.front().unseen, 100.0);
   EXPECT_EQ(judged.Verdict(), DiscoveryVerdict::kExplained);
 }
 
 TEST(UnseenJudgement, LeavesOutAMemberThatAnotherRecordSpeaksAgainst) {
-  const Judged judged({kFriction, kOffset}, {kFriction});
+  const Judged judged({kDamper, kOther}, {kDamper});
   ASSERT_THAT(judged.NamesOf(judged.explained.fit.model),
-              Contains("force_offset@shoulder"));
+              Contains("viscous_friction@shoulder"));
   const auto kept = judged.NamesOf(judged.judgement.answer.fit.model);
-  EXPECT_THAT(kept, Contains("coulomb_friction@elbow"));
-  EXPECT_THAT(kept, Not(Contains("force_offset@shoulder")));
+  EXPECT_THAT(kept, Contains("viscous_friction@elbow"));
+  EXPECT_THAT(kept, Not(Contains("viscous_friction@shoulder")));
   EXPECT_FALSE(judged.judgement.decisions.empty());
 }
 
 TEST(UnseenJudgement, HasNoModelThatPredictsNoBetterThanThePlantAsGiven) {
-  const Judged judged({kFriction}, {});
+  const Judged judged({kDamper}, {});
   ASSERT_FALSE(judged.explained.fit.model.empty());
   EXPECT_THAT(judged.judgement.answer.fit.model, IsEmpty());
   EXPECT_EQ(judged.Verdict(), DiscoveryVerdict::kUnexplained)
