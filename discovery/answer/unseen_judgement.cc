@@ -84,6 +84,9 @@ UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
     judged.decisions.push_back({tried, score, why});
   };
   const auto nothing_is_left = [&] {
+    for (const Member& member : judged.answer.fit.model) {
+      judged.refuted.push_back(Describe(data.blocks, {member}));
+    }
     judged.answer = judged.nothing;
     judged.places.clear();
     judged.losses.clear();
@@ -128,6 +131,7 @@ UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
       }
     }
     if (!best) break;
+    judged.refuted.push_back(Describe(data.blocks, {model[worst]}));
     decide("without " + Describe(data.blocks, {model[worst]}),
            judged.losses[worst].unseen,
            "left out: data that no fit saw are predicted as well without it");

@@ -39,6 +39,7 @@ struct UnseenJudgement {
   std::vector<std::size_t> places;  ///< of its members in Explained::fit
   std::vector<MemberLoss> losses;   ///< of its members
   std::vector<Decision> decisions;
+  std::vector<std::string> refuted;  ///< members that unseen data speak against
   bool is_cut_short = false;  ///< not every member was taken out
 };
 
