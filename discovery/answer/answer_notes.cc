@@ -107,8 +107,8 @@ void NoteFar(const CalibratedNumber& number, std::vector<std::string>& notes) {
 void AddNotes(const AnswerData& data, const UnseenJudgement& judged,
               const std::function<bool()>& may_go_on, Discovery& discovery) {
   for (const std::string& refuted : judged.refuted) {
-    discovery.notes.push_back(
-        "not named, for data outside the fit contradict it: " + refuted);
+    discovery.notes.push_back("not named, for data outside the fit contradict it: " +
+                              refuted);
   }
   const VectorXd& noise = judged.answer.seen.noise.reading;
   NoteQuiet(data, noise, discovery.notes);

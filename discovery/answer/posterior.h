@@ -9,8 +9,9 @@
 // sizes included. Latent forces are in every one of them: that the law is in no list has its
 // share of all.
 //
-// The model without a member was fitted, and its score counts unseen data, too
-// (unseen_judgement.h); exchanges are of first order about the model (moves.h).
+// The model without a member was fitted, and so were its likeliest exchanges, and their scores
+// count unseen data, too (unseen_judgement.h); further exchanges are of first order about the
+// model (moves.h).
 
 #include <cstddef>
 #include <vector>

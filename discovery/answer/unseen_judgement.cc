@@ -1,17 +1,21 @@
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
+
+using Eigen::VectorXd;
 
 namespace {
 
@@ -70,83 +74,220 @@ bool IsRefuted(const MemberLoss& loss) {
   return loss.unseen < -kLeastGain || loss.Total() < 0.0;
 }
 
+/// What a member could be instead.
+struct Instead {
+  std::size_t block = 0;
+  VectorXd values;
+};
+
+class UnseenJudge {
+ public:
+  UnseenJudge(const AnswerData& data, const Explained& explained,
+              const std::function<bool()>& is_over)
+      : data_(data), explained_(explained), is_over_(is_over) {}
+
+  UnseenJudgement Run();
+
+ private:
+  void Decide(const std::string& tried, double score, const std::string& why) {
+    judged_.decisions.push_back({tried, score, why});
+  }
+  std::string Names(const Model& model) const { return Describe(data_.blocks, model); }
+  void LeaveNothing();
+  /// Takes every member out; true if the worst one leaves the model.
+  bool DropWorst();
+  bool IsFree(std::size_t block, std::size_t place) const;
+  std::vector<Instead> InsteadOf(std::size_t place) const;
+  /// True if a member is exchanged.
+  bool ExchangeOne();
+  std::vector<FilterNoise> Near() const {
+    return {judged_.answer.seen.noise, judged_.nothing.seen.noise};
+  }
+  MemberLoss LossOf(const ModelOnRuns& other) const {
+    return {other.Score() - judged_.answer.Score(),
+            other.unseen.deviance - judged_.answer.unseen.deviance};
+  }
+
+  const AnswerData& data_;
+  const Explained& explained_;
+  const std::function<bool()>& is_over_;
+  UnseenJudgement judged_;
+};
+
+void UnseenJudge::LeaveNothing() {
+  for (const Member& member : judged_.answer.fit.model) {
+    judged_.refuted.push_back(Names({member}));
+  }
+  judged_.answer = judged_.nothing;
+  judged_.places.clear();
+  judged_.losses.clear();
+  judged_.exchanges.clear();
+}
+
+bool UnseenJudge::DropWorst() {
+  const ModelOnRuns& answer = judged_.answer;
+  const Model& model = answer.fit.model;
+  judged_.losses.assign(model.size(), {kNeeded, kNeeded});
+  judged_.exchanges.assign(model.size(), {});
+  std::optional<ModelOnRuns> best;
+  std::size_t worst = 0;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    if (is_over_()) {
+      judged_.is_cut_short = true;
+      break;
+    }
+    try {
+      ModelOnRuns without =
+          Refitted(data_, WithoutMember(model, m), answer.seen.dofs, Near());
+      judged_.losses[m] = LossOf(without);
+      const bool is_worst =
+          !best || judged_.losses[m].Total() < judged_.losses[worst].Total();
+      if (IsRefuted(judged_.losses[m]) && is_worst) {
+        worst = m;
+        best = std::move(without);
+      }
+    } catch (const NumericalError&) {
+      // The machine does not run without it.
+    } catch (const InputError&) {
+    }
+  }
+  if (!best) return false;
+  judged_.refuted.push_back(Names({model[worst]}));
+  Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
+         "left out: data that no fit saw are predicted as well without it");
+  judged_.answer = std::move(*best);
+  judged_.places.erase(judged_.places.begin() + static_cast<std::ptrdiff_t>(worst));
+  judged_.losses.clear();
+  judged_.exchanges.clear();
+  return true;
+}
+
+/// Whether a block may be in a place beside the other members.
+bool UnseenJudge::IsFree(std::size_t block, std::size_t place) const {
+  const Model& model = judged_.answer.fit.model;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    const Block& other = data_.blocks[model[m].block];
+    if (model[m].block == block) return false;
+    if (m == place || other.group.empty()) continue;
+    if (other.group == data_.blocks[block].group) return false;
+  }
+  return true;
+}
+
+/// The likeliest that first order knows, and the simplest laws of the same kind there; the
+/// one that an exchange has put out.
+std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
+  constexpr std::size_t kMost = 3;
+  constexpr double kNearBy = 10.0;  // e^-5 as likely
+  const Block& own = data_.blocks[judged_.answer.fit.model[place].block];
+  const Member& first = explained_.fit.model[judged_.places[place]];
+  std::vector<Instead> instead;
+  const auto add = [&](std::size_t block, VectorXd values) {
+    const bool known = std::ranges::any_of(
+        instead, [&](const Instead& one) { return one.block == block; });
+    if (!known && IsFree(block, place)) instead.push_back({block, std::move(values)});
+  };
+  add(first.block, first.values);
+  for (const ModelMove& move : explained_.rivals) {
+    if (instead.size() == kMost || move.score > kNearBy) break;
+    if (move.added.size() != 1 || move.removed != std::vector{judged_.places[place]}) {
+      continue;
+    }
+    const Added& added = move.added.front();
+    if (const TrialValues values = added.variation.values(added.amplitudes)) {
+      add(added.variation.block, *values);
+    }
+  }
+  if (!own.candidate || own.candidate->parameters.size() < 2) return instead;
+  for (std::size_t b = 0; b < data_.blocks.size(); ++b) {
+    const auto& simple = data_.blocks[b].candidate;
+    if (!simple || simple->parameters.size() != 1 ||
+        simple->site != own.candidate->site ||
+        simple->effect->kind() != own.candidate->effect->kind()) {
+      continue;
+    }
+    const FitParameter& size = simple->parameters.front();
+    if (std::isfinite(size.spread)) {
+      // The fit finds its size from a tenth of what is usual on.
+      add(b, VectorXd::Constant(1, size.nothing + 0.1 * size.spread));
+    }
+  }
+  return instead;
+}
+
+bool UnseenJudge::ExchangeOne() {
+  const Model model = judged_.answer.fit.model;
+  std::optional<ModelOnRuns> best;
+  double gained = 0.0;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    for (const Instead& one : InsteadOf(m)) {
+      if (is_over_()) {
+        judged_.is_cut_short = true;
+        return false;
+      }
+      Model other = model;
+      other[m] = {one.block, one.values};
+      try {
+        ModelOnRuns fitted = Refitted(data_, other, judged_.answer.seen.dofs, Near());
+        const MemberLoss loss = LossOf(fitted);
+        judged_.exchanges[m].push_back({one.block, fitted.fit.model[m].values, loss});
+        // The simpler one where it is as good.
+        const bool is_simpler = one.values.size() < model[m].values.size();
+        const double least = is_simpler ? 0.0 : kLeastGain;
+        if (!(loss.Total() < -least) || loss.Total() > -gained) continue;
+        if (!IsAllowed(data_.blocks[one.block], fitted.fit.model[m].values)) continue;
+        gained = -loss.Total();
+        best = std::move(fitted);
+      } catch (const NumericalError&) {
+      } catch (const InputError&) {
+      }
+    }
+  }
+  if (!best) return false;
+  Decide(Names(best->fit.model), -gained, "taken: one exchanged for a likelier one");
+  judged_.answer = std::move(*best);
+  return true;
+}
+
+UnseenJudgement UnseenJudge::Run() {
+  judged_.nothing = NothingOf(data_, explained_);
+  judged_.answer = {explained_.fit, explained_.path, {}};
+  judged_.places.resize(explained_.fit.model.size());
+  std::iota(judged_.places.begin(), judged_.places.end(), std::size_t{0});
+  if (explained_.fit.model.empty()) {
+    judged_.answer.unseen = judged_.nothing.unseen;
+    return std::move(judged_);
+  }
+  try {
+    judged_.answer.unseen = PathOfUnseen(data_, explained_.fit.model, explained_.path);
+  } catch (const NumericalError&) {
+    Decide(Names(explained_.fit.model), kNeeded,
+           "left out: the machine with it diverges on unseen data");
+    LeaveNothing();
+    return std::move(judged_);
+  }
+  // Each exchange gains; what went round would be noise of fits.
+  for (int exchanges = 0;; ++exchanges) {
+    while (!judged_.answer.fit.model.empty() && DropWorst()) {
+    }
+    constexpr int kMost = 4;
+    if (exchanges == kMost || judged_.is_cut_short || !ExchangeOne()) break;
+  }
+  const double gain = judged_.nothing.unseen.deviance - judged_.answer.unseen.deviance;
+  if (!judged_.answer.fit.model.empty() && gain < kLeastGain) {
+    Decide(
+        Names(judged_.answer.fit.model), -gain,
+        "left out: it predicts data that no fit saw no better than the plant as given");
+    LeaveNothing();
+  }
+  return std::move(judged_);
+}
+
 }  // namespace
 
 UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
                             const std::function<bool()>& is_over) {
-  UnseenJudgement judged;
-  judged.nothing = NothingOf(data, explained);
-  judged.answer = {explained.fit, explained.path, {}};
-  judged.places.resize(explained.fit.model.size());
-  std::iota(judged.places.begin(), judged.places.end(), std::size_t{0});
-  const auto decide = [&](const std::string& tried, double score,
-                          const std::string& why) {
-    judged.decisions.push_back({tried, score, why});
-  };
-  const auto nothing_is_left = [&] {
-    for (const Member& member : judged.answer.fit.model) {
-      judged.refuted.push_back(Describe(data.blocks, {member}));
-    }
-    judged.answer = judged.nothing;
-    judged.places.clear();
-    judged.losses.clear();
-  };
-  if (explained.fit.model.empty()) {
-    judged.answer.unseen = judged.nothing.unseen;
-    return judged;
-  }
-  try {
-    judged.answer.unseen = PathOfUnseen(data, explained.fit.model, explained.path);
-  } catch (const NumericalError&) {
-    decide(Describe(data.blocks, explained.fit.model), kNeeded,
-           "left out: the machine with it diverges on unseen data");
-    nothing_is_left();
-    return judged;
-  }
-  while (!judged.answer.fit.model.empty()) {
-    const ModelOnRuns& answer = judged.answer;
-    const Model& model = answer.fit.model;
-    judged.losses.assign(model.size(), {kNeeded, kNeeded});
-    std::optional<ModelOnRuns> best;
-    std::size_t worst = 0;
-    for (std::size_t m = 0; m < model.size(); ++m) {
-      if (is_over()) {
-        judged.is_cut_short = true;
-        break;
-      }
-      try {
-        ModelOnRuns without = Refitted(data, WithoutMember(model, m), answer.seen.dofs,
-                                       {answer.seen.noise, judged.nothing.seen.noise});
-        judged.losses[m] = {without.Score() - answer.Score(),
-                            without.unseen.deviance - answer.unseen.deviance};
-        const bool is_worst =
-            !best || judged.losses[m].Total() < judged.losses[worst].Total();
-        if (IsRefuted(judged.losses[m]) && is_worst) {
-          worst = m;
-          best = std::move(without);
-        }
-      } catch (const NumericalError&) {
-        // The machine does not run without it.
-      } catch (const InputError&) {
-      }
-    }
-    if (!best) break;
-    judged.refuted.push_back(Describe(data.blocks, {model[worst]}));
-    decide("without " + Describe(data.blocks, {model[worst]}),
-           judged.losses[worst].unseen,
-           "left out: data that no fit saw are predicted as well without it");
-    judged.answer = std::move(*best);
-    judged.places.erase(judged.places.begin() + static_cast<std::ptrdiff_t>(worst));
-    if (judged.answer.fit.model.empty()) judged.losses.clear();
-  }
-  const double gain = judged.nothing.unseen.deviance - judged.answer.unseen.deviance;
-  if (!judged.answer.fit.model.empty() && gain < kLeastGain) {
-    decide(
-        Describe(data.blocks, judged.answer.fit.model), -gain,
-        "left out: it predicts data that no fit saw no better than the plant as given");
-    nothing_is_left();
-  }
-  return judged;
+  return UnseenJudge(data, explained, is_over).Run();
 }
 
 }  // namespace mjdiag

@@ -4,7 +4,9 @@
 // that it costs included, for nothing of it was fitted there. Members are taken out one by
 // one, the others fitted anew each time with the noise that suits them; one that the unseen
 // data speak against, or that is not worth its price on both together, leaves the model, the
-// worst first. A model that predicts unseen data no better than the machine as given is none.
+// worst first. What could be in the place of a member is fitted there, too: by first order the
+// likeliest, and the simplest laws of its kind; one that is better takes the place. A model
+// that predicts unseen data no better than the machine as given is none.
 
 #include <functional>
 #include <vector>
@@ -33,14 +35,22 @@ struct MemberLoss {
   double Total() const { return seen + unseen; }
 };
 
+/// Another block in the place of a member.
+struct MemberExchange {
+  std::size_t block = 0;
+  Eigen::VectorXd values;
+  MemberLoss loss;
+};
+
 struct UnseenJudgement {
   ModelOnRuns nothing;  ///< the machine as given
   ModelOnRuns answer;
   std::vector<std::size_t> places;  ///< of its members in Explained::fit
   std::vector<MemberLoss> losses;   ///< of its members
+  std::vector<std::vector<MemberExchange>> exchanges;  ///< that were fitted, the same
   std::vector<Decision> decisions;
   std::vector<std::string> refuted;  ///< members that unseen data speak against
-  bool is_cut_short = false;  ///< not every member was taken out
+  bool is_cut_short = false;         ///< not every member was taken out
 };
 
 /// @param is_over  whether nothing further may be tried

@@ -30,6 +30,8 @@ UnseenJudgement JudgedWith(const MemberLoss& loss) {
   UnseenJudgement judged;
   judged.places = {0};
   judged.losses = {loss};
+  judged.exchanges = {{}};
+  judged.answer.fit.model = {{0, Eigen::VectorXd::Ones(1)}};
   return judged;
 }
 
@@ -64,6 +66,13 @@ TEST(Posterior, CountsABlockOnceByTheBestOfItsShapes) {
 TEST(Posterior, IsSureOfWhatNothingStandsFor) {
   const auto posterior = PosteriorOf(ExplainedWith({}), JudgedWith({1000.0, 400.0}));
   EXPECT_DOUBLE_EQ(posterior.front().probability, 1.0);
+}
+
+TEST(Posterior, BelievesAFitRatherThanFirstOrder) {
+  UnseenJudgement judged = JudgedWith({1000.0, 400.0});
+  judged.exchanges = {{{1, Eigen::VectorXd::Ones(1), {30.0, 10.0}}}};
+  const auto posterior = PosteriorOf(ExplainedWith({ExchangeFor(1, 2.0)}), judged);
+  EXPECT_GT(posterior.front().probability, 0.999);
 }
 
 // Another shape of the same law is no other law.
