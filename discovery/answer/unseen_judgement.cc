@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -79,6 +80,18 @@ struct Instead {
   std::size_t block = 0;
   VectorXd values;
 };
+
+/// Mean of the values of a law that have a role; 0 if it has none of it.
+double SizeOf(const VectorXd& values, const Block& block, Role role) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < block.candidate->parameters.size(); ++i) {
+    if (block.candidate->parameters[i].role != role) continue;
+    sum += values[static_cast<Eigen::Index>(i)];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
 
 class UnseenJudge {
  public:
@@ -206,11 +219,9 @@ std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
         simple->effect->kind() != own.candidate->effect->kind()) {
       continue;
     }
-    const FitParameter& size = simple->parameters.front();
-    if (std::isfinite(size.spread)) {
-      // The fit finds its size from a tenth of what is usual on.
-      add(b, VectorXd::Constant(1, size.nothing + 0.1 * size.spread));
-    }
+    const double size = SizeOf(judged_.answer.fit.model[place].values, own,
+                               simple->parameters.front().role);
+    if (size != 0.0) add(b, VectorXd::Constant(1, size));
   }
   return instead;
 }
@@ -272,6 +283,13 @@ UnseenJudgement UnseenJudge::Run() {
     }
     constexpr int kMost = 4;
     if (exchanges == kMost || judged_.is_cut_short || !ExchangeOne()) break;
+  }
+  for (std::size_t m = 0; m < judged_.losses.size(); ++m) {
+    char by_unseen[64];
+    std::snprintf(by_unseen, sizeof by_unseen,
+                  "kept: %.1f of it on data that no fit saw", judged_.losses[m].unseen);
+    Decide("without " + Names({judged_.answer.fit.model[m]}), judged_.losses[m].Total(),
+           by_unseen);
   }
   const double gain = judged_.nothing.unseen.deviance - judged_.answer.unseen.deviance;
   if (!judged_.answer.fit.model.empty() && gain < kLeastGain) {
