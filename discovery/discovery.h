@@ -92,8 +92,8 @@ struct FoundCause {
 struct FoundKind {
   Kind kind = Kind::kUnknownForce;
   std::string site;
-  /// That it is this kind there, whichever of its laws: from what the best model without it
-  /// loses on data that no fit saw (discovery_kinds.cc).
+  /// That it is this kind there, whichever of its laws: the sum of their shares of one
+  /// posterior (answer/posterior.h).
   double probability = 0.0;
   /// Of the unseen mismatch that the answer takes away, what is back without it.
   double share = 0.0;
@@ -156,8 +156,7 @@ struct Discovery {
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
   std::vector<FoundKind> kinds;  ///< the most probable first
-  /// How probable it is that noise is all that the causes leave, and no law that is in no
-  /// list is among them (completeness.h); their probabilities count it.
+  /// Whether noise is all that the answer leaves, 1, or a force that lasts, 0.
   double complete = 1.0;
   /// Share of the force that was missing which is left, rms along data that no fit saw;
   /// none: no more than noise is left, or nothing was found.

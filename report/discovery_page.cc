@@ -68,10 +68,10 @@ constexpr const char* kHowToReadExplanations =
     "listed.";
 
 constexpr const char* kHowToReadKinds =
-    "The kind of physics that the model lacks and where, whichever law it follows: the "
-    "probability is what data that no fit saw say against the best model without it. A "
-    "law "
-    "that is in no list makes the names below less certain, and the kind not.";
+    "The kind of physics that the model lacks and where, whichever law it follows: its "
+    "probability is the sum of those of its laws there. Mismatch back without it: of "
+    "how "
+    "much better data that no fit saw are predicted with the answer.";
 
 void AddKinds(Page& page, const Discovery& discovery) {
   const Table table = KindTable(discovery);

@@ -257,7 +257,7 @@ Table ExplanationTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Probability", true}, {""}, {"Explanation"}};
   const std::vector<CauseSet> explanations =
-      ExplanationsOf(discovery.causes, discovery.complete);
+      ExplanationsOf(discovery.causes);
   double others = 1.0;
   for (const CauseSet& explanation : explanations) others -= explanation.probability;
   const bool may_be_others = !explanations.empty() && others >= kConsidered;

@@ -110,6 +110,13 @@ void AddNotes(const AnswerData& data, const UnseenJudgement& judged,
     discovery.notes.push_back("not named, for data outside the fit contradict it: " +
                               refuted);
   }
+  if (!data.steps) {
+    const double step = data.machine.plant().opt.timestep;
+    discovery.notes.push_back(
+        "all inputs act " + FormatQuantity(0.5 * step, "s") +
+        " later than in the simulation; it has physics steps of " +
+        FormatQuantity(step, "s") + ", which are off by up to half of that");
+  }
   const VectorXd& noise = judged.answer.seen.noise.reading;
   NoteQuiet(data, noise, discovery.notes);
   const Machine noisy = data.machine.WithSensorNoise(noise);

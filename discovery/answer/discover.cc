@@ -26,6 +26,7 @@
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/plant/fixed_numbers.h"
+#include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 
@@ -38,6 +39,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Of the budget, what the search may use; the rest is for the judgement.
 constexpr double kShareOfSearch = 0.7;
+/// Times a budget that was too small.
+constexpr double kMoreTime = 5.0;
 
 /// Seconds since a discovery began, against its budget.
 class RunningTime {
@@ -51,14 +54,16 @@ class RunningTime {
   bool IsOver() const { return IsStopped() || Used() > options_.budget; }
   double SecondsOfSearch() const { return kShareOfSearch * options_.budget; }
   void Say(const std::string& what, double fraction) const {
-    if (options_.progress) options_.progress({what, fraction, "", options_.budget});
+    if (options_.progress) options_.progress({what, fraction, best_, options_.budget});
   }
+  void SetBest(std::string best) { best_ = std::move(best); }
   double FractionOfSearch() const {
     return kShareOfSearch * std::min(1.0, Used() / SecondsOfSearch());
   }
 
  private:
   const DiscoverOptions& options_;
+  std::string best_;
   Clock::time_point begin_ = Clock::now();
 };
 
@@ -96,8 +101,27 @@ std::vector<PlantNumber> DoubtedNumbers(const Machine& machine,
   return numbers;
 }
 
+/// As it is given on a command line.
+std::string SecondsText(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%g", value);
+  return digits;
+}
+
+/// "coulomb_friction@load (mismatch 100 % to 7 %)": of the latent forces, rms.
+std::string BestOf(const Explained& found) {
+  std::string names;
+  for (const Member& member : found.fit.model) {
+    names += (names.empty() ? "" : ", ") + found.blocks[member.block].name;
+  }
+  if (names.empty()) return "";
+  const double left =
+      found.path.forces.norm() / std::max(found.nothing.forces.norm(), 1e-300);
+  return names + " (mismatch 100 % to " + FormatNumber(100.0 * left, 2) + " %)";
+}
+
 ExplainOptions OptionsOfSearch(const Machine& machine, const DiscoverOptions& options,
-                               const RunningTime& time) {
+                               RunningTime& time) {
   ExplainOptions search;
   search.seconds = time.SecondsOfSearch();
   search.choice = options.choice;
@@ -107,6 +131,7 @@ ExplainOptions OptionsOfSearch(const Machine& machine, const DiscoverOptions& op
   search.progress = [&time](const std::string& text) {
     time.Say(text, time.FractionOfSearch());
   };
+  search.better = [&time](const Explained& found) { time.SetBest(BestOf(found)); };
   return search;
 }
 
@@ -116,7 +141,7 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
               Discovery& discovery) {
   Budget& budget = discovery.budget;
   budget = {time.Used(), options.budget, time.IsStopped(), {}};
-  if (explained.is_cut_short) budget.left_out.push_back("a further search");
+  if (explained.is_cut_short) budget.left_out.push_back("further causes");
   if (judged.is_cut_short) {
     budget.left_out.push_back("whether unseen data ask for every member of the answer");
   }
@@ -125,19 +150,18 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
   for (const std::string& one : budget.left_out) {
     rest += (rest.empty() ? "" : " and ") + one;
   }
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%g", budget.limit);
   discovery.notes.push_back(budget.stopped
                                 ? "it was stopped; left out: " + rest
-                                : "ended by its budget of " + std::string(seconds) +
-                                      " s; left out: " + rest);
+                                : "ended by its budget of " + SecondsText(budget.limit) +
+                                      " s; left out: " + rest + "; --budget " +
+                                      SecondsText(kMoreTime * budget.limit) + " goes on");
 }
 
 }  // namespace
 
 Discovery Discover(const Machine& machine, const Measurements& measurements,
                    const DiscoverOptions& options) {
-  const RunningTime time(options);
+  RunningTime time(options);
   const Measurements parts = WithUnseen(measurements, options.train_share);
   Discovery discovery;
   discovery.notes = CheckAll(machine, parts, options.doubt);
@@ -160,6 +184,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 
   const MissingShare share = ShareLeft(data, judged);
   discovery.verdict = VerdictOf(share, !judged.answer.fit.model.empty());
+  discovery.complete = share.is_left ? 0.0 : 1.0;
   if (share.is_left && !judged.answer.fit.model.empty()) {
     discovery.force_left = share.left;
   }

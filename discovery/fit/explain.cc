@@ -376,6 +376,7 @@ Explained Search::Run() {
     char text[80];
     std::snprintf(text, sizeof text, "%.1f  ", found_.score);
     Say(text + Describe(found_.blocks, found_.fit.model));
+    if (options_.better) options_.better(found_);
   }
   found_.steps = steps_;
   found_.is_cut_short = IsOver();

@@ -21,10 +21,14 @@
 
 namespace mjdiag {
 
+struct Explained;
+
 struct ExplainOptions {
   double seconds = 60.0;
   /// After every step, for people.
   std::function<void(const std::string&)> progress = {};
+  /// Whenever a better model is found.
+  std::function<void(const Explained&)> better = {};
   CandidateChoice choice = {};
   /// Numbers of the plant that may be others; none given: all of NumbersInDoubt.
   std::optional<std::vector<PlantNumber>> numbers = {};
