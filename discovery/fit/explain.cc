@@ -58,6 +58,7 @@ class Search {
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);
     return text;
   }
+  std::vector<const ModelMove*> ToBeFitted(const Moves& moves) const;
   /// The best of some moves, fitted; none if none pays.
   bool Step();
   Model After(const ModelMove& move) const;
@@ -252,6 +253,23 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
   return true;
 }
 
+/// The best of all, and the best that brings one block and nothing else: the fewer come at
+/// once, the nearer is first order to what a fit finds.
+std::vector<const ModelMove*> Search::ToBeFitted(const Moves& moves) const {
+  constexpr std::size_t kMost = 4;
+  std::vector<const ModelMove*> chosen;
+  bool has_single = false;
+  for (const ModelMove& move : moves.best) {
+    if (move.score > moves.score - kLeastGain || HasTooManyCauses(After(move)))
+      continue;
+    const bool is_single = move.removed.empty() && move.added.size() == 1;
+    if (chosen.size() >= kMost && (has_single || !is_single)) continue;
+    chosen.push_back(&move);
+    has_single = has_single || is_single;
+  }
+  return chosen;
+}
+
 bool Search::Step() {
   const Exact exact = ExactColumns();
   const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
@@ -283,17 +301,14 @@ bool Search::Step() {
     double gain = 0.0;
   };
   std::vector<Tried> tried;
-  constexpr std::size_t kMost = 4;
-  for (const ModelMove& move : moves.best) {
-    if (tried.size() == kMost || IsOver()) break;
-    if (move.score > moves.score - kLeastGain) continue;
-    if (HasTooManyCauses(After(move))) continue;
+  for (const ModelMove* move : ToBeFitted(moves)) {
+    if (IsOver()) break;
     try {
-      const Judged judged{move.noise, move.other_steps};
-      ModelFit fit = fitted(After(move), judged);
+      const Judged judged{move->noise, move->other_steps};
+      ModelFit fit = fitted(After(*move), judged);
       const double gain = base(judged).score() - fit.score();
       char text[80];
-      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
+      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move->score - moves.score,
                     -gain);
       Say(text + Describe(found_.blocks, fit.model));
       if (gain < kLeastGain) {
