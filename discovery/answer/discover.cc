@@ -150,11 +150,11 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
   for (const std::string& one : budget.left_out) {
     rest += (rest.empty() ? "" : " and ") + one;
   }
-  discovery.notes.push_back(budget.stopped
-                                ? "it was stopped; left out: " + rest
-                                : "ended by its budget of " + SecondsText(budget.limit) +
-                                      " s; left out: " + rest + "; --budget " +
-                                      SecondsText(kMoreTime * budget.limit) + " goes on");
+  discovery.notes.push_back(
+      budget.stopped ? "it was stopped; left out: " + rest
+                     : "ended by its budget of " + SecondsText(budget.limit) +
+                           " s; left out: " + rest + "; --budget " +
+                           SecondsText(kMoreTime * budget.limit) + " goes on");
 }
 
 }  // namespace

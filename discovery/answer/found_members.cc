@@ -206,7 +206,7 @@ void AddMembers(const AnswerData& data, const UnseenJudgement& judged,
     }
     discovery.causes.push_back(std::move(found));
   }
-  const double gained = judged.nothing.unseen.deviance - judged.answer.unseen.deviance;
+  const double gained = judged.nothing.unseen_deviance - judged.answer.unseen_deviance;
   for (const auto& [of, sum] : kinds) {
     const double probability = 1.0 - sum.none;
     if (probability < kLeastKind) continue;

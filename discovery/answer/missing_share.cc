@@ -43,11 +43,15 @@ bool AsksForForces(const Machine& machine, const MeasuredRun& run,
 }
 
 /// Mean square in units of what drives the joints, less that of errors.
-double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual) {
+/// @param first  sample from which they count
+double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual,
+               Eigen::Index first) {
   double sum = 0.0;
   for (std::size_t j = 0; j < forces.size(); ++j) {
     const MissingForce& force = forces[j];
-    const double square = force.rms * force.rms - force.sd * force.sd;
+    const VectorXd counted = force.value.tail(force.value.size() - first);
+    const double square = counted.squaredNorm() / static_cast<double>(counted.size()) -
+                          force.sd * force.sd;
     const double scale = usual[static_cast<Eigen::Index>(j)];
     if (scale > 0.0) sum += std::max(0.0, square) / (scale * scale);
   }
@@ -71,7 +75,7 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
                              .size;
   const auto is_there = [&](const Machine& machine, const FilterPath& path) {
     return AsksForForces(machine, data.run.seen, path) &&
-           PowerOf(MissingForces(machine, path), usual) > kNegligible * kNegligible;
+           PowerOf(MissingForces(machine, path), usual, 0) > kNegligible * kNegligible;
   };
   share.is_missing = is_there(given, judged.nothing.seen);
   if (model.empty()) {
@@ -81,16 +85,18 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   }
   const Machine changed = data.With(model);
   share.is_left = is_there(changed, judged.answer.seen);
-  const auto share_along = [&](const MeasuredRun& run, const FilterPath& path) {
-    const double before = PowerOf(MissingForces(given, path), usual);
+  const auto share_along = [&](const MeasuredRun& run, const FilterPath& path,
+                               Eigen::Index first) {
+    const double before = PowerOf(MissingForces(given, path), usual, first);
     if (!(before > 0.0)) return std::numeric_limits<double>::infinity();
-    return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual) / before);
+    return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual, first) / before);
   };
   try {
-    share.left = share_along(data.run.unseen, judged.nothing.unseen);
+    share.left =
+        share_along(data.run.unseen, judged.nothing.unseen, data.run.first_unseen);
     // A machine that rests in what no fit saw lacks nothing there.
     if (!std::isfinite(share.left)) {
-      share.left = share_along(data.run.seen, judged.nothing.seen);
+      share.left = share_along(data.run.seen, judged.nothing.seen, 0);
     }
   } catch (const NumericalError&) {
     share.left = 1.0;

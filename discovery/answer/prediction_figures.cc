@@ -39,7 +39,8 @@ void AddPredictions(const AnswerData& data, const UnseenJudgement& judged,
   const auto predict = [&](const ModelOnRuns& one, bool of_seen) {
     const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
     return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen,
-                   std::min(skip, run.samples() / 2));
+                   of_seen ? std::min(skip, run.samples() / 2)
+                           : std::max(skip, data.run.first_unseen));
   };
   // Before and after in what was fitted, and in what was not.
   const std::array all{predict(judged.nothing, true), predict(judged.answer, true),

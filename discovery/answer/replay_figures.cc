@@ -97,6 +97,14 @@ VectorXd ScaledAlong(const AnswerData& data, const Model& model, const MeasuredR
   }
 }
 
+/// Of samples from `first` on.
+VectorXd Behind(const VectorXd& scaled, const KeptGains& gains, Index first) {
+  const auto begin = std::ranges::find_if(
+      gains.readings,
+      [&](const KeptGains::Reading& one) { return one.sample >= first; });
+  return scaled.tail(gains.readings.end() - begin);
+}
+
 double RmsOf(const VectorXd& scaled) {
   return scaled.size() > 0
              ? std::sqrt(scaled.squaredNorm() / static_cast<double>(scaled.size()))
@@ -195,8 +203,9 @@ void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
         step.train = RmsOf(scaled[i]);
         return;
       case 1:
-        step.held_out = RmsOf(
-            ScaledAlong(data, model, data.run.unseen, answer.unseen, unseen_gains));
+        step.held_out = RmsOf(Behind(
+            ScaledAlong(data, model, data.run.unseen, answer.unseen, unseen_gains),
+            unseen_gains, data.run.first_unseen));
         return;
       default:
         break;

@@ -20,28 +20,20 @@ void RequireSharedPlant(const std::vector<MeasuredRecord>& records) {
   }
 }
 
-/// The first sample from there on at which every sensor was read: a record begins with
-/// where the machine is. That sample itself if there is none.
-Index WhereAllAreRead(const MeasuredRun& run, Index from) {
-  if (run.measured.size() == 0) return from;
-  for (Index k = from; k < run.samples(); ++k) {
-    if (run.measured.col(k).all()) return k;
-  }
-  return from;
-}
-
 }  // namespace
 
 SplitRun Split(const Measurements& measurements, double train_share) {
   RequireSharedPlant(measurements.fit);
   RequireSharedPlant(measurements.unseen);
   MeasuredRun run = RunOf(measurements.fit);
-  if (!measurements.unseen.empty()) return {std::move(run), RunOf(measurements.unseen)};
+  if (!measurements.unseen.empty()) {
+    return {std::move(run), RunOf(measurements.unseen), 0, 1.0};
+  }
   const Index samples = run.samples();
   const auto wished =
       static_cast<Index>(std::lround(train_share * static_cast<double>(samples)));
-  const Index seen = WhereAllAreRead(run, std::clamp<Index>(wished, 1, samples - 1));
-  return {Part(run, 0, seen), Excerpt(run, seen, samples - seen),
+  const Index seen = std::clamp<Index>(wished, 1, samples - 1);
+  return {Part(run, 0, seen), run, seen,
           static_cast<double>(seen) / static_cast<double>(samples)};
 }
 

@@ -22,12 +22,17 @@ namespace {
 
 constexpr double kNeeded = std::numeric_limits<double>::infinity();
 
-FilterPath PathOfUnseen(const AnswerData& data, const Model& model,
-                        const FilterPath& seen) {
-  const Machine machine = data.With(model);
-  return RunForceFilter(machine, data.run.unseen, seen.dofs,
-                        FilterStarts(machine, data.run.unseen, data.reading_sd),
-                        seen.noise);
+/// Along what fits did not see, behind the noise of what they saw.
+void FollowUnseen(const AnswerData& data, ModelOnRuns& one) {
+  const Machine machine = data.With(one.fit.model);
+  const MeasuredRun& run = data.run.unseen;
+  const bool goes_on = data.run.first_unseen > 0;
+  one.unseen = RunForceFilter(
+      machine, run, one.seen.dofs,
+      goes_on ? one.seen.starts : FilterStarts(machine, run, data.reading_sd),
+      one.seen.noise);
+  // Up to there it is what the filter did in what fits saw.
+  one.unseen_deviance = one.unseen.deviance - (goes_on ? one.seen.deviance : 0.0);
 }
 
 /// Values and noise of a model anew.
@@ -43,7 +48,7 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
                path, KeepGains(path), data.blocks, model, kIterations);
   one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
                             path.starts, path.noise);
-  one.unseen = PathOfUnseen(data, one.fit.model, one.seen);
+  FollowUnseen(data, one);
   return one;
 }
 
@@ -56,10 +61,14 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
                                                    data.With({}), data.run.seen, data.reading_sd,
                                                    explained.nothing.dofs, {explained.nothing.noise});
   try {
-    nothing.unseen = PathOfUnseen(data, {}, nothing.seen);
+    FollowUnseen(data, nothing);
   } catch (const NumericalError&) {
     // Behind the noise of what fits saw it does not stay with the rest.
-    nothing.unseen = FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd);
+    nothing.seen.noise =
+        FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd).noise;
+    nothing.seen = RunForceFilter(data.With({}), data.run.seen, nothing.seen.dofs,
+                                  nothing.seen.starts, nothing.seen.noise);
+    FollowUnseen(data, nothing);
   }
   return nothing;
 }
@@ -118,7 +127,7 @@ class UnseenJudge {
   }
   MemberLoss LossOf(const ModelOnRuns& other) const {
     return {other.Score() - judged_.answer.Score(),
-            other.unseen.deviance - judged_.answer.unseen.deviance};
+            other.unseen_deviance - judged_.answer.unseen_deviance};
   }
 
   const AnswerData& data_;
@@ -262,15 +271,16 @@ bool UnseenJudge::ExchangeOne() {
 
 UnseenJudgement UnseenJudge::Run() {
   judged_.nothing = NothingOf(data_, explained_);
-  judged_.answer = {explained_.fit, explained_.path, {}};
+  judged_.answer = {explained_.fit, explained_.path, {}, 0.0};
   judged_.places.resize(explained_.fit.model.size());
   std::iota(judged_.places.begin(), judged_.places.end(), std::size_t{0});
   if (explained_.fit.model.empty()) {
     judged_.answer.unseen = judged_.nothing.unseen;
+    judged_.answer.unseen_deviance = judged_.nothing.unseen_deviance;
     return std::move(judged_);
   }
   try {
-    judged_.answer.unseen = PathOfUnseen(data_, explained_.fit.model, explained_.path);
+    FollowUnseen(data_, judged_.answer);
   } catch (const NumericalError&) {
     Decide(Names(explained_.fit.model), kNeeded,
            "left out: the machine with it diverges on unseen data");
@@ -291,7 +301,7 @@ UnseenJudgement UnseenJudge::Run() {
     Decide("without " + Names({judged_.answer.fit.model[m]}), judged_.losses[m].Total(),
            by_unseen);
   }
-  const double gain = judged_.nothing.unseen.deviance - judged_.answer.unseen.deviance;
+  const double gain = judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance;
   if (!judged_.answer.fit.model.empty() && gain < kLeastGain) {
     Decide(
         Names(judged_.answer.fit.model), -gain,

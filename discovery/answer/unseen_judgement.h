@@ -23,7 +23,8 @@ namespace mjdiag {
 struct ModelOnRuns {
   ModelFit fit;
   FilterPath seen;
-  FilterPath unseen;
+  FilterPath unseen;             ///< of SplitRun::unseen
+  double unseen_deviance = 0.0;  ///< -2 ln L of what fits did not see of it
 
   double Score() const { return seen.deviance + fit.prior + fit.occam; }
 };
