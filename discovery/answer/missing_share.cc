@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -17,7 +19,7 @@ namespace {
 /// right model leaves 5 to 10 % of the force.
 constexpr double kSmall = 0.1;
 
-/// Of what drives the joints: so much is what physics steps are off by, and no discrepancy
+/// Of what accelerates the joints: so much is what physics steps are off by, and no discrepancy
 /// that anybody means.
 constexpr double kNegligible = 1e-3;
 
@@ -42,7 +44,22 @@ bool AsksForForces(const Machine& machine, const MeasuredRun& run,
   }
 }
 
-/// Mean square in units of what drives the joints, less that of errors.
+/// What accelerates every joint with a latent force along the run, rms.
+VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
+                     const FilterPath& path) {
+  const mjModel& plant = machine.plant();
+  const VectorXd mass =
+      PlantForces(plant, VectorXd::Map(plant.qpos0, plant.nq)).Mass().diagonal();
+  const ObservedMotion motion = MotionAlong(machine, run, path);
+  VectorXd usual(path.dof_count());
+  for (Eigen::Index j = 0; j < usual.size(); ++j) {
+    const Eigen::Index dof = path.dofs[static_cast<std::size_t>(j)];
+    usual[j] = mass[dof] * Rms(motion.acceleration.row(dof).transpose());
+  }
+  return usual;
+}
+
+/// Mean square in units of what accelerates the joints, less that of errors.
 /// @param first  sample from which they count
 double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual,
                Eigen::Index first) {
@@ -70,9 +87,7 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Machine given = data.With({});
   const Model& model = judged.answer.fit.model;
   MissingShare share;
-  const VectorXd usual = FollowingNoise(given, data.run.seen, judged.nothing.seen.dofs,
-                                        judged.nothing.seen.starts, data.reading_sd)
-                             .size;
+  const VectorXd usual = UsualForces(given, data.run.seen, judged.nothing.seen);
   const auto is_there = [&](const Machine& machine, const FilterPath& path) {
     return AsksForForces(machine, data.run.seen, path) &&
            PowerOf(MissingForces(machine, path), usual, 0) > kNegligible * kNegligible;

@@ -3,13 +3,13 @@
 //
 // Left behind is compared with what was missing on data that no fit saw, as the filter of one
 // noise, that of the machine as given, finds both: each joint's smoothed latent force less the
-// error of its estimate, in units of what drives the joint,
+// error of its estimate, in units of what accelerates the joint,
 //
 //   share = sqrt( sum_j (left_j / s_j)^2 / sum_j (missing_j / s_j)^2 )
 //
 // Whether there is any at all says the likelihood of fitted data with the latent forces and
 // without them, each of which is a size, a memory and a white part per joint; and it has to
-// be more than a thousandth of what drives the joints.
+// be more than a thousandth of what accelerates the joints.
 
 #include <Eigen/Core>
 #include <vector>
