@@ -166,9 +166,8 @@ void AddDiscover(CLI::App& app) {
   command
       ->add_option(
           "--budget", options->search.budget,
-          "Seconds of work of two ordinary cores, 300 if not given, after which "
-          "the best answer so far is given, if it has not settled before: the same on "
-          "every machine")
+          "Seconds, 300 if not given, after which the best answer so far is given, if "
+          "nothing better was found before")
       ->check(Within(kLeastBudget, kMostBudget));
   AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);

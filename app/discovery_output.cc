@@ -49,9 +49,7 @@ std::string Describe(const Discovery& discovery) {
 
 std::string WriteExtendedPlant(const std::string& folder, const std::string& setup,
                                const Machine& machine, const Discovery& discovery) {
-  const bool changed =
-      std::ranges::any_of(discovery.calibration, IsOff) || !discovery.causes.empty();
-  if (!changed) return "";
+  if (!HasFound(discovery)) return "";
   return WriteExtendedSetup(std::filesystem::path(folder) / "extended", setup,
                             machine.WithSubsteps(discovery.substeps),
                             ChangesOf(discovery))

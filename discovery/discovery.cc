@@ -315,37 +315,6 @@ Discovery Discoverer::Run() {
   return std::move(discovery_);
 }
 
-Discovery Discover(const Machine& machine, const Measurements& measurements,
-                   const DiscoverOptions& options) {
-  Measurements split = WithUnseen(measurements, options.train_share);
-  std::vector<std::string> notes;
-  const auto check = [&](const std::vector<MeasuredRecord>& records,
-                         const std::string& role) {
-    for (const MeasuredRecord& one : records) {
-      const bool named = split.Several() && !one.name.empty();
-      const std::string of = named ? one.name + ": " : role;
-      std::vector<std::string> of_record = one.notes;
-      std::ranges::copy(CheckRecord(one.machine, one.record),
-                        std::back_inserter(of_record));
-      for (const std::string& note : of_record) notes.push_back(of + note);
-    }
-  };
-  check(split.fit, "");
-  check(split.unseen, "validation record: ");
-  if (const std::string fixed = NoteOfFixedNumbers(machine.plant());
-      options.doubt && !fixed.empty()) {
-    notes.push_back(fixed);
-  }
-  Discovery discovery = Discoverer(machine, std::move(split), options).Run();
-  discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
-  return discovery;
-}
-
-Discovery Discover(const Machine& machine, const Record& measured,
-                   const Record* validation, const DiscoverOptions& options) {
-  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
-}
-
 Changes ChangesOf(const Discovery& discovery) {
   std::vector<Cause> causes;
   for (const FoundCause& found : discovery.causes) causes.push_back(found.cause);
@@ -355,6 +324,10 @@ Changes ChangesOf(const Discovery& discovery) {
     changes.numbers.emplace_back(number.number, number.factor);
   }
   return changes;
+}
+
+bool HasFound(const Discovery& discovery) {
+  return !discovery.causes.empty() || std::ranges::any_of(discovery.calibration, IsOff);
 }
 
 const RecordReplay* Discovery::Fitted() const {
@@ -376,6 +349,7 @@ bool IsMoved(const CalibratedMoment& moment) {
 }
 
 bool IsOff(const CalibratedNumber& number) {
+  if (number.is_found) return true;
   const double width = std::log(number.high / number.low);
   const double known = 2.0 * TwoSidedNormalQuantile(0.05) * number.doubt;
   return width < kBeyondDoubt * known && (number.low > 1.0 || number.high < 1.0);

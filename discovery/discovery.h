@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/discovery/fit/decision.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/discovery/hypotheses/work.h"
@@ -49,6 +50,8 @@ struct CalibratedNumber {
   /// factor; else 0.
   double shift = 0.0;
   std::string shift_unit{};  ///< "m" or "rad"
+  /// The answer has it as one of the things that are wrong.
+  bool is_found = false;
 };
 
 /// What motion tells of masses and of where they are, together (mass_moments.h) [kg m].
@@ -73,6 +76,13 @@ struct FoundCause {
   std::vector<CauseParameter> parameters;
   double probability = 0.0;               ///< among all candidates for its place
   std::vector<Alternative> alternatives;  ///< of 1 % or more, likeliest first
+  /// A number of the plant that could be another one in its place.
+  struct NumberInstead {
+    std::string name;  ///< "mass@stage"
+    double probability = 0.0;
+  };
+  std::vector<NumberInstead> numbers = {};  ///< the same
+  double none = 0.0;                        ///< that nothing is in its place
   /// Of a force that was learned and has no name, what it is in words; else empty.
   std::string unnamed = {};
   bool HasName() const { return unnamed.empty(); }
@@ -82,8 +92,8 @@ struct FoundCause {
 struct FoundKind {
   Kind kind = Kind::kUnknownForce;
   std::string site;
-  /// That it is this kind there, whichever of its laws: from what the best model without it
-  /// loses on data that no fit saw (discovery_kinds.cc).
+  /// That it is this kind there, whichever of its laws: the sum of their shares of one
+  /// posterior (answer/posterior.h).
   double probability = 0.0;
   /// Of the unseen mismatch that the answer takes away, what is back without it.
   double share = 0.0;
@@ -141,13 +151,16 @@ struct DiscoveryProgress {
 };
 
 struct Discovery {
-  std::string setup;  ///< its name
+  std::string setup;                ///< its name
+  std::vector<Decision> decisions;  ///< what was tried, in that order
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
   std::vector<FoundKind> kinds;  ///< the most probable first
-  /// How probable it is that noise is all that the causes leave, and no law that is in no
-  /// list is among them (completeness.h); their probabilities count it.
+  /// Whether noise is all that the answer leaves, 1, or a force that lasts, 0.
   double complete = 1.0;
+  /// Share of the force that was missing which is left, rms along data that no fit saw;
+  /// none: no more than noise is left, or nothing was found.
+  std::optional<double> force_left;
   /// All numbers of the plant that were in doubt, as they are beside the causes.
   std::vector<CalibratedNumber> calibration;
   /// Of machines with hinges, what the record tells of masses and their places together.
@@ -170,6 +183,9 @@ struct Discovery {
     std::map<std::string, double> train;
     std::map<std::string, double> validation;
   };
+  /// Where no free simulation says anything, the mismatch is that of predictions over so
+  /// long from the filtered motion [s]; 0: of free simulation.
+  double horizon = 0.0;
   Figures mismatch_before;
   Figures mismatch_after;
   std::map<std::string, double> noise_floor;
@@ -227,6 +243,9 @@ Discovery Discover(const Machine& machine, const Record& measured,
 /// Whether the record says of a number that it is another one than the model has.
 bool IsOff(const CalibratedNumber& number);
 bool IsMoved(const CalibratedMoment& moment);
+
+/// Whether anything was found that the plant does not say: causes, or numbers of it.
+bool HasFound(const Discovery& discovery);
 
 /// The causes and the numbers as changes to a plant, for Simulate and ExtendMjcf.
 Changes ChangesOf(const Discovery& discovery);

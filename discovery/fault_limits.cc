@@ -13,26 +13,26 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kParts = 10;
+constexpr Index kPartsOfRun = 10;
 
-double Limit(const VectorXd& phi, const VectorXd& e) {
+}  // namespace
+
+double HiddenFault(const VectorXd& phi, const VectorXd& e) {
   const double all = phi.squaredNorm();
   const double theta = phi.dot(e) / all;
   // Every part's share of theta: what the record would say with that part doubled.
-  const Index length = phi.size() / kParts;
+  const Index length = phi.size() / kPartsOfRun;
   double variance = 0.0;
-  for (Index p = 0; p < kParts; ++p) {
+  for (Index p = 0; p < kPartsOfRun; ++p) {
     const auto part = phi.segment(p * length, length);
     const double share =
         (part.dot(e.segment(p * length, length)) - theta * part.squaredNorm()) / all;
     variance += share * share;
   }
   constexpr double kSigmas = 3.0;
-  return std::abs(theta) +
-         kSigmas * std::sqrt(variance * kParts / static_cast<double>(kParts - 1));
+  return std::abs(theta) + kSigmas * std::sqrt(variance * kPartsOfRun /
+                                               static_cast<double>(kPartsOfRun - 1));
 }
-
-}  // namespace
 
 std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,
@@ -50,7 +50,8 @@ std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
       const VectorXd phi =
           dynamics.OfForces(trial.entry, trial.signals).rowwise().sum();
       const Index used = phi.size() - skipped;
-      limits[candidate.effect->name()] = Limit(phi.tail(used), residual.tail(used));
+      limits[candidate.effect->name()] =
+          HiddenFault(phi.tail(used), residual.tail(used));
     }
   }
   return limits;

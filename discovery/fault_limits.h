@@ -18,6 +18,10 @@
 
 namespace mjdiag {
 
+/// |theta| + 3 sd(theta).
+/// @param phi  response of innovations to a change of the fault parameter by 1
+double HiddenFault(const Eigen::VectorXd& phi, const Eigen::VectorXd& innovations);
+
 /// Fault parameter -> limit, as a change of it. @param changes  to the model
 std::map<std::string, double> FaultLimits(const DiscoveryProblem& problem,
                                           const std::vector<Candidate>& candidates,

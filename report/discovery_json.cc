@@ -40,6 +40,23 @@ json IdentityOf(const Cause& cause) {
           {"fault", cause.effect->IsFault()}};
 }
 
+json DecisionsOf(const Discovery& discovery) {
+  json decisions = json::array();
+  for (const Decision& one : discovery.decisions) {
+    decisions.push_back(
+        {{"tried", one.tried}, {"score", Finite(one.score)}, {"why", one.why}});
+  }
+  return decisions;
+}
+
+json NumbersInsteadOf(const FoundCause& found) {
+  json numbers = json::array();
+  for (const FoundCause::NumberInstead& one : found.numbers) {
+    numbers.push_back({{"name", one.name}, {"probability", Finite(one.probability)}});
+  }
+  return numbers;
+}
+
 json AlternativesOf(const FoundCause& found) {
   json alternatives = json::array();
   for (const Alternative& alternative : found.alternatives) {
@@ -58,6 +75,8 @@ json CausesOf(const Discovery& discovery) {
     cause["parameters"] = ParametersOf(found);
     cause["probability"] = Finite(found.probability);
     cause["alternatives"] = AlternativesOf(found);
+    cause["numbers_instead"] = NumbersInsteadOf(found);
+    cause["nothing_instead"] = Finite(found.none);
     cause["unnamed"] = TextOrNull(found.unnamed);
     causes.push_back(std::move(cause));
   }
@@ -67,7 +86,7 @@ json CausesOf(const Discovery& discovery) {
 json ExplanationList(const Discovery& discovery) {
   json explanations = json::array();
   for (const CauseSet& explanation :
-       ExplanationsOf(discovery.causes, discovery.complete)) {
+       ExplanationsOf(discovery.causes)) {
     json causes = json::array();
     for (const Cause& cause : explanation.causes) causes.push_back(IdentityOf(cause));
     explanations.push_back(
@@ -213,6 +232,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
           {"complete", Finite(discovery.complete)},
+          {"force_left", discovery.force_left ? Finite(*discovery.force_left) : json()},
           {"kinds", KindsOf(discovery)},
           {"causes", CausesOf(discovery)},
           {"explanations", ExplanationList(discovery)},
@@ -221,6 +241,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
           {"mismatch",
            {{"before", FiguresOf(discovery.mismatch_before)},
             {"after", FiguresOf(discovery.mismatch_after)}}},
+          {"horizon", Finite(discovery.horizon)},
           {"noise_floor", Finite(discovery.noise_floor)},
           {"units", discovery.unit},
           {"gain",
@@ -246,6 +267,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
             {"limit", Finite(discovery.budget.limit)},
             {"stopped", discovery.budget.stopped},
             {"left_out", discovery.budget.left_out}}},
+          {"decisions", DecisionsOf(discovery)},
           {"notes", discovery.notes}};
 }
 

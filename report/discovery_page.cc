@@ -68,10 +68,10 @@ constexpr const char* kHowToReadExplanations =
     "listed.";
 
 constexpr const char* kHowToReadKinds =
-    "The kind of physics that the model lacks and where, whichever law it follows: the "
-    "probability is what data that no fit saw say against the best model without it. A "
-    "law "
-    "that is in no list makes the names below less certain, and the kind not.";
+    "The kind of physics that the model lacks and where, whichever law it follows: its "
+    "probability is the sum of those of its laws there. Mismatch back without it: of "
+    "how "
+    "much better data that no fit saw are predicted with the answer.";
 
 void AddKinds(Page& page, const Discovery& discovery) {
   const Table table = KindTable(discovery);
@@ -116,10 +116,11 @@ void AddNotes(Page& page, const Discovery& discovery) {
 }
 
 constexpr const char* kHowToReadLadder =
-    "Rest over noise: what an observer beside the plant fails to predict, over the "
-    "noise of the sensors, root mean square; 1 says that noise is all there is. The "
-    "errors are those of a replay of the whole record, relative to the measured "
-    "signal.";
+    "Rest over noise: what the filter of the whole answer fails to predict when it "
+    "runs "
+    "beside the plant with so much of it, over what that filter takes for noise, root "
+    "mean square; 1 says that noise is all there is. The errors are those of a replay "
+    "of the whole record, relative to the measured signal.";
 
 void AddLadder(Page& page, const Discovery& discovery) {
   if (discovery.ladder.empty()) return;
@@ -133,10 +134,13 @@ void AddLadder(Page& page, const Discovery& discovery) {
 }
 
 constexpr const char* kHowToReadMismatch =
-    "Mismatch is measured minus simulated, root mean square. Fitted: the part of the "
-    "record that fits saw. Unseen: the validation record if there is one, else the "
-    "rest of the record. The noise floor is what the sensor noise found in the record "
-    "explains.";
+    "Mismatch is measured minus simulated, root mean square. ";
+
+constexpr const char* kFittedAndUnseen =
+    "Fitted: the part of the record that fits saw. Unseen: the validation record if "
+    "there is one, else the rest of the record. The noise floor is what the sensor "
+    "noise "
+    "found in the record explains.";
 
 std::string Fell(double gain) {
   return gain < 0.0 ? "rose by " + GainText(-gain) : "fell by " + GainText(gain);
@@ -159,10 +163,18 @@ void AddPlots(Page& page, const std::vector<Plot>& plots) {
 void AddMismatch(Page& page, const Discovery& discovery) {
   const Table table = MismatchTable(discovery);
   if (table.rows.empty()) return;
-  const bool changed = !discovery.causes.empty();
+  const bool changed = HasFound(discovery);
   page.AddHeading(changed ? "Mismatch before and after" : "Mismatch");
   page.AddTable(table);
-  page.AddParagraph(kHowToReadMismatch);
+  page.AddParagraph(
+      discovery.horizon > 0.0
+          ? "No free simulation says anything of this machine. Mismatch is "
+            "measured minus what is predicted over " +
+                FormatQuantity(discovery.horizon, "s") +
+                " from the filtered motion, root mean square; plots show "
+                "predictions over a tick. " +
+                kFittedAndUnseen
+          : kHowToReadMismatch + std::string(kFittedAndUnseen));
   if (changed) page.AddParagraph(GainParagraph(discovery));
   const Table records = RecordTable(discovery);
   if (!records.rows.empty()) {
@@ -228,6 +240,19 @@ void AddSignature(Page& page, const Discovery& discovery) {
     page.AddPlot(SignaturePlot(signature, UnitOfRest(discovery)));
 }
 
+void AddDecisions(Page& page, const Discovery& discovery) {
+  const Table table = DecisionTable(discovery);
+  if (table.rows.empty()) return;
+  page.AddHeading("What was tried");
+  page.AddTable(table);
+  page.AddParagraph(
+      "In that order, each beside the best model before. The difference is -2 ln of "
+      "how "
+      "much more probable the record is beside it, with all that it costs: below zero "
+      "it "
+      "is better.");
+}
+
 void AddFaultLimits(Page& page, const Discovery& discovery) {
   if (discovery.fault_limits.empty()) return;
   page.AddHeading("What it is for: how small a fault is seen");
@@ -253,6 +278,7 @@ Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   AddSignature(page, discovery);
   AddUnexplained(page, discovery);
   AddFaultLimits(page, discovery);
+  AddDecisions(page, discovery);
   page.SetRun(run.run);
   return page;
 }

@@ -133,7 +133,7 @@ std::vector<TimePlot> UnexplainedPlots(const Discovery& discovery) {
     plots.push_back(
         UnexplainedPlot(before, "plant as given", start, discovery.sample_time));
     for (const UnknownSignal& after : discovery.forces_after) {
-      if (after.site != before.site || discovery.causes.empty()) continue;
+      if (after.site != before.site || !HasFound(discovery)) continue;
       plots.push_back(
           UnexplainedPlot(after, "extended plant", start, discovery.sample_time));
     }

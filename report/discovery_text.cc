@@ -42,9 +42,28 @@ std::string WithValues(const FoundCause& found) {
   return CauseName(found.cause) + (values.empty() ? "" : " (" + values + ")");
 }
 
+/// "stiffness@X 0.9556 times what the model says".
+std::string NumberText(const CalibratedNumber& number) {
+  if (number.shift > 0.0) {
+    const CauseParameter shift{"shift",
+                               number.shift_unit,
+                               number.shift * std::log(number.factor),
+                               0.0,
+                               number.shift * std::log(number.low),
+                               number.shift * std::log(number.high)};
+    return number.name + " moved by " + ValueText(shift);
+  }
+  const CauseParameter factor{"factor", "1",        number.factor,
+                              0.0,      number.low, number.high};
+  return number.name + " " + ValueText(factor) + " times what the model says";
+}
+
 std::string FoundText(const Discovery& discovery) {
   std::vector<std::string> causes;
   for (const FoundCause& found : discovery.causes) causes.push_back(WithValues(found));
+  for (const CalibratedNumber& number : discovery.calibration) {
+    if (number.is_found) causes.push_back(NumberText(number));
+  }
   return "Found: " + Join(causes) + ".";
 }
 
@@ -59,18 +78,40 @@ std::string UnseenText(const Discovery& discovery) {
   return text + ".";
 }
 
+/// ", 12 % of the force that was missing".
+std::string ForceLeftText(const Discovery& discovery) {
+  if (!discovery.force_left || !std::isfinite(*discovery.force_left)) return "";
+  const double percent = 100.0 * *discovery.force_left;
+  return ", " + (percent < 1.0 ? "less than 1" : FormatNumber(percent, 2)) +
+         " % of the force that was missing";
+}
+
+std::string RestText(const Discovery& discovery) {
+  const std::string left = ForceLeftText(discovery);
+  return left.empty() ? " Noise explains the rest." : " Little is left" + left + ".";
+}
+
 std::string SignatureText(const Discovery& discovery) {
   if (!discovery.unexplained || discovery.unexplained->text.empty()) return "";
   return " " + discovery.unexplained->text;
 }
 
 std::string BestAlternative(const FoundCause& found) {
-  double others = 1.0 - found.probability;
+  double others = 1.0 - found.probability - found.none;
   double likeliest = 0.0;
   for (const Alternative& alternative : found.alternatives) {
     if (alternative.indistinguishable) continue;
     others -= alternative.probability;
     likeliest = std::max(likeliest, alternative.probability);
+  }
+  const FoundCause::NumberInstead* number =
+      found.numbers.empty() ? nullptr : &found.numbers.front();
+  for (const FoundCause::NumberInstead& one : found.numbers) others -= one.probability;
+  if (number != nullptr && number->probability > std::max(likeliest, found.none)) {
+    return number->name + ", " + Percent(100.0 * number->probability);
+  }
+  if (found.none >= kConsidered && found.none > likeliest) {
+    return "nothing, " + Percent(100.0 * found.none);
   }
   if (others >= kConsidered && others > likeliest) {
     return std::string(kUnlisted) + ", " + Percent(100.0 * others);
@@ -161,13 +202,11 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
       }
       return "Nothing is wrong that this record shows: noise explains the mismatch.";
     case DiscoveryVerdict::kExplained:
-      return KindsSentence(discovery) + FoundText(discovery) +
-             " Noise explains the rest." + UnseenText(discovery);
+      return KindsSentence(discovery) + FoundText(discovery) + RestText(discovery) +
+             UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
       return KindsSentence(discovery) + FoundText(discovery) + UnseenText(discovery) +
-             (discovery.unexplained || !IsComplete(discovery.complete)
-                  ? " Something is left."
-                  : " Noise is left.") +
+             " Something is left" + ForceLeftText(discovery) + "." +
              SignatureText(discovery);
     case DiscoveryVerdict::kUnexplained:
       return "Something is there that no known cause explains." +
@@ -218,7 +257,7 @@ Table ExplanationTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Probability", true}, {""}, {"Explanation"}};
   const std::vector<CauseSet> explanations =
-      ExplanationsOf(discovery.causes, discovery.complete);
+      ExplanationsOf(discovery.causes);
   double others = 1.0;
   for (const CauseSet& explanation : explanations) others -= explanation.probability;
   const bool may_be_others = !explanations.empty() && others >= kConsidered;
@@ -280,6 +319,15 @@ Table MomentTable(const Discovery& discovery) {
   return table;
 }
 
+Table DecisionTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {{"Tried"}, {"Difference", true}, {"What came of it"}};
+  for (const Decision& one : discovery.decisions) {
+    table.rows.push_back({one.tried, FormatNumber(one.score), one.why});
+  }
+  return table;
+}
+
 Table CandidateTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Cause"}, {"Candidate"}, {""}, {"Probability", true}, {"Remark"}};
@@ -293,6 +341,14 @@ Table CandidateTable(const Discovery& discovery) {
           {"", CauseName(alternative.cause), Bar(alternative.probability),
            Percent(100.0 * alternative.probability),
            alternative.indistinguishable ? "no measurement tells them apart" : ""});
+    }
+    for (const FoundCause::NumberInstead& one : found.numbers) {
+      table.rows.push_back({"", one.name, Bar(one.probability),
+                            Percent(100.0 * one.probability), "a number of the plant"});
+    }
+    if (found.none >= kConsidered) {
+      table.rows.push_back(
+          {"", "nothing", Bar(found.none), Percent(100.0 * found.none), ""});
     }
   }
   return table;

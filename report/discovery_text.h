@@ -20,6 +20,8 @@ std::optional<double> TimesFloor(const std::map<std::string, double>& rms,
 
 /// A row for every parameter of every cause.
 Table CauseTable(const Discovery& discovery);
+/// What was tried, by how much it was better, and what came of it.
+Table DecisionTable(const Discovery& discovery);
 /// Every cause and who else could have been in its place.
 Table CandidateTable(const Discovery& discovery);
 /// All sets of causes that survive; no rows if there is one alone.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "mjdiag/discovery/hypotheses/fitted_model.h"
@@ -138,8 +139,21 @@ std::string GroupOf(Kind kind, const std::string& name) {
 
 }  // namespace
 
+std::vector<PlantNumber> NumbersInDoubt(const mjModel& plant) {
+  if (IsExact(plant)) return {};
+  std::vector<PlantNumber> numbers = PlantNumbers(plant);
+  std::ranges::copy(CentreNumbers(plant), std::back_inserter(numbers));
+  return numbers;
+}
+
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates) {
+  return BlocksOf(machine, candidates, NumbersInDoubt(machine.plant()));
+}
+
+std::vector<Block> BlocksOf(const Machine& machine,
+                            const std::vector<Candidate>& candidates,
+                            const std::vector<PlantNumber>& numbers) {
   std::vector<Block> blocks;
   std::vector<PlantNumber> stood_for;
   for (const Candidate& candidate : candidates) {
@@ -166,20 +180,14 @@ std::vector<Block> BlocksOf(const Machine& machine,
     }
     if (number) stood_for.push_back(*number);
   }
-  const auto add = [&](const std::vector<PlantNumber>& numbers) {
-    for (const PlantNumber& number : numbers) {
-      if (std::ranges::find(stood_for, number) != stood_for.end()) continue;
-      const std::string name = PlantNumberName(machine.plant(), number);
-      blocks.push_back({.name = name,
-                        .candidate = std::nullopt,
-                        .number = number,
-                        .doubt = DoubtOf(machine.plant(), number),
-                        .group = GroupOf(KindOf(number.kind), name)});
-    }
-  };
-  if (!IsExact(machine.plant())) {
-    add(PlantNumbers(machine.plant()));
-    add(CentreNumbers(machine.plant()));
+  for (const PlantNumber& number : numbers) {
+    if (std::ranges::find(stood_for, number) != stood_for.end()) continue;
+    const std::string name = PlantNumberName(machine.plant(), number);
+    blocks.push_back({.name = name,
+                      .candidate = std::nullopt,
+                      .number = number,
+                      .doubt = DoubtOf(machine.plant(), number),
+                      .group = GroupOf(KindOf(number.kind), name)});
   }
   return blocks;
 }

@@ -74,16 +74,24 @@ double SizePrice(double x);
 /// Of all sizes of a block with values.
 double SizePrice(const Block& block, const Eigen::VectorXd& values);
 
-/// Those of a machine: candidates, then numbers of the plant that no candidate stands for.
+/// Those of a machine: candidates, then numbers that no candidate stands for.
+std::vector<Block> BlocksOf(const Machine& machine,
+                            const std::vector<Candidate>& candidates,
+                            const std::vector<PlantNumber>& numbers);
+/// With all numbers of its plant that are in doubt.
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates);
+
+/// Numbers of a plant and centres of mass; none where it says that it is exact.
+std::vector<PlantNumber> NumbersInDoubt(const mjModel& plant);
 
 /// The sweep of a block that repeats itself over a period or a frequency, if it does.
 std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
                              const Block& block);
 /// One shape of a block with a sweep; of no columns if it does nothing.
-Variation VariationOf(const Machine& machine, const BlockMotion& along, std::size_t place,
-                      const Block& block, const Trial& trial, std::size_t shape);
+Variation VariationOf(const Machine& machine, const BlockMotion& along,
+                      std::size_t place, const Block& block, const Trial& trial,
+                      std::size_t shape);
 /// What it costs that a block is what is missing, in as many shapes.
 double PriceOf(const Block& block, Eigen::Index shapes);
 

@@ -65,12 +65,14 @@ class Search {
   using Fitted = std::function<ModelFit(const Model&)>;
   ModelFit Pruned(ModelFit fit, const Fitted& fitted) const;
   void Adopt(Proposal proposal);
+  void KeepRivals(const Moves& moves);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
   std::string Difference(double score) const {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);
     return text;
   }
+  std::vector<const ModelMove*> ToBeFitted(const Moves& moves) const;
   /// The best of some moves, fitted; none if none pays.
   std::optional<Proposal> BestMove();
   /// How much of its inputs did the machine not feel?
@@ -81,9 +83,19 @@ class Search {
   /// Takes what is better; false if nothing pays.
   bool Step();
   Model After(const ModelMove& move) const;
+  void Decide(const Model& tried, double score, const std::string& why) {
+    found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
+  }
+  bool HasTooManyCauses(const Model& model) const {
+    const auto causes = std::ranges::count_if(model, [&](const Member& member) {
+      return found_.blocks[member.block].candidate.has_value();
+    });
+    return static_cast<std::size_t>(causes) > options_.most_causes;
+  }
   bool IsOver() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count() >
-           options_.seconds;
+               options_.seconds ||
+           (options_.stop && options_.stop());
   }
   void Say(const std::string& text) const {
     if (options_.progress) options_.progress(text);
@@ -97,6 +109,7 @@ class Search {
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, or of one that has none?
   bool ChooseSteps();
+
   const Machine& machine_;
   bool steps_ = true;
   const MeasuredRun& as_measured_;
@@ -201,7 +214,8 @@ ModelFit Search::Pruned(ModelFit fit, const Fitted& fitted) const {
 Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near,
                                bool steps) const {
   const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
-    return FilterLikeliestFrom(With(model, steps), run_, reading_sd_, from);
+    return FilterLikeliestFrom(With(model, steps), run_, reading_sd_, found_.path.dofs,
+                               from);
   };
   Settled settled{std::move(fit), {}};
   settled.path = filter(settled.fit.model, {near, found_.path.noise});
@@ -241,6 +255,7 @@ void Search::Adopt(Proposal proposal) {
   found_.widths = std::move(proposal.widths);
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
+  found_.rivals.clear();  // of the model before
   ChooseSteps();
 }
 
@@ -257,11 +272,29 @@ bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
   return true;
 }
 
+/// The best of all, and the best that brings one block and nothing else: the fewer come at
+/// once, the nearer is first order to what a fit finds.
+std::vector<const ModelMove*> Search::ToBeFitted(const Moves& moves) const {
+  constexpr std::size_t kMost = 4;
+  std::vector<const ModelMove*> chosen;
+  bool has_single = false;
+  for (const ModelMove& move : moves.best) {
+    if (move.score > moves.score - kLeastGain || HasTooManyCauses(After(move)))
+      continue;
+    const bool is_single = move.removed.empty() && move.added.size() == 1;
+    if (chosen.size() >= kMost && (has_single || !is_single)) continue;
+    chosen.push_back(&move);
+    has_single = has_single || is_single;
+  }
+  return chosen;
+}
+
 std::optional<Search::Proposal> Search::BestMove() {
   const Exact exact = ExactColumns();
   const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
                               exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return AsItIs();
+  KeepRivals(moves);
   constexpr int kIterations = 6;
   /// Behind which gains, and whether with other steps.
   using Judged = std::pair<std::size_t, bool>;
@@ -287,15 +320,12 @@ std::optional<Search::Proposal> Search::BestMove() {
     double gain = 0.0;
   };
   std::vector<Tried> tried;
-  constexpr std::size_t kMost = 4;
-  for (const ModelMove& move : moves.best) {
-    if (tried.size() == kMost || IsOver()) break;
-    if (move.score > moves.score - kLeastGain) continue;
+  for (const ModelMove* move : ToBeFitted(moves)) {
+    if (IsOver()) break;
     try {
-      const Judged judged{move.noise, move.other_steps};
-      ModelFit fit = Pruned(fitted(After(move), judged), [&](const Model& model) {
-        return fitted(model, judged);
-      });
+      const Judged judged{move->noise, move->other_steps};
+      ModelFit fit = Pruned(fitted(After(*move), judged),
+                            [&](const Model& model) { return fitted(model, judged); });
       const double gain = base(judged).score() - fit.score();
       if (std::ranges::any_of(tried, [&](const Tried& other) {
             return SameBlocks(other.fit.model, fit.model);
@@ -303,9 +333,12 @@ std::optional<Search::Proposal> Search::BestMove() {
         continue;
       }
       char text[80];
-      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
+      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move->score - moves.score,
                     -gain);
       Say(text + Describe(found_.blocks, fit.model));
+      if (gain < kLeastGain) {
+        Decide(fit.model, -gain, "fitted, it is worth less than it costs");
+      }
       tried.push_back({std::move(fit), judged, gain});
     } catch (const NumericalError&) {
     } catch (const InputError&) {
@@ -316,35 +349,61 @@ std::optional<Search::Proposal> Search::BestMove() {
   // by the filters of the machines with each.
   std::erase_if(tried, [&](const Tried& one) {
     // Kept gains tell what is gained to a factor of two.
-    return one.gain < std::max(kLeastGain, 0.5 * tried.front().gain) ||
-           !std::ranges::all_of(one.fit.model, [&](const Member& member) {
-             return IsAllowed(found_.blocks[member.block], member.values);
-           });
+    if (one.gain < std::max(kLeastGain, 0.5 * tried.front().gain)) {
+      Decide(one.fit.model, -one.gain, "another one is worth more than twice as much");
+      return true;
+    }
+    if (std::ranges::all_of(one.fit.model, [&](const Member& member) {
+          return IsAllowed(found_.blocks[member.block], member.values);
+        })) {
+      return false;
+    }
+    Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
+    return true;
   });
   std::vector<std::optional<Settled>> settled(tried.size());
   ParallelForAll(static_cast<int>(tried.size()), [&](int number) {
     const auto place = static_cast<std::size_t>(number);
     const Tried& one = tried[place];
     try {
-      settled[place] = Settle(one.fit, moves.noises[one.judged.first],
-                              steps_ != one.judged.second);
+      settled[place] =
+          Settle(one.fit, moves.noises[one.judged.first], steps_ != one.judged.second);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
   });
-  std::optional<Settled> best;
-  bool best_steps = steps_;
+  std::optional<std::size_t> best;
   for (std::size_t i = 0; i < settled.size(); ++i) {
     if (!settled[i]) continue;
     Say("  filtered: " + Difference(settled[i]->score()) + "  " +
         Describe(found_.blocks, settled[i]->fit.model));
-    if (settled[i]->score() < (best ? best->score() : found_.score - kLeastGain)) {
-      best = std::move(settled[i]);
-      best_steps = steps_ != tried[i].judged.second;
-    }
+    const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
+    if (settled[i]->score() < least) best = i;
+  }
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    if (!settled[i]) continue;
+    const double score = settled[i]->score() - found_.score;
+    Decide(settled[i]->fit.model, score,
+           best == i ? "taken"
+           : score < -kLeastGain
+               ? "another one is better"
+               : "behind the noise that suits it, it is worth less than it costs");
   }
   if (!best) return std::nullopt;
-  return Proposal{std::move(*best), best_steps, found_.widths, run_};
+  return Proposal{std::move(*settled[*best]), steps_ != tried[*best].judged.second,
+                  found_.widths, run_};
+}
+
+/// Of a model that nothing is better than. Where first order says that something is, and a
+/// fit does not, that is as good.
+void Search::KeepRivals(const Moves& moves) {
+  found_.rivals.clear();
+  for (const std::vector<ModelMove>* some : {&moves.best, &moves.near}) {
+    for (ModelMove move : *some) {
+      move.score = std::max(0.0, move.score - moves.score);
+      found_.rivals.push_back(std::move(move));
+    }
+  }
 }
 
 bool Search::ChooseSteps() {
@@ -368,7 +427,7 @@ std::optional<Search::Proposal> Search::SmoothedInputs() const {
   if (choice.widths == found_.widths) return std::nullopt;
   MeasuredRun run = WithSmoothedInputs(as_measured_, choice.widths);
   Settled settled{found_.fit,
-                  FilterLikeliestFrom(machine, run, reading_sd_,
+                  FilterLikeliestFrom(machine, run, reading_sd_, found_.path.dofs,
                                       {choice.noise, found_.path.noise})};
   if (found_.path.deviance + PriceOfWidths(found_.widths) <
       settled.path.deviance + PriceOfWidths(choice.widths) + kLeastGain) {
@@ -396,15 +455,19 @@ Explained Search::Run() {
   found_.score = found_.path.deviance;
   found_.widths = VectorXd::Zero(run_.inputs.rows());
   ChooseSteps();
-  std::vector<Candidate> candidates = ListCandidates(machine_, true);
+  std::vector<Candidate> candidates = ChooseCandidates(machine_, options_.choice, true);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates, machine_, run_);
-  found_.blocks = BlocksOf(machine_, candidates);
+  found_.blocks = BlocksOf(machine_, candidates,
+                           options_.numbers.value_or(NumbersInDoubt(machine_.plant())));
   while (!IsOver() && Step()) {
     char text[80];
     std::snprintf(text, sizeof text, "%.1f  ", found_.score);
     Say(text + Describe(found_.blocks, found_.fit.model));
+    if (options_.better) options_.better(found_);
   }
+  found_.steps = steps_;
+  found_.is_cut_short = IsOver();
   return std::move(found_);
 }
 

@@ -4,29 +4,53 @@
 // until nothing pays. A move is taken if the filter of the machine with it, its noise anew,
 // predicts the run better than its price.
 
+#include <cstddef>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mjdiag/discovery/fit/decision.h"
 #include "mjdiag/discovery/fit/model.h"
 #include "mjdiag/discovery/fit/model_fit.h"
+#include "mjdiag/discovery/hypotheses/candidate_choice.h"
+#include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
 
+struct Explained;
+
 struct ExplainOptions {
   double seconds = 60.0;
   /// After every step, for people.
-  std::function<void(const std::string&)> progress;
+  std::function<void(const std::string&)> progress = {};
+  /// Whenever a better model is found.
+  std::function<void(const Explained&)> better = {};
+  CandidateChoice choice = {};
+  /// Numbers of the plant that may be others; none given: all of NumbersInDoubt.
+  std::optional<std::vector<PlantNumber>> numbers = {};
+  /// Members that are no numbers.
+  std::size_t most_causes = std::numeric_limits<std::size_t>::max();
+  /// Whether it is asked to end with what it has; called from this thread. May be empty.
+  std::function<bool()> stop = {};
 };
 
 struct Explained {
   std::vector<Block> blocks;
   ModelFit fit;
-  FilterPath nothing;  ///< of the machine as given
-  FilterPath path;     ///< of that with the model
-  Eigen::VectorXd widths;  ///< over which every input is smoothed [ticks]
-  double score = 0.0;      ///< -2 ln L and what the model costs
+  FilterPath nothing;               ///< of the machine as given
+  FilterPath path;                  ///< of that with the model
+  double score = 0.0;               ///< -2 ln L and what the model costs
+  bool steps = true;                ///< the physics steps of the model are part of it
+  Eigen::VectorXd widths;           ///< over which every input is smoothed [ticks]
+  std::vector<Decision> decisions;  ///< what was tried, in that order
+  /// What could be in the place of members (Moves::near), where the search came to its end:
+  /// by how much worse each is stands in ModelMove::score.
+  std::vector<ModelMove> rivals;
+  bool is_cut_short = false;  ///< by its seconds or because it was asked to end
 };
 
 /// @param reading_sd  of every sensor, by itself

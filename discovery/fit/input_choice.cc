@@ -21,8 +21,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::array kWidths{0.0,  1.0,  2.0,   4.0,  8.0,
-                             16.0, 32.0, 64.0, 128.0, 256.0};
+constexpr std::array kWidths{0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
 
 /// So many ticks later; the first of a record lasts.
 VectorXd Later(const VectorXd& signal, const MeasuredRun& run, Index ticks) {

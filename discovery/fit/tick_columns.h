@@ -14,7 +14,7 @@ namespace mjdiag {
 
 struct OtherMachine {
   Machine machine;
-  double step = 1.0;  ///< by which the difference is divided
+  double step = 1.0;                 ///< by which the difference is divided
   const MeasuredRun* run = nullptr;  ///< with inputs of its own; null: those of the run
 };
 

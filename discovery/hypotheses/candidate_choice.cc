@@ -73,11 +73,11 @@ bool IsChosen(const Candidate& candidate, const CandidateChoice& choice) {
 }
 
 std::vector<Candidate> ChooseCandidates(const Machine& machine,
-                                        const CandidateChoice& choice) {
-  const std::vector<Candidate> all = AllSites(machine);
+                                        const CandidateChoice& choice, bool with_seen) {
+  const std::vector<Candidate> all = AllSites(machine, with_seen);
   for (const std::string& text : choice.only) RequireMeaning(all, "--only", text);
   for (const std::string& text : choice.without) RequireMeaning(all, "--without", text);
-  std::vector<Candidate> candidates = ListCandidates(machine);
+  std::vector<Candidate> candidates = ListCandidates(machine, with_seen);
   std::erase_if(candidates, [&](const Candidate& candidate) {
     return !IsChosen(candidate, choice);
   });

@@ -26,7 +26,9 @@ bool IsChosen(const Candidate& candidate, const CandidateChoice& choice);
 
 /// Those of ListCandidates that the choice leaves. InputError on a name that means
 /// nothing on the machine, and if none is left.
+/// @param with_seen  at joints that are only seen, too
 std::vector<Candidate> ChooseCandidates(const Machine& machine,
-                                        const CandidateChoice& choice);
+                                        const CandidateChoice& choice,
+                                        bool with_seen = false);
 
 }  // namespace mjdiag

@@ -265,12 +265,17 @@ std::vector<MoveSearch::Scored> MoveSearch::ScoresOf(
 
 void MoveSearch::Keep(const std::vector<Scored>& scored) {
   for (const Scored& one : scored) {
-    if (!(one.score < moves_.score)) continue;
+    if (!(one.score < moves_.score + kNear)) continue;
     ModelMove move{one.change.removed, {}, one.score, one.noise, one.other_steps};
     for (const auto& [variation, a] : AddedOf(one.change, one.fit.amplitudes)) {
       move.added.push_back({variation, a});
     }
-    moves_.best.push_back(std::move(move));
+    const bool is_better = one.score < moves_.score;
+    // Nobody fits the others.
+    if (!is_better) {
+      for (Added& added : move.added) added.variation.columns.clear();
+    }
+    (is_better ? moves_.best : moves_.near).push_back(std::move(move));
   }
 }
 
@@ -335,11 +340,13 @@ Moves MoveSearch::Run() {
   Keep(all);
   // The best of those that say the same.
   std::set<std::pair<std::vector<std::size_t>, std::multiset<std::size_t>>> seen;
-  std::erase_if(moves_.best, [&](const ModelMove& move) {
-    std::multiset<std::size_t> names;
-    for (const Added& added : move.added) names.insert(added.variation.block);
-    return !seen.insert({move.removed, names}).second;
-  });
+  for (std::vector<ModelMove>* moves : {&moves_.best, &moves_.near}) {
+    std::erase_if(*moves, [&](const ModelMove& move) {
+      std::multiset<std::size_t> names;
+      for (const Added& added : move.added) names.insert(added.variation.block);
+      return !seen.insert({move.removed, names}).second;
+    });
+  }
   return std::move(moves_);
 }
 

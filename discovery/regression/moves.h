@@ -58,6 +58,9 @@ struct Moves {
   std::size_t noise = 0;
   bool other_steps = false;
   std::vector<ModelMove> best;  ///< by score, no two with the same blocks
+  /// Those that are worse than the model as it is, by kNear at most: what could be in its
+  /// place.
+  std::vector<ModelMove> near;
   Eigen::Index variations = 0;
   /// Of every term, by how much worse each fold is predicted without it, in -2 ln.
   std::vector<Eigen::VectorXd> losses;
@@ -69,6 +72,9 @@ struct Moves {
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
               std::vector<Block>& blocks, const std::vector<Term>& terms,
               const Column& other_steps);
+
+/// A model that is worse by that is less than e^-10 times as likely.
+inline constexpr double kNear = 20.0;
 
 /// Less gain, in -2 ln, is noise of fits.
 inline constexpr double kLeastGain = 1.0;

@@ -62,14 +62,10 @@ Column WavesOf(const Sweep& sweep, const Block& block) {
 
 }  // namespace
 
-std::vector<Variation> PromisingVariations(const Machine& machine,
-                                           const BlockMotion& along,
-                                           const Whitening& whitening,
-                                           const VectorXd& left, const MatrixXd& W,
-                                           const VectorXd& sd,
-                                           std::vector<Block>& blocks,
-                                           const std::function<bool(const Block&)>&
-                                               may_come) {
+std::vector<Variation> PromisingVariations(
+    const Machine& machine, const BlockMotion& along, const Whitening& whitening,
+    const VectorXd& left, const MatrixXd& W, const VectorXd& sd,
+    std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come) {
   const Index k = W.cols();
   MatrixXd u(W.rows(), 1 + k + kProbes);
   u << left, W, WhiteNoise(W.rows(), kProbes);
@@ -140,9 +136,9 @@ std::vector<Variation> PromisingVariations(const Machine& machine,
     // Of every period at once: the sine and the cosine times u.
     Eigen::MatrixXcd sums(sweep->count, u.cols());
     for (Index j = 0; j < u.cols(); ++j) {
-      sums.col(j) =
-          WaveSums(transposed[static_cast<std::size_t>(j)].Along(WavesOf(*sweep, block)),
-                   sweep->angle, sweep->increment, sweep->count);
+      sums.col(j) = WaveSums(
+          transposed[static_cast<std::size_t>(j)].Along(WavesOf(*sweep, block)),
+          sweep->angle, sweep->increment, sweep->count);
     }
     VectorXd gains(sweep->count);
     for (Index m = 0; m < sweep->count; ++m) {

@@ -1,11 +1,10 @@
 #include "mjdiag/discovery/regression/wave_sums.h"
 
-#include <unsupported/Eigen/FFT>
-
 #include <bit>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <unsupported/Eigen/FFT>
 
 namespace mjdiag {
 
@@ -36,7 +35,8 @@ VectorXcd WaveSums(const VectorXd& g, const VectorXd& angle, const VectorXd& inc
   VectorXcd first(count);
   for (Index m = 0; m < count; ++m) {
     // Of the triangle that every value is spread by.
-    const double x = std::numbers::pi * static_cast<double>(m) / static_cast<double>(size);
+    const double x =
+        std::numbers::pi * static_cast<double>(m) / static_cast<double>(size);
     const double spread = m == 0 ? 1.0 : std::sin(x) / x;
     first[m] = sums[m] / (spread * spread);
   }

@@ -150,8 +150,7 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
           }
         }
         for (Index j = 0; j < count; ++j) {
-          all[static_cast<std::size_t>(first + j)].forces.row(k) =
-              F.col(j).transpose();
+          all[static_cast<std::size_t>(first + j)].forces.row(k) = F.col(j).transpose();
         }
       }
     }

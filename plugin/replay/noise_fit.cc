@@ -111,8 +111,8 @@ class NoiseSearch {
         (0.5 * reading_sd).array().log().matrix(), std::log(1e-6 * tick),
         std::log(0.1 * tick);
     // A clock that is off for longer than ten ticks is a delay.
-    upper_ << huge, VectorXd::Constant(nf_, std::log(std::max(longest, 4.0 * tick))), huge,
-        (100.0 * reading_sd).array().log().matrix(), std::log(tick),
+    upper_ << huge, VectorXd::Constant(nf_, std::log(std::max(longest, 4.0 * tick))),
+        huge, (100.0 * reading_sd).array().log().matrix(), std::log(tick),
         std::log(10.0 * tick);
     const auto joints = [&](double size, double memory, double white) {
       std::vector<std::pair<VectorXd, Index>> parts;
@@ -358,8 +358,8 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
     }
   }();
   try {
-    FilterPath refined =
-        RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, longest, kMedium));
+    FilterPath refined = RunForceFilter(machine, run, dofs, starts,
+                                        Refined(path, reading_sd, longest, kMedium));
     if (refined.deviance < path.deviance) return refined;
   } catch (const NumericalError&) {
   }
@@ -368,8 +368,8 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
 
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
+                               const std::vector<Index>& dofs,
                                const std::vector<FilterNoise>& near) {
-  const std::vector<Index> dofs = LatentDofs(machine, run);
   const MeasuredRun pieces = PiecesOf(run);
   const double longest = LongestMemory(run);
   const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
@@ -386,8 +386,8 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
   follow(Refined(*best, reading_sd, longest, kCoarse));
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
-  FilterPath refined =
-      RunForceFilter(machine, run, dofs, starts, Refined(path, reading_sd, longest, kMedium));
+  FilterPath refined = RunForceFilter(machine, run, dofs, starts,
+                                      Refined(path, reading_sd, longest, kMedium));
   return refined.deviance < path.deviance ? refined : path;
 }
 

@@ -34,8 +34,10 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const Eigen::VectorXd& reading_sd);
 
 /// The path of a run with the noise that is most likely from some near ones on.
+/// @param dofs  with a latent force, of all of those noises
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
+                               const std::vector<Eigen::Index>& dofs,
                                const std::vector<FilterNoise>& near);
 
 }  // namespace mjdiag

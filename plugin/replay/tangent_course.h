@@ -38,8 +38,8 @@ class TangentCourse {
   TickDifferences differences_;
   std::vector<Eigen::Index> with_effects_;
   std::vector<Eigen::Index> rubbing_;  // with dry friction
-  std::int64_t shortest_;               // stretch, in ticks
-  std::int64_t last_ = 0;               // tick
+  std::int64_t shortest_;              // stretch, in ticks
+  std::int64_t last_ = 0;              // tick
   /// A tangent, from when on it is taken to hold, and for how long.
   struct Known {
     std::size_t place = 0;

@@ -23,10 +23,12 @@ struct Arm {
   /// Three seconds under the controller, with these effects; 2 substeps: those of the
   /// model.
   static Record Measure(const std::vector<std::string>& effects = {},
-                        double noise_scale = 1.0, int substeps = 8) {
+                        double noise_scale = 1.0, int substeps = 8,
+                        std::uint64_t seed = 1) {
     const Machine held = Load(substeps, kController);
     RunOptions options;
     options.noise_scale = noise_scale;
+    options.seed = seed;
     return Simulate(
         held.With(With(effects)),
         FollowTrajectory(held.setup(), held.setup().trajectories.Find("default")),

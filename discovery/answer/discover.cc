@@ -1,0 +1,252 @@
+// The stages of a discovery: checks, the search, the judgement of what was found by data that
+// no fit saw, and the answer with its figures.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjdiag/discovery/answer/answer_data.h"
+#include "mjdiag/discovery/answer/answer_notes.h"
+#include "mjdiag/discovery/answer/fault_figures.h"
+#include "mjdiag/discovery/answer/force_figures.h"
+#include "mjdiag/discovery/answer/found_members.h"
+#include "mjdiag/discovery/answer/missing_share.h"
+#include "mjdiag/discovery/answer/posterior.h"
+#include "mjdiag/discovery/answer/prediction_figures.h"
+#include "mjdiag/discovery/answer/replay_figures.h"
+#include "mjdiag/discovery/answer/split_run.h"
+#include "mjdiag/discovery/answer/unseen_judgement.h"
+#include "mjdiag/discovery/checks/data_check.h"
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/discovery/fit/explain.h"
+#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/plant/fixed_numbers.h"
+#include "mjdiag/plugin/replay/input_noise.h"
+#include "mjdiag/signals/quantity.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Of the budget, what the search may use; the rest is for the judgement.
+constexpr double kShareOfSearch = 0.7;
+/// Times a budget that was too small.
+constexpr double kMoreTime = 5.0;
+
+/// Seconds since a discovery began, against its budget.
+class RunningTime {
+ public:
+  explicit RunningTime(const DiscoverOptions& options) : options_(options) {}
+
+  double Used() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count();
+  }
+  bool IsStopped() const { return options_.stop && options_.stop(); }
+  bool IsOver() const { return IsStopped() || Used() > options_.budget; }
+  double SecondsOfSearch() const { return kShareOfSearch * options_.budget; }
+  void Say(const std::string& what, double fraction) const {
+    if (options_.progress) options_.progress({what, fraction, best_, options_.budget});
+  }
+  void SetBest(std::string best) { best_ = std::move(best); }
+  double FractionOfSearch() const {
+    return kShareOfSearch * std::min(1.0, Used() / SecondsOfSearch());
+  }
+
+ private:
+  const DiscoverOptions& options_;
+  std::string best_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+std::vector<std::string> CheckAll(const Machine& machine, const Measurements& split,
+                                  bool doubt) {
+  std::vector<std::string> notes;
+  const auto check = [&](const std::vector<MeasuredRecord>& records,
+                         const std::string& role) {
+    for (const MeasuredRecord& one : records) {
+      const bool named = split.Several() && !one.name.empty();
+      const std::string of = named ? one.name + ": " : role;
+      std::vector<std::string> of_record = one.notes;
+      std::ranges::copy(CheckRecord(one.machine, one.record),
+                        std::back_inserter(of_record));
+      for (const std::string& note : of_record) notes.push_back(of + note);
+    }
+  };
+  check(split.fit, "");
+  check(split.unseen, "validation record: ");
+  const std::string fixed = NoteOfFixedNumbers(machine.plant());
+  if (doubt && !fixed.empty()) notes.push_back(fixed);
+  return notes;
+}
+
+std::vector<PlantNumber> DoubtedNumbers(const Machine& machine,
+                                        const DiscoverOptions& options) {
+  if (!options.doubt) return {};
+  std::vector<PlantNumber> numbers = PlantNumbers(machine.plant());
+  std::ranges::copy(CentreNumbers(machine.plant()), std::back_inserter(numbers));
+  for (const std::string& text : options.known) {
+    for (const PlantNumber& known : PlantNumbersOf(machine.plant(), text)) {
+      std::erase(numbers, known);
+    }
+  }
+  return numbers;
+}
+
+/// As it is given on a command line.
+std::string SecondsText(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%g", value);
+  return digits;
+}
+
+/// "coulomb_friction@load (mismatch 100 % to 7 %)": of the latent forces, rms.
+std::string BestOf(const Explained& found) {
+  std::string names;
+  for (const Member& member : found.fit.model) {
+    names += (names.empty() ? "" : ", ") + found.blocks[member.block].name;
+  }
+  if (names.empty()) return "";
+  const double left =
+      found.path.forces.norm() / std::max(found.nothing.forces.norm(), 1e-300);
+  return names + " (mismatch 100 % to " + FormatNumber(100.0 * left, 2) + " %)";
+}
+
+ExplainOptions OptionsOfSearch(const Machine& machine, const DiscoverOptions& options,
+                               RunningTime& time) {
+  ExplainOptions search;
+  search.seconds = time.SecondsOfSearch();
+  search.choice = options.choice;
+  search.numbers = DoubtedNumbers(machine, options);
+  search.most_causes = static_cast<std::size_t>(std::max(0, options.most_causes));
+  search.stop = options.stop;
+  search.progress = [&time](const std::string& text) {
+    time.Say(text, time.FractionOfSearch());
+  };
+  search.better = [&time](const Explained& found) { time.SetBest(BestOf(found)); };
+  return search;
+}
+
+/// Behind the smoothing that the inputs deserve.
+SplitRun WithInputsFelt(SplitRun run, const VectorXd& widths) {
+  run.seen = WithSmoothedInputs(std::move(run.seen), widths);
+  run.unseen = WithSmoothedInputs(std::move(run.unseen), widths);
+  return run;
+}
+
+void NoteInputNoise(const Machine& machine, const SplitRun& measured,
+                    const SplitRun& felt, std::vector<std::string>& notes) {
+  Index i = 0;
+  for (const ActuatorSetup& actuator : machine.channels().actuators) {
+    const VectorXd noise =
+        (measured.seen.inputs.row(i) - felt.seen.inputs.row(i)).transpose();
+    ++i;
+    if (noise.isZero(0.0)) continue;
+    const double rms =
+        std::sqrt(noise.squaredNorm() / static_cast<double>(noise.size()));
+    notes.push_back(actuator.channel + " was measured with noise of " +
+                    FormatQuantity(rms, actuator.unit) +
+                    ", which the machine did not feel");
+  }
+}
+
+/// What the budget did not allow.
+void NoteTime(const RunningTime& time, const DiscoverOptions& options,
+              const Explained& explained, const UnseenJudgement& judged,
+              Discovery& discovery) {
+  Budget& budget = discovery.budget;
+  budget = {time.Used(), options.budget, time.IsStopped(), {}};
+  if (explained.is_cut_short) budget.left_out.push_back("further causes");
+  if (judged.is_cut_short) {
+    budget.left_out.push_back("whether unseen data ask for every member of the answer");
+  }
+  if (budget.left_out.empty()) return;
+  std::string rest;
+  for (const std::string& one : budget.left_out) {
+    rest += (rest.empty() ? "" : " and ") + one;
+  }
+  discovery.notes.push_back(
+      budget.stopped ? "it was stopped; left out: " + rest
+                     : "ended by its budget of " + SecondsText(budget.limit) +
+                           " s; left out: " + rest + "; --budget " +
+                           SecondsText(kMoreTime * budget.limit) + " goes on");
+}
+
+}  // namespace
+
+Discovery Discover(const Machine& machine, const Measurements& measurements,
+                   const DiscoverOptions& options) {
+  RunningTime time(options);
+  const Measurements parts = WithUnseen(measurements, options.train_share);
+  Discovery discovery;
+  discovery.notes = CheckAll(machine, parts, options.doubt);
+  const SplitRun run = Split(parts, options.train_share);
+  const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen, {});
+  discovery.setup = machine.setup().name;
+  discovery.train_share = run.share;
+  discovery.sample_time = machine.rates().tick();
+  discovery.substeps = machine.rates().substeps;
+
+  time.Say("the machine as given", 0.0);
+  const Explained explained =
+      Explain(machine, run.seen, reading_sd, OptionsOfSearch(machine, options, time));
+  const SplitRun felt = WithInputsFelt(run, explained.widths);
+  const AnswerData data{machine, felt, reading_sd, explained.blocks, explained.steps};
+  NoteInputNoise(machine, run, felt, discovery.notes);
+  time.Say("what unseen data say", kShareOfSearch);
+  const UnseenJudgement judged =
+      JudgeUnseen(data, explained, [&] { return time.IsOver(); });
+  discovery.decisions = explained.decisions;
+  std::ranges::copy(judged.decisions, std::back_inserter(discovery.decisions));
+
+  const MissingShare share = ShareLeft(data, judged);
+  discovery.verdict = VerdictOf(share, !judged.answer.fit.model.empty());
+  discovery.complete = share.is_left ? 0.0 : 1.0;
+  if (share.is_left && !judged.answer.fit.model.empty()) {
+    discovery.force_left = share.left;
+  }
+  AddMembers(data, judged, PosteriorOf(explained, judged),
+             CoordinateSd(data, judged.answer), discovery);
+  const bool is_left = discovery.verdict == DiscoveryVerdict::kPartlyExplained ||
+                       discovery.verdict == DiscoveryVerdict::kUnexplained;
+  if (!is_left) {
+    AddRaisedNoise(data, judged.answer, options.choice, discovery);
+    if (!discovery.causes.empty()) discovery.verdict = DiscoveryVerdict::kExplained;
+  }
+  AddNotes(
+      data, judged, [&] { return options.figures && !time.IsOver(); }, discovery);
+  if (options.figures || discovery.verdict == DiscoveryVerdict::kUnexplained) {
+    time.Say("unexplained forces", 0.8);
+    const ObservedMotion motion = MotionOfAnswer(data, judged);
+    AddForces(data, judged, discovery);
+    if (is_left) AddSignature(data, judged, motion, discovery);
+    if (options.figures) AddLawPlots(data, judged, motion, discovery);
+  }
+  if (options.figures) {
+    time.Say("figures", 0.9);
+    const Changes changes = ChangesOf(discovery);
+    const bool follows = AddReplays(
+        parts, changes, machine.setup().compare.skip_samples, options.seed, discovery);
+    if (follows) AddPredictions(data, judged, discovery);
+    AddLadderOf(data, judged, parts, follows, discovery);
+    AddFaultLimits(data, judged, discovery);
+  }
+  NoteTime(time, options, explained, judged, discovery);
+  return discovery;
+}
+
+Discovery Discover(const Machine& machine, const Record& measured,
+                   const Record* validation, const DiscoverOptions& options) {
+  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
+}
+
+}  // namespace mjdiag

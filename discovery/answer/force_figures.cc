@@ -1,0 +1,164 @@
+#include "mjdiag/discovery/answer/force_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mjdiag/discovery/answer/missing_share.h"
+#include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/law.h"
+#include "mjdiag/discovery/unexplained/motion_variables.h"
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/number_forces.h"
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Index kPointsOfLaw = 3000;
+constexpr Index kLeastSamples = 400;  // FindSignature
+
+std::vector<UnknownSignal> SignalsOf(const std::vector<MissingForce>& forces,
+                                     double sample_time) {
+  std::vector<UnknownSignal> signals;
+  for (const MissingForce& force : forces) {
+    // How fast it changes is how far it is told.
+    const Index last = force.value.size() - 1;
+    const double rate = (force.value.tail(last) - force.value.head(last)).norm() /
+                        std::max(force.value.norm(), 1e-300) / sample_time;
+    signals.push_back({force.joint, force.unit, force.value, force.sd, 0,
+                       rate / (2.0 * std::numbers::pi)});
+  }
+  return signals;
+}
+
+const UnknownSignal* SignalAt(const std::vector<UnknownSignal>& signals,
+                              const std::string& site) {
+  const auto found = std::ranges::find(signals, site, &UnknownSignal::site);
+  return found == signals.end() ? nullptr : &*found;
+}
+
+Model ModelWithoutBlock(Model model, std::size_t place) {
+  model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
+  return model;
+}
+
+std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& judged,
+                                 const ObservedMotion& motion, std::size_t member,
+                                 const Cause& cause, const Discovery& discovery) {
+  const Model& model = judged.answer.fit.model;
+  const Candidate& candidate = *data.blocks[model[member].block].candidate;
+  const mjModel& plant = data.machine.plant();
+  LawPlot plot;
+  plot.cause = Describe(candidate);
+  plot.site = CoordinateNames(plant)[static_cast<std::size_t>(candidate.joint)];
+  const UnknownSignal* after = SignalAt(discovery.forces_after, plot.site);
+  if (after == nullptr) return std::nullopt;
+  const FilterPath& path = judged.nothing.seen;
+  const auto without = SignalsOf(
+      ForcesBeside(data.With(ModelWithoutBlock(model, member)), data.run.seen, path),
+      path.sample_time);
+  const UnknownSignal& force = *SignalAt(without, plot.site);
+  const bool hinge = plant.jnt_type[plant.dof_jntid[candidate.joint]] == mjJNT_HINGE;
+  const auto channel = static_cast<std::size_t>(
+      std::clamp<Index>(candidate.channel, 0, data.run.seen.inputs.rows() - 1));
+  const LawAxis axis = AxisOf(cause.effect->variable(), candidate, motion, hinge,
+                              data.machine.channels().actuators[channel].unit);
+  plot.x_name = axis.name;
+  plot.x_unit = axis.unit;
+  plot.y_unit = force.unit;
+  const Index stride = std::max<Index>(1, axis.x.size() / kPointsOfLaw);
+  const auto every = Eigen::seqN(0, axis.x.size() / stride, stride);
+  plot.x = axis.x(every);
+  plot.y = force.value(every);
+  const Eigen::MatrixX2d curve =
+      LawCurve(cause, axis.x, VectorXd(force.value - after->value));
+  plot.law_x = curve.col(0);
+  plot.law_y = curve.col(1);
+  return plot;
+}
+
+}  // namespace
+
+ObservedMotion MotionOfAnswer(const AnswerData& data, const UnseenJudgement& judged) {
+  return MotionAlong(data.With(judged.answer.fit.model), data.run.seen,
+                     judged.answer.seen);
+}
+
+void AddForces(const AnswerData& data, const UnseenJudgement& judged,
+               Discovery& discovery) {
+  const FilterPath& path = judged.nothing.seen;
+  discovery.forces_before =
+      SignalsOf(MissingForces(data.With({}), path), path.sample_time);
+  discovery.forces_after = discovery.forces_before;
+  if (judged.answer.fit.model.empty()) return;
+  try {
+    discovery.forces_after =
+        SignalsOf(ForcesBeside(data.With(judged.answer.fit.model), data.run.seen, path),
+                  path.sample_time);
+  } catch (const NumericalError&) {
+    discovery.notes.push_back(
+        "behind the noise of the plant as given the machine diverges with what was "
+        "found: forces that are left cannot be drawn");
+  }
+}
+
+void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
+                 const ObservedMotion& motion, Discovery& discovery) {
+  const Model& model = judged.answer.fit.model;
+  std::vector<std::size_t> members;  // of every cause
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    if (data.blocks[model[m].block].candidate) members.push_back(m);
+  }
+  std::vector<std::optional<LawPlot>> plots(members.size());
+  ParallelFor(static_cast<int>(plots.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    try {
+      plots[i] = LawPlotOf(data, judged, motion, members[i], discovery.causes[i].cause,
+                           discovery);
+    } catch (const NumericalError&) {
+      // The plant diverges without this cause: there is nothing to draw.
+    }
+  });
+  for (std::optional<LawPlot>& plot : plots) {
+    if (plot) discovery.laws.push_back(std::move(*plot));
+  }
+}
+
+void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
+                  const ObservedMotion& motion, Discovery& discovery) {
+  const std::vector<UnknownSignal>& forces = discovery.forces_after;
+  if (forces.empty() || forces.front().value.size() < kLeastSamples) return;
+  const UnknownSignal& force =
+      *std::ranges::max_element(forces, std::less<>(), [](const UnknownSignal& one) {
+        return one.value.norm() / std::max(one.sd, 1e-300);
+      });
+  const std::vector<std::string>& names = data.machine.linear().coordinates;
+  std::vector<std::string> joints;
+  for (const UnknownSignal& one : forces) {
+    if (std::ranges::find(names, one.site) != names.end()) joints.push_back(one.site);
+  }
+  const Index joint = std::ranges::find(names, force.site) - names.begin();
+  if (joint == std::ssize(names)) return;
+  const VectorXd still =
+      StillSpeeds(data.machine.plant(), judged.answer.seen.noise.reading,
+                  data.run.seen.sample_time);
+  const auto all = MotionVariables(data.machine, motion, joints, joint, still[joint],
+                                   data.run.seen.records.size());
+  const std::vector<Variable> variables(all.begin(), all.end());
+  discovery.unexplained = FindSignature(force.site, force.value, force.unit,
+                                        std::max(force.sd, 1e-300), variables);
+  discovery.unexplained_site = discovery.unexplained->site;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,31 @@
+#pragma once
+// Where a model is wrong and over what: forces that it lacks, laws as curves through what the
+// rest of the model leaves, and what the last rest depends on.
+
+#include <vector>
+
+#include "mjdiag/discovery/answer/answer_data.h"
+#include "mjdiag/discovery/answer/unseen_judgement.h"
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
+
+namespace mjdiag {
+
+/// The motion that the machine with the answer made in what fits saw.
+ObservedMotion MotionOfAnswer(const AnswerData& data, const UnseenJudgement& judged);
+
+/// Forces that are missing before and after, in what fits saw, behind the noise of the
+/// machine as given.
+void AddForces(const AnswerData& data, const UnseenJudgement& judged,
+               Discovery& discovery);
+
+/// Of every cause, the force that the machine with all other members lacks, over what the
+/// law is of (law.h): partial residuals. Behind AddForces.
+void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
+                 const ObservedMotion& motion, Discovery& discovery);
+
+/// What the largest of the forces that are left depends on (signature.h). Behind AddForces.
+void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
+                  const ObservedMotion& motion, Discovery& discovery);
+
+}  // namespace mjdiag

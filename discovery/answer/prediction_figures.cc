@@ -1,0 +1,74 @@
+#include "mjdiag/discovery/answer/prediction_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "mjdiag/comparison/prediction.h"
+#include "mjdiag/discovery/answer/replay_figures.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+
+namespace {
+
+constexpr double kLongest = 0.1;  // [s]
+
+std::map<std::string, double> ErrorsOver(const Prediction& prediction, Index horizon) {
+  std::map<std::string, double> errors;
+  for (const Prediction::Sensor& sensor : prediction.sensors) {
+    errors[sensor.channel] = sensor.rms[horizon];
+  }
+  return errors;
+}
+
+bool IsFinite(const Prediction& prediction, Index horizon) {
+  return std::ranges::all_of(prediction.sensors, [&](const Prediction::Sensor& sensor) {
+    return std::isfinite(sensor.rms[horizon]);
+  });
+}
+
+}  // namespace
+
+void AddPredictions(const AnswerData& data, const UnseenJudgement& judged,
+                    Discovery& discovery) {
+  const Index skip = data.machine.setup().compare.skip_samples;
+  const auto predict = [&](const ModelOnRuns& one, bool of_seen) {
+    const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
+    return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen,
+                   of_seen ? std::min(skip, run.samples() / 2)
+                           : std::max(skip, data.run.first_unseen));
+  };
+  // Before and after in what was fitted, and in what was not.
+  const std::array all{predict(judged.nothing, true), predict(judged.answer, true),
+                       predict(judged.nothing, false), predict(judged.answer, false)};
+  Index longest = std::ssize(all.front().horizons);
+  for (const Prediction& one : all) {
+    longest = std::min<Index>(longest, std::ssize(one.horizons));
+  }
+  Index horizon = 0;
+  for (Index h = 0; h < longest; ++h) {
+    if (all.front().horizons[static_cast<std::size_t>(h)] > kLongest * (1.0 + 1e-9))
+      break;
+    if (std::ranges::all_of(all, [&](const auto& one) { return IsFinite(one, h); })) {
+      horizon = h;
+    }
+  }
+  discovery.horizon = all.front().horizons[static_cast<std::size_t>(horizon)];
+  discovery.mismatch_before = {ErrorsOver(all[0], horizon),
+                               ErrorsOver(all[2], horizon)};
+  discovery.mismatch_after = {ErrorsOver(all[1], horizon), ErrorsOver(all[3], horizon)};
+  discovery.noise_floor.clear();
+  for (std::size_t i = 0; i < all.front().sensors.size(); ++i) {
+    const Prediction::Sensor& sensor = all.front().sensors[i];
+    discovery.noise_floor[sensor.channel] =
+        judged.answer.seen.noise.reading[static_cast<Index>(i)];
+    discovery.unit[sensor.channel] = sensor.unit;
+  }
+  SetGains(discovery);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,30 @@
+#pragma once
+// How much better a machine is predicted with the answer: replays of every record before and
+// after, and the ladder of its members.
+
+#include <cstdint>
+
+#include "mjdiag/discovery/answer/answer_data.h"
+#include "mjdiag/discovery/answer/unseen_judgement.h"
+#include "mjdiag/discovery/discovery.h"
+
+namespace mjdiag {
+
+/// Records, mismatch per channel, noise floors and gains. By free simulation; where the
+/// machine falls in it, or a model that predicts better does no better in it (a motion that
+/// does not forget where it began), by what is predicted over a tick.
+/// @return whether by the latter
+bool AddReplays(const Measurements& measurements, const Changes& changes,
+                Eigen::Index skip, std::uint64_t seed, Discovery& discovery);
+
+/// Gains of the mismatch and noise floors that a discovery has.
+void SetGains(Discovery& discovery);
+
+/// After every member, the one that is worth most first: innovations over their standard
+/// deviation behind the filter of the whole answer, in what fits saw and in what they did
+/// not. And how far these are from white.
+/// @param follows  no free simulation says anything
+void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
+                 const Measurements& measurements, bool follows, Discovery& discovery);
+
+}  // namespace mjdiag

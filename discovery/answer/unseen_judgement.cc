@@ -1,0 +1,355 @@
+#include "mjdiag/discovery/answer/unseen_judgement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/replay/kept_gains.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kNeeded = std::numeric_limits<double>::infinity();
+
+/// Latent forces that are no smaller than so much of what others are.
+FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
+  for (Eigen::Index j = 0; j < noise.size.size(); ++j) {
+    if (noise.size[j] >= part * others.size[j]) continue;
+    noise.size[j] = part * others.size[j];
+    noise.memory[j] = others.memory[j];
+  }
+  return noise;
+}
+
+/// Along what fits did not see, behind the noise of what they saw. A model that is all but
+/// exact there has next to no latent forces, and a filter that is so sure of itself does not
+/// come back from where a joint sticks a moment longer: behind a thousandth or a hundredth
+/// of the latent forces of the machine as given, if unseen data are likelier there.
+/// @param given  noise of the machine as given
+void FollowUnseen(const AnswerData& data, const FilterNoise& given, ModelOnRuns& one) {
+  const Machine machine = data.With(one.fit.model);
+  const MeasuredRun& run = data.run.unseen;
+  const bool goes_on = data.run.first_unseen > 0;
+  const std::vector<FilterStart> starts =
+      goes_on ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
+  one.unseen_deviance = std::numeric_limits<double>::infinity();
+  for (const double part : {0.0, 1e-3, 1e-2}) {
+    const FilterNoise noise = AtLeast(one.seen.noise, part, given);
+    if (part > 0.0 && noise.size == one.seen.noise.size) continue;
+    try {
+      FilterPath path = RunForceFilter(machine, run, one.seen.dofs, starts, noise);
+      double deviance = path.deviance;
+      if (goes_on) {
+        // Up to there it is what the filter does in what fits saw.
+        deviance -= part == 0.0 ? one.seen.deviance
+                                : RunForceFilter(machine, data.run.seen, one.seen.dofs,
+                                                 starts, noise)
+                                      .deviance;
+      }
+      if (!(deviance < one.unseen_deviance)) continue;
+      one.unseen_deviance = deviance;
+      one.unseen = std::move(path);
+    } catch (const NumericalError&) {
+    }
+  }
+  if (!std::isfinite(one.unseen_deviance)) {
+    throw NumericalError("replay: diverges on unseen data");
+  }
+}
+
+/// Values and noise of a model anew.
+ModelOnRuns Refitted(const AnswerData& data, const Model& model,
+                     const std::vector<Eigen::Index>& dofs,
+                     const std::vector<FilterNoise>& near, const FilterNoise& given) {
+  constexpr int kIterations = 4;
+  ModelOnRuns one;
+  const FilterPath path =
+      FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near);
+  one.fit =
+      FitModel([&](const Model& other) { return data.With(other); }, data.run.seen,
+               path, KeepGains(path), data.blocks, model, kIterations);
+  one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
+                            path.starts, path.noise);
+  FollowUnseen(data, given, one);
+  return one;
+}
+
+ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
+  ModelOnRuns nothing;
+  // Of an empty model the search has it with the physics steps that it chose.
+  nothing.seen = explained.fit.model.empty() ? explained.path
+                 : data.steps                ? explained.nothing
+                                             : FilterLikeliestFrom(
+                                                   data.With({}), data.run.seen, data.reading_sd,
+                                                   explained.nothing.dofs, {explained.nothing.noise});
+  try {
+    FollowUnseen(data, nothing.seen.noise, nothing);
+  } catch (const NumericalError&) {
+    // Behind the noise of what fits saw it does not stay with the rest.
+    nothing.seen.noise =
+        FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd).noise;
+    nothing.seen = RunForceFilter(data.With({}), data.run.seen, nothing.seen.dofs,
+                                  nothing.seen.starts, nothing.seen.noise);
+    FollowUnseen(data, nothing.seen.noise, nothing);
+  }
+  return nothing;
+}
+
+Model WithoutMember(Model model, std::size_t place) {
+  model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
+  return model;
+}
+
+/// That unseen data speak against it by more than fits are off, or that it is not worth its
+/// price.
+bool IsRefuted(const MemberLoss& loss) {
+  return loss.unseen < -kLeastGain || loss.Total() < 0.0;
+}
+
+/// What a member could be instead.
+struct Instead {
+  std::size_t block = 0;
+  VectorXd values;
+};
+
+/// Mean of the values of a law that have a role; 0 if it has none of it.
+double SizeOf(const VectorXd& values, const Block& block, Role role) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < block.candidate->parameters.size(); ++i) {
+    if (block.candidate->parameters[i].role != role) continue;
+    sum += values[static_cast<Eigen::Index>(i)];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+class UnseenJudge {
+ public:
+  UnseenJudge(const AnswerData& data, const Explained& explained,
+              const std::function<bool()>& is_over)
+      : data_(data), explained_(explained), is_over_(is_over) {}
+
+  UnseenJudgement Run();
+
+ private:
+  void Decide(const std::string& tried, double score, const std::string& why) {
+    judged_.decisions.push_back({tried, score, why});
+  }
+  std::string Names(const Model& model) const { return Describe(data_.blocks, model); }
+  void LeaveNothing();
+  /// Takes every member out; true if the worst one leaves the model.
+  bool DropWorst();
+  bool IsFree(std::size_t block, std::size_t place) const;
+  std::vector<Instead> InsteadOf(std::size_t place) const;
+  /// True if a member is exchanged.
+  bool ExchangeOne();
+  std::vector<FilterNoise> Near() const {
+    return {judged_.answer.seen.noise, judged_.nothing.seen.noise};
+  }
+  MemberLoss LossOf(const ModelOnRuns& other) const {
+    return {other.Score() - judged_.answer.Score(),
+            other.unseen_deviance - judged_.answer.unseen_deviance};
+  }
+
+  const AnswerData& data_;
+  const Explained& explained_;
+  const std::function<bool()>& is_over_;
+  UnseenJudgement judged_;
+};
+
+void UnseenJudge::LeaveNothing() {
+  for (const Member& member : judged_.answer.fit.model) {
+    judged_.refuted.push_back(Names({member}));
+  }
+  judged_.answer = judged_.nothing;
+  judged_.places.clear();
+  judged_.losses.clear();
+  judged_.exchanges.clear();
+}
+
+bool UnseenJudge::DropWorst() {
+  const ModelOnRuns& answer = judged_.answer;
+  const Model& model = answer.fit.model;
+  judged_.losses.assign(model.size(), {kNeeded, kNeeded});
+  judged_.exchanges.assign(model.size(), {});
+  std::optional<ModelOnRuns> best;
+  std::size_t worst = 0;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    if (is_over_()) {
+      judged_.is_cut_short = true;
+      break;
+    }
+    try {
+      ModelOnRuns without = Refitted(data_, WithoutMember(model, m), answer.seen.dofs,
+                                     Near(), judged_.nothing.seen.noise);
+      judged_.losses[m] = LossOf(without);
+      const bool is_worst =
+          !best || judged_.losses[m].Total() < judged_.losses[worst].Total();
+      if (IsRefuted(judged_.losses[m]) && is_worst) {
+        worst = m;
+        best = std::move(without);
+      }
+    } catch (const NumericalError&) {
+      // The machine does not run without it.
+    } catch (const InputError&) {
+    }
+  }
+  if (!best) return false;
+  judged_.refuted.push_back(Names({model[worst]}));
+  Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
+         "left out: data that no fit saw are predicted as well without it");
+  judged_.answer = std::move(*best);
+  judged_.places.erase(judged_.places.begin() + static_cast<std::ptrdiff_t>(worst));
+  judged_.losses.clear();
+  judged_.exchanges.clear();
+  return true;
+}
+
+/// Whether a block may be in a place beside the other members.
+bool UnseenJudge::IsFree(std::size_t block, std::size_t place) const {
+  const Model& model = judged_.answer.fit.model;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    const Block& other = data_.blocks[model[m].block];
+    if (model[m].block == block) return false;
+    if (m == place || other.group.empty()) continue;
+    if (other.group == data_.blocks[block].group) return false;
+  }
+  return true;
+}
+
+/// The likeliest that first order knows, and the simplest laws of the same kind there; the
+/// one that an exchange has put out.
+std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
+  constexpr std::size_t kMost = 3;
+  constexpr double kNearBy = 10.0;  // e^-5 as likely
+  const Block& own = data_.blocks[judged_.answer.fit.model[place].block];
+  const Member& first = explained_.fit.model[judged_.places[place]];
+  std::vector<Instead> instead;
+  const auto add = [&](std::size_t block, VectorXd values) {
+    const bool known = std::ranges::any_of(
+        instead, [&](const Instead& one) { return one.block == block; });
+    if (!known && IsFree(block, place)) instead.push_back({block, std::move(values)});
+  };
+  add(first.block, first.values);
+  for (const ModelMove& move : explained_.rivals) {
+    if (instead.size() == kMost || move.score > kNearBy) break;
+    if (move.added.size() != 1 || move.removed != std::vector{judged_.places[place]}) {
+      continue;
+    }
+    const Added& added = move.added.front();
+    if (const TrialValues values = added.variation.values(added.amplitudes)) {
+      add(added.variation.block, *values);
+    }
+  }
+  if (!own.candidate || own.candidate->parameters.size() < 2) return instead;
+  for (std::size_t b = 0; b < data_.blocks.size(); ++b) {
+    const auto& simple = data_.blocks[b].candidate;
+    if (!simple || simple->parameters.size() != 1 ||
+        simple->site != own.candidate->site ||
+        simple->effect->kind() != own.candidate->effect->kind()) {
+      continue;
+    }
+    const double size = SizeOf(judged_.answer.fit.model[place].values, own,
+                               simple->parameters.front().role);
+    if (size != 0.0) add(b, VectorXd::Constant(1, size));
+  }
+  return instead;
+}
+
+bool UnseenJudge::ExchangeOne() {
+  const Model model = judged_.answer.fit.model;
+  std::optional<ModelOnRuns> best;
+  double gained = 0.0;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    for (const Instead& one : InsteadOf(m)) {
+      if (is_over_()) {
+        judged_.is_cut_short = true;
+        return false;
+      }
+      Model other = model;
+      other[m] = {one.block, one.values};
+      try {
+        ModelOnRuns fitted = Refitted(data_, other, judged_.answer.seen.dofs, Near(),
+                                      judged_.nothing.seen.noise);
+        const MemberLoss loss = LossOf(fitted);
+        judged_.exchanges[m].push_back({one.block, fitted.fit.model[m].values, loss});
+        // The simpler one where it is as good.
+        const bool is_simpler = one.values.size() < model[m].values.size();
+        const double least = is_simpler ? 0.0 : kLeastGain;
+        if (!(loss.Total() < -least) || loss.Total() > -gained) continue;
+        if (!IsAllowed(data_.blocks[one.block], fitted.fit.model[m].values)) continue;
+        gained = -loss.Total();
+        best = std::move(fitted);
+      } catch (const NumericalError&) {
+      } catch (const InputError&) {
+      }
+    }
+  }
+  if (!best) return false;
+  Decide(Names(best->fit.model), -gained, "taken: one exchanged for a likelier one");
+  judged_.answer = std::move(*best);
+  return true;
+}
+
+UnseenJudgement UnseenJudge::Run() {
+  judged_.nothing = NothingOf(data_, explained_);
+  judged_.answer = {explained_.fit, explained_.path, {}, 0.0};
+  judged_.places.resize(explained_.fit.model.size());
+  std::iota(judged_.places.begin(), judged_.places.end(), std::size_t{0});
+  if (explained_.fit.model.empty()) {
+    judged_.answer.unseen = judged_.nothing.unseen;
+    judged_.answer.unseen_deviance = judged_.nothing.unseen_deviance;
+    return std::move(judged_);
+  }
+  try {
+    FollowUnseen(data_, judged_.nothing.seen.noise, judged_.answer);
+  } catch (const NumericalError&) {
+    Decide(Names(explained_.fit.model), kNeeded,
+           "left out: the machine with it diverges on unseen data");
+    LeaveNothing();
+    return std::move(judged_);
+  }
+  // Each exchange gains; what went round would be noise of fits.
+  for (int exchanges = 0;; ++exchanges) {
+    while (!judged_.answer.fit.model.empty() && DropWorst()) {
+    }
+    constexpr int kMost = 4;
+    if (exchanges == kMost || judged_.is_cut_short || !ExchangeOne()) break;
+  }
+  for (std::size_t m = 0; m < judged_.losses.size(); ++m) {
+    char by_unseen[64];
+    std::snprintf(by_unseen, sizeof by_unseen,
+                  "kept: %.1f of it on data that no fit saw", judged_.losses[m].unseen);
+    Decide("without " + Names({judged_.answer.fit.model[m]}), judged_.losses[m].Total(),
+           by_unseen);
+  }
+  const double gain = judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance;
+  if (!judged_.answer.fit.model.empty() && gain < kLeastGain) {
+    Decide(
+        Names(judged_.answer.fit.model), -gain,
+        "left out: it predicts data that no fit saw no better than the plant as given");
+    LeaveNothing();
+  }
+  return std::move(judged_);
+}
+
+}  // namespace
+
+UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
+                            const std::function<bool()>& is_over) {
+  return UnseenJudge(data, explained, is_over).Run();
+}
+
+}  // namespace mjdiag
