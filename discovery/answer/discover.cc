@@ -22,6 +22,7 @@
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/checks/data_check.h"
+#include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
@@ -159,6 +160,15 @@ void NoteInputNoise(const Machine& machine, const SplitRun& measured,
   }
 }
 
+/// Latent forces are those of one plant: records of several loads are searched by runs.
+bool HasOwnPlants(const Measurements& measurements) {
+  const auto has = [](const std::vector<MeasuredRecord>& records) {
+    return std::ranges::any_of(records,
+                               [](const MeasuredRecord& one) { return one.own_plant; });
+  };
+  return has(measurements.fit) || has(measurements.unseen);
+}
+
 /// What the budget did not allow.
 void NoteTime(const RunningTime& time, const DiscoverOptions& options,
               const Explained& explained, const UnseenJudgement& judged,
@@ -189,6 +199,12 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   const Measurements parts = WithUnseen(measurements, options.train_share);
   Discovery discovery;
   discovery.notes = CheckAll(machine, parts, options.doubt);
+  if (HasOwnPlants(parts)) {
+    Discovery found = Discoverer(machine, parts, options).Run();
+    found.notes.insert(found.notes.begin(), discovery.notes.begin(),
+                       discovery.notes.end());
+    return found;
+  }
   const SplitRun run = Split(parts, options.train_share);
   const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen, {});
   discovery.setup = machine.setup().name;

@@ -92,10 +92,11 @@ class Search {
     });
     return static_cast<std::size_t>(causes) > options_.most_causes;
   }
+  bool IsStopped() const { return options_.stop && options_.stop(); }
   bool IsOver() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count() >
                options_.seconds ||
-           (options_.stop && options_.stop());
+           IsStopped();
   }
   void Say(const std::string& text) const {
     if (options_.progress) options_.progress(text);
@@ -103,6 +104,7 @@ class Search {
 
   Machine With(const Model& model) const { return With(model, steps_); }
   Machine With(const Model& model, bool steps) const {
+    if (IsStopped()) throw NumericalError("fit: asked to end");
     const Machine machine = machine_.With(ChangesOf(found_.blocks, model));
     return steps ? machine : machine.WithoutSteps();
   }
@@ -460,11 +462,16 @@ Explained Search::Run() {
   BoundByReadings(candidates, machine_, run_);
   found_.blocks = BlocksOf(machine_, candidates,
                            options_.numbers.value_or(NumbersInDoubt(machine_.plant())));
-  while (!IsOver() && Step()) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%.1f  ", found_.score);
-    Say(text + Describe(found_.blocks, found_.fit.model));
-    if (options_.better) options_.better(found_);
+  try {
+    while (!IsOver() && Step()) {
+      char text[80];
+      std::snprintf(text, sizeof text, "%.1f  ", found_.score);
+      Say(text + Describe(found_.blocks, found_.fit.model));
+      if (options_.better) options_.better(found_);
+    }
+  } catch (const NumericalError&) {
+    // A machine that diverges beside what is measured, or the wish to end: what was found
+    // until then stays.
   }
   found_.steps = steps_;
   found_.is_cut_short = IsOver();
