@@ -315,6 +315,38 @@ Discovery Discoverer::Run() {
   return std::move(discovery_);
 }
 
+Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
+                           const DiscoverOptions& options) {
+  Measurements split = WithUnseen(measurements, options.train_share);
+  std::vector<std::string> notes;
+  const auto check = [&](const std::vector<MeasuredRecord>& records,
+                         const std::string& role) {
+    for (const MeasuredRecord& one : records) {
+      const bool named = split.Several() && !one.name.empty();
+      const std::string of = named ? one.name + ": " : role;
+      std::vector<std::string> of_record = one.notes;
+      std::ranges::copy(CheckRecord(one.machine, one.record),
+                        std::back_inserter(of_record));
+      for (const std::string& note : of_record) notes.push_back(of + note);
+    }
+  };
+  check(split.fit, "");
+  check(split.unseen, "validation record: ");
+  if (const std::string fixed = NoteOfFixedNumbers(machine.plant());
+      options.doubt && !fixed.empty()) {
+    notes.push_back(fixed);
+  }
+  Discovery discovery = Discoverer(machine, std::move(split), options).Run();
+  discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
+  return discovery;
+}
+
+Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
+                           const Record* validation, const DiscoverOptions& options) {
+  return DiscoverBySearch(machine, MeasurementsOf(machine, measured, validation),
+                          options);
+}
+
 Changes ChangesOf(const Discovery& discovery) {
   std::vector<Cause> causes;
   for (const FoundCause& found : discovery.causes) causes.push_back(found.cause);

@@ -240,6 +240,13 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 
+/// The same by searches of runs, sets and forces along the motion, for records with plants of
+/// their own and for the studies that size their faults by it.
+Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
+                           const DiscoverOptions& options);
+Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
+                           const Record* validation, const DiscoverOptions& options);
+
 /// Whether the record says of a number that it is another one than the model has.
 bool IsOff(const CalibratedNumber& number);
 bool IsMoved(const CalibratedMoment& moment);

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/selection/evidence.h"
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/structure/force_curve.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -32,54 +32,6 @@ constexpr double kLeast = 0.05;  // probability that is told,
 constexpr double kRather = 0.5;  // and of numbers, of which there are many
 
 double Logistic(double half_deviance) { return 1.0 / (1.0 + std::exp(-half_deviance)); }
-
-/// Of a curve over the joint's own velocity: what jumps at rest beside what is in proportion.
-Kind KindOfResistance(const VectorXd& values) {
-  const CurveAxis axis = CurveAxisOf(values);
-  Eigen::MatrixX2d shapes(axis.knots, 2);
-  for (int i = 0; i < axis.knots; ++i) {
-    const double v = axis.KnotAt(i);
-    const bool is_second_half =
-        axis.shape == CurveShapes::kSplit && 2 * i >= axis.knots;
-    const double sign = axis.shape == CurveShapes::kSplit
-                            ? (is_second_half ? 1.0 : -1.0)
-                            : std::copysign(1.0, v);
-    shapes.row(i) << sign, v;
-  }
-  const VectorXd force = values.segment(force_curve::kFirst, axis.knots);
-  const Eigen::Vector2d size = (shapes.transpose() * shapes)
-                                   .ldlt()
-                                   .solve(shapes.transpose() * force)
-                                   .cwiseProduct(shapes.colwise().norm().transpose())
-                                   .cwiseAbs();
-  return size[0] > size[1] ? Kind::kDryFriction : Kind::kViscousFriction;
-}
-
-Kind KindOfCurve(const VectorXd& values, Index joint) {
-  const auto variable =
-      static_cast<CurveVariable>(static_cast<int>(values[force_curve::kVariable]));
-  const auto factor =
-      static_cast<CurveFactor>(static_cast<int>(values[force_curve::kFactor]));
-  const auto of = static_cast<Index>(values[force_curve::kOf]);
-  if (factor == CurveFactor::kVelocity) return Kind::kViscousFriction;
-  if (factor == CurveFactor::kDirection) {
-    return variable == CurveVariable::kCommand ? Kind::kLoadFriction
-                                               : Kind::kDryFriction;
-  }
-  switch (variable) {
-    case CurveVariable::kTime:
-      return Kind::kVibration;
-    case CurveVariable::kCommand:
-      return Kind::kCoupling;  // of a joint's own motor it is none (IsAnswer)
-    case CurveVariable::kVelocity:
-      return of == joint ? KindOfResistance(values) : Kind::kCoupling;
-    case CurveVariable::kPosition:
-      break;
-  }
-  if (of != joint) return Kind::kCoupling;
-  return CurveAxisOf(values).shape == CurveShapes::kPeriodic ? Kind::kForceAlongStroke
-                                                             : Kind::kCompliance;
-}
 
 }  // namespace
 

@@ -22,7 +22,6 @@
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/checks/data_check.h"
-#include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
@@ -195,16 +194,13 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
 
 Discovery Discover(const Machine& machine, const Measurements& measurements,
                    const DiscoverOptions& options) {
+  if (HasOwnPlants(measurements)) {
+    return DiscoverBySearch(machine, measurements, options);
+  }
   RunningTime time(options);
   const Measurements parts = WithUnseen(measurements, options.train_share);
   Discovery discovery;
   discovery.notes = CheckAll(machine, parts, options.doubt);
-  if (HasOwnPlants(parts)) {
-    Discovery found = Discoverer(machine, parts, options).Run();
-    found.notes.insert(found.notes.begin(), discovery.notes.begin(),
-                       discovery.notes.end());
-    return found;
-  }
   const SplitRun run = Split(parts, options.train_share);
   const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen, {});
   discovery.setup = machine.setup().name;
@@ -232,6 +228,11 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   }
   AddMembers(data, judged, PosteriorOf(explained, judged),
              CoordinateSd(data, judged.answer), discovery);
+  // A force without a name is described, not explained.
+  if (discovery.verdict == DiscoveryVerdict::kExplained &&
+      !std::ranges::all_of(discovery.causes, &FoundCause::HasName)) {
+    discovery.verdict = DiscoveryVerdict::kPartlyExplained;
+  }
   const bool is_left = discovery.verdict == DiscoveryVerdict::kPartlyExplained ||
                        discovery.verdict == DiscoveryVerdict::kUnexplained;
   if (!is_left) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mjdiag/discovery/answer/missing_share.h"
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/law.h"
 #include "mjdiag/discovery/unexplained/motion_variables.h"
@@ -72,8 +73,12 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
   const bool hinge = plant.jnt_type[plant.dof_jntid[candidate.joint]] == mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, data.run.seen.inputs.rows() - 1));
-  const LawAxis axis = AxisOf(cause.effect->variable(), candidate, motion, hinge,
-                              data.machine.channels().actuators[channel].unit);
+  LawAxis axis = AxisOf(cause.effect->variable(), candidate, motion, hinge,
+                        data.machine.channels().actuators[channel].unit);
+  if (IsCurve(candidate)) {
+    const CurveCourse course = CourseOfCurve(plant, candidate, motion);
+    axis = {course.x, course.name, course.unit};
+  }
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;
   plot.y_unit = force.unit;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/scale_number.h"
@@ -94,7 +95,11 @@ CalibratedNumber NumberOf(const mjModel& plant, const Block& block, double facto
           UnitName(plant, number)};
 }
 
-std::pair<Kind, std::string> KindOfBlock(const Block& block) {
+std::pair<Kind, std::string> KindOfBlock(const Block& block, const VectorXd& values) {
+  if (block.candidate && IsCurve(*block.candidate)) {
+    return {KindOfCurve(CauseOfBlock(block, values).values, block.candidate->joint),
+            block.candidate->site};
+  }
   if (block.candidate) return {block.candidate->effect->kind(), block.candidate->site};
   return {KindOf(block.number->kind), block.name.substr(block.name.find('@') + 1)};
 }
@@ -171,13 +176,13 @@ void AddMembers(const AnswerData& data, const UnseenJudgement& judged,
     const std::vector<Span> spans = SpansOfMember(coordinates, model, m, sd);
     // Of one place, the kinds of all that could be there.
     std::map<std::pair<Kind, std::string>, double> here;
-    here[KindOfBlock(block)] += said.probability;
-    KindSum& own = kinds[KindOfBlock(block)];
+    here[KindOfBlock(block, values)] += said.probability;
+    KindSum& own = kinds[KindOfBlock(block, values)];
     own.is_member = true;
     own.only_numbers = own.only_numbers && block.number.has_value();
     own.loss += judged.losses[m].unseen;
     for (const Rival& rival : said.rivals) {
-      here[KindOfBlock(data.blocks[rival.block])] += rival.probability;
+      here[KindOfBlock(data.blocks[rival.block], rival.values)] += rival.probability;
     }
     for (const auto& [kind, probability] : here) kinds[kind].none *= 1.0 - probability;
     if (block.number) {
@@ -188,6 +193,9 @@ void AddMembers(const AnswerData& data, const UnseenJudgement& judged,
     FoundCause found;
     found.cause = CauseOfBlock(block, values);
     found.parameters = ParametersOfCause(plant, *block.candidate, values, spans);
+    if (IsCurve(*block.candidate)) {
+      found.unnamed = "a force over the " + CurveVariableName(plant, *block.candidate);
+    }
     found.probability = said.probability;
     found.none = said.none;
     for (const Rival& rival : said.rivals) {

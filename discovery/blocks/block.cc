@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/hypotheses/fitted_model.h"
 #include "mjdiag/discovery/screening/trial.h"
 #include "mjdiag/plugin/effects/effect.h"
@@ -90,11 +91,18 @@ VectorXd SpansOf(const ObservedMotion& motion) {
   return motion.outputs.rowwise().maxCoeff() - motion.outputs.rowwise().minCoeff();
 }
 
+std::vector<Trial> TrialsOf(const Machine& machine, const Candidate& candidate,
+                            const ObservedMotion& motion) {
+  if (!IsCurve(candidate)) return MakeTrials(machine, candidate, motion);
+  const Site site{candidate.site, candidate.joint, candidate.channel};
+  return {TrialOfCurve(At(machine, motion, site), candidate)};
+}
+
 void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t place,
                  Block& block, const std::function<void(Variation&&)>& take) {
   std::size_t shape = 0;
   Index count = 0;
-  for (const Trial& trial : MakeTrials(machine, *block.candidate, along.motion)) {
+  for (const Trial& trial : TrialsOf(machine, *block.candidate, along.motion)) {
     Variation variation = VariationOf(machine, along, place, block, trial, shape++);
     if (variation.columns.empty()) continue;
     ++count;
@@ -127,6 +135,8 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
 std::string GroupOf(Kind kind, const std::string& name) {
   const std::string site = name.substr(name.find('@') + 1);
   switch (kind) {
+    case Kind::kUnknownForce:
+      return "curve@" + site;
     case Kind::kDryFriction:
     case Kind::kLoadFriction:
       return "dry friction@" + site;

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
@@ -82,6 +84,8 @@ class Search {
   }
   /// Takes what is better; false if nothing pays.
   bool Step();
+  /// What no law explains may be a force without a name.
+  void AddCurves(const std::vector<Candidate>& candidates);
   Model After(const ModelMove& move) const;
   void Decide(const Model& tried, double score, const std::string& why) {
     found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
@@ -441,6 +445,13 @@ std::optional<Search::Proposal> Search::SmoothedInputs() const {
   return Proposal{std::move(settled), steps_, choice.widths, std::move(run)};
 }
 
+void Search::AddCurves(const std::vector<Candidate>& candidates) {
+  const ObservedMotion motion = MotionAlong(With(found_.fit.model), run_, found_.path);
+  std::ranges::move(
+      BlocksOf(machine_, CurveCandidates(machine_, candidates, motion), {}),
+      std::back_inserter(found_.blocks));
+}
+
 bool Search::Step() {
   std::optional<Proposal> smoothed = SmoothedInputs();
   std::optional<Proposal> move = BestMove();
@@ -462,8 +473,14 @@ Explained Search::Run() {
   BoundByReadings(candidates, machine_, run_);
   found_.blocks = BlocksOf(machine_, candidates,
                            options_.numbers.value_or(NumbersInDoubt(machine_.plant())));
+  bool has_curves = !options_.choice.only.empty();
   try {
-    while (!IsOver() && Step()) {
+    while (!IsOver()) {
+      if (!Step()) {
+        if (std::exchange(has_curves, true)) break;
+        AddCurves(candidates);
+        continue;
+      }
       char text[80];
       std::snprintf(text, sizeof text, "%.1f  ", found_.score);
       Say(text + Describe(found_.blocks, found_.fit.model));

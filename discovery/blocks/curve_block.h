@@ -1,0 +1,41 @@
+#pragma once
+// Forces that nobody has a name for, as blocks: at every joint a curve
+// (plugin/effects/structure/force_curve.h) over its position, its velocity or the position of
+// another joint, every knot an amplitude of its own. They come in where no law does any more.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/effects/kind.h"
+#include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/machine/machine.h"
+
+namespace mjdiag {
+
+/// At all joints where one of the candidates may act.
+std::vector<Candidate> CurveCandidates(const Machine& machine,
+                                       const std::vector<Candidate>& candidates,
+                                       const ObservedMotion& motion);
+bool IsCurve(const Candidate& candidate);
+
+/// The force of every knot along the motion.
+Trial TrialOfCurve(const SiteMotion& at, const Candidate& candidate);
+
+/// What a curve depends on: "load position".
+std::string CurveVariableName(const mjModel& plant, const Candidate& candidate);
+/// The same along the motion.
+struct CurveCourse {
+  std::string name;
+  std::string unit;
+  Eigen::VectorXd x;
+};
+CurveCourse CourseOfCurve(const mjModel& plant, const Candidate& candidate,
+                          const ObservedMotion& motion);
+
+/// The kind of physics of a curve with those values, choices first, at a joint.
+Kind KindOfCurve(const Eigen::VectorXd& values, Eigen::Index joint);
+
+}  // namespace mjdiag
