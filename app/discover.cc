@@ -32,11 +32,15 @@ constexpr double kUsualBudget = 300.0;  // [s]
 constexpr double kLeastBudget = 1e-3;
 constexpr double kMostBudget = 1e9;
 
+constexpr const char* kSearch = "search";
+constexpr const char* kFilter = "filter";
+
 struct DiscoverCommand {
   MachineOptions machine;
   OutputOptions output;
   MeasurementOptions records;
   std::optional<bool> doubt;
+  std::string engine = kSearch;
   DiscoverOptions search;
 };
 
@@ -68,7 +72,8 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
       log.Show(progress.what + AtMost(progress.most_seconds), progress.best);
     }
   };
-  return Discover(machine, measurements, options);
+  return command.engine == kFilter ? DiscoverByFilter(machine, measurements, options)
+                                   : Discover(machine, measurements, options);
 }
 
 // A plant that cannot be written must not cost the answer, which took its time.
@@ -166,9 +171,15 @@ void AddDiscover(CLI::App& app) {
   command
       ->add_option(
           "--budget", options->search.budget,
-          "Seconds, 300 if not given, after which the best answer so far is given, if "
-          "nothing better was found before")
+          "Seconds of work of two ordinary cores, 300 if not given, after which "
+          "the best answer so far is given, if it has not settled before: the same on "
+          "every machine")
       ->check(Within(kLeastBudget, kMostBudget));
+  command
+      ->add_option("--engine", options->engine,
+                   "How: search, by runs of the plant, or filter, by one filter and "
+                   "regression for every machine, whose budget is in seconds")
+      ->check(CLI::IsMember({kSearch, kFilter}));
   AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);

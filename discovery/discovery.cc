@@ -315,8 +315,8 @@ Discovery Discoverer::Run() {
   return std::move(discovery_);
 }
 
-Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
-                           const DiscoverOptions& options) {
+Discovery Discover(const Machine& machine, const Measurements& measurements,
+                   const DiscoverOptions& options) {
   Measurements split = WithUnseen(measurements, options.train_share);
   std::vector<std::string> notes;
   const auto check = [&](const std::vector<MeasuredRecord>& records,
@@ -341,10 +341,9 @@ Discovery DiscoverBySearch(const Machine& machine, const Measurements& measureme
   return discovery;
 }
 
-Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
-                           const Record* validation, const DiscoverOptions& options) {
-  return DiscoverBySearch(machine, MeasurementsOf(machine, measured, validation),
-                          options);
+Discovery Discover(const Machine& machine, const Record& measured,
+                   const Record* validation, const DiscoverOptions& options) {
+  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
 }
 
 Changes ChangesOf(const Discovery& discovery) {

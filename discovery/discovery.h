@@ -92,7 +92,8 @@ struct FoundCause {
 struct FoundKind {
   Kind kind = Kind::kUnknownForce;
   std::string site;
-  /// That it is this kind there, whichever of its laws: the sum of their shares of one
+  /// That it is this kind there, whichever of its laws: from what the best model without it
+  /// loses on data that no fit saw (discovery_kinds.cc), or the sum of the laws' shares of one
   /// posterior (answer/posterior.h).
   double probability = 0.0;
   /// Of the unseen mismatch that the answer takes away, what is back without it.
@@ -156,7 +157,8 @@ struct Discovery {
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
   std::vector<FoundKind> kinds;  ///< the most probable first
-  /// Whether noise is all that the answer leaves, 1, or a force that lasts, 0.
+  /// How probable it is that noise is all that the causes leave, and no law that is in no
+  /// list is among them (completeness.h); their probabilities count it.
   double complete = 1.0;
   /// Share of the force that was missing which is left, rms along data that no fit saw;
   /// none: no more than noise is left, or nothing was found.
@@ -240,11 +242,13 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 
-/// The same by searches of runs, sets and forces along the motion, for records with plants of
-/// their own and for the studies that size their faults by it.
-Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
+/// The same by one engine for every machine: a filter with latent forces, one regression and
+/// fits with MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw
+/// (answer/). Its budget is in seconds; the bandwidth is nothing to it. InputError on records
+/// with a plant of their own, too.
+Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
                            const DiscoverOptions& options);
-Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
+Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
                            const Record* validation, const DiscoverOptions& options);
 
 /// Whether the record says of a number that it is another one than the model has.

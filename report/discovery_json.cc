@@ -86,7 +86,7 @@ json CausesOf(const Discovery& discovery) {
 json ExplanationList(const Discovery& discovery) {
   json explanations = json::array();
   for (const CauseSet& explanation :
-       ExplanationsOf(discovery.causes)) {
+       ExplanationsOf(discovery.causes, discovery.complete)) {
     json causes = json::array();
     for (const Cause& cause : explanation.causes) causes.push_back(IdentityOf(cause));
     explanations.push_back(

@@ -68,10 +68,10 @@ constexpr const char* kHowToReadExplanations =
     "listed.";
 
 constexpr const char* kHowToReadKinds =
-    "The kind of physics that the model lacks and where, whichever law it follows: its "
-    "probability is the sum of those of its laws there. Mismatch back without it: of "
-    "how "
-    "much better data that no fit saw are predicted with the answer.";
+    "The kind of physics that the model lacks and where, whichever law it follows: the "
+    "probability is what data that no fit saw say against the best model without it. A "
+    "law "
+    "that is in no list makes the names below less certain, and the kind not.";
 
 void AddKinds(Page& page, const Discovery& discovery) {
   const Table table = KindTable(discovery);
@@ -116,10 +116,9 @@ void AddNotes(Page& page, const Discovery& discovery) {
 }
 
 constexpr const char* kHowToReadLadder =
-    "Rest over noise: what the filter of the whole answer fails to predict when it "
-    "runs "
-    "beside the plant with so much of it, over what that filter takes for noise, root "
-    "mean square; 1 says that noise is all there is. The errors are those of a replay "
+    "Rest over noise: what an observer beside the plant fails to predict, over the "
+    "noise of the sensors, root mean square; 1 says that noise is all there is. The "
+    "errors are those of a replay "
     "of the whole record, relative to the measured signal.";
 
 void AddLadder(Page& page, const Discovery& discovery) {

@@ -206,7 +206,10 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
              UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
       return KindsSentence(discovery) + FoundText(discovery) + UnseenText(discovery) +
-             " Something is left" + ForceLeftText(discovery) + "." +
+             (discovery.unexplained || discovery.force_left ||
+                      !IsComplete(discovery.complete)
+                  ? " Something is left" + ForceLeftText(discovery) + "."
+                  : " Noise is left.") +
              SignatureText(discovery);
     case DiscoveryVerdict::kUnexplained:
       return "Something is there that no known cause explains." +
@@ -257,7 +260,7 @@ Table ExplanationTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Probability", true}, {""}, {"Explanation"}};
   const std::vector<CauseSet> explanations =
-      ExplanationsOf(discovery.causes);
+      ExplanationsOf(discovery.causes, discovery.complete);
   double others = 1.0;
   for (const CauseSet& explanation : explanations) others -= explanation.probability;
   const bool may_be_others = !explanations.empty() && others >= kConsidered;

@@ -57,7 +57,7 @@ HardOutcome RunHard(const Machine& model, const HardPlan& plan, std::uint64_t se
   options.doubt = true;
   options.budget = kBudget;
   const auto start = Clock::now();
-  outcome.answer = DiscoverBySearch(model, hard.measurements, options);
+  outcome.answer = Discover(model, hard.measurements, options);
   outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   const std::vector<FoundCause>& found = outcome.answer.causes;
   outcome.claims = ClaimsOf(hard.truth, found);

@@ -129,7 +129,7 @@ HiddenOutcome RunHidden(const Machine& machine, const std::vector<std::string>& 
   outcome.hidden = MakeCase(machine, truth, seed);
   DiscoverOptions options;
   options.figures = false;
-  outcome.answer = DiscoverBySearch(machine, outcome.hidden.record, nullptr, options);
+  outcome.answer = Discover(machine, outcome.hidden.record, nullptr, options);
   for (const Cause& cause : truth) {
     outcome.considered +=
         std::ranges::any_of(outcome.answer.causes, [&](const FoundCause& f) {

@@ -159,15 +159,6 @@ void NoteInputNoise(const Machine& machine, const SplitRun& measured,
   }
 }
 
-/// Latent forces are those of one plant: records of several loads are searched by runs.
-bool HasOwnPlants(const Measurements& measurements) {
-  const auto has = [](const std::vector<MeasuredRecord>& records) {
-    return std::ranges::any_of(records,
-                               [](const MeasuredRecord& one) { return one.own_plant; });
-  };
-  return has(measurements.fit) || has(measurements.unseen);
-}
-
 /// What the budget did not allow.
 void NoteTime(const RunningTime& time, const DiscoverOptions& options,
               const Explained& explained, const UnseenJudgement& judged,
@@ -192,11 +183,8 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
 
 }  // namespace
 
-Discovery Discover(const Machine& machine, const Measurements& measurements,
-                   const DiscoverOptions& options) {
-  if (HasOwnPlants(measurements)) {
-    return DiscoverBySearch(machine, measurements, options);
-  }
+Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
+                           const DiscoverOptions& options) {
   RunningTime time(options);
   const Measurements parts = WithUnseen(measurements, options.train_share);
   Discovery discovery;
@@ -222,7 +210,6 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 
   const MissingShare share = ShareLeft(data, judged);
   discovery.verdict = VerdictOf(share, !judged.answer.fit.model.empty());
-  discovery.complete = share.is_left ? 0.0 : 1.0;
   if (share.is_left && !judged.answer.fit.model.empty()) {
     discovery.force_left = share.left;
   }
@@ -261,9 +248,10 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   return discovery;
 }
 
-Discovery Discover(const Machine& machine, const Record& measured,
-                   const Record* validation, const DiscoverOptions& options) {
-  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
+Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
+                           const Record* validation, const DiscoverOptions& options) {
+  return DiscoverByFilter(machine, MeasurementsOf(machine, measured, validation),
+                          options);
 }
 
 }  // namespace mjdiag

@@ -24,7 +24,7 @@ VectorXcd WaveSums(const VectorXd& g, const VectorXd& angle, const VectorXd& inc
     const double place = (turns - std::floor(turns)) * static_cast<double>(size);
     const auto below = static_cast<Index>(place);
     const double above = place - static_cast<double>(below);
-    const std::complex<double> value = std::polar(g[k], angle[k]);
+    const std::complex<double> value = g[k] * std::polar(1.0, angle[k]);
     grid[below % size] += (1.0 - above) * value;
     grid[(below + 1) % size] += above * value;
   }

@@ -122,6 +122,7 @@ const std::map<std::string, Rows>& Table() {
                             {"--without", kNothing},
                             {"--only", kNothing},
                             {"--budget", Same("--budget 300")},
+                            {"--engine", Same("--engine search")},
                             {"--seed", Same("--seed 1")}}},
       {"render", kMachine + kMotion + kDiagnosis +
                      Rows{{"--out", kRequired},

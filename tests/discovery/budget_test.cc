@@ -29,7 +29,7 @@ class Budget : public ::testing::Test {
     return options;
   }
   Discovery Answer(const DiscoverOptions& options) const {
-    return DiscoverBySearch(stage_.machine, record_, nullptr, options);
+    return Discover(stage_.machine, record_, nullptr, options);
   }
   /// Of a search that may do all it would: once for all tests, for it takes the longest.
   const Discovery& Free() const {
@@ -121,7 +121,7 @@ TEST_F(Budget, NamesOnlyWhatWasChosen) {
   EXPECT_THAT(Named(Answer(options)), Not(HasSubstr("coulomb_friction@")));
   const Record noisy = stage_.Measure({"encoder_noise@load_encoder:sd=1.5e-8"});
   options.choice = {{}, {"encoder_noise"}};
-  EXPECT_TRUE(DiscoverBySearch(stage_.machine, noisy, nullptr, options).causes.empty());
+  EXPECT_TRUE(Discover(stage_.machine, noisy, nullptr, options).causes.empty());
 }
 
 TEST_F(Budget, ProgressTellsTheBestAnswerSoFar) {

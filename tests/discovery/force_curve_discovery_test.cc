@@ -35,13 +35,15 @@ class OutsideLaw final : public JointForceEffect {
   ForceOf force_;
 };
 
-Discovery DiscoverOutside(const OutsideLaw& law, const test::StageUnderTest& stage,
-                          const CandidateChoice& choice = {}) {
+Record MeasureOutside(const OutsideLaw& law, const test::StageUnderTest& stage) {
   Changes changes;
   changes.effects.push_back({Lasting(law), "load", {}});
-  RunOptions options;
-  const Record measured =
-      Simulate(stage.machine.With(changes), stage.Motion(), options);
+  return Simulate(stage.machine.With(changes), stage.Motion(), {});
+}
+
+Discovery DiscoverOutside(const OutsideLaw& law, const test::StageUnderTest& stage,
+                          const CandidateChoice& choice = {}) {
+  const Record measured = MeasureOutside(law, stage);
   DiscoverOptions discover;
   discover.choice = choice;
   discover.budget = 30.0;
@@ -79,6 +81,19 @@ TEST(ForceCurveDiscovery, LearnsALawOverTheVelocity) {
   ASSERT_FALSE(answer.kinds.empty());
   EXPECT_EQ(answer.kinds[0].kind, Kind::kViscousFriction);
   EXPECT_GT(answer.kinds[0].probability, 0.95);
+}
+
+TEST(ForceCurveDiscovery, LearnsALawOverTheVelocityBehindTheFilter) {
+  const test::StageUnderTest stage;
+  const OutsideLaw law([](double, double v) { return 3.0 * std::sin(30.0 * v); });
+  DiscoverOptions options;
+  options.figures = false;
+  const Discovery answer =
+      DiscoverByFilter(stage.machine, MeasureOutside(law, stage), nullptr, options);
+  ASSERT_NE(Curve(answer), nullptr);
+  EXPECT_NE(Curve(answer)->unnamed.find("load velocity"), std::string::npos);
+  EXPECT_EQ(answer.verdict, DiscoveryVerdict::kPartlyExplained);
+  EXPECT_EQ(Curve(answer)->cause.site, "load");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(WrongNominal, OfTheBonderIsItsNumbersAndNothingElse) {
   options.doubt = true;
   options.figures = false;
   options.budget = 30.0;
-  const Discovery discovery = DiscoverBySearch(model, record, nullptr, options);
+  const Discovery discovery = Discover(model, record, nullptr, options);
   EXPECT_TRUE(discovery.causes.empty());
   EXPECT_EQ(discovery.verdict, DiscoveryVerdict::kNoDiscrepancy);
   // The stage, its mounts and its motor together are as large as is known beforehand: no

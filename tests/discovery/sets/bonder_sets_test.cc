@@ -26,7 +26,7 @@ TEST(BonderSets, ASealAndARippleAreNamedTogetherAndNothingElse) {
   DiscoverOptions options;
   options.figures = false;
   options.budget = 120.0;
-  const Discovery discovery = DiscoverBySearch(model, record, nullptr, options);
+  const Discovery discovery = Discover(model, record, nullptr, options);
   std::map<std::string, Eigen::VectorXd> found;
   for (const FoundCause& cause : discovery.causes) {
     found[cause.cause.name() + "@" + cause.cause.site] = cause.cause.values;

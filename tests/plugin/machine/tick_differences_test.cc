@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mjdiag/plugin/effects/placed_effect.h"
 #include "support/any_machine.h"
 #include "support/bonder.h"
 
@@ -183,6 +184,33 @@ TEST(TickMap, ProbesFromWhatEffectsRememberedBefore) {
   // It is what the sixth tick does, and not the first.
   TickMap fresh(machine);
   EXPECT_NE(fresh.Run(from, none, 5, control).state.velocity[0], to.velocity[0]);
+}
+
+// Where a joint sticks its tangent says that no force moves it; over forces of up to ten times
+// the friction, nine tenths of what moves it without.
+TEST(TickDifferences, AreSecantsOverWhatIsNotKnownOfAStickingJoint) {
+  const Machine slide = test::MachineOf(
+      {"slide",
+       "<option timestep=\"0.001\" gravity=\"0 0 0\"/><worldbody><body>"
+       "<joint name=\"q\" type=\"slide\" axis=\"1 0 0\"/>"
+       "<inertial pos=\"0 0 0\" mass=\"2\" diaginertia=\"1 1 1\"/></body></worldbody>"
+       "<actuator><motor name=\"u\" joint=\"q\"/></actuator>"
+       "<sensor><jointpos name=\"y\" joint=\"q\"/></sensor>"});
+  const Machine sticks = slide.With({{}, {ParseEffect("coulomb_friction@q:force=1")}});
+  const PlantState rest{VectorXd::Zero(1), VectorXd::Zero(1), VectorXd()};
+  const double free = TangentAt(slide, rest, 0.0).B(1, 0);
+  TickMap map(sticks);
+  HeldInput control(0.0);
+  const VectorXd none = VectorXd::Zero(1);
+  map.Run(rest, none, 0, control);
+  TickDifferences differences(map, sticks.rates().tick(), AllDofs(sticks.plant()));
+  TickTangent tangent = differences.Of(rest, none, 0, control);
+  EXPECT_LT(tangent.B(1, 0), 0.02 * free);
+  const std::vector<Index> dofs{0};
+  differences.Refresh(rest, none, 0, control, dofs, VectorXd::Constant(2, 1e-6),
+                      VectorXd::Constant(1, 10.0), tangent);
+  // MuJoCo's friction is right to a hundredth.
+  EXPECT_NEAR(tangent.B(1, 0) / free, 0.9, 0.01);
 }
 
 }  // namespace
