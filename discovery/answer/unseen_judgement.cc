@@ -88,8 +88,9 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
 ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
   ModelOnRuns nothing;
   // Of an empty model the search has it with the physics steps that it chose.
+  const bool as_given = data.steps && explained.widths.isZero(0.0);
   nothing.seen = explained.fit.model.empty() ? explained.path
-                 : data.steps                ? explained.nothing
+                 : as_given                  ? explained.nothing
                                              : FilterLikeliestFrom(
                                                    data.With({}), data.run.seen, data.reading_sd,
                                                    explained.nothing.dofs, {explained.nothing.noise});

@@ -215,9 +215,11 @@ bool Block::IsResistance() const {
          kind == Kind::kViscousFriction;
 }
 
-bool Block::IsOfVelocityAlone() const {
-  return candidate && candidate->parameters.size() == 2 &&
-         candidate->parameters.back().role == Role::kVelocity;
+bool Block::IsSimplest() const {
+  if (!candidate) return true;
+  const std::vector<FitParameter>& parameters = candidate->parameters;
+  return parameters.size() == 1 ||
+         (parameters.size() == 2 && parameters.back().role == Role::kVelocity);
 }
 
 bool IsAllowed(const Block& block, const TrialValues& values) {

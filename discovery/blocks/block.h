@@ -48,8 +48,8 @@ struct Block {
   bool HasShape() const;
   /// Of a joint, whatever it is proportional to.
   bool IsResistance() const;
-  /// An amplitude over a velocity: without a memory, a load or a place.
-  bool IsOfVelocityAlone() const;
+  /// A size, and at most a velocity that shapes it: without a memory or a place.
+  bool IsSimplest() const;
 };
 
 /// The motion of a run, and what of it does not change from block to block.

@@ -12,8 +12,9 @@
 
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/fit/exact_columns.h"
 #include "mjdiag/discovery/fit/input_choice.h"
-#include "mjdiag/discovery/fit/tick_columns.h"
+#include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/effects/effect.h"
@@ -45,12 +46,6 @@ class Search {
   Explained Run();
 
  private:
-  /// What members do, and what other physics steps do.
-  struct Exact {
-    std::vector<Term> terms;
-    Column other_steps;
-  };
-  Exact ExactColumns() const;
   struct Settled {
     ModelFit fit;
     FilterPath path;
@@ -64,8 +59,6 @@ class Search {
     VectorXd widths;  ///< of the inputs
     MeasuredRun run;
   };
-  using Fitted = std::function<ModelFit(const Model&)>;
-  ModelFit Pruned(ModelFit fit, const Fitted& fitted) const;
   void Adopt(Proposal proposal);
   void KeepRivals(const Moves& moves);
   bool Resettle(const Moves& moves, const ModelFit& as_it_is);
@@ -130,51 +123,6 @@ bool SameBlocks(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
 }
 
-/// One coordinate further.
-constexpr double kStep = 1e-3;
-
-Search::Exact Search::ExactColumns() const {
-  const Model& model = found_.fit.model;
-  const std::vector<Coordinate> coordinates = CoordinatesOf(found_.blocks, model);
-  const VectorXd x = Place(coordinates, model);
-  std::vector<OtherMachine> others;
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const auto place = static_cast<Index>(i);
-    const Coordinate& one = coordinates[i];
-    double step = one.is_log ? kStep : std::max(kStep * std::abs(x[place]), 1e-6);
-    if (x[place] + step > one.upper) step = -step;
-    VectorXd moved = x;
-    moved[place] += step;
-    others.push_back({With(At(coordinates, model, moved)), step});
-  }
-  for (std::size_t m = 0; m < model.size(); ++m) {
-    Model without = model;
-    without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
-    others.push_back({With(without)});
-  }
-  others.push_back({With(model, !steps_)});
-  std::vector<Column> columns = TickColumns(With(model), run_, found_.path, others);
-  Exact exact{std::vector<Term>(model.size()), std::move(columns.back())};
-  std::vector<Term>& terms = exact.terms;
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    Term& term = terms[coordinates[i].member];
-    term.columns.push_back(std::move(columns[i]));
-    const auto known = coordinates[i].is_known ? -x[static_cast<Index>(i)] : 0.0;
-    const Index count = std::ssize(term.columns);
-    term.mean.conservativeResize(count);
-    term.mean[count - 1] = known;
-    term.known.push_back(coordinates[i].is_known);
-  }
-  for (std::size_t m = 0; m < model.size(); ++m) {
-    terms[m].block = model[m].block;
-    // What is known may be far off (SizePrice), what shapes a law is wide.
-    constexpr double kWide = 3.0;
-    terms[m].sd = VectorXd::Constant(terms[m].mean.size(), kWide);
-    terms[m].removed = std::move(columns[coordinates.size() + m]);
-  }
-  return exact;
-}
-
 Model Search::After(const ModelMove& move) const {
   Model model;
   for (std::size_t m = 0; m < found_.fit.model.size(); ++m) {
@@ -186,34 +134,6 @@ Model Search::After(const ModelMove& move) const {
     model.push_back({added.variation.block, *added.variation.values(added.amplitudes)});
   }
   return model;
-}
-
-/// Without the members that a fit has made nothing of: a size that is known to be about 0
-/// and is now so close to it that the member costs more.
-ModelFit Search::Pruned(ModelFit fit, const Fitted& fitted) const {
-  for (bool again = true; again;) {
-    again = false;
-    const std::vector<Coordinate> coordinates = CoordinatesOf(found_.blocks, fit.model);
-    const VectorXd x = Place(coordinates, fit.model);
-    for (std::size_t m = 0; m < fit.model.size() && !again; ++m) {
-      double worth = 0.0;
-      bool is_sized = false;
-      for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const auto place = static_cast<Index>(i);
-        if (coordinates[i].member != m || !coordinates[i].is_known) continue;
-        is_sized = true;
-        worth += std::pow(x[place] / fit.sd[place], 2);
-      }
-      const double price = found_.blocks[fit.model[m].block].price;
-      if (!is_sized || worth > price) continue;
-      Model without = fit.model;
-      without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
-      ModelFit tried = fitted(without);
-      again = tried.score() < fit.score();
-      if (again) fit = std::move(tried);
-    }
-  }
-  return fit;
 }
 
 /// A model behind the noise that suits it, fitted anew, until neither gains by the other.
@@ -235,11 +155,11 @@ Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near,
     const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
     double gain = 0.0;
     try {
-      const Fitted fitted = [&](const Model& start) {
+      const FitOf fitted = [&](const Model& start) {
         return FitModel([&](const Model& model) { return With(model, steps); }, run_,
                         path, gains, found_.blocks, start, 4);
       };
-      Settled next{Pruned(fitted(settled.fit.model), fitted), {}};
+      Settled next{Pruned(found_.blocks, fitted(settled.fit.model), fitted), {}};
       next.path = filter(next.fit.model, {path.noise, noises[smaller]});
       gain = settled.score() - next.score();
       if (gain > 0.0) settled = std::move(next);
@@ -296,7 +216,9 @@ std::vector<const ModelMove*> Search::ToBeFitted(const Moves& moves) const {
 }
 
 std::optional<Search::Proposal> Search::BestMove() {
-  const Exact exact = ExactColumns();
+  const ExactColumns exact = ExactColumnsOf(
+      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
+      run_, found_.path, found_.blocks, found_.fit.model);
   const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
                               exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return AsItIs();
@@ -330,7 +252,7 @@ std::optional<Search::Proposal> Search::BestMove() {
     if (IsOver()) break;
     try {
       const Judged judged{move->noise, move->other_steps};
-      ModelFit fit = Pruned(fitted(After(*move), judged),
+      ModelFit fit = Pruned(found_.blocks, fitted(After(*move), judged),
                             [&](const Model& model) { return fitted(model, judged); });
       const double gain = base(judged).score() - fit.score();
       if (std::ranges::any_of(tried, [&](const Tried& other) {

@@ -139,8 +139,10 @@ bool MoveSearch::MayCome(const Block& block) const {
     return std::ranges::any_of(
         terms_, [&](const Term& term) { return is(blocks_[term.block]); });
   };
-  if (!block.HasShape()) return !any([&](const Block& in) { return &in == &block; });
-  return !block.IsResistance() || block.IsOfVelocityAlone() ||
+  if (!block.HasShape() && any([&](const Block& in) { return &in == &block; })) {
+    return false;
+  }
+  return !block.IsResistance() || block.IsSimplest() ||
          any([&](const Block& in) { return in.group == block.group; });
 }
 

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 VectorXcd WaveSums(const VectorXd& g, const VectorXd& angle, const VectorXd& increment,
                    Index count) {
-  constexpr Index kFiner = 8;
+  constexpr Index kFiner = 16;
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const auto size = static_cast<Index>(
       std::bit_ceil(static_cast<std::size_t>(kFiner * std::max<Index>(count, 1))));

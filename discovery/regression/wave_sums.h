@@ -5,7 +5,8 @@
 //
 // by one fast Fourier transform of the signal spread over the increments (non-uniform FFT of
 // type 1: A. Dutt, V. Rokhlin, "Fast Fourier transforms for nonequispaced data", SIAM J. Sci.
-// Comput. 14(6), 1993), linearly on a grid eight times as fine as the periods: right to 2 %.
+// Comput. 14(6), 1993), linearly on a grid sixteen times as fine: right to 1 % of what noise of
+// the signal's size sums up to.
 
 #include <Eigen/Core>
 

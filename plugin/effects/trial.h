@@ -41,8 +41,8 @@ struct Sweep {
   /// How many there are as far as the motion tells them apart, and which they are.
   Eigen::Index count = 0;
   std::function<double(Eigen::Index)> value;
-  Eigen::VectorXd angle;       ///< of the first value, samples [rad]
-  Eigen::VectorXd increment;   ///< from one value to the next, samples [rad]
+  Eigen::VectorXd angle;      ///< of the first value, samples [rad]
+  Eigen::VectorXd increment;  ///< from one value to the next, samples [rad]
   std::function<Trial(double)> make;
 };
 

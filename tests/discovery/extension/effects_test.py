@@ -9,6 +9,7 @@ import glob
 import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -71,7 +72,9 @@ def effects_of(folder):
 
 
 def plant(name):
-    (folder,) = glob.glob(os.path.join(PLANTS, name))
+    # Of a law, and none whose name ends as its.
+    (folder,) = [f for f in glob.glob(os.path.join(PLANTS, name))
+                 if re.fullmatch(name.replace("*", "[^_]*"), os.path.basename(f))]
     return folder, load(folder), effects_of(folder)
 
 

@@ -1,0 +1,17 @@
+#pragma once
+// A fitted model without the members that the fit has made nothing of: a size that is known
+// to be about 0, and is now so close to it that the member costs more than it is worth.
+
+#include <functional>
+#include <vector>
+
+#include "mjdiag/discovery/fit/model_fit.h"
+
+namespace mjdiag {
+
+using FitOf = std::function<ModelFit(const Model& start)>;
+
+/// @param fit_of  fits anew without one
+ModelFit Pruned(const std::vector<Block>& blocks, ModelFit fit, const FitOf& fit_of);
+
+}  // namespace mjdiag
