@@ -216,10 +216,7 @@ bool Block::IsResistance() const {
 }
 
 bool Block::IsSimplest() const {
-  if (!candidate) return true;
-  const std::vector<FitParameter>& parameters = candidate->parameters;
-  return parameters.size() == 1 ||
-         (parameters.size() == 2 && parameters.back().role == Role::kVelocity);
+  return !candidate || candidate->parameters.size() == 1;
 }
 
 bool IsAllowed(const Block& block, const TrialValues& values) {

@@ -48,7 +48,7 @@ struct Block {
   bool HasShape() const;
   /// Of a joint, whatever it is proportional to.
   bool IsResistance() const;
-  /// A size, and at most a velocity that shapes it: without a memory or a place.
+  /// A size and nothing that shapes it.
   bool IsSimplest() const;
 };
 

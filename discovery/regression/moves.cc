@@ -131,8 +131,8 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
 }
 
 // The shape of a resistance shows where the velocity changes its sign, which no filter
-// knows that lacks it: first the simplest comes in, those that the velocity alone shapes, and
-// then, along the motion with that, the others in its place. What has no shape is in with all
+// knows that lacks it: first the simplest comes in, and then, along the motion with that, the
+// others in its place. What has no shape is in with all
 // that it can be.
 bool MoveSearch::MayCome(const Block& block) const {
   const auto any = [&](const auto& is) {
