@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
-#include "mjdiag/discovery/checks/data_check.h"
+#include "mjdiag/discovery/answer/answer_notes.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/record_replay.h"
@@ -318,24 +318,8 @@ Discovery Discoverer::Run() {
 Discovery Discover(const Machine& machine, const Measurements& measurements,
                    const DiscoverOptions& options) {
   Measurements split = WithUnseen(measurements, options.train_share);
-  std::vector<std::string> notes;
-  const auto check = [&](const std::vector<MeasuredRecord>& records,
-                         const std::string& role) {
-    for (const MeasuredRecord& one : records) {
-      const bool named = split.Several() && !one.name.empty();
-      const std::string of = named ? one.name + ": " : role;
-      std::vector<std::string> of_record = one.notes;
-      std::ranges::copy(CheckRecord(one.machine, one.record),
-                        std::back_inserter(of_record));
-      for (const std::string& note : of_record) notes.push_back(of + note);
-    }
-  };
-  check(split.fit, "");
-  check(split.unseen, "validation record: ");
-  if (const std::string fixed = NoteOfFixedNumbers(machine.plant());
-      options.doubt && !fixed.empty()) {
-    notes.push_back(fixed);
-  }
+  const std::vector<std::string> notes =
+      NotesOfChecks(machine.plant(), split, options.doubt);
   Discovery discovery = Discoverer(machine, std::move(split), options).Run();
   discovery.notes.insert(discovery.notes.begin(), notes.begin(), notes.end());
   return discovery;

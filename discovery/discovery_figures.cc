@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
 #include "mjdiag/comparison/missing_force.h"
+#include "mjdiag/discovery/answer/force_figures.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/discovery/law.h"
+#include "mjdiag/discovery/mismatch_figures.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
@@ -20,8 +21,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kLawPoints = 3000;
-
 std::vector<std::string> DrivenNames(const MechanicalModel& model) {
   std::vector<std::string> names;
   std::set<Index> seen;
@@ -30,58 +29,6 @@ std::vector<std::string> DrivenNames(const MechanicalModel& model) {
     names.push_back(model.coordinates[static_cast<std::size_t>(joint)]);
   }
   return names;
-}
-
-/// rms of measured minus simulated of records, samples from `first` on.
-/// @param samples  of every record; 0: all
-std::map<std::string, double> MismatchRms(
-    const std::vector<const Comparison*>& comparisons, Index first, Index samples) {
-  std::map<std::string, double> squares;
-  std::map<std::string, double> counts;
-  for (const Comparison* comparison : comparisons) {
-    for (const ChannelMismatch& channel : comparison->channels) {
-      const Channel& measured = comparison->measured.At(channel.name);
-      const VectorXd difference =
-          measured.samples - comparison->simulated.At(channel.name).samples;
-      const Index n = samples > 0 ? samples : difference.size() - first;
-      const VectorXd counted =
-          measured.measured.size() == 0
-              ? VectorXd(difference.segment(first, n))
-              : Kept(difference.segment(first, n), measured.measured.segment(first, n));
-      squares[channel.name] += counted.squaredNorm();
-      counts[channel.name] += static_cast<double>(counted.size());
-    }
-  }
-  for (auto& [name, square] : squares) square = std::sqrt(square / counts[name]);
-  return squares;
-}
-
-double Gain(const std::map<std::string, double>& before,
-            const std::map<std::string, double>& after,
-            const std::map<std::string, double>& floor) {
-  double was = 0.0;
-  double is = 0.0;
-  for (const auto& [channel, rms] : before) {
-    const double scale = std::max(floor.at(channel), 1e-300);
-    was += std::pow(rms / scale, 2);
-    is += std::pow(after.at(channel) / scale, 2);
-  }
-  return was > 0.0 ? 1.0 - std::sqrt(is / was) : 0.0;
-}
-
-/// The same of a machine that leaves its rest.
-std::vector<UnknownSignal> Named(const std::vector<MissingForce>& forces,
-                                 double sample_time) {
-  std::vector<UnknownSignal> signals;
-  for (const MissingForce& force : forces) {
-    // How fast it changes is how far it is told.
-    const Index last = force.value.size() - 1;
-    const double rate = (force.value.tail(last) - force.value.head(last)).norm() /
-                        std::max(force.value.norm(), 1e-300) / sample_time;
-    signals.push_back({force.joint, force.unit, force.value, force.sd, 0,
-                       rate / (2.0 * std::numbers::pi)});
-  }
-  return signals;
 }
 
 }  // namespace
@@ -102,7 +49,7 @@ std::vector<UnknownSignal> Discoverer::UnexplainedIn(const Track& track,
       filter_ = FilterLikeliest(problem_.machine(), run, problem_.observer().noise_sd);
     }
     const Machine machine = problem_.machine().With(changes);
-    return Named(
+    return SignalsOf(
         MissingForces(machine, RunForceFilter(machine, run, filter_->dofs,
                                               filter_->starts, filter_->noise)),
         run.sample_time);
@@ -162,16 +109,7 @@ LawPlot Discoverer::PlotLaw(const ObservedMotion& motion, std::size_t cause) con
                            ? learned->second.axis
                            : AxisOf(named.effect->variable(), candidate, motion, hinge,
                                     machine_.channels().actuators[channel].unit);
-  plot.x_name = axis.name;
-  plot.x_unit = axis.unit;
-  plot.y_unit = without.unit;
-  const Index stride = std::max<Index>(1, axis.x.size() / kLawPoints);
-  const auto every = Eigen::seqN(0, axis.x.size() / stride, stride);
-  plot.x = axis.x(every);
-  plot.y = without.value(every);
-  const Eigen::MatrixX2d curve = LawCurve(named, axis.x, explained);
-  plot.law_x = curve.col(0);
-  plot.law_y = curve.col(1);
+  DrawLaw(axis, without, explained, named, plot);
   return plot;
 }
 
@@ -242,27 +180,7 @@ void Discoverer::AddComparisons() {
   const Index skip = problem_.skip();
   const Index train = problem_.train();
   const bool one = measurements_.fit.size() == 1;
-  const auto figures = [&](const Comparison RecordReplay::*model) {
-    std::vector<const Comparison*> seen;
-    std::vector<const Comparison*> unseen;
-    for (const RecordReplay& replay : discovery_.records) {
-      (replay.seen ? seen : unseen).push_back(&(replay.*model));
-    }
-    return Discovery::Figures{
-        MismatchRms(seen, skip, one ? train - skip : 0),
-        unseen.empty() ? MismatchRms(seen, train, 0) : MismatchRms(unseen, skip, 0)};
-  };
-  discovery_.mismatch_before = figures(&RecordReplay::before);
-  discovery_.mismatch_after = figures(&RecordReplay::after);
-  for (const ChannelMismatch& channel : discovery_.Fitted()->after.channels) {
-    discovery_.noise_floor[channel.name] = channel.noise_floor.rms;
-    discovery_.unit[channel.name] = channel.unit;
-  }
-  discovery_.gain_train = Gain(discovery_.mismatch_before.train,
-                               discovery_.mismatch_after.train, discovery_.noise_floor);
-  discovery_.gain_validation =
-      Gain(discovery_.mismatch_before.validation, discovery_.mismatch_after.validation,
-           discovery_.noise_floor);
+  AddMismatchFigures(skip, train, one ? train - skip : 0, discovery_);
 }
 
 void Discoverer::AddLimits() {

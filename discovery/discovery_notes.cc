@@ -2,14 +2,12 @@
 // come to.
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <string>
 
+#include "mjdiag/discovery/answer/answer_notes.h"
 #include "mjdiag/discovery/discoverer.h"
 #include "mjdiag/discovery/screening/screening.h"
 #include "mjdiag/discovery/selection/completeness.h"
-#include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -19,17 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Times a budget that was too small.
-constexpr double kMore = 5.0;
-
 constexpr const char* kExperiments = "experiments that would tell causes apart";
-
-/// Of a budget, as it was given.
-std::string Seconds(double value) {
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%g", value);
-  return digits.data();
-}
 
 }  // namespace
 
@@ -43,18 +31,13 @@ void Discoverer::NoteQuietAxes(const ObservedMotion& motion) {
         problem_.machine().linear().coordinates[static_cast<std::size_t>(seen[y])];
     if (range < kMoves * problem_.observer().noise_sd[static_cast<Index>(y)]) {
       discovery_.notes.push_back(
-          "'" + machine_.channels().sensors[y].channel +
-          "' does not move: friction, springs, ripple, mass and motor of joint '" +
-          joint + "' cannot be judged; record a motion of it");
+          NoteOfQuietAxis(machine_.channels().sensors[y].channel, joint));
     }
   }
 }
 
 void Discoverer::NoteLateness(double delay) {
-  discovery_.notes.push_back("all inputs act " + FormatQuantity(delay, "s") +
-                             " later than in the simulation; it has physics steps of " +
-                             FormatQuantity(problem_.step(), "s") +
-                             ", which are off by up to half of that");
+  discovery_.notes.push_back(NoteOfLateness(delay, problem_.step()));
 }
 
 /// Numbers that are further from what the plant says than anyone expects, with what could
@@ -123,21 +106,8 @@ void Discoverer::NoteTwins(std::size_t cause) {
       discovery_.notes.push_back(note);
       continue;
     }
-    const auto experiment = FindDiscriminatingExperiment(
-        machine_.WithSensorNoise(problem_.observer().noise_sd),
-        ChangesOf({found.cause}), ChangesOf({CauseOf(candidates_, other.cause)}));
-    constexpr double kTells = 4.0;
-    if (!experiment || experiment->separation < kTells) {
-      note += "; no trajectory of the setup would, a larger or faster motion may";
-    } else {
-      note += "; trajectory '" + experiment->trajectory + "'";
-      if (experiment->slower > 1.0) {
-        note += ", " + std::to_string(static_cast<int>(experiment->slower)) +
-                " times slower,";
-      }
-      note += " would, by " + std::to_string(static_cast<int>(experiment->separation)) +
-              " standard deviations";
-    }
+    note += NoteOfExperiment(machine_.WithSensorNoise(problem_.observer().noise_sd),
+                             found.cause, CauseOf(candidates_, other.cause));
     discovery_.notes.push_back(note);
   }
 }
@@ -157,12 +127,7 @@ void Discoverer::NoteBudget() {
   Budget& budget = discovery_.budget;
   budget = {work_->used(), work_->limit(), work_->IsStopped(), work_->left_out()};
   if (budget.left_out.empty()) return;
-  const std::string rest = Listed(budget.left_out);
-  discovery_.notes.push_back(budget.stopped
-                                 ? "it was stopped; left out: " + rest
-                                 : "ended by its budget of " + Seconds(budget.limit) +
-                                       " s; left out: " + rest + "; --budget " +
-                                       Seconds(kMore * budget.limit) + " goes on");
+  discovery_.notes.push_back(NoteOfBudget(budget, Listed(budget.left_out)));
 }
 
 }  // namespace mjdiag

@@ -42,20 +42,25 @@ std::string WithValues(const FoundCause& found) {
   return CauseName(found.cause) + (values.empty() ? "" : " (" + values + ")");
 }
 
+/// Of a number, how far it is moved, or its factor.
+CauseParameter ChangeOf(const CalibratedNumber& number) {
+  if (number.shift > 0.0) {
+    return {"shift",
+            number.shift_unit,
+            number.shift * std::log(number.factor),
+            0.0,
+            number.shift * std::log(number.low),
+            number.shift * std::log(number.high)};
+  }
+  return {"factor", "1", number.factor, 0.0, number.low, number.high};
+}
+
 /// "stiffness@X 0.9556 times what the model says".
 std::string NumberText(const CalibratedNumber& number) {
   if (number.shift > 0.0) {
-    const CauseParameter shift{"shift",
-                               number.shift_unit,
-                               number.shift * std::log(number.factor),
-                               0.0,
-                               number.shift * std::log(number.low),
-                               number.shift * std::log(number.high)};
-    return number.name + " moved by " + ValueText(shift);
+    return number.name + " moved by " + ValueText(ChangeOf(number));
   }
-  const CauseParameter factor{"factor", "1",        number.factor,
-                              0.0,      number.low, number.high};
-  return number.name + " " + ValueText(factor) + " times what the model says";
+  return number.name + " " + ValueText(ChangeOf(number)) + " times what the model says";
 }
 
 std::string FoundText(const Discovery& discovery) {
@@ -285,22 +290,13 @@ Table CalibrationTable(const Discovery& discovery) {
                    {"Known beforehand to", true}};
   for (const CalibratedNumber& number : discovery.calibration) {
     if (!IsOff(number)) continue;
-    if (number.shift > 0.0) {
-      const CauseParameter shift{"shift",
-                                 number.shift_unit,
-                                 number.shift * std::log(number.factor),
-                                 0.0,
-                                 number.shift * std::log(number.low),
-                                 number.shift * std::log(number.high)};
-      table.rows.push_back(
-          {number.name, "moved by " + ValueText(shift), IntervalText(shift),
-           FormatQuantity(number.shift * number.doubt, number.shift_unit)});
-      continue;
-    }
-    const CauseParameter factor{"factor", "1",        number.factor,
-                                0.0,      number.low, number.high};
-    table.rows.push_back({number.name, ValueText(factor), IntervalText(factor),
-                          Percent(100.0 * number.doubt)});
+    const CauseParameter change = ChangeOf(number);
+    const bool is_moved = number.shift > 0.0;
+    table.rows.push_back(
+        {number.name, (is_moved ? "moved by " : "") + ValueText(change),
+         IntervalText(change),
+         is_moved ? FormatQuantity(number.shift * number.doubt, number.shift_unit)
+                  : Percent(100.0 * number.doubt)});
   }
   return table;
 }

@@ -1,16 +1,21 @@
 #include "mjdiag/discovery/answer/answer_notes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/selection/discriminating_experiment.h"
 #include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/site.h"
+#include "mjdiag/plugin/plant/fixed_numbers.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/quantity.h"
@@ -32,32 +37,17 @@ void NoteQuiet(const AnswerData& data, const VectorXd& reading_noise,
     const VectorXd read = data.run.seen.ReadingsOf(row);
     const double range = read.maxCoeff() - read.minCoeff();
     if (range >= kMoving * reading_noise[row]) continue;
-    notes.push_back("'" + data.machine.channels().sensors[y].channel +
-                    "' does not move: friction, springs, ripple, mass and motor of "
-                    "joint '" +
-                    linear.coordinates[static_cast<std::size_t>(seen[y])] +
-                    "' cannot be judged; record a motion of it");
+    notes.push_back(
+        NoteOfQuietAxis(data.machine.channels().sensors[y].channel,
+                        linear.coordinates[static_cast<std::size_t>(seen[y])]));
   }
 }
 
-/// Which trajectory of the setup tells two causes apart.
+/// NoteOfExperiment; "" where one of the two makes a machine that diverges or cannot be.
 std::string ExperimentText(const Machine& machine, const Cause& one,
                            const Cause& other) {
-  constexpr double kTold = 4.0;  // standard deviations
   try {
-    const auto experiment =
-        FindDiscriminatingExperiment(machine, ChangesOf({one}), ChangesOf({other}));
-    if (!experiment || experiment->separation < kTold) {
-      return "; no trajectory of the setup would, a larger or faster motion may";
-    }
-    std::string text = "; trajectory '" + experiment->trajectory + "'";
-    if (experiment->slower > 1.0) {
-      text += ", " + std::to_string(static_cast<int>(experiment->slower)) +
-              " times slower,";
-    }
-    return text + " would, by " +
-           std::to_string(static_cast<int>(experiment->separation)) +
-           " standard deviations";
+    return NoteOfExperiment(machine, one, other);
   } catch (const NumericalError&) {
     return "";
   } catch (const InputError&) {
@@ -104,6 +94,70 @@ void NoteFar(const CalibratedNumber& number, std::vector<std::string>& notes) {
 
 }  // namespace
 
+std::vector<std::string> NotesOfChecks(const mjModel& plant, const Measurements& split,
+                                       bool doubt) {
+  std::vector<std::string> notes;
+  const auto check = [&](const std::vector<MeasuredRecord>& records,
+                         const std::string& role) {
+    for (const MeasuredRecord& one : records) {
+      const bool named = split.Several() && !one.name.empty();
+      const std::string of = named ? one.name + ": " : role;
+      std::vector<std::string> of_record = one.notes;
+      std::ranges::copy(CheckRecord(one.machine, one.record),
+                        std::back_inserter(of_record));
+      for (const std::string& note : of_record) notes.push_back(of + note);
+    }
+  };
+  check(split.fit, "");
+  check(split.unseen, "validation record: ");
+  const std::string fixed = NoteOfFixedNumbers(plant);
+  if (doubt && !fixed.empty()) notes.push_back(fixed);
+  return notes;
+}
+
+std::string NoteOfBudget(const Budget& budget, const std::string& rest) {
+  if (budget.stopped) return "it was stopped; left out: " + rest;
+  constexpr double kMore = 5.0;  // times a budget that was too small
+  // As it is given on a command line.
+  const auto seconds = [](double value) {
+    std::array<char, 32> digits{};
+    std::snprintf(digits.data(), digits.size(), "%g", value);
+    return std::string(digits.data());
+  };
+  return "ended by its budget of " + seconds(budget.limit) + " s; left out: " + rest +
+         "; --budget " + seconds(kMore * budget.limit) + " goes on";
+}
+
+std::string NoteOfQuietAxis(const std::string& channel, const std::string& joint) {
+  return "'" + channel +
+         "' does not move: friction, springs, ripple, mass and motor of joint '" +
+         joint + "' cannot be judged; record a motion of it";
+}
+
+std::string NoteOfLateness(double delay, double step) {
+  return "all inputs act " + FormatQuantity(delay, "s") +
+         " later than in the simulation; it has physics steps of " +
+         FormatQuantity(step, "s") + ", which are off by up to half of that";
+}
+
+std::string NoteOfExperiment(const Machine& machine, const Cause& one,
+                             const Cause& other) {
+  constexpr double kTold = 4.0;  // standard deviations
+  const auto experiment =
+      FindDiscriminatingExperiment(machine, ChangesOf({one}), ChangesOf({other}));
+  if (!experiment || experiment->separation < kTold) {
+    return "; no trajectory of the setup would, a larger or faster motion may";
+  }
+  std::string text = "; trajectory '" + experiment->trajectory + "'";
+  if (experiment->slower > 1.0) {
+    text +=
+        ", " + std::to_string(static_cast<int>(experiment->slower)) + " times slower,";
+  }
+  return text + " would, by " +
+         std::to_string(static_cast<int>(experiment->separation)) +
+         " standard deviations";
+}
+
 void AddNotes(const AnswerData& data, const UnseenJudgement& judged,
               const std::function<bool()>& may_go_on, Discovery& discovery) {
   for (const std::string& refuted : judged.refuted) {
@@ -112,10 +166,7 @@ void AddNotes(const AnswerData& data, const UnseenJudgement& judged,
   }
   if (!data.steps) {
     const double step = data.machine.plant().opt.timestep;
-    discovery.notes.push_back(
-        "all inputs act " + FormatQuantity(0.5 * step, "s") +
-        " later than in the simulation; it has physics steps of " +
-        FormatQuantity(step, "s") + ", which are off by up to half of that");
+    discovery.notes.push_back(NoteOfLateness(0.5 * step, step));
   }
   const VectorXd& noise = judged.answer.seen.noise.reading;
   NoteQuiet(data, noise, discovery.notes);

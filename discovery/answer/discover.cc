@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -21,12 +20,11 @@
 #include "mjdiag/discovery/answer/replay_figures.h"
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
-#include "mjdiag/discovery/checks/data_check.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
-#include "mjdiag/plugin/plant/fixed_numbers.h"
 #include "mjdiag/plugin/replay/input_noise.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -40,8 +38,6 @@ using Clock = std::chrono::steady_clock;
 
 /// Of the budget, what the search may use; the rest is for the judgement.
 constexpr double kShareOfSearch = 0.7;
-/// Times a budget that was too small.
-constexpr double kMoreTime = 5.0;
 
 /// Seconds since a discovery began, against its budget.
 class RunningTime {
@@ -68,45 +64,16 @@ class RunningTime {
   Clock::time_point begin_ = Clock::now();
 };
 
-std::vector<std::string> CheckAll(const Machine& machine, const Measurements& split,
-                                  bool doubt) {
-  std::vector<std::string> notes;
-  const auto check = [&](const std::vector<MeasuredRecord>& records,
-                         const std::string& role) {
-    for (const MeasuredRecord& one : records) {
-      const bool named = split.Several() && !one.name.empty();
-      const std::string of = named ? one.name + ": " : role;
-      std::vector<std::string> of_record = one.notes;
-      std::ranges::copy(CheckRecord(one.machine, one.record),
-                        std::back_inserter(of_record));
-      for (const std::string& note : of_record) notes.push_back(of + note);
-    }
-  };
-  check(split.fit, "");
-  check(split.unseen, "validation record: ");
-  const std::string fixed = NoteOfFixedNumbers(machine.plant());
-  if (doubt && !fixed.empty()) notes.push_back(fixed);
-  return notes;
-}
-
 std::vector<PlantNumber> DoubtedNumbers(const Machine& machine,
                                         const DiscoverOptions& options) {
   if (!options.doubt) return {};
-  std::vector<PlantNumber> numbers = PlantNumbers(machine.plant());
-  std::ranges::copy(CentreNumbers(machine.plant()), std::back_inserter(numbers));
+  std::vector<PlantNumber> numbers = NumbersOf(machine.plant());
   for (const std::string& text : options.known) {
     for (const PlantNumber& known : PlantNumbersOf(machine.plant(), text)) {
       std::erase(numbers, known);
     }
   }
   return numbers;
-}
-
-/// As it is given on a command line.
-std::string SecondsText(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%g", value);
-  return digits;
 }
 
 /// "coulomb_friction@load (mismatch 100 % to 7 %)": of the latent forces, rms.
@@ -170,15 +137,7 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
     budget.left_out.push_back("whether unseen data ask for every member of the answer");
   }
   if (budget.left_out.empty()) return;
-  std::string rest;
-  for (const std::string& one : budget.left_out) {
-    rest += (rest.empty() ? "" : " and ") + one;
-  }
-  discovery.notes.push_back(
-      budget.stopped ? "it was stopped; left out: " + rest
-                     : "ended by its budget of " + SecondsText(budget.limit) +
-                           " s; left out: " + rest + "; --budget " +
-                           SecondsText(kMoreTime * budget.limit) + " goes on");
+  discovery.notes.push_back(NoteOfBudget(budget, Listed(budget.left_out, " and ")));
 }
 
 }  // namespace
@@ -188,7 +147,7 @@ Discovery DiscoverByFilter(const Machine& machine, const Measurements& measureme
   RunningTime time(options);
   const Measurements parts = WithUnseen(measurements, options.train_share);
   Discovery discovery;
-  discovery.notes = CheckAll(machine, parts, options.doubt);
+  discovery.notes = NotesOfChecks(machine.plant(), parts, options.doubt);
   const SplitRun run = Split(parts, options.train_share);
   const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen, {});
   discovery.setup = machine.setup().name;

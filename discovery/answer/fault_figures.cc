@@ -15,18 +15,41 @@ using Eigen::VectorXd;
 
 namespace {
 
-double LimitBeside(const AnswerData& data, const ModelOnRuns& one,
+/// A model with its gains, and what it leaves behind them.
+struct Beside {
+  Changes changes;
+  const FilterPath& path;
+  KeptGains gains;
+  VectorXd left;
+};
+
+Beside BesideOf(const AnswerData& data, const ModelOnRuns& one) {
+  Beside beside{
+      ChangesOf(data.blocks, one.fit.model), one.seen, KeepGains(one.seen), {}};
+  try {
+    beside.left =
+        PredictAlong(data.With(one.fit.model), data.run.seen, one.seen, beside.gains);
+  } catch (const NumericalError&) {
+    // Of a machine that diverges nothing is known.
+  }
+  return beside;
+}
+
+/// 0 where nothing is known.
+double LimitBeside(const AnswerData& data, const Beside& beside,
                    const std::string& fault) {
+  if (beside.left.size() == 0) return 0.0;
   constexpr double kStep = 1e-3;
-  const KeptGains gains = KeepGains(one.seen);
-  Changes changes = ChangesOf(data.blocks, one.fit.model);
+  Changes changes = beside.changes;
   changes.faults.push_back({fault, 1.0 + kStep});
   const Machine faulty = data.machine.With(changes);
-  const VectorXd moved = PredictAlong(data.steps ? faulty : faulty.WithoutSteps(),
-                                      data.run.seen, one.seen, gains);
-  const VectorXd left =
-      PredictAlong(data.With(one.fit.model), data.run.seen, one.seen, gains);
-  return HiddenFault((left - moved) / kStep, left);
+  try {
+    const VectorXd moved = PredictAlong(data.steps ? faulty : faulty.WithoutSteps(),
+                                        data.run.seen, beside.path, beside.gains);
+    return HiddenFault((beside.left - moved) / kStep, beside.left);
+  } catch (const NumericalError&) {
+    return 0.0;
+  }
 }
 
 }  // namespace
@@ -34,17 +57,15 @@ double LimitBeside(const AnswerData& data, const ModelOnRuns& one,
 void AddFaultLimits(const AnswerData& data, const UnseenJudgement& judged,
                     Discovery& discovery) {
   const std::vector<FaultParameter> faults = FaultParameters(data.machine.plant());
+  if (faults.empty()) return;
   std::vector<FaultLimit> limits(faults.size());
+  const Beside before = BesideOf(data, judged.nothing);
+  const Beside after = BesideOf(data, judged.answer);
   ParallelFor(2 * static_cast<int>(faults.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number / 2);
     const bool is_before = number % 2 == 0;
     double& limit = is_before ? limits[i].before : limits[i].after;
-    try {
-      limit =
-          LimitBeside(data, is_before ? judged.nothing : judged.answer, faults[i].name);
-    } catch (const NumericalError&) {
-      limit = 0.0;  // of a machine that diverges nothing is known
-    }
+    limit = LimitBeside(data, is_before ? before : after, faults[i].name);
   });
   for (std::size_t i = 0; i < faults.size(); ++i) {
     if (!(limits[i].before > 0.0) || !(limits[i].after > 0.0)) continue;

@@ -29,29 +29,10 @@ namespace {
 constexpr Index kPointsOfLaw = 3000;
 constexpr Index kLeastSamples = 400;  // FindSignature
 
-std::vector<UnknownSignal> SignalsOf(const std::vector<MissingForce>& forces,
-                                     double sample_time) {
-  std::vector<UnknownSignal> signals;
-  for (const MissingForce& force : forces) {
-    // How fast it changes is how far it is told.
-    const Index last = force.value.size() - 1;
-    const double rate = (force.value.tail(last) - force.value.head(last)).norm() /
-                        std::max(force.value.norm(), 1e-300) / sample_time;
-    signals.push_back({force.joint, force.unit, force.value, force.sd, 0,
-                       rate / (2.0 * std::numbers::pi)});
-  }
-  return signals;
-}
-
 const UnknownSignal* SignalAt(const std::vector<UnknownSignal>& signals,
                               const std::string& site) {
   const auto found = std::ranges::find(signals, site, &UnknownSignal::site);
   return found == signals.end() ? nullptr : &*found;
-}
-
-Model ModelWithoutBlock(Model model, std::size_t place) {
-  model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
-  return model;
 }
 
 std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& judged,
@@ -66,9 +47,9 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
   const UnknownSignal* after = SignalAt(discovery.forces_after, plot.site);
   if (after == nullptr) return std::nullopt;
   const FilterPath& path = judged.nothing.seen;
-  const auto without = SignalsOf(
-      ForcesBeside(data.With(ModelWithoutBlock(model, member)), data.run.seen, path),
-      path.sample_time);
+  const auto without =
+      SignalsOf(ForcesBeside(data.With(Without(model, member)), data.run.seen, path),
+                path.sample_time);
   const UnknownSignal& force = *SignalAt(without, plot.site);
   const bool hinge = plant.jnt_type[plant.dof_jntid[candidate.joint]] == mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
@@ -79,6 +60,28 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
     const CurveCourse course = CourseOfCurve(plant, candidate, motion);
     axis = {course.x, course.name, course.unit};
   }
+  DrawLaw(axis, force, force.value - after->value, cause, plot);
+  return plot;
+}
+
+}  // namespace
+
+std::vector<UnknownSignal> SignalsOf(const std::vector<MissingForce>& forces,
+                                     double sample_time) {
+  std::vector<UnknownSignal> signals;
+  for (const MissingForce& force : forces) {
+    // How fast it changes is how far it is told.
+    const Index last = force.value.size() - 1;
+    const double rate = (force.value.tail(last) - force.value.head(last)).norm() /
+                        std::max(force.value.norm(), 1e-300) / sample_time;
+    signals.push_back({force.joint, force.unit, force.value, force.sd, 0,
+                       rate / (2.0 * std::numbers::pi)});
+  }
+  return signals;
+}
+
+void DrawLaw(const LawAxis& axis, const UnknownSignal& force, const VectorXd& explained,
+             const Cause& cause, LawPlot& plot) {
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;
   plot.y_unit = force.unit;
@@ -86,14 +89,10 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
   const auto every = Eigen::seqN(0, axis.x.size() / stride, stride);
   plot.x = axis.x(every);
   plot.y = force.value(every);
-  const Eigen::MatrixX2d curve =
-      LawCurve(cause, axis.x, VectorXd(force.value - after->value));
+  const Eigen::MatrixX2d curve = LawCurve(cause, axis.x, explained);
   plot.law_x = curve.col(0);
   plot.law_y = curve.col(1);
-  return plot;
 }
-
-}  // namespace
 
 ObservedMotion MotionOfAnswer(const AnswerData& data, const UnseenJudgement& judged) {
   return MotionAlong(data.With(judged.answer.fit.model), data.run.seen,

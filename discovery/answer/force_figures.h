@@ -4,12 +4,23 @@
 
 #include <vector>
 
+#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/discovery.h"
+#include "mjdiag/discovery/law.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
 
 namespace mjdiag {
+
+/// The same by joint and frequency: how fast a force changes is how far it is told.
+std::vector<UnknownSignal> SignalsOf(const std::vector<MissingForce>& forces,
+                                     double sample_time);
+
+/// A law over what it depends on, and the force that all but it leave, at points.
+/// @param explained  what it explains of that
+void DrawLaw(const LawAxis& axis, const UnknownSignal& force,
+             const Eigen::VectorXd& explained, const Cause& cause, LawPlot& plot);
 
 /// The motion that the machine with the answer made in what fits saw.
 ObservedMotion MotionOfAnswer(const AnswerData& data, const UnseenJudgement& judged);

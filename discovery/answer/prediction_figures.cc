@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mjdiag/comparison/prediction.h"
-#include "mjdiag/discovery/answer/replay_figures.h"
+#include "mjdiag/discovery/mismatch_figures.h"
 
 namespace mjdiag {
 

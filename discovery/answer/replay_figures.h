@@ -17,9 +17,6 @@ namespace mjdiag {
 bool AddReplays(const Measurements& measurements, const Changes& changes,
                 Eigen::Index skip, std::uint64_t seed, Discovery& discovery);
 
-/// Gains of the mismatch and noise floors that a discovery has.
-void SetGains(Discovery& discovery);
-
 /// After every member, the one that is worth most first: innovations over their standard
 /// deviation behind the filter of the whole answer, in what fits saw and in what they did
 /// not. And how far these are from white.

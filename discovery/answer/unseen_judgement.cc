@@ -107,11 +107,6 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
   return nothing;
 }
 
-Model WithoutMember(Model model, std::size_t place) {
-  model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
-  return model;
-}
-
 /// That unseen data speak against it by more than fits are off, or that it is not worth its
 /// price.
 bool IsRefuted(const MemberLoss& loss) {
@@ -193,8 +188,8 @@ bool UnseenJudge::DropWorst() {
       break;
     }
     try {
-      ModelOnRuns without = Refitted(data_, WithoutMember(model, m), answer.seen.dofs,
-                                     Near(), judged_.nothing.seen.noise);
+      ModelOnRuns without = Refitted(data_, Without(model, m), answer.seen.dofs, Near(),
+                                     judged_.nothing.seen.noise);
       judged_.losses[m] = LossOf(without);
       const bool is_worst =
           !best || judged_.losses[m].Total() < judged_.losses[worst].Total();

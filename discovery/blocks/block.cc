@@ -87,10 +87,6 @@ VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& 
   return sd;
 }
 
-VectorXd SpansOf(const ObservedMotion& motion) {
-  return motion.outputs.rowwise().maxCoeff() - motion.outputs.rowwise().minCoeff();
-}
-
 std::vector<Trial> TrialsOf(const Machine& machine, const Candidate& candidate,
                             const ObservedMotion& motion) {
   if (!IsCurve(candidate)) return MakeTrials(machine, candidate, motion);
@@ -100,10 +96,11 @@ std::vector<Trial> TrialsOf(const Machine& machine, const Candidate& candidate,
 
 void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t place,
                  Block& block, const std::function<void(Variation&&)>& take) {
+  const BlockScales scales = ScalesOf(machine, along, block);
   std::size_t shape = 0;
   Index count = 0;
   for (const Trial& trial : TrialsOf(machine, *block.candidate, along.motion)) {
-    Variation variation = VariationOf(machine, along, place, block, trial, shape++);
+    Variation variation = VariationOf(place, block, scales, trial, shape++);
     if (variation.columns.empty()) continue;
     ++count;
     take(std::move(variation));
@@ -149,16 +146,10 @@ std::string GroupOf(Kind kind, const std::string& name) {
 
 }  // namespace
 
-std::vector<PlantNumber> NumbersInDoubt(const mjModel& plant) {
-  if (IsExact(plant)) return {};
+std::vector<PlantNumber> NumbersOf(const mjModel& plant) {
   std::vector<PlantNumber> numbers = PlantNumbers(plant);
   std::ranges::copy(CentreNumbers(plant), std::back_inserter(numbers));
   return numbers;
-}
-
-std::vector<Block> BlocksOf(const Machine& machine,
-                            const std::vector<Candidate>& candidates) {
-  return BlocksOf(machine, candidates, NumbersInDoubt(machine.plant()));
 }
 
 std::vector<Block> BlocksOf(const Machine& machine,
@@ -262,9 +253,17 @@ std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
   return MakeSweep(machine, *block.candidate, along.motion, along.duration);
 }
 
-Variation VariationOf(const Machine& machine, const BlockMotion& along,
-                      std::size_t place, const Block& block, const Trial& trial,
-                      std::size_t shape) {
+BlockScales ScalesOf(const Machine& machine, const BlockMotion& along,
+                     const Block& block) {
+  const Candidate& candidate = *block.candidate;
+  const Site site{candidate.site, candidate.joint, candidate.channel};
+  const ObservedMotion& motion = along.motion;
+  return {ScalesOf(At(machine, motion, site)),
+          motion.outputs.rowwise().maxCoeff() - motion.outputs.rowwise().minCoeff()};
+}
+
+Variation VariationOf(std::size_t place, const Block& block, const BlockScales& scales,
+                      const Trial& trial, std::size_t shape) {
   const Candidate& candidate = *block.candidate;
   Variation variation{place, shape,       ColumnsOf(trial, candidate.channel),
                       {},    trial.least, trial.values};
@@ -273,11 +272,9 @@ Variation VariationOf(const Machine& machine, const BlockMotion& along,
     variation.columns.clear();
     return variation;
   }
-  const Site site{candidate.site, candidate.joint, candidate.channel};
-  const Scales scales = ScalesOf(At(machine, along.motion, site));
   const auto amplitudes = std::ssize(variation.columns);
-  variation.sd = SpreadOf(candidate, trial, scales, trial.summed ? 1 : amplitudes,
-                          variation.columns, SpansOf(along.motion));
+  variation.sd = SpreadOf(candidate, trial, scales.site, trial.summed ? 1 : amplitudes,
+                          variation.columns, scales.spans);
   return variation;
 }
 

@@ -17,6 +17,7 @@
 #include "mjdiag/discovery/blocks/column.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
+#include "mjdiag/plugin/effects/scales.h"
 #include "mjdiag/plugin/effects/trial.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/plant/plant_number.h"
@@ -78,20 +79,23 @@ double SizePrice(const Block& block, const Eigen::VectorXd& values);
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates,
                             const std::vector<PlantNumber>& numbers);
-/// With all numbers of its plant that are in doubt.
-std::vector<Block> BlocksOf(const Machine& machine,
-                            const std::vector<Candidate>& candidates);
 
-/// Numbers of a plant and centres of mass; none where it says that it is exact.
-std::vector<PlantNumber> NumbersInDoubt(const mjModel& plant);
+/// Numbers of a plant, and centres of mass.
+std::vector<PlantNumber> NumbersOf(const mjModel& plant);
 
 /// The sweep of a block that repeats itself over a period or a frequency, if it does.
 std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
                              const Block& block);
-/// One shape of a block with a sweep; of no columns if it does nothing.
-Variation VariationOf(const Machine& machine, const BlockMotion& along,
-                      std::size_t place, const Block& block, const Trial& trial,
-                      std::size_t shape);
+/// How large what acts at the site of a block is.
+struct BlockScales {
+  Scales site;
+  Eigen::VectorXd spans;  ///< of every reading
+};
+BlockScales ScalesOf(const Machine& machine, const BlockMotion& along,
+                     const Block& block);
+/// One shape of a block; of no columns if it does nothing.
+Variation VariationOf(std::size_t place, const Block& block, const BlockScales& scales,
+                      const Trial& trial, std::size_t shape);
 /// What it costs that a block is what is missing, in as many shapes.
 double PriceOf(const Block& block, Eigen::Index shapes);
 

@@ -34,9 +34,7 @@ ExactColumns ExactColumnsOf(const MachineWith& machine_with, const Machine& othe
     others.push_back({machine_with(At(coordinates, model, moved)), step});
   }
   for (std::size_t m = 0; m < model.size(); ++m) {
-    Model without = model;
-    without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
-    others.push_back({machine_with(without)});
+    others.push_back({machine_with(Without(model, m))});
   }
   others.push_back({other_steps});
   std::vector<Column> columns = TickColumns(machine_with(model), run, path, others);

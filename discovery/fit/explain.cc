@@ -61,7 +61,8 @@ class Search {
   };
   void Adopt(Proposal proposal);
   void KeepRivals(const Moves& moves);
-  bool Resettle(const Moves& moves, const ModelFit& as_it_is);
+  std::optional<Settled> Resettled(const Whitenings& whitenings, std::size_t noise,
+                                   const ModelFit& as_it_is) const;
   std::string Difference(double score) const {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);
@@ -69,9 +70,9 @@ class Search {
   }
   std::vector<const ModelMove*> ToBeFitted(const Moves& moves) const;
   /// The best of some moves, fitted; none if none pays.
-  std::optional<Proposal> BestMove();
+  std::optional<Proposal> BestMove(const Whitenings& whitenings);
   /// How much of its inputs did the machine not feel?
-  std::optional<Proposal> SmoothedInputs() const;
+  std::optional<Proposal> SmoothedInputs(const Whitenings& whitenings) const;
   Proposal AsItIs() const {
     return {{found_.fit, found_.path}, steps_, found_.widths, run_};
   }
@@ -185,17 +186,18 @@ void Search::Adopt(Proposal proposal) {
   ChooseSteps();
 }
 
-/// The model as it is behind the noise that suits it by now; false if nothing is gained.
-bool Search::Resettle(const Moves& moves, const ModelFit& as_it_is) {
-  const KeptGains& own = moves.whitenings.front()->gains();
+/// The model as it is behind the noise that suits it by now; none if nothing is gained.
+std::optional<Search::Settled> Search::Resettled(const Whitenings& whitenings,
+                                                 std::size_t noise,
+                                                 const ModelFit& as_it_is) const {
+  const KeptGains& own = whitenings.behind.front().gains();
   const double before = own.left.squaredNorm() + own.log_determinant +
                         found_.fit.prior + found_.fit.occam;
-  if (as_it_is.score() > before - kLeastGain) return false;
-  Settled settled = Settle(as_it_is, moves.noises[moves.noise], steps_);
-  if (settled.score() > found_.score - kLeastGain) return false;
+  if (as_it_is.score() > before - kLeastGain) return std::nullopt;
+  Settled settled = Settle(as_it_is, whitenings.noises[noise], steps_);
+  if (settled.score() > found_.score - kLeastGain) return std::nullopt;
   Say("settled: " + Difference(settled.score()));
-  Adopt({std::move(settled), steps_, found_.widths, run_});
-  return true;
+  return settled;
 }
 
 /// The best of all, and the best that brings one block and nothing else: the fewer come at
@@ -215,12 +217,12 @@ std::vector<const ModelMove*> Search::ToBeFitted(const Moves& moves) const {
   return chosen;
 }
 
-std::optional<Search::Proposal> Search::BestMove() {
+std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings) {
   const ExactColumns exact = ExactColumnsOf(
       [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
       run_, found_.path, found_.blocks, found_.fit.model);
-  const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
-                              exact.terms, exact.other_steps);
+  const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, whitenings,
+                              found_.blocks, exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return AsItIs();
   KeepRivals(moves);
   constexpr int kIterations = 6;
@@ -229,7 +231,7 @@ std::optional<Search::Proposal> Search::BestMove() {
   const auto fitted = [&](const Model& model, const Judged& judged) {
     const bool steps = steps_ != judged.second;
     return FitModel([&](const Model& one) { return With(one, steps); }, run_,
-                    found_.path, moves.whitenings[judged.first]->gains(), found_.blocks,
+                    found_.path, whitenings.behind[judged.first].gains(), found_.blocks,
                     model, kIterations);
   };
   // Moves are compared with the model as it is behind the same gains.
@@ -239,7 +241,9 @@ std::optional<Search::Proposal> Search::BestMove() {
     if (known != as_it_is.end()) return known->second;
     return as_it_is.emplace(judged, fitted(found_.fit.model, judged)).first->second;
   };
-  if (Resettle(moves, base({moves.noise, false}))) return AsItIs();
+  if (auto settled = Resettled(whitenings, moves.noise, base({moves.noise, false}))) {
+    return Proposal{std::move(*settled), steps_, found_.widths, run_};
+  }
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
   struct Tried {
@@ -294,8 +298,8 @@ std::optional<Search::Proposal> Search::BestMove() {
     const auto place = static_cast<std::size_t>(number);
     const Tried& one = tried[place];
     try {
-      settled[place] =
-          Settle(one.fit, moves.noises[one.judged.first], steps_ != one.judged.second);
+      settled[place] = Settle(one.fit, whitenings.noises[one.judged.first],
+                              steps_ != one.judged.second);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
@@ -348,10 +352,11 @@ bool Search::ChooseSteps() {
   return true;
 }
 
-std::optional<Search::Proposal> Search::SmoothedInputs() const {
+std::optional<Search::Proposal> Search::SmoothedInputs(
+    const Whitenings& whitenings) const {
   const Machine machine = With(found_.fit.model);
   const InputChoice choice =
-      ChooseInputs(machine, as_measured_, found_.path, found_.widths);
+      ChooseInputs(machine, as_measured_, found_.path, whitenings, found_.widths);
   if (choice.widths == found_.widths) return std::nullopt;
   MeasuredRun run = WithSmoothedInputs(as_measured_, choice.widths);
   Settled settled{found_.fit,
@@ -375,8 +380,9 @@ void Search::AddCurves(const std::vector<Candidate>& candidates) {
 }
 
 bool Search::Step() {
-  std::optional<Proposal> smoothed = SmoothedInputs();
-  std::optional<Proposal> move = BestMove();
+  const Whitenings whitenings = WhiteningsOf(found_.path);
+  std::optional<Proposal> smoothed = SmoothedInputs(whitenings);
+  std::optional<Proposal> move = BestMove(whitenings);
   if (!smoothed && !move) return false;
   const bool smooths =
       !move || (smoothed && smoothed->settled.score() < move->settled.score());
@@ -393,8 +399,10 @@ Explained Search::Run() {
   std::vector<Candidate> candidates = ChooseCandidates(machine_, options_.choice, true);
   BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates, machine_, run_);
-  found_.blocks = BlocksOf(machine_, candidates,
-                           options_.numbers.value_or(NumbersInDoubt(machine_.plant())));
+  const std::vector<PlantNumber> in_doubt = IsExact(machine_.plant())
+                                                ? std::vector<PlantNumber>{}
+                                                : NumbersOf(machine_.plant());
+  found_.blocks = BlocksOf(machine_, candidates, options_.numbers.value_or(in_doubt));
   bool has_curves = !options_.choice.only.empty();
   try {
     while (!IsOver()) {

@@ -10,7 +10,6 @@
 #include "mjdiag/discovery/blocks/block.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/discovery/regression/fold_gram.h"
-#include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/replay/input_noise.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
@@ -83,7 +82,8 @@ double PriceOfWidths(const VectorXd& widths) {
 }
 
 InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
-                         const FilterPath& path, const VectorXd& widths) {
+                         const FilterPath& path, const Whitenings& whitenings,
+                         const VectorXd& widths) {
   const MeasuredRun smoothed = WithSmoothedInputs(run, widths);
   // What an input does in a tick goes with it: smoothed, it is what the smoothed one does.
   std::vector<MeasuredRun> without;
@@ -126,13 +126,10 @@ InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
   }
   std::vector<const Column*> all;
   for (const Column& one : changes) all.push_back(&one);
-  const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
-  const Eigen::MatrixXd inflation = InflationAlong(path);
   InputChoice best{widths, path.noise};
   double best_score = std::numeric_limits<double>::infinity();
-  for (const FilterNoise& noise : noises) {
-    const Whitening whitening(path, KeepGains(path, noise, inflation));
-    const FoldGram gram = GramOf(whitening, all, 1);
+  for (std::size_t r = 0; r < whitenings.behind.size(); ++r) {
+    const FoldGram gram = GramOf(whitenings.behind[r], all, 1);
     VectorXd chosen = widths;
     std::vector<Index> place(static_cast<std::size_t>(widths.size()), -1);
     const auto score = [&] {
@@ -164,7 +161,7 @@ InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
     }
     if (own < best_score) {
       best_score = own;
-      best = {chosen, noise};
+      best = {chosen, whitenings.noises[r]};
     }
   }
   return best;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 #include "mjdiag/plugin/replay/tracking.h"
@@ -17,9 +18,11 @@ struct InputChoice {
 
 /// @param run     with the inputs as they were measured
 /// @param path    of the machine with some inputs
+/// @param whitenings  of the path
 /// @param widths  by which these are smoothed
 InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
-                         const FilterPath& path, const Eigen::VectorXd& widths);
+                         const FilterPath& path, const Whitenings& whitenings,
+                         const Eigen::VectorXd& widths);
 
 /// What it costs, in -2 ln, to have them so.
 double PriceOfWidths(const Eigen::VectorXd& widths);

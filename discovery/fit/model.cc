@@ -86,6 +86,11 @@ Changes ChangesOf(const std::vector<Block>& blocks, const Model& model) {
   return changes;
 }
 
+Model Without(Model model, std::size_t place) {
+  model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
+  return model;
+}
+
 std::string Describe(const std::vector<Block>& blocks, const Model& model) {
   std::string text;
   for (const Member& member : model) {

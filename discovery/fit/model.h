@@ -27,6 +27,8 @@ using Model = std::vector<Member>;
 
 /// What it does to the plant.
 Changes ChangesOf(const std::vector<Block>& blocks, const Model& model);
+/// Without the member at a place.
+Model Without(Model model, std::size_t place);
 /// "coulomb_friction@load(20.4), mass@stage(1.02)".
 std::string Describe(const std::vector<Block>& blocks, const Model& model);
 

@@ -24,9 +24,7 @@ ModelFit Pruned(const std::vector<Block>& blocks, ModelFit fit, const FitOf& fit
       }
       const double price = blocks[fit.model[m].block].price;
       if (!is_sized || worth > price) continue;
-      Model without = fit.model;
-      without.erase(without.begin() + static_cast<std::ptrdiff_t>(m));
-      ModelFit tried = fit_of(without);
+      ModelFit tried = fit_of(Without(fit.model, m));
       again = tried.score() < fit.score();
       if (again) fit = std::move(tried);
     }

@@ -61,21 +61,19 @@ SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   const VectorXd a = whole.solve(b + mean);
   fit.amplitudes = sd.cwiseProduct(a);
   fit.sd = sd.cwiseProduct(whole.solve(I).diagonal().cwiseSqrt());
-  fit.of_fold.resize(std::ssize(gram.folds));
-  Index place = 0;
+  fit.unseen = gram.log_determinant;
   for (const MatrixXd& fold : gram.folds) {
     const VectorXd column = with_left(fold);
     if (n == 0) {
-      fit.of_fold[place++] = square(column);
+      fit.unseen += square(column);
       continue;
     }
     const MatrixXd Gf = part(fold);
     const VectorXd bf = product(column);
     const VectorXd of_others = Eigen::LLT<MatrixXd>(G - Gf + I).solve(b - bf + mean);
-    fit.of_fold[place++] =
+    fit.unseen +=
         square(column) - 2.0 * of_others.dot(bf) + of_others.dot(Gf * of_others);
   }
-  fit.unseen = gram.log_determinant + fit.of_fold.sum();
   return fit;
 }
 

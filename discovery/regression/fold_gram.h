@@ -40,7 +40,6 @@ struct SetFit {
   /// -2 ln of how dense the folds are predicted that a fit did not see, each from all of the
   /// others, but for a constant.
   double unseen = 0.0;
-  Eigen::VectorXd of_fold;  ///< what each of them adds to it
 };
 
 SetFit FitSet(const FoldGram& gram, const SetOfColumns& set);

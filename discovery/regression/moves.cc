@@ -34,23 +34,15 @@ struct Change {
 class MoveSearch {
  public:
   MoveSearch(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-             std::vector<Block>& blocks, const std::vector<Term>& terms,
-             const Column& other_steps)
+             const Whitenings& whitenings, std::vector<Block>& blocks,
+             const std::vector<Term>& terms, const Column& other_steps)
       : machine_(machine),
+        whitenings_(whitenings.behind),
         along_{MotionAlong(machine, run, path), path.noise.reading,
                run.Time().maxCoeff()},
         blocks_(blocks),
         terms_(terms),
-        other_steps_(other_steps) {
-    const MatrixXd inflation = InflationAlong(path);
-    moves_.noises = NoisesFrom(path.noise);
-    moves_.whitenings.resize(moves_.noises.size());
-    ParallelFor(static_cast<int>(moves_.noises.size()), [&](int number) {
-      const auto r = static_cast<std::size_t>(number);
-      moves_.whitenings[r] = std::make_shared<const Whitening>(
-          path, KeepGains(path, moves_.noises[r], inflation));
-    });
-  }
+        other_steps_(other_steps) {}
 
   Moves Run();
 
@@ -93,6 +85,7 @@ class MoveSearch {
   void Keep(const std::vector<Scored>& scored);
 
   const Machine& machine_;
+  const std::vector<Whitening>& whitenings_;
   BlockMotion along_;
   std::vector<Block>& blocks_;
   const std::vector<Term>& terms_;
@@ -118,8 +111,8 @@ void MoveSearch::Whiten() {
     for (const Column& column : one.columns) columns.push_back(&column);
   }
   grams_.clear();
-  for (const auto& whitening : moves_.whitenings) {
-    grams_.push_back(GramOf(*whitening, columns, kFolds));
+  for (const Whitening& whitening : whitenings_) {
+    grams_.push_back(GramOf(whitening, columns, kFolds));
   }
 }
 
@@ -287,10 +280,7 @@ Moves MoveSearch::Run() {
   moves_.score = here.score;
   moves_.noise = here.noise;
   moves_.other_steps = here.other_steps;
-  for (std::size_t t = 0; t < terms_.size(); ++t) {
-    moves_.losses.push_back(ScoreOf({{t}, {}}).fit.of_fold - here.fit.of_fold);
-  }
-  const Whitening& whitening = *moves_.whitenings[here.noise];
+  const Whitening& whitening = whitenings_[here.noise];
   const SetOfColumns set = ColumnsOf({});
   std::vector<const Column*> columns;
   for (const Term& term : terms_) {
@@ -354,20 +344,10 @@ Moves MoveSearch::Run() {
 
 }  // namespace
 
-std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
-  std::vector<FilterNoise> noises;
-  for (const double part : {1.0, 0.2, 0.02, 1e-6}) {
-    noises.push_back(found);
-    noises.back().size *= part;
-    noises.back().white *= part;
-  }
-  return noises;
-}
-
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-              std::vector<Block>& blocks, const std::vector<Term>& terms,
-              const Column& other_steps) {
-  return MoveSearch(machine, run, path, blocks, terms, other_steps).Run();
+              const Whitenings& whitenings, std::vector<Block>& blocks,
+              const std::vector<Term>& terms, const Column& other_steps) {
+  return MoveSearch(machine, run, path, whitenings, blocks, terms, other_steps).Run();
 }
 
 }  // namespace mjdiag

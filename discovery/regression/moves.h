@@ -15,18 +15,14 @@
 // themselves.
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
 
 #include "mjdiag/discovery/blocks/block.h"
-#include "mjdiag/discovery/regression/whitening.h"
+#include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
-
-/// Smaller and smaller latent forces.
-std::vector<FilterNoise> NoisesFrom(const FilterNoise& found);
 
 /// What is in already: a member of the model.
 struct Term {
@@ -52,26 +48,23 @@ struct ModelMove {
 };
 
 struct Moves {
-  std::vector<FilterNoise> noises;
-  std::vector<std::shared_ptr<const Whitening>> whitenings;  ///< behind each
-  double score = 0.0;                                        ///< of the model as it is
-  std::size_t noise = 0;
+  double score = 0.0;     ///< of the model as it is
+  std::size_t noise = 0;  ///< the whitening behind which it is best
   bool other_steps = false;
   std::vector<ModelMove> best;  ///< by score, no two with the same blocks
   /// Those that are worse than the model as it is, by kNear at most: what could be in its
   /// place.
   std::vector<ModelMove> near;
   Eigen::Index variations = 0;
-  /// Of every term, by how much worse each fold is predicted without it, in -2 ln.
-  std::vector<Eigen::VectorXd> losses;
 };
 
+/// @param whitenings   of the path
 /// @param blocks       receive the prices of their shapes
 /// @param other_steps  what the machine does otherwise with other physics steps, which costs
 ///                     nothing
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-              std::vector<Block>& blocks, const std::vector<Term>& terms,
-              const Column& other_steps);
+              const Whitenings& whitenings, std::vector<Block>& blocks,
+              const std::vector<Term>& terms, const Column& other_steps);
 
 /// A model that is worse by that is less than e^-10 times as likely.
 inline constexpr double kNear = 20.0;

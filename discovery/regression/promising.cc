@@ -126,8 +126,9 @@ std::vector<Variation> PromisingVariations(
       return;
     }
     const auto [lowest, highest] = BoundsOf(block);
+    const BlockScales scales = ScalesOf(machine, along, block);
     const auto of_shape = [&](Index m) {
-      return VariationOf(machine, along, place, block, sweep->make(sweep->value(m)),
+      return VariationOf(place, block, scales, sweep->make(sweep->value(m)),
                          static_cast<std::size_t>(m));
     };
     const Variation first = of_shape(0);
