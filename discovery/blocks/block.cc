@@ -170,7 +170,8 @@ std::vector<Block> BlocksOf(const Machine& machine,
     for (FitParameter& parameter : blocks.back().candidate->parameters) {
       if (parameter.role == Role::kFactor) {
         if (number) parameter.spread = DoubtOf(machine.plant(), *number);
-        const double farthest = std::exp(kFarthest * parameter.spread);
+        const double farthest =
+            std::min(kMostTimes, std::exp(kFarthest * parameter.spread));
         parameter.lower = std::max(parameter.lower, 1.0 / farthest);
         parameter.upper = std::min(parameter.upper, farthest);
       } else if (parameter.role == Role::kAmplitude) {
@@ -206,13 +207,31 @@ bool Block::IsResistance() const {
          kind == Kind::kViscousFriction;
 }
 
+bool Block::IsDryFriction() const {
+  return IsResistance() && candidate->effect->kind() == Kind::kDryFriction;
+}
+
+bool Block::IsSmoothFriction() const {
+  return IsDryFriction() && candidate->parameters.size() == 2 &&
+         candidate->parameters.back().role == Role::kVelocity;
+}
+
+bool Block::IsOfDrive() const {
+  return candidate ? candidate->effect->site() == SiteKind::kActuator
+                   : IsDrive(number->kind);
+}
+
 bool Block::IsSimplest() const {
-  return !candidate || candidate->parameters.size() == 1;
+  if (!candidate) return true;
+  return candidate->parameters.size() == 1 &&
+         candidate->effect->kind() != Kind::kLoadFriction;
 }
 
 bool IsAllowed(const Block& block, const TrialValues& values) {
   if (!values || !values->allFinite()) return false;
-  if (!block.candidate) return true;
+  if (!block.candidate) {
+    return std::abs(std::log((*values)[0])) <= kFarthest * block.doubt;
+  }
   for (Index i = 0; i < values->size(); ++i) {
     const FitParameter& parameter =
         block.candidate->parameters[static_cast<std::size_t>(i)];

@@ -4,8 +4,9 @@
 // grid (variations), and numbers of the plant.
 //
 // The price is -2 ln of how often it is what is missing, kMissing times the odds of its
-// effect, 2 ln of how many shapes it has, and what a claim has to be worth, odds of 20; sizes are known beforehand to a spread, which
-// follows from the machine's own scales (Effect::Spread).
+// effect, 2 ln of how many shapes it has, and what a claim has to be worth, odds of 1000;
+// sizes are known beforehand to a spread, which follows from the machine's own scales
+// (Effect::Spread).
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -49,7 +50,12 @@ struct Block {
   bool HasShape() const;
   /// Of a joint, whatever it is proportional to.
   bool IsResistance() const;
-  /// A size and nothing that shapes it.
+  bool IsDryFriction() const;
+  /// Dry friction that comes within a speed: a size and that.
+  bool IsSmoothFriction() const;
+  /// Changes what an actuator makes of its input.
+  bool IsOfDrive() const;
+  /// A size and nothing that shapes it, as a load does.
   bool IsSimplest() const;
 };
 
@@ -65,8 +71,12 @@ bool IsAllowed(const Block& block, const TrialValues& values);
 
 /// So many spreads from what is known is another machine.
 inline constexpr double kFarthest = 9.0;
-/// 2 ln 20
-inline constexpr double kClaim = 6.0;
+/// So many times what it is said to be, or as many times less, is no motor's constant: an
+/// input that does nothing is the cheapest explanation of a joint that rubs.
+inline constexpr double kMostTimes = 3.0;
+/// 2 ln 1000: the likelihood of a filter is known as well as the search for its noise ends,
+/// to some units, and many are looked at.
+inline constexpr double kClaim = 13.8;
 
 /// What a size costs that is x of its standard deviations from what is known beforehand, in
 /// -2 ln: Student's t of two degrees of freedom. What is known is mostly right, and where it

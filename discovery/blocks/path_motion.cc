@@ -23,7 +23,6 @@ ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
   motion.position.resize(nv, samples);
   motion.velocity.resize(nv, samples);
   motion.acceleration.resize(nv, samples);
-  motion.own_acceleration.resize(nv, samples);
   motion.outputs = run.outputs - path.innovations;
   const PlantState drawn{VectorXd::Map(model.qpos0, model.nq), VectorXd::Zero(nv),
                          VectorXd::Zero(model.na)};
@@ -33,7 +32,6 @@ ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
     TickMap map(machine);
     RecordedInputs inputs(machine, run);
     VectorXd forces = VectorXd::Zero(nv);
-    const VectorXd none = VectorXd::Zero(nv);
     for (Index k = first; k < first + run.SamplesOf(record); ++k) {
       const PlantState& state = path.states[static_cast<std::size_t>(k)];
       motion.position.col(k) = Deviation(model, drawn, state).head(nv);
@@ -44,15 +42,15 @@ ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
       motion.acceleration.col(k) =
           (map.Run(state, forces, tick, inputs).state.velocity - state.velocity) /
           path.sample_time;
-      motion.own_acceleration.col(k) =
-          (map.Probe(state, none, tick, inputs).state.velocity - state.velocity) /
-          path.sample_time;
     }
   });
   Eigen::MatrixXd position(model.nq, samples);
   for (Index k = 0; k < samples; ++k) {
     position.col(k) = path.states[static_cast<std::size_t>(k)].position;
   }
+  // Latent forces are forces of a tick like any other: a mass that is another one makes
+  // another thing of them, too.
+  motion.own_acceleration = motion.acceleration;
   motion.inputs = InputsThatAct(machine, run, position, motion.velocity);
   return motion;
 }

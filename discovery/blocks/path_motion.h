@@ -10,10 +10,9 @@
 namespace mjdiag {
 
 /// Positions in tangent coordinates from qpos0, velocities, and the mean accelerations of
-/// every tick: those that the latent forces make, and those of the model itself, without
-/// them. The input of an actuator that is off is that of an open circuit. Outputs are what
-/// the filter expected of each reading before it was taken: what a reading makes of itself
-/// would explain any.
+/// every tick, with the latent forces. The input of an actuator that is off is that of an
+/// open circuit. Outputs are what the filter expected of each reading before it was taken:
+/// what a reading makes of itself would explain any.
 ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
                            const FilterPath& path);
 

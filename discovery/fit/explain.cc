@@ -14,8 +14,11 @@
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/fit/exact_columns.h"
 #include "mjdiag/discovery/fit/input_choice.h"
+#include "mjdiag/discovery/fit/moved_model.h"
 #include "mjdiag/discovery/fit/pruned_fit.h"
+#include "mjdiag/discovery/fit/settled_model.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+#include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/input_noise.h"
@@ -33,6 +36,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int kIterations = 6;
+
 class Search {
  public:
   Search(const Machine& machine, const MeasuredRun& run, const VectorXd& reading_sd,
@@ -46,31 +51,34 @@ class Search {
   Explained Run();
 
  private:
-  struct Settled {
-    ModelFit fit;
-    FilterPath path;
-    double score() const { return path.deviance + fit.prior + fit.occam; }
-  };
-  Settled Settle(ModelFit fit, const FilterNoise& near, bool steps) const;
+  SettledModel Settled(ModelFit fit, const FilterNoise& near, bool steps) const;
   /// What the search may go on from.
   struct Proposal {
-    Settled settled;
+    SettledModel settled;
     bool steps = true;
     VectorXd widths;  ///< of the inputs
     MeasuredRun run;
   };
   void Adopt(Proposal proposal);
   void KeepRivals(const Moves& moves);
-  std::optional<Settled> Resettled(const Whitenings& whitenings, std::size_t noise,
-                                   const ModelFit& as_it_is) const;
+  std::optional<SettledModel> Resettled(const Whitenings& whitenings,
+                                        std::size_t noise) const;
   std::string Difference(double score) const {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);
     return text;
   }
-  std::vector<const ModelMove*> ToBeFitted(const Moves& moves) const;
+  /// Behind which of the whitenings, and whether with other steps.
+  using Judged = std::pair<std::size_t, bool>;
+  ModelFit Fitted(const Model& model, const Whitenings& whitenings,
+                  const Judged& judged, int iterations) const;
   /// The best of some moves, fitted; none if none pays.
-  std::optional<Proposal> BestMove(const Whitenings& whitenings);
+  std::optional<Proposal> BestOf(const Moves& moves, std::size_t most, int iterations,
+                                 const Whitenings& whitenings);
+  std::optional<Proposal> BestForces(const Whitenings& whitenings,
+                                     const ExactColumns& exact);
+  std::optional<Proposal> BestMove(const Whitenings& whitenings,
+                                   const ExactColumns& exact);
   /// How much of its inputs did the machine not feel?
   std::optional<Proposal> SmoothedInputs(const Whitenings& whitenings) const;
   Proposal AsItIs() const {
@@ -79,8 +87,9 @@ class Search {
   /// Takes what is better; false if nothing pays.
   bool Step();
   /// What no law explains may be a force without a name.
-  void AddCurves(const std::vector<Candidate>& candidates);
-  Model After(const ModelMove& move) const;
+  void AddCurves();
+  void Prepare();
+  void StepOn();
   void Decide(const Model& tried, double score, const std::string& why) {
     found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
   }
@@ -117,6 +126,9 @@ class Search {
   const VectorXd& reading_sd_;
   const ExplainOptions& options_;
   Clock::time_point begin_ = Clock::now();
+  std::vector<Candidate> candidates_;
+  /// What is large comes first.
+  bool looks_at_forces_ = true;
   Explained found_;
 };
 
@@ -124,55 +136,10 @@ bool SameBlocks(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
 }
 
-Model Search::After(const ModelMove& move) const {
-  Model model;
-  for (std::size_t m = 0; m < found_.fit.model.size(); ++m) {
-    if (std::ranges::find(move.removed, m) == move.removed.end()) {
-      model.push_back(found_.fit.model[m]);
-    }
-  }
-  for (const Added& added : move.added) {
-    model.push_back({added.variation.block, *added.variation.values(added.amplitudes)});
-  }
-  return model;
-}
-
-/// A model behind the noise that suits it, fitted anew, until neither gains by the other.
-Search::Settled Search::Settle(ModelFit fit, const FilterNoise& near,
-                               bool steps) const {
-  const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
-    return FilterLikeliestFrom(With(model, steps), run_, reading_sd_, found_.path.dofs,
-                               from);
-  };
-  Settled settled{std::move(fit), {}};
-  settled.path = filter(settled.fit.model, {near, found_.path.noise});
-  // Values that are off make latent forces large, behind which values are hardly seen:
-  // where fits behind the noise of the last filter gain no more, one behind a smaller may.
-  constexpr int kRounds = 6;
-  std::size_t smaller = 0;
-  for (int round = 0; round < kRounds && !IsOver(); ++round) {
-    const FilterPath& path = settled.path;
-    const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
-    const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
-    double gain = 0.0;
-    try {
-      const FitOf fitted = [&](const Model& start) {
-        return FitModel([&](const Model& model) { return With(model, steps); }, run_,
-                        path, gains, found_.blocks, start, 4);
-      };
-      Settled next{Pruned(found_.blocks, fitted(settled.fit.model), fitted), {}};
-      next.path = filter(next.fit.model, {path.noise, noises[smaller]});
-      gain = settled.score() - next.score();
-      if (gain > 0.0) settled = std::move(next);
-    } catch (const NumericalError&) {
-    }
-    if (gain >= kLeastGain) {
-      smaller = 0;
-    } else if (++smaller == noises.size() - 1) {
-      break;
-    }
-  }
-  return settled;
+SettledModel Search::Settled(ModelFit fit, const FilterNoise& near, bool steps) const {
+  return Settle([&](const Model& model) { return With(model, steps); }, run_,
+                reading_sd_, found_.path.dofs, found_.blocks, std::move(fit),
+                {near, found_.path.noise}, [this] { return IsOver(); });
 }
 
 void Search::Adopt(Proposal proposal) {
@@ -187,52 +154,59 @@ void Search::Adopt(Proposal proposal) {
 }
 
 /// The model as it is behind the noise that suits it by now; none if nothing is gained.
-std::optional<Search::Settled> Search::Resettled(const Whitenings& whitenings,
-                                                 std::size_t noise,
-                                                 const ModelFit& as_it_is) const {
+std::optional<SettledModel> Search::Resettled(const Whitenings& whitenings,
+                                              std::size_t noise) const {
+  const ModelFit as_it_is =
+      Fitted(found_.fit.model, whitenings, {noise, false}, kIterations);
   const KeptGains& own = whitenings.behind.front().gains();
   const double before = own.left.squaredNorm() + own.log_determinant +
                         found_.fit.prior + found_.fit.occam;
   if (as_it_is.score() > before - kLeastGain) return std::nullopt;
-  Settled settled = Settle(as_it_is, whitenings.noises[noise], steps_);
+  SettledModel settled = Settled(as_it_is, whitenings.noises[noise], steps_);
   if (settled.score() > found_.score - kLeastGain) return std::nullopt;
   Say("settled: " + Difference(settled.score()));
   return settled;
 }
 
-/// The best of all, and the best that brings one block and nothing else: the fewer come at
-/// once, the nearer is first order to what a fit finds.
-std::vector<const ModelMove*> Search::ToBeFitted(const Moves& moves) const {
-  constexpr std::size_t kMost = 4;
-  std::vector<const ModelMove*> chosen;
-  bool has_single = false;
-  for (const ModelMove& move : moves.best) {
-    if (move.score > moves.score - kLeastGain || HasTooManyCauses(After(move)))
-      continue;
-    const bool is_single = move.removed.empty() && move.added.size() == 1;
-    if (chosen.size() >= kMost && (has_single || !is_single)) continue;
-    chosen.push_back(&move);
-    has_single = has_single || is_single;
-  }
-  return chosen;
+std::optional<Search::Proposal> Search::BestForces(const Whitenings& whitenings,
+                                                   const ExactColumns& exact) {
+  const Moves moves = ForceMovesOf(With(found_.fit.model), run_, found_.path,
+                                   found_.blocks, exact.terms);
+  Say(std::to_string(moves.variations) + " shapes of forces, " +
+      std::to_string(moves.best.size()) + " moves");
+  // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
+  // values are those of the regression until the filter has been run with them.
+  return BestOf(moves, 1, 0, whitenings);
 }
 
-std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings) {
-  const ExactColumns exact = ExactColumnsOf(
-      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
-      run_, found_.path, found_.blocks, found_.fit.model);
-  const Moves moves = MovesOf(With(found_.fit.model), run_, found_.path, whitenings,
-                              found_.blocks, exact.terms, exact.other_steps);
+std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
+                                                 const ExactColumns& exact) {
+  const Moves moves =
+      MovesOf(With(found_.fit.model), run_, found_.path, whitenings.maps(),
+              found_.blocks, exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return AsItIs();
   KeepRivals(moves);
-  constexpr int kIterations = 6;
-  /// Behind which gains, and whether with other steps.
-  using Judged = std::pair<std::size_t, bool>;
+  if (auto settled = Resettled(whitenings, moves.noise)) {
+    return Proposal{std::move(*settled), steps_, found_.widths, run_};
+  }
+  Say(std::to_string(moves.variations) + " shapes, " +
+      std::to_string(moves.best.size()) + " moves");
+  return BestOf(moves, 4, kIterations, whitenings);
+}
+
+ModelFit Search::Fitted(const Model& model, const Whitenings& whitenings,
+                        const Judged& judged, int iterations) const {
+  const bool steps = steps_ != judged.second;
+  return FitModel([&](const Model& one) { return With(one, steps); }, run_, found_.path,
+                  whitenings.behind[judged.first].gains(), found_.blocks, model,
+                  iterations);
+}
+
+std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t most,
+                                               int iterations,
+                                               const Whitenings& whitenings) {
   const auto fitted = [&](const Model& model, const Judged& judged) {
-    const bool steps = steps_ != judged.second;
-    return FitModel([&](const Model& one) { return With(one, steps); }, run_,
-                    found_.path, whitenings.behind[judged.first].gains(), found_.blocks,
-                    model, kIterations);
+    return Fitted(model, whitenings, judged, iterations);
   };
   // Moves are compared with the model as it is behind the same gains.
   std::map<Judged, ModelFit> as_it_is;
@@ -241,31 +215,30 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings) {
     if (known != as_it_is.end()) return known->second;
     return as_it_is.emplace(judged, fitted(found_.fit.model, judged)).first->second;
   };
-  if (auto settled = Resettled(whitenings, moves.noise, base({moves.noise, false}))) {
-    return Proposal{std::move(*settled), steps_, found_.widths, run_};
-  }
-  Say(std::to_string(moves.variations) + " shapes, " +
-      std::to_string(moves.best.size()) + " moves");
   struct Tried {
     ModelFit fit;
     Judged judged;
     double gain = 0.0;
   };
   std::vector<Tried> tried;
-  for (const ModelMove* move : ToBeFitted(moves)) {
-    if (IsOver()) break;
+  const auto try_one = [&](const Model& model, const ModelMove& move) {
     try {
-      const Judged judged{move->noise, move->other_steps};
-      ModelFit fit = Pruned(found_.blocks, fitted(After(*move), judged),
-                            [&](const Model& model) { return fitted(model, judged); });
-      const double gain = base(judged).score() - fit.score();
+      const Judged judged{std::min(move.noise, whitenings.behind.size() - 1),
+                          move.other_steps};
+      ModelFit fit = fitted(model, judged);
+      double gain = moves.score - move.score;
+      if (iterations > 0) {
+        fit = Pruned(found_.blocks, std::move(fit),
+                     [&](const Model& other) { return fitted(other, judged); });
+        gain = base(judged).score() - fit.score();
+      }
       if (std::ranges::any_of(tried, [&](const Tried& other) {
             return SameBlocks(other.fit.model, fit.model);
           })) {
-        continue;
+        return;
       }
       char text[80];
-      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move->score - moves.score,
+      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
       Say(text + Describe(found_.blocks, fit.model));
       if (gain < kLeastGain) {
@@ -275,6 +248,18 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings) {
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
+  };
+  const auto may_be = [&](const ModelMove& move) {
+    return !HasTooManyCauses(After(move, found_.fit.model));
+  };
+  for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
+    if (IsOver()) break;
+    const Model model = After(*move, found_.fit.model);
+    try_one(model, *move);
+    if (iterations > 0) continue;
+    try_one(Abrupt(found_.blocks, model), *move);
+    // A noise that is less likely than another one is no reason for a law.
+    try_one(found_.fit.model, *move);
   }
   std::ranges::sort(tried, std::greater<>(), &Tried::gain);
   // Kept gains are those of what the machine was without a move: which is the best is said
@@ -293,13 +278,13 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings) {
     Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
     return true;
   });
-  std::vector<std::optional<Settled>> settled(tried.size());
+  std::vector<std::optional<SettledModel>> settled(tried.size());
   ParallelForAll(static_cast<int>(tried.size()), [&](int number) {
     const auto place = static_cast<std::size_t>(number);
     const Tried& one = tried[place];
     try {
-      settled[place] = Settle(one.fit, whitenings.noises[one.judged.first],
-                              steps_ != one.judged.second);
+      settled[place] = Settled(one.fit, whitenings.noises[one.judged.first],
+                               steps_ != one.judged.second);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
@@ -355,13 +340,13 @@ bool Search::ChooseSteps() {
 std::optional<Search::Proposal> Search::SmoothedInputs(
     const Whitenings& whitenings) const {
   const Machine machine = With(found_.fit.model);
-  const InputChoice choice =
-      ChooseInputs(machine, as_measured_, found_.path, whitenings, found_.widths);
+  const InputChoice choice = ChooseInputs(machine, as_measured_, found_.path,
+                                          whitenings, found_.widths, found_.blocks);
   if (choice.widths == found_.widths) return std::nullopt;
   MeasuredRun run = WithSmoothedInputs(as_measured_, choice.widths);
-  Settled settled{found_.fit,
-                  FilterLikeliestFrom(machine, run, reading_sd_, found_.path.dofs,
-                                      {choice.noise, found_.path.noise})};
+  SettledModel settled{found_.fit,
+                       FilterLikeliestFrom(machine, run, reading_sd_, found_.path.dofs,
+                                           {choice.noise, found_.path.noise})};
   if (found_.path.deviance + PriceOfWidths(found_.widths) <
       settled.path.deviance + PriceOfWidths(choice.widths) + kLeastGain) {
     return std::nullopt;
@@ -372,49 +357,68 @@ std::optional<Search::Proposal> Search::SmoothedInputs(
   return Proposal{std::move(settled), steps_, choice.widths, std::move(run)};
 }
 
-void Search::AddCurves(const std::vector<Candidate>& candidates) {
+void Search::AddCurves() {
   const ObservedMotion motion = MotionAlong(With(found_.fit.model), run_, found_.path);
   std::ranges::move(
-      BlocksOf(machine_, CurveCandidates(machine_, candidates, motion), {}),
+      BlocksOf(machine_, CurveCandidates(machine_, candidates_, motion), {}),
       std::back_inserter(found_.blocks));
 }
 
 bool Search::Step() {
   const Whitenings whitenings = WhiteningsOf(found_.path);
-  std::optional<Proposal> smoothed = SmoothedInputs(whitenings);
-  std::optional<Proposal> move = BestMove(whitenings);
-  if (!smoothed && !move) return false;
-  const bool smooths =
-      !move || (smoothed && smoothed->settled.score() < move->settled.score());
-  Adopt(std::move(smooths ? *smoothed : *move));
-  return true;
+  if (std::optional<Proposal> smoothed = SmoothedInputs(whitenings)) {
+    Adopt(std::move(*smoothed));
+    return true;
+  }
+  const ExactColumns exact = ExactColumnsOf(
+      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
+      run_, found_.path, found_.blocks, found_.fit.model);
+  std::optional<Proposal> move;
+  if (looks_at_forces_) move = BestForces(whitenings, exact);
+  if (!move) {
+    looks_at_forces_ = false;
+    move = BestMove(whitenings, exact);
+  }
+  if (move) Adopt(std::move(*move));
+  return move.has_value();
 }
 
-Explained Search::Run() {
+void Search::Prepare() {
   found_.path = FilterLikeliest(machine_, run_, reading_sd_);
   found_.nothing = found_.path;
   found_.score = found_.path.deviance;
   found_.widths = VectorXd::Zero(run_.inputs.rows());
-  ChooseSteps();
-  std::vector<Candidate> candidates = ChooseCandidates(machine_, options_.choice, true);
-  BoundByRecord(candidates, machine_, MotionAlong(machine_, run_, found_.path));
-  BoundByReadings(candidates, machine_, run_);
+  if (ChooseSteps()) {
+    found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
+                                      {found_.path.noise});
+    found_.score = found_.path.deviance;
+  }
+  candidates_ = ChooseCandidates(machine_, options_.choice, true);
+  BoundByRecord(candidates_, machine_, MotionAlong(machine_, run_, found_.path));
+  BoundByReadings(candidates_, machine_, run_);
   const std::vector<PlantNumber> in_doubt = IsExact(machine_.plant())
                                                 ? std::vector<PlantNumber>{}
                                                 : NumbersOf(machine_.plant());
-  found_.blocks = BlocksOf(machine_, candidates, options_.numbers.value_or(in_doubt));
-  bool has_curves = !options_.choice.only.empty();
+  found_.blocks = BlocksOf(machine_, candidates_, options_.numbers.value_or(in_doubt));
+}
+
+void Search::StepOn() {
+  while (!IsOver() && Step()) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%.1f  ", found_.score);
+    Say(text + Describe(found_.blocks, found_.fit.model));
+    if (options_.better) options_.better(found_);
+  }
+}
+
+Explained Search::Run() {
+  Prepare();
   try {
-    while (!IsOver()) {
-      if (!Step()) {
-        if (std::exchange(has_curves, true)) break;
-        AddCurves(candidates);
-        continue;
-      }
-      char text[80];
-      std::snprintf(text, sizeof text, "%.1f  ", found_.score);
-      Say(text + Describe(found_.blocks, found_.fit.model));
-      if (options_.better) options_.better(found_);
+    StepOn();
+    if (options_.choice.only.empty() && !IsOver()) {
+      AddCurves();
+      looks_at_forces_ = true;
+      StepOn();
     }
   } catch (const NumericalError&) {
     // A machine that diverges beside what is measured, or the wish to end: what was found

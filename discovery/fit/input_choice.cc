@@ -5,9 +5,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
-#include "mjdiag/discovery/blocks/block.h"
+#include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/discovery/regression/fold_gram.h"
 #include "mjdiag/plugin/replay/input_noise.h"
@@ -20,6 +21,7 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr int kFolds = 20;
 constexpr std::array kWidths{0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
 
 /// So many ticks later; the first of a record lasts.
@@ -74,6 +76,29 @@ std::vector<std::function<VectorXd(const VectorXd&)>> WaysOf(const MeasuredRun& 
   return ways;
 }
 
+/// What may be missing whatever the inputs are: resistances of every joint in one size.
+struct Resistances {
+  std::vector<Column> columns;
+  std::vector<double> sd;
+};
+Resistances ResistancesOf(const Machine& machine, const MeasuredRun& run,
+                          const FilterPath& path, std::vector<Block> blocks) {
+  const BlockMotion along{MotionAlong(machine, run, path), path.noise.reading,
+                          run.Time().maxCoeff()};
+  Resistances all;
+  for (std::size_t place = 0; place < blocks.size(); ++place) {
+    Block& block = blocks[place];
+    if (!block.IsResistance() || !block.IsSimplest()) continue;
+    ForEachVariation(machine, along, place, block, [&](Variation&& one) {
+      for (std::size_t i = 0; i < one.columns.size(); ++i) {
+        all.columns.push_back(std::move(one.columns[i]));
+        all.sd.push_back(one.sd[static_cast<Index>(i)]);
+      }
+    });
+  }
+  return all;
+}
+
 }  // namespace
 
 double PriceOfWidths(const VectorXd& widths) {
@@ -83,7 +108,7 @@ double PriceOfWidths(const VectorXd& widths) {
 
 InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
                          const FilterPath& path, const Whitenings& whitenings,
-                         const VectorXd& widths) {
+                         const VectorXd& widths, std::vector<Block> blocks) {
   const MeasuredRun smoothed = WithSmoothedInputs(run, widths);
   // What an input does in a tick goes with it: smoothed, it is what the smoothed one does.
   std::vector<MeasuredRun> without;
@@ -126,14 +151,28 @@ InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
   }
   std::vector<const Column*> all;
   for (const Column& one : changes) all.push_back(&one);
+  SetOfColumns beside;
+  const Resistances resistances =
+      ResistancesOf(machine, smoothed, path, std::move(blocks));
+  std::vector<double> sd = resistances.sd;
+  for (const Column& one : resistances.columns) all.push_back(&one);
+  for (Index i = 0; i < widths.size(); ++i) {
+    all.push_back(&columns[static_cast<std::size_t>(i)]);
+    sd.push_back(1.0);  // nothing, or twice as much
+  }
+  for (std::size_t i = changes.size(); i < all.size(); ++i) {
+    beside.columns.push_back(static_cast<Index>(i));
+  }
+  beside.sd = VectorXd::Map(sd.data(), std::ssize(sd));
+  beside.mean = VectorXd::Zero(beside.sd.size());
   InputChoice best{widths, path.noise};
   double best_score = std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < whitenings.behind.size(); ++r) {
-    const FoldGram gram = GramOf(whitenings.behind[r], all, 1);
+    const FoldGram gram = GramOf(whitenings.behind[r], all, kFolds);
     VectorXd chosen = widths;
     std::vector<Index> place(static_cast<std::size_t>(widths.size()), -1);
     const auto score = [&] {
-      SetOfColumns set;
+      SetOfColumns set = beside;
       for (const Index column : place) {
         if (column >= 0) set.given.push_back(column);
       }

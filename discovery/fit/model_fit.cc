@@ -43,7 +43,8 @@ class Innovations {
     return kept_;
   }
 
-  MatrixXd Jacobian(const VectorXd& x) {
+  const MatrixXd& Jacobian(const VectorXd& x) {
+    if (J_.size() > 0 && x == J_at_) return J_;
     const VectorXd base = Of(x);
     MatrixXd J(rows(), size());
     ParallelForAll(static_cast<int>(size()), [&](int number) {
@@ -55,7 +56,9 @@ class Innovations {
       moved[i] += step;
       J.col(i) = (RunAt(moved) - base) / step;
     });
-    return J;
+    J_ = std::move(J);
+    J_at_ = x;
+    return J_;
   }
 
  private:
@@ -71,6 +74,8 @@ class Innovations {
   Model model_;
   std::vector<Coordinate> coordinates_;
   VectorXd at_, kept_;
+  VectorXd J_at_;
+  MatrixXd J_;
 };
 
 class InnovationCost final : public ceres::CostFunction {
@@ -87,7 +92,7 @@ class InnovationCost final : public ceres::CostFunction {
       if (jacobians == nullptr || jacobians[0] == nullptr) return true;
       using RowMajor =
           Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      const MatrixXd J = innovations_.Jacobian(x);
+      const MatrixXd& J = innovations_.Jacobian(x);
       if (!J.allFinite()) return false;
       if (J.cols() == 1) {
         VectorXd::Map(jacobians[0], J.rows()) = J.col(0);
@@ -184,7 +189,7 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
         blocks[member.block].price + SizePrice(blocks[member.block], member.values);
   }
   if (x.size() > 0) {
-    const MatrixXd J = innovations.Jacobian(x);
+    const MatrixXd& J = innovations.Jacobian(x);
     const MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
     const Eigen::LLT<MatrixXd> solved(H);
     fit.occam = 2.0 * solved.matrixLLT().diagonal().array().log().sum();

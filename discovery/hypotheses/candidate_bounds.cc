@@ -98,6 +98,10 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
         case Role::kLength:
           Narrow(parameter, 1e-5 * own.stroke, 10.0 * own.stroke);
           break;
+        case Role::kGap:
+          // What never leaves its play has no spring.
+          Narrow(parameter, 0.0, own.stroke);
+          break;
         case Role::kPosition:
           Narrow(parameter, q.minCoeff(), q.maxCoeff());
           break;

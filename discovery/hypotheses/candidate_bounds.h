@@ -13,8 +13,8 @@ namespace mjdiag {
 
 /// Narrows the bounds of shape parameters, by their role, to what the motion reaches
 /// and resolves: velocities (of Stribeck friction) to 0.001 to 2 times the top speed of
-/// the joint, lengths (of a hysteresis) to 1e-5 to 10 times the stroke, positions (of an
-/// end stop) to the stroke, limits (of a drive) to the largest force before the gear,
+/// the joint, lengths (of a hysteresis) to 1e-5 to 10 times the stroke, plays and positions
+/// (of an end stop) to the stroke, limits (of a drive) to the largest force before the gear,
 /// frequencies to between one period a record and half of the control rate. Joints that
 /// stand still keep theirs. Sizes get their spread (Effect::Spread).
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,

@@ -9,18 +9,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& columns,
+FoldGram GramOf(const RowMap& map, const std::vector<const Column*>& columns,
                 int folds) {
-  const Index rows = whitening.rows();
+  const Index rows = map.rows();
   MatrixXd all(rows, 1 + std::ssize(columns));
-  all.col(0) = whitening.gains().left;
-  all.rightCols(std::ssize(columns)) = whitening.Of(columns);
+  all.col(0) = map.left();
+  all.rightCols(std::ssize(columns)) = map.Of(columns);
   FoldGram gram;
-  gram.log_determinant = whitening.gains().log_determinant;
+  gram.log_determinant = map.log_determinant();
   gram.sum = MatrixXd::Zero(all.cols(), all.cols());
   for (Index fold = 0; fold < folds; ++fold) {
     const Index first = fold * rows / folds;
-    const auto part = all.middleRows(first, (fold + 1) * rows / folds - first);
+    const Index end = (fold + 1) * rows / folds;
+    if (end == first) continue;  // fewer rows than folds
+    const auto part = all.middleRows(first, end - first);
     MatrixXd one = MatrixXd::Zero(all.cols(), all.cols());
     one.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
     one.triangularView<Eigen::Upper>() = one.transpose();
@@ -30,32 +32,72 @@ FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& co
   return gram;
 }
 
+namespace {
+
+/// A set in units of what is known of it beforehand, what is given taken off.
+class InUnits {
+ public:
+  explicit InUnits(const SetOfColumns& set) : set_(set) {
+    for (const Index column : set.columns) places_.push_back(1 + column);
+  }
+  MatrixXd Matrix(const MatrixXd& of) const {
+    return set_.sd.asDiagonal() * of(places_, places_) * set_.sd.asDiagonal();
+  }
+  VectorXd WithLeft(const MatrixXd& of) const {
+    VectorXd column = of.col(0);
+    for (const Index given : set_.given) column -= of.col(1 + given);
+    return column;
+  }
+  VectorXd Product(const VectorXd& with_left) const {
+    return set_.sd.cwiseProduct(VectorXd(with_left(places_)));
+  }
+
+ private:
+  const SetOfColumns& set_;
+  std::vector<Index> places_;
+};
+
+}  // namespace
+
+double WorthOf(const FoldGram& gram, const SetOfColumns& set, const SetFit& fit,
+               Index first, Index count) {
+  const InUnits units(set);
+  const Index n = std::ssize(set.columns);
+  const VectorXd a = fit.amplitudes.cwiseQuotient(set.sd);
+  MatrixXd between = MatrixXd::Zero(n, n);
+  for (const MatrixXd& fold : gram.folds) {
+    const VectorXd g = units.Product(units.WithLeft(fold)) - units.Matrix(fold) * a;
+    between += g * g.transpose();
+  }
+  const auto folds = static_cast<double>(gram.folds.size());
+  between *= folds / std::max(1.0, folds - 1.0);
+  const MatrixXd H = units.Matrix(gram.sum) + MatrixXd::Identity(n, n);
+  const Eigen::LLT<MatrixXd> solved(H);
+  const MatrixXd within = solved.solve(MatrixXd::Identity(n, n));
+  const MatrixXd root = solved.solve(between);
+  const MatrixXd repeated = solved.solve(root.transpose());
+  const VectorXd own = a.segment(first, count);
+  const auto worth = [&](const MatrixXd& covariance) {
+    const MatrixXd block = covariance.block(first, first, count, count);
+    return own.dot(block.ldlt().solve(own));
+  };
+  if (gram.folds.size() < 2) return worth(within);
+  return std::min(worth(within), worth(repeated));
+}
+
 SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   const Index n = std::ssize(set.columns);
-  std::vector<Index> places;
-  for (const Index column : set.columns) places.push_back(1 + column);
+  const InUnits units(set);
   const VectorXd& sd = set.sd;
   const VectorXd mean = set.mean.cwiseQuotient(sd);
-  // In units of what is known beforehand, what is given taken off.
-  const auto part = [&](const MatrixXd& of) -> MatrixXd {
-    return sd.asDiagonal() * of(places, places) * sd.asDiagonal();
-  };
-  const auto with_left = [&](const MatrixXd& of) {
-    VectorXd column = of.col(0);
-    for (const Index given : set.given) column -= of.col(1 + given);
-    return column;
-  };
-  const auto product = [&](const VectorXd& column) -> VectorXd {
-    return sd.cwiseProduct(VectorXd(column(places)));
-  };
   const auto square = [&](const VectorXd& column) {
     double sum = column[0];
     for (const Index given : set.given) sum -= column[1 + given];
     return sum;
   };
   SetFit fit;
-  const MatrixXd G = part(gram.sum);
-  const VectorXd b = product(with_left(gram.sum));
+  const MatrixXd G = units.Matrix(gram.sum);
+  const VectorXd b = units.Product(units.WithLeft(gram.sum));
   const MatrixXd I = MatrixXd::Identity(n, n);
   const Eigen::LLT<MatrixXd> whole(G + I);
   const VectorXd a = whole.solve(b + mean);
@@ -63,13 +105,13 @@ SetFit FitSet(const FoldGram& gram, const SetOfColumns& set) {
   fit.sd = sd.cwiseProduct(whole.solve(I).diagonal().cwiseSqrt());
   fit.unseen = gram.log_determinant;
   for (const MatrixXd& fold : gram.folds) {
-    const VectorXd column = with_left(fold);
+    const VectorXd column = units.WithLeft(fold);
     if (n == 0) {
       fit.unseen += square(column);
       continue;
     }
-    const MatrixXd Gf = part(fold);
-    const VectorXd bf = product(column);
+    const MatrixXd Gf = units.Matrix(fold);
+    const VectorXd bf = units.Product(column);
     const VectorXd of_others = Eigen::LLT<MatrixXd>(G - Gf + I).solve(b - bf + mean);
     fit.unseen +=
         square(column) - 2.0 * of_others.dot(bf) + of_others.dot(Gf * of_others);

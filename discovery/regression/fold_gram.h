@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/blocks/column.h"
-#include "mjdiag/discovery/regression/whitening.h"
+#include "mjdiag/discovery/regression/row_map.h"
 
 namespace mjdiag {
 
@@ -17,7 +17,7 @@ struct FoldGram {
   double log_determinant = 0.0;
 };
 
-FoldGram GramOf(const Whitening& whitening, const std::vector<const Column*>& columns,
+FoldGram GramOf(const RowMap& map, const std::vector<const Column*>& columns,
                 int folds);
 
 /// Columns that are in, with what is known of their amplitudes beforehand, and others that
@@ -43,5 +43,15 @@ struct SetFit {
 };
 
 SetFit FitSet(const FoldGram& gram, const SetOfColumns& set);
+
+/// What some of the amplitudes of a fit are worth, a^T Cov^-1 a, with their covariance or,
+/// where it is larger, that which differences between folds say,
+///
+///   H^-1 (sum_f g_f g_f^T) H^-1,   g_f = b_f - G_f a      [Huber 1967]
+///
+/// What one event in one fold asks for and the others do not is worth about 1.
+/// @param first, count  places of the columns in the set
+double WorthOf(const FoldGram& gram, const SetOfColumns& set, const SetFit& fit,
+               Eigen::Index first, Eigen::Index count);
 
 }  // namespace mjdiag

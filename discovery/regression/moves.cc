@@ -34,15 +34,16 @@ struct Change {
 class MoveSearch {
  public:
   MoveSearch(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-             const Whitenings& whitenings, std::vector<Block>& blocks,
-             const std::vector<Term>& terms, const Column& other_steps)
+             const std::vector<const RowMap*>& maps, std::vector<Block>& blocks,
+             const std::vector<Term>& terms, const Column& other_steps, Looked looked)
       : machine_(machine),
-        whitenings_(whitenings.behind),
+        maps_(maps),
         along_{MotionAlong(machine, run, path), path.noise.reading,
                run.Time().maxCoeff()},
         blocks_(blocks),
         terms_(terms),
-        other_steps_(other_steps) {}
+        other_steps_(other_steps),
+        looked_(looked) {}
 
   Moves Run();
 
@@ -67,6 +68,8 @@ class MoveSearch {
   std::vector<std::pair<const Variation&, VectorXd>> AddedOf(
       const Change& change, const VectorXd& amplitudes) const;
   bool IsWithinBounds(const Change& change, const VectorXd& amplitudes) const;
+  /// Whether each of what comes in is worth its price by what folds have in common.
+  bool IsRepeated(const Change& change, const Scored& scored) const;
   /// What sizes cost.
   double SizesOf(const Change& change, const SetOfColumns& set,
                  const VectorXd& amplitudes) const;
@@ -85,11 +88,12 @@ class MoveSearch {
   void Keep(const std::vector<Scored>& scored);
 
   const Machine& machine_;
-  const std::vector<Whitening>& whitenings_;
+  const std::vector<const RowMap*>& maps_;
   BlockMotion along_;
   std::vector<Block>& blocks_;
   const std::vector<Term>& terms_;
   const Column& other_steps_;
+  Looked looked_;
   std::vector<Variation> kept_;
   std::vector<Index> first_of_term_, first_of_kept_;
   std::vector<FoldGram> grams_;
@@ -111,8 +115,8 @@ void MoveSearch::Whiten() {
     for (const Column& column : one.columns) columns.push_back(&column);
   }
   grams_.clear();
-  for (const Whitening& whitening : whitenings_) {
-    grams_.push_back(GramOf(whitening, columns, kFolds));
+  for (const RowMap* map : maps_) {
+    grams_.push_back(GramOf(*map, columns, kFolds));
   }
 }
 
@@ -134,6 +138,14 @@ bool MoveSearch::MayCome(const Block& block) const {
   };
   if (!block.HasShape() && any([&](const Block& in) { return &in == &block; })) {
     return false;
+  }
+  // What cancels the inputs explains a machine that hardly moves, whatever holds it.
+  if (looked_ == Looked::kAtForces) {
+    if (block.IsOfDrive()) return false;
+    if (block.IsSmoothFriction()) return true;
+    if (block.IsDryFriction() && block.IsSimplest()) {
+      return any([&](const Block& in) { return in.group == block.group; });
+    }
   }
   return !block.IsResistance() || block.IsSimplest() ||
          any([&](const Block& in) { return in.group == block.group; });
@@ -204,6 +216,20 @@ bool MoveSearch::IsWithinBounds(const Change& change,
   return true;
 }
 
+bool MoveSearch::IsRepeated(const Change& change, const Scored& scored) const {
+  SetOfColumns set = ColumnsOf(change);
+  if (scored.other_steps) set.given.push_back(OtherStepsColumn());
+  Index first = std::ssize(set.columns);
+  for (std::size_t i = change.added.size(); i-- > 0;) {
+    const Variation& one = kept_[change.added[i]];
+    first -= one.sd.size();
+    const double worth =
+        WorthOf(grams_[scored.noise], set, scored.fit, first, one.sd.size());
+    if (worth < blocks_[one.block].price) return false;
+  }
+  return true;
+}
+
 double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
                            const VectorXd& amplitudes) const {
   double sum = 0.0;
@@ -241,7 +267,8 @@ MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
     }
   }
   // Without a fit there are no amplitudes.
-  if (best.score < kImpossible && !IsWithinBounds(change, best.fit.amplitudes)) {
+  if (best.score < kImpossible &&
+      (!IsWithinBounds(change, best.fit.amplitudes) || !IsRepeated(change, best))) {
     best.score = kImpossible;
   }
   return best;
@@ -280,16 +307,16 @@ Moves MoveSearch::Run() {
   moves_.score = here.score;
   moves_.noise = here.noise;
   moves_.other_steps = here.other_steps;
-  const Whitening& whitening = whitenings_[here.noise];
+  const RowMap& map = *maps_[here.noise];
   const SetOfColumns set = ColumnsOf({});
   std::vector<const Column*> columns;
   for (const Term& term : terms_) {
     for (const Column& column : term.columns) columns.push_back(&column);
   }
-  const MatrixXd W = whitening.Of(columns);
-  VectorXd left = whitening.gains().left;
+  const MatrixXd W = map.Of(columns);
+  VectorXd left = map.left();
   if (W.cols() > 0) left -= W * here.fit.amplitudes;
-  kept_ = PromisingVariations(machine_, along_, whitening, left, W, set.sd, blocks_,
+  kept_ = PromisingVariations(machine_, along_, map, left, W, set.sd, blocks_,
                               [this](const Block& block) { return MayCome(block); });
   moves_.variations = std::ssize(kept_);
   Whiten();
@@ -345,9 +372,10 @@ Moves MoveSearch::Run() {
 }  // namespace
 
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-              const Whitenings& whitenings, std::vector<Block>& blocks,
-              const std::vector<Term>& terms, const Column& other_steps) {
-  return MoveSearch(machine, run, path, whitenings, blocks, terms, other_steps).Run();
+              const std::vector<const RowMap*>& maps, std::vector<Block>& blocks,
+              const std::vector<Term>& terms, const Column& other_steps,
+              Looked looked) {
+  return MoveSearch(machine, run, path, maps, blocks, terms, other_steps, looked).Run();
 }
 
 }  // namespace mjdiag

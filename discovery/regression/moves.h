@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/blocks/block.h"
-#include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/discovery/regression/row_map.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 
@@ -43,13 +43,13 @@ struct ModelMove {
   std::vector<std::size_t> removed;  ///< places of terms
   std::vector<Added> added;
   double score = 0.0;
-  std::size_t noise = 0;     ///< the whitening behind which it is best
+  std::size_t noise = 0;     ///< the map behind which it is best
   bool other_steps = false;  ///< with what the machine does with other physics steps
 };
 
 struct Moves {
   double score = 0.0;     ///< of the model as it is
-  std::size_t noise = 0;  ///< the whitening behind which it is best
+  std::size_t noise = 0;  ///< the map behind which it is best
   bool other_steps = false;
   std::vector<ModelMove> best;  ///< by score, no two with the same blocks
   /// Those that are worse than the model as it is, by kNear at most: what could be in its
@@ -58,13 +58,17 @@ struct Moves {
   Eigen::Index variations = 0;
 };
 
-/// @param whitenings   of the path
+/// What may come in: what acts along the motion, or anything.
+enum class Looked { kAtForces, kAtAll };
+
+/// @param maps         of the path, behind one noise each
 /// @param blocks       receive the prices of their shapes
 /// @param other_steps  what the machine does otherwise with other physics steps, which costs
 ///                     nothing
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
-              const Whitenings& whitenings, std::vector<Block>& blocks,
-              const std::vector<Term>& terms, const Column& other_steps);
+              const std::vector<const RowMap*>& maps, std::vector<Block>& blocks,
+              const std::vector<Term>& terms, const Column& other_steps,
+              Looked looked = Looked::kAtAll);
 
 /// A model that is worse by that is less than e^-10 times as likely.
 inline constexpr double kNear = 20.0;

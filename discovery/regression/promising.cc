@@ -63,13 +63,13 @@ Column WavesOf(const Sweep& sweep, const Block& block) {
 }  // namespace
 
 std::vector<Variation> PromisingVariations(
-    const Machine& machine, const BlockMotion& along, const Whitening& whitening,
+    const Machine& machine, const BlockMotion& along, const RowMap& map,
     const VectorXd& left, const MatrixXd& W, const VectorXd& sd,
     std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come) {
   const Index k = W.cols();
   MatrixXd u(W.rows(), 1 + k + kProbes);
   u << left, W, WhiteNoise(W.rows(), kProbes);
-  const auto transposed = whitening.TransposedTimes(u);
+  const auto transposed = map.TransposedTimes(u);
   Eigen::LLT<MatrixXd> H;
   if (k > 0) {
     MatrixXd G = W.transpose() * W;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/blocks/block.h"
-#include "mjdiag/discovery/regression/whitening.h"
+#include "mjdiag/discovery/regression/row_map.h"
 
 namespace mjdiag {
 
@@ -16,7 +16,7 @@ namespace mjdiag {
 /// @param sd      of their amplitudes beforehand
 /// @param blocks  receive the prices of their shapes
 std::vector<Variation> PromisingVariations(
-    const Machine& machine, const BlockMotion& along, const Whitening& whitening,
+    const Machine& machine, const BlockMotion& along, const RowMap& map,
     const Eigen::VectorXd& left, const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
     std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come);
 

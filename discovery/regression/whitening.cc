@@ -158,24 +158,4 @@ std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u)
   return all;
 }
 
-VectorXd Whitening::Transposed::Along(const Column& column) const {
-  VectorXd along = VectorXd::Zero(forces.rows());
-  for (const auto& [dof, signal] : column.forces) {
-    along += forces.col(dof).cwiseProduct(signal);
-  }
-  for (const auto& [sensor, signal] : column.readings) {
-    along += readings.col(sensor).cwiseProduct(signal);
-  }
-  return along;
-}
-
-double Whitening::Transposed::Times(const Column& column) const {
-  double sum = 0.0;
-  for (const auto& [dof, signal] : column.forces) sum += forces.col(dof).dot(signal);
-  for (const auto& [sensor, signal] : column.readings) {
-    sum += readings.col(sensor).dot(signal);
-  }
-  return sum;
-}
-
 }  // namespace mjdiag

@@ -13,34 +13,24 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/discovery/blocks/column.h"
+#include "mjdiag/discovery/regression/row_map.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
 
 namespace mjdiag {
 
-class Whitening {
+class Whitening final : public RowMap {
  public:
   /// @param path  has to outlive it
   Whitening(const FilterPath& path, KeptGains gains);
 
   const KeptGains& gains() const { return gains_; }
-  Eigen::Index rows() const { return gains_.rows(); }
+  Eigen::Index rows() const override { return gains_.rows(); }
+  const Eigen::VectorXd& left() const override { return gains_.left; }
+  double log_determinant() const override { return gains_.log_determinant; }
+  Eigen::MatrixXd Of(const std::vector<const Column*>& columns) const override;
 
-  /// W times every column, rows x columns.
-  Eigen::MatrixXd Of(const std::vector<const Column*>& columns) const;
-
-  /// W^T u: the inner product of u with W times a column of forces and errors of readings
-  /// is that of this with the column.
-  struct Transposed {
-    Eigen::MatrixXd forces;    ///< samples x nv
-    Eigen::MatrixXd readings;  ///< samples x ny
-    /// What of the inner product with a column comes from every sample.
-    Eigen::VectorXd Along(const Column& column) const;
-    double Times(const Column& column) const;
-  };
-  /// Of every column of u, rows x any.
-  std::vector<Transposed> TransposedTimes(const Eigen::MatrixXd& u) const;
+  std::vector<Transposed> TransposedTimes(const Eigen::MatrixXd& u) const override;
 
  private:
   void ForwardInto(const std::vector<const Column*>& columns, Eigen::Index first,

@@ -15,6 +15,12 @@ std::vector<FilterNoise> NoisesFrom(const FilterNoise& found);
 struct Whitenings {
   std::vector<FilterNoise> noises;
   std::vector<Whitening> behind;  ///< each of them
+
+  std::vector<const RowMap*> maps() const {
+    std::vector<const RowMap*> all;
+    for (const Whitening& one : behind) all.push_back(&one);
+    return all;
+  }
 };
 
 /// @param path  has to outlive them

@@ -382,6 +382,9 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
     }
   };
   for (const FilterNoise& noise : near) follow(noise);
+  // What was near to a machine may be far from another: one that rubs sticks behind the small
+  // forces of one that does not.
+  follow(FollowingNoise(machine, pieces, dofs, of_pieces, reading_sd));
   if (!best) throw NumericalError("replay: diverged");
   follow(Refined(*best, reading_sd, longest, kCoarse));
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);

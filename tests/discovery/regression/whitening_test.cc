@@ -4,8 +4,7 @@
 
 #include <random>
 
-#include "mjdiag/plugin/replay/noise_fit.h"
-#include "support/arm.h"
+#include "support/followed_arm.h"
 
 namespace mjdiag {
 namespace {
@@ -14,21 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The arm beside a run of it, and the filter's path.
-struct FollowedArm {
-  explicit FollowedArm(const std::vector<std::string>& lacking, double noise = 1.0)
-      : run(ToMeasuredRun(arm.setup(), test::Arm::Measure(lacking, noise, 2))) {
-    const VectorXd sd = VectorXd::Constant(2, test::Arm::kNoise);
-    const auto dofs = LatentDofs(arm.machine, run);
-    const auto starts = FilterStarts(arm.machine, run, sd);
-    path = RunForceFilter(arm.machine, run, dofs, starts,
-                          FollowingNoise(arm.machine, run, dofs, starts, sd));
-  }
-
-  test::Arm arm;
-  MeasuredRun run;
-  FilterPath path;
-};
+using test::FollowedArm;
 
 Column SomeColumn(const FollowedArm& followed, unsigned seed, bool reading) {
   std::mt19937 generator(seed);

@@ -1,0 +1,51 @@
+#include "mjdiag/discovery/fit/settled_model.h"
+
+#include <utility>
+
+#include "mjdiag/discovery/fit/pruned_fit.h"
+#include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
+                    const Eigen::VectorXd& reading_sd,
+                    const std::vector<Eigen::Index>& dofs,
+                    const std::vector<Block>& blocks, ModelFit fit,
+                    const std::vector<FilterNoise>& near,
+                    const std::function<bool()>& is_over) {
+  const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
+    return FilterLikeliestFrom(machine_with(model), run, reading_sd, dofs, from);
+  };
+  SettledModel settled{std::move(fit), {}};
+  settled.path = filter(settled.fit.model, near);
+  if (settled.fit.model.empty()) return settled;
+  // Values that are off make latent forces large, behind which values are hardly seen:
+  // where fits behind the noise of the last filter gain no more, one behind a smaller may.
+  constexpr int kRounds = 6;
+  constexpr std::size_t kSmaller = 2;  // of NoisesFrom
+  std::size_t smaller = 0;
+  for (int round = 0; round < kRounds && !is_over(); ++round) {
+    const FilterPath& path = settled.path;
+    const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
+    const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
+    double gain = 0.0;
+    try {
+      const FitOf fitted = [&](const Model& start) {
+        return FitModel(machine_with, run, path, gains, blocks, start, 4);
+      };
+      SettledModel next{Pruned(blocks, fitted(settled.fit.model), fitted), {}};
+      next.path = filter(next.fit.model, {path.noise, noises[smaller]});
+      gain = settled.score() - next.score();
+      if (gain > 0.0) settled = std::move(next);
+    } catch (const NumericalError&) {
+    }
+    if (gain < kLeastGain && smaller == kSmaller) break;
+    smaller = gain < kLeastGain ? kSmaller : 0;
+  }
+  return settled;
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,62 @@
+#pragma once
+// The forces that a machine lacks along a run, smoothed (force_smoother.h), as rows of a
+// regression: each joint's in means over 20 ms, over its own size; a column is the force that
+// it is there. It is the regression of identification by inverse dynamics [Gautier, Khalil
+// 1990]: the motion is taken as it was measured, so that feedback, which makes inputs follow
+// what is missing, biases nothing; and what is missing counts by its size, however slow it
+// is, where innovations behind a latent force that lasts see only its changes. What is left
+// lasts: rows count once in the time over which they repeat themselves (R. Geyer, "Practical
+// Markov Chain Monte Carlo", Statist. Sci. 7, 1992: the initial positive sequence).
+//
+// Errors of readings have no force here.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjdiag/discovery/regression/row_map.h"
+#include "mjdiag/plugin/replay/force_filter.h"
+
+namespace mjdiag {
+
+class MissingForceMap final : public RowMap {
+ public:
+  /// How large what is left is of every latent force, and over how many rows it repeats
+  /// itself.
+  struct Rest {
+    Eigen::VectorXd sd;
+    Eigen::VectorXd repeats;
+  };
+
+  /// @param path     has to outlive it
+  /// @param missing  of all latent forces, nf x samples
+  MissingForceMap(const FilterPath& path, const Eigen::MatrixXd& missing,
+                  const Rest& rest);
+  /// Rest of all that is missing.
+  static Rest RestOf(const FilterPath& path, const Eigen::MatrixXd& missing);
+  /// Of what is left of it in the rows of this.
+  Rest RestOf(const Eigen::VectorXd& left) const;
+
+  Eigen::Index rows() const override { return left_.size(); }
+  const Eigen::VectorXd& left() const override { return left_; }
+  double log_determinant() const override;
+  Eigen::MatrixXd Of(const std::vector<const Column*>& columns) const override;
+  std::vector<Transposed> TransposedTimes(const Eigen::MatrixXd& u) const override;
+
+ private:
+  struct Window {
+    Eigen::Index first = 0;
+    Eigen::Index count = 0;
+  };
+  static std::vector<Window> WindowsOf(const FilterPath& path);
+  Eigen::VectorXd Means(const Eigen::MatrixXd& forces) const;
+
+  const FilterPath& path_;
+  std::vector<Window> windows_;
+  Rest rest_;
+  Eigen::VectorXd weight_;  // nf
+  /// Of every tangent, latent forces that do a change of the state in a tick, nf x ns.
+  std::vector<Eigen::MatrixXd> force_of_change_;
+  Eigen::VectorXd left_;
+};
+
+}  // namespace mjdiag

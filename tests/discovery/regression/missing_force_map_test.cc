@@ -1,0 +1,77 @@
+#include "mjdiag/discovery/regression/missing_force_map.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mjdiag/plugin/replay/force_smoother.h"
+#include "support/followed_arm.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::FollowedArm;
+
+MissingForceMap MapOf(const FollowedArm& followed) {
+  const MatrixXd missing = SmoothForces(followed.path).value;
+  return {followed.path, missing, MissingForceMap::RestOf(followed.path, missing)};
+}
+
+TEST(MissingForceMap, IsTheTransposeOfItsTransposed) {
+  const FollowedArm followed({});
+  const MissingForceMap map = MapOf(followed);
+  std::mt19937 generator(1);
+  std::normal_distribution<double> normal;
+  Column column;
+  for (Index dof = 0; dof < 2; ++dof) {
+    column.forces.emplace_back(dof, VectorXd::NullaryExpr(followed.path.samples(), [&] {
+                                 return normal(generator);
+                               }));
+  }
+  const VectorXd there = map.Of({&column}).col(0);
+  const VectorXd u = VectorXd::LinSpaced(map.rows(), -1.0, 1.0).array().sin();
+  const double back = map.TransposedTimes(u).front().Times(column);
+  EXPECT_GT(there.norm(), 0.0);
+  EXPECT_NEAR(u.dot(there), back, 1e-12 * u.norm() * there.norm());
+}
+
+// A force that lasts all the time, of which a latent force that lasts leaves the innovations
+// nothing, has its size here, to a hundredth of what the filter has to find where it begins.
+TEST(MissingForceMap, HasAForceThatIsMissingInItsSize) {
+  const FollowedArm without({}, 0.0);
+  const FollowedArm with({"force_offset@elbow:force=0.01"}, 0.0);
+  const MissingForceMap map = MapOf(with);
+  Column column;
+  column.forces = {{1, VectorXd::Constant(with.path.samples(), 0.01)}};
+  const VectorXd one = map.Of({&column}).col(0);
+  const MissingForceMap::Rest& rest =
+      MissingForceMap::RestOf(with.path, SmoothForces(with.path).value);
+  const MissingForceMap before(without.path, SmoothForces(without.path).value, rest);
+  const VectorXd left = map.left() - before.left();
+  EXPECT_NEAR(one.dot(left) / one.squaredNorm(), 1.0, 0.01);
+}
+
+// What a change of the velocity does in a tick is a force over the tick.
+TEST(MissingForceMap, TakesAChangeOfTheStateForTheForceThatMakesIt) {
+  const FollowedArm followed({});
+  const MissingForceMap map = MapOf(followed);
+  const FilterPath& path = followed.path;
+  Column force;
+  force.forces = {{1, VectorXd::Ones(path.samples())}};
+  Column change;
+  const Index ns = path.tangents.front().A.rows();
+  for (Index state = 0; state < ns; ++state) {
+    VectorXd signal(path.samples());
+    for (Index k = 0; k < path.samples(); ++k) signal[k] = path.At(k).B(state, 1);
+    change.states.emplace_back(state, signal);
+  }
+  const VectorXd one = map.Of({&force}).col(0);
+  const VectorXd other = map.Of({&change}).col(0);
+  EXPECT_LT((one - other).norm(), 1e-9 * one.norm());
+}
+
+}  // namespace
+}  // namespace mjdiag
