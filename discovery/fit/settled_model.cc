@@ -37,7 +37,9 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
         return FitModel(machine_with, run, path, gains, blocks, start, 4);
       };
       SettledModel next{Pruned(blocks, fitted(settled.fit.model), fitted), {}};
-      next.path = filter(next.fit.model, {path.noise, noises[smaller]});
+      std::vector<FilterNoise> from{path.noise};
+      if (smaller > 0) from.push_back(noises[smaller]);
+      next.path = filter(next.fit.model, from);
       gain = settled.score() - next.score();
       if (gain > 0.0) settled = std::move(next);
     } catch (const NumericalError&) {
