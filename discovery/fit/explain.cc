@@ -61,8 +61,8 @@ class Search {
   };
   void Adopt(Proposal proposal);
   void KeepRivals(const Moves& moves);
-  std::optional<SettledModel> Resettled(const Whitenings& whitenings,
-                                        std::size_t noise) const;
+  std::optional<SettledModel> Resettled(const Whitenings& whitenings, std::size_t noise,
+                                        const ModelFit& as_it_is) const;
   std::string Difference(double score) const {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);
@@ -72,9 +72,13 @@ class Search {
   using Judged = std::pair<std::size_t, bool>;
   ModelFit Fitted(const Model& model, const Whitenings& whitenings,
                   const Judged& judged, int iterations) const;
+  /// The model as it is, fitted behind gains that moves are compared behind.
+  using AsFitted = std::map<Judged, ModelFit>;
+  const ModelFit& AsItIsBehind(const Judged& judged, const Whitenings& whitenings,
+                               AsFitted& known) const;
   /// The best of some moves, fitted; none if none pays.
   std::optional<Proposal> BestOf(const Moves& moves, std::size_t most, int iterations,
-                                 const Whitenings& whitenings);
+                                 const Whitenings& whitenings, AsFitted as_it_is);
   std::optional<Proposal> BestForces(const Whitenings& whitenings,
                                      const ExactColumns& exact);
   std::optional<Proposal> BestMove(const Whitenings& whitenings,
@@ -155,9 +159,8 @@ void Search::Adopt(Proposal proposal) {
 
 /// The model as it is behind the noise that suits it by now; none if nothing is gained.
 std::optional<SettledModel> Search::Resettled(const Whitenings& whitenings,
-                                              std::size_t noise) const {
-  const ModelFit as_it_is =
-      Fitted(found_.fit.model, whitenings, {noise, false}, kIterations);
+                                              std::size_t noise,
+                                              const ModelFit& as_it_is) const {
   const KeptGains& own = whitenings.behind.front().gains();
   const double before = own.left.squaredNorm() + own.log_determinant +
                         found_.fit.prior + found_.fit.occam;
@@ -176,7 +179,7 @@ std::optional<Search::Proposal> Search::BestForces(const Whitenings& whitenings,
       std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them.
-  return BestOf(moves, 1, 0, whitenings);
+  return BestOf(moves, 1, 0, whitenings, {});
 }
 
 std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
@@ -186,12 +189,14 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
               found_.blocks, exact.terms, exact.other_steps);
   if (moves.other_steps && ChooseSteps()) return AsItIs();
   KeepRivals(moves);
-  if (auto settled = Resettled(whitenings, moves.noise)) {
+  AsFitted as_it_is;
+  const ModelFit& own = AsItIsBehind({moves.noise, false}, whitenings, as_it_is);
+  if (auto settled = Resettled(whitenings, moves.noise, own)) {
     return Proposal{std::move(*settled), steps_, found_.widths, run_};
   }
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
-  return BestOf(moves, 4, kIterations, whitenings);
+  return BestOf(moves, 4, kIterations, whitenings, std::move(as_it_is));
 }
 
 ModelFit Search::Fitted(const Model& model, const Whitenings& whitenings,
@@ -202,18 +207,20 @@ ModelFit Search::Fitted(const Model& model, const Whitenings& whitenings,
                   iterations);
 }
 
+const ModelFit& Search::AsItIsBehind(const Judged& judged, const Whitenings& whitenings,
+                                     AsFitted& known) const {
+  const auto found = known.find(judged);
+  if (found != known.end()) return found->second;
+  ModelFit fit = Fitted(found_.fit.model, whitenings, judged, kIterations);
+  return known.emplace(judged, std::move(fit)).first->second;
+}
+
 std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t most,
                                                int iterations,
-                                               const Whitenings& whitenings) {
+                                               const Whitenings& whitenings,
+                                               AsFitted as_it_is) {
   const auto fitted = [&](const Model& model, const Judged& judged) {
     return Fitted(model, whitenings, judged, iterations);
-  };
-  // Moves are compared with the model as it is behind the same gains.
-  std::map<Judged, ModelFit> as_it_is;
-  const auto base = [&](const Judged& judged) -> const ModelFit& {
-    const auto known = as_it_is.find(judged);
-    if (known != as_it_is.end()) return known->second;
-    return as_it_is.emplace(judged, fitted(found_.fit.model, judged)).first->second;
   };
   struct Tried {
     ModelFit fit;
@@ -230,7 +237,7 @@ std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t m
       if (iterations > 0) {
         fit = Pruned(found_.blocks, std::move(fit),
                      [&](const Model& other) { return fitted(other, judged); });
-        gain = base(judged).score() - fit.score();
+        gain = AsItIsBehind(judged, whitenings, as_it_is).score() - fit.score();
       }
       if (std::ranges::any_of(tried, [&](const Tried& other) {
             return SameBlocks(other.fit.model, fit.model);

@@ -82,13 +82,13 @@ struct Resistances {
   std::vector<double> sd;
 };
 Resistances ResistancesOf(const Machine& machine, const MeasuredRun& run,
-                          const FilterPath& path, std::vector<Block> blocks) {
+                          const FilterPath& path, const std::vector<Block>& blocks) {
   const BlockMotion along{MotionAlong(machine, run, path), path.noise.reading,
                           run.Time().maxCoeff()};
   Resistances all;
   for (std::size_t place = 0; place < blocks.size(); ++place) {
-    Block& block = blocks[place];
-    if (!block.IsResistance() || !block.IsSimplest()) continue;
+    if (!blocks[place].IsResistance() || !blocks[place].IsSimplest()) continue;
+    Block block = blocks[place];  // its price is another's business
     ForEachVariation(machine, along, place, block, [&](Variation&& one) {
       for (std::size_t i = 0; i < one.columns.size(); ++i) {
         all.columns.push_back(std::move(one.columns[i]));
@@ -108,7 +108,7 @@ double PriceOfWidths(const VectorXd& widths) {
 
 InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
                          const FilterPath& path, const Whitenings& whitenings,
-                         const VectorXd& widths, std::vector<Block> blocks) {
+                         const VectorXd& widths, const std::vector<Block>& blocks) {
   const MeasuredRun smoothed = WithSmoothedInputs(run, widths);
   // What an input does in a tick goes with it: smoothed, it is what the smoothed one does.
   std::vector<MeasuredRun> without;
@@ -152,8 +152,7 @@ InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
   std::vector<const Column*> all;
   for (const Column& one : changes) all.push_back(&one);
   SetOfColumns beside;
-  const Resistances resistances =
-      ResistancesOf(machine, smoothed, path, std::move(blocks));
+  const Resistances resistances = ResistancesOf(machine, smoothed, path, blocks);
   std::vector<double> sd = resistances.sd;
   for (const Column& one : resistances.columns) all.push_back(&one);
   for (Index i = 0; i < widths.size(); ++i) {

@@ -27,7 +27,8 @@ struct InputChoice {
 /// @param blocks  of what the machine lacks
 InputChoice ChooseInputs(const Machine& machine, const MeasuredRun& run,
                          const FilterPath& path, const Whitenings& whitenings,
-                         const Eigen::VectorXd& widths, std::vector<Block> blocks);
+                         const Eigen::VectorXd& widths,
+                         const std::vector<Block>& blocks);
 
 /// What it costs, in -2 ln, to have them so.
 double PriceOfWidths(const Eigen::VectorXd& widths);

@@ -29,8 +29,8 @@ VectorXd LeftBehind(const ModelMove& move, const std::vector<Term>& terms,
 Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, std::vector<Block>& blocks,
                    const std::vector<Term>& terms) {
-  const Eigen::MatrixXd missing = SmoothForces(path).value;
-  MissingForceMap::Rest rest = MissingForceMap::RestOf(path, missing);
+  const MissingForceRows missing(path, SmoothForces(path).value);
+  MissingForceMap::Rest rest = MissingForceMap::RestOf(missing);
   // How lasting the rest is nobody knows before something is explained.
   rest.repeats.setOnes();
   constexpr int kRounds = 2;
@@ -39,8 +39,7 @@ Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
     std::vector<MissingForceMap> maps;
     // A set that is right deserves a smaller rest.
     for (const double part : {1.0, 0.5, 0.25, 0.125}) {
-      maps.emplace_back(path, missing,
-                        MissingForceMap::Rest{part * rest.sd, rest.repeats});
+      maps.emplace_back(missing, MissingForceMap::Rest{part * rest.sd, rest.repeats});
     }
     if (maps.front().rows() == 0) break;
     std::vector<const RowMap*> all;

@@ -44,25 +44,28 @@ MissingForceMap::Rest RestOfRows(const VectorXd& rows, Index nf) {
 
 }  // namespace
 
-std::vector<MissingForceMap::Window> MissingForceMap::WindowsOf(
-    const FilterPath& path) {
+MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
+    : path(of) {
   constexpr double kLength = 0.02;  // [s]
   const auto ticks =
       std::max<Index>(1, static_cast<Index>(std::lround(kLength / path.sample_time)));
-  std::vector<Window> windows;
   for (std::size_t record = 0; record < path.first.size(); ++record) {
     for (Index k = path.first[record]; k + ticks <= path.EndOf(record); k += ticks) {
       windows.push_back({k, ticks});
     }
   }
-  return windows;
+  missing = Means(forces);
+  for (const TickTangent& tangent : path.tangents) {
+    force_of_change.push_back(
+        PseudoInverse(tangent.B(Eigen::indexing::all, path.dofs)));
+  }
 }
 
-VectorXd MissingForceMap::Means(const MatrixXd& forces) const {
-  const Index nf = path_.dof_count();
-  VectorXd rows(std::ssize(windows_) * nf);
+VectorXd MissingForceRows::Means(const MatrixXd& forces) const {
+  const Index nf = path.dof_count();
+  VectorXd rows(std::ssize(windows) * nf);
   Index row = 0;
-  for (const Window& window : windows_) {
+  for (const Window& window : windows) {
     rows.segment(row, nf) =
         forces.middleCols(window.first, window.count).rowwise().mean();
     row += nf;
@@ -70,31 +73,21 @@ VectorXd MissingForceMap::Means(const MatrixXd& forces) const {
   return rows;
 }
 
-MissingForceMap::MissingForceMap(const FilterPath& path, const MatrixXd& missing,
-                                 const Rest& rest)
-    : path_(path),
-      windows_(WindowsOf(path)),
+MissingForceMap::MissingForceMap(const MissingForceRows& of, const Rest& rest)
+    : of_(of),
       rest_(rest),
-      weight_((rest.sd.cwiseProduct(rest.repeats.cwiseSqrt())).cwiseInverse()) {
-  const Index nf = path.dof_count();
-  const MatrixXd means = Means(missing).reshaped(nf, std::ssize(windows_));
-  left_ = (weight_.asDiagonal() * means).reshaped();
-  for (const TickTangent& tangent : path.tangents) {
-    force_of_change_.push_back(
-        PseudoInverse(tangent.B(Eigen::indexing::all, path.dofs)));
-  }
-}
+      weight_((rest.sd.cwiseProduct(rest.repeats.cwiseSqrt())).cwiseInverse()),
+      left_((weight_.asDiagonal() *
+             of.missing.reshaped(of.path.dof_count(), std::ssize(of.windows)))
+                .reshaped()) {}
 
-MissingForceMap::Rest MissingForceMap::RestOf(const FilterPath& path,
-                                              const MatrixXd& missing) {
-  const Index nf = path.dof_count();
-  const MissingForceMap plain(path, missing, {VectorXd::Ones(nf), VectorXd::Ones(nf)});
-  return RestOfRows(plain.left_, nf);
+MissingForceMap::Rest MissingForceMap::RestOf(const MissingForceRows& of) {
+  return RestOfRows(of.missing, of.path.dof_count());
 }
 
 MissingForceMap::Rest MissingForceMap::RestOf(const VectorXd& left) const {
-  const Index nf = path_.dof_count();
-  MatrixXd rows = left.reshaped(nf, std::ssize(windows_));
+  const Index nf = of_.path.dof_count();
+  MatrixXd rows = left.reshaped(nf, std::ssize(of_.windows));
   rows.array().colwise() /= weight_.array();
   return RestOfRows(rows.reshaped(), nf);
 }
@@ -102,34 +95,35 @@ MissingForceMap::Rest MissingForceMap::RestOf(const VectorXd& left) const {
 double MissingForceMap::log_determinant() const {
   double sum = 0.0;
   for (Index j = 0; j < rest_.sd.size(); ++j) {
-    sum += 2.0 * static_cast<double>(windows_.size()) / rest_.repeats[j] *
+    sum += 2.0 * static_cast<double>(of_.windows.size()) / rest_.repeats[j] *
            std::log(rest_.sd[j]);
   }
   return sum;
 }
 
 MatrixXd MissingForceMap::Of(const std::vector<const Column*>& columns) const {
-  const Index nf = path_.dof_count();
+  const Index nf = of_.path.dof_count();
   MatrixXd out(rows(), std::ssize(columns));
   ParallelFor(static_cast<int>(columns.size()), [&](int number) {
     const Column& column = *columns[static_cast<std::size_t>(number)];
-    MatrixXd forces = MatrixXd::Zero(nf, path_.samples());
+    MatrixXd forces = MatrixXd::Zero(nf, of_.path.samples());
     for (const auto& [dof, signal] : column.forces) {
-      const auto place = std::ranges::find(path_.dofs, dof);
-      if (place != path_.dofs.end()) {
-        forces.row(place - path_.dofs.begin()) += signal.transpose();
+      const auto place = std::ranges::find(of_.path.dofs, dof);
+      if (place != of_.path.dofs.end()) {
+        forces.row(place - of_.path.dofs.begin()) += signal.transpose();
       }
     }
     for (const auto& [state, signal] : column.states) {
-      for (Index k = 0; k < path_.samples(); ++k) {
+      for (Index k = 0; k < of_.path.samples(); ++k) {
         if (signal[k] == 0.0) continue;
         forces.col(k) +=
             signal[k] *
-            force_of_change_[path_.of_tick[static_cast<std::size_t>(k)]].col(state);
+            of_.force_of_change[of_.path.of_tick[static_cast<std::size_t>(k)]].col(
+                state);
       }
     }
     out.col(number) =
-        (weight_.asDiagonal() * Means(forces).reshaped(nf, std::ssize(windows_)))
+        (weight_.asDiagonal() * of_.Means(forces).reshaped(nf, std::ssize(of_.windows)))
             .reshaped();
   });
   return out;
@@ -137,17 +131,17 @@ MatrixXd MissingForceMap::Of(const std::vector<const Column*>& columns) const {
 
 std::vector<RowMap::Transposed> MissingForceMap::TransposedTimes(
     const MatrixXd& u) const {
-  const Index nf = path_.dof_count();
-  const Index nv = path_.tangents.front().B.cols();
+  const Index nf = of_.path.dof_count();
+  const Index nv = of_.path.tangents.front().B.cols();
   std::vector<Transposed> all(static_cast<std::size_t>(u.cols()));
   ParallelFor(static_cast<int>(u.cols()), [&](int number) {
     Transposed& one = all[static_cast<std::size_t>(number)];
-    one.forces = MatrixXd::Zero(path_.samples(), nv);
-    one.readings = MatrixXd::Zero(path_.samples(), path_.sensors());
+    one.forces = MatrixXd::Zero(of_.path.samples(), nv);
+    one.readings = MatrixXd::Zero(of_.path.samples(), of_.path.sensors());
     Index row = 0;
-    for (const Window& window : windows_) {
+    for (const MissingForceRows::Window& window : of_.windows) {
       for (Index j = 0; j < nf; ++j, ++row) {
-        one.forces.col(path_.dofs[static_cast<std::size_t>(j)])
+        one.forces.col(of_.path.dofs[static_cast<std::size_t>(j)])
             .segment(window.first, window.count)
             .setConstant(weight_[j] * u(row, number) /
                          static_cast<double>(window.count));

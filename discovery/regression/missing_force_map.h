@@ -18,6 +18,25 @@
 
 namespace mjdiag {
 
+/// What all maps of a path share: they differ in how large the rest is.
+struct MissingForceRows {
+  struct Window {
+    Eigen::Index first = 0;
+    Eigen::Index count = 0;
+  };
+  /// @param path     has to outlive it
+  /// @param missing  of all latent forces, nf x samples
+  MissingForceRows(const FilterPath& path, const Eigen::MatrixXd& missing);
+  /// Means of forces in every window, window by window.
+  Eigen::VectorXd Means(const Eigen::MatrixXd& forces) const;
+
+  const FilterPath& path;
+  std::vector<Window> windows;
+  Eigen::VectorXd missing;
+  /// Of every tangent, latent forces that do a change of the state in a tick, nf x ns.
+  std::vector<Eigen::MatrixXd> force_of_change;
+};
+
 class MissingForceMap final : public RowMap {
  public:
   /// How large what is left is of every latent force, and over how many rows it repeats
@@ -27,12 +46,10 @@ class MissingForceMap final : public RowMap {
     Eigen::VectorXd repeats;
   };
 
-  /// @param path     has to outlive it
-  /// @param missing  of all latent forces, nf x samples
-  MissingForceMap(const FilterPath& path, const Eigen::MatrixXd& missing,
-                  const Rest& rest);
+  /// @param of  has to outlive it
+  MissingForceMap(const MissingForceRows& of, const Rest& rest);
   /// Rest of all that is missing.
-  static Rest RestOf(const FilterPath& path, const Eigen::MatrixXd& missing);
+  static Rest RestOf(const MissingForceRows& of);
   /// Of what is left of it in the rows of this.
   Rest RestOf(const Eigen::VectorXd& left) const;
 
@@ -43,19 +60,9 @@ class MissingForceMap final : public RowMap {
   std::vector<Transposed> TransposedTimes(const Eigen::MatrixXd& u) const override;
 
  private:
-  struct Window {
-    Eigen::Index first = 0;
-    Eigen::Index count = 0;
-  };
-  static std::vector<Window> WindowsOf(const FilterPath& path);
-  Eigen::VectorXd Means(const Eigen::MatrixXd& forces) const;
-
-  const FilterPath& path_;
-  std::vector<Window> windows_;
+  const MissingForceRows& of_;
   Rest rest_;
   Eigen::VectorXd weight_;  // nf
-  /// Of every tangent, latent forces that do a change of the state in a tick, nf x ns.
-  std::vector<Eigen::MatrixXd> force_of_change_;
   Eigen::VectorXd left_;
 };
 

@@ -11,18 +11,17 @@ namespace mjdiag {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::FollowedArm;
 
-MissingForceMap MapOf(const FollowedArm& followed) {
-  const MatrixXd missing = SmoothForces(followed.path).value;
-  return {followed.path, missing, MissingForceMap::RestOf(followed.path, missing)};
+MissingForceRows RowsOf(const FollowedArm& followed) {
+  return {followed.path, SmoothForces(followed.path).value};
 }
 
 TEST(MissingForceMap, IsTheTransposeOfItsTransposed) {
   const FollowedArm followed({});
-  const MissingForceMap map = MapOf(followed);
+  const MissingForceRows rows = RowsOf(followed);
+  const MissingForceMap map(rows, MissingForceMap::RestOf(rows));
   std::mt19937 generator(1);
   std::normal_distribution<double> normal;
   Column column;
@@ -43,13 +42,14 @@ TEST(MissingForceMap, IsTheTransposeOfItsTransposed) {
 TEST(MissingForceMap, HasAForceThatIsMissingInItsSize) {
   const FollowedArm without({}, 0.0);
   const FollowedArm with({"force_offset@elbow:force=0.01"}, 0.0);
-  const MissingForceMap map = MapOf(with);
+  const MissingForceRows rows_with = RowsOf(with);
+  const MissingForceRows rows_without = RowsOf(without);
+  const MissingForceMap::Rest rest = MissingForceMap::RestOf(rows_with);
+  const MissingForceMap map(rows_with, rest);
+  const MissingForceMap before(rows_without, rest);
   Column column;
   column.forces = {{1, VectorXd::Constant(with.path.samples(), 0.01)}};
   const VectorXd one = map.Of({&column}).col(0);
-  const MissingForceMap::Rest& rest =
-      MissingForceMap::RestOf(with.path, SmoothForces(with.path).value);
-  const MissingForceMap before(without.path, SmoothForces(without.path).value, rest);
   const VectorXd left = map.left() - before.left();
   EXPECT_NEAR(one.dot(left) / one.squaredNorm(), 1.0, 0.01);
 }
@@ -57,7 +57,8 @@ TEST(MissingForceMap, HasAForceThatIsMissingInItsSize) {
 // What a change of the velocity does in a tick is a force over the tick.
 TEST(MissingForceMap, TakesAChangeOfTheStateForTheForceThatMakesIt) {
   const FollowedArm followed({});
-  const MissingForceMap map = MapOf(followed);
+  const MissingForceRows rows = RowsOf(followed);
+  const MissingForceMap map(rows, MissingForceMap::RestOf(rows));
   const FilterPath& path = followed.path;
   Column force;
   force.forces = {{1, VectorXd::Ones(path.samples())}};
