@@ -373,33 +373,49 @@ void Search::AddCurves() {
 
 bool Search::Step() {
   const Whitenings whitenings = WhiteningsOf(found_.path);
-  if (std::optional<Proposal> smoothed = SmoothedInputs(whitenings)) {
-    Adopt(std::move(*smoothed));
+  std::optional<Proposal> move;
+  const bool is_first = found_.fit.model.empty();
+  // What noise of the inputs explains is found before anything else, or when nothing is left.
+  if (is_first) move = SmoothedInputs(whitenings);
+  if (move) {
+    Adopt(std::move(*move));
     return true;
   }
   const ExactColumns exact = ExactColumnsOf(
       [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
       run_, found_.path, found_.blocks, found_.fit.model);
-  std::optional<Proposal> move;
   if (looks_at_forces_) move = BestForces(whitenings, exact);
   if (!move) {
     looks_at_forces_ = false;
     move = BestMove(whitenings, exact);
   }
+  if (!move && !is_first) move = SmoothedInputs(whitenings);
   if (move) Adopt(std::move(*move));
   return move.has_value();
 }
 
 void Search::Prepare() {
-  found_.path = FilterLikeliest(machine_, run_, reading_sd_);
-  found_.nothing = found_.path;
-  found_.score = found_.path.deviance;
-  found_.widths = VectorXd::Zero(run_.inputs.rows());
-  if (ChooseSteps()) {
-    found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
-                                      {found_.path.noise});
-    found_.score = found_.path.deviance;
+  FilterPath stepped;
+  std::optional<FilterPath> unstepped;
+  ParallelForAll(2, [&](int number) {
+    if (number == 0) stepped = FilterLikeliest(machine_, run_, reading_sd_);
+    if (number == 1) {
+      try {
+        unstepped = FilterLikeliest(machine_.WithoutSteps(), run_, reading_sd_);
+      } catch (const NumericalError&) {
+      }
+    }
+  });
+  found_.nothing = stepped;
+  found_.score = stepped.deviance;
+  found_.path = std::move(stepped);
+  if (unstepped && unstepped->deviance < found_.score - kLeastGain) {
+    Say("without physics steps: " + Difference(unstepped->deviance));
+    steps_ = false;
+    found_.score = unstepped->deviance;
+    found_.path = std::move(*unstepped);
   }
+  found_.widths = VectorXd::Zero(run_.inputs.rows());
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
   BoundByRecord(candidates_, machine_, MotionAlong(machine_, run_, found_.path));
   BoundByReadings(candidates_, machine_, run_);

@@ -37,11 +37,18 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
         return FitModel(machine_with, run, path, gains, blocks, start, 4);
       };
       SettledModel next{Pruned(blocks, fitted(settled.fit.model), fitted), {}};
-      std::vector<FilterNoise> from{path.noise};
-      if (smaller > 0) from.push_back(noises[smaller]);
-      next.path = filter(next.fit.model, from);
-      gain = settled.score() - next.score();
-      if (gain > 0.0) settled = std::move(next);
+      // Where a fit gains nothing behind the gains that it was made behind, a filter, which
+      // takes longer, need not be asked.
+      const double before =
+          gains.left.squaredNorm() + gains.log_determinant + settled.fit.prior;
+      if (next.fit.model.size() != settled.fit.model.size() ||
+          before - next.fit.deviance - next.fit.prior > kLeastGain) {
+        std::vector<FilterNoise> from{path.noise};
+        if (smaller > 0) from.push_back(noises[smaller]);
+        next.path = filter(next.fit.model, from);
+        gain = settled.score() - next.score();
+        if (gain > 0.0) settled = std::move(next);
+      }
     } catch (const NumericalError&) {
     }
     if (gain < kLeastGain && smaller == kSmaller) break;

@@ -13,6 +13,9 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kStretchTime = 0.01;  // [s]
+// Forces of effects change sooner: with a velocity of some Hz they are the same within this
+// to a hundredth.
+constexpr double kStretchOfEffects = 0.001;  // [s]
 
 /// Of two tangents, of positions and velocities each by itself, which have units of their
 /// own.
@@ -74,7 +77,9 @@ TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
       with_effects_(DofsWithEffects(machine)),
       rubbing_(DofsThatRub(machine.plant())),
       shortest_(std::max<std::int64_t>(
-          1, std::lround(kStretchTime * machine.rates().control))) {}
+          1, std::lround(kStretchTime * machine.rates().control))),
+      of_effects_(std::max<std::int64_t>(
+          1, std::lround(kStretchOfEffects * machine.rates().control))) {}
 
 // A joint that may stick for all that is known of its velocity and of what pushes it moves
 // by neither of the two tangents, for only by what is between them does a filter that holds
@@ -82,12 +87,14 @@ TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
 std::vector<Index> TangentCourse::RestlessAt(const PlantState& from, const VectorXd& sd,
                                              const VectorXd& force_sd) const {
   constexpr double kMay = 3.0;  // standard deviations
-  std::vector<Index> dofs = with_effects_;
-  for (const Index dof : rubbing_) {
-    const double spread =
-        sd[from.velocity.size() + dof] + force_sd[dof] * differences_.VelocityOf(dof);
-    if (std::abs(from.velocity[dof]) > kMay * spread) continue;
-    if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);
+  std::vector<Index> dofs;
+  for (const std::vector<Index>* some : {&rubbing_, &with_effects_}) {
+    for (const Index dof : *some) {
+      const double spread =
+          sd[from.velocity.size() + dof] + force_sd[dof] * differences_.VelocityOf(dof);
+      if (std::abs(from.velocity[dof]) > kMay * spread) continue;
+      if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);
+    }
   }
   return dofs;
 }
@@ -112,10 +119,20 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
       tangents.push_back(std::move(here));
     }
   }
-  const std::vector<Index> restless = RestlessAt(from, sd, force_sd);
-  if (restless.empty()) return known.place;
+  std::vector<Index> dofs = RestlessAt(from, sd, force_sd);
+  const bool may_stand = !dofs.empty();
+  if (with_effects_.empty() && !may_stand) return known.place;
+  if (!may_stand && refreshed_ && refreshed_->of == known.place &&
+      tick >= refreshed_->since && tick - refreshed_->since < of_effects_) {
+    return refreshed_->place;
+  }
+  for (const Index dof : with_effects_) {
+    if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);
+  }
   TickTangent here = tangents[known.place];
-  differences_.Refresh(from, forces, tick, control, restless, sd, force_sd, here);
+  differences_.Refresh(from, forces, tick, control, dofs, sd, force_sd, here);
+  refreshed_.reset();
+  if (!may_stand) refreshed_ = Refreshed{known.place, tangents.size(), tick};
   tangents.push_back(std::move(here));
   return tangents.size() - 1;
 }

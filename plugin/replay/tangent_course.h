@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "mjdiag/plugin/machine/machine.h"
@@ -29,7 +30,7 @@ class TangentCourse {
   std::vector<TickTangent> tangents;
 
  private:
-  /// Degrees of freedom whose columns hold for this tick only.
+  /// Degrees of freedom that may stand, whose columns hold for this tick only.
   std::vector<Eigen::Index> RestlessAt(const PlantState& from,
                                        const Eigen::VectorXd& sd,
                                        const Eigen::VectorXd& force_sd) const;
@@ -39,6 +40,7 @@ class TangentCourse {
   std::vector<Eigen::Index> with_effects_;
   std::vector<Eigen::Index> rubbing_;  // with dry friction
   std::int64_t shortest_;              // stretch, in ticks
+  std::int64_t of_effects_;            // the same
   std::int64_t last_ = 0;              // tick
   /// A tangent, from when on it is taken to hold, and for how long.
   struct Known {
@@ -47,6 +49,14 @@ class TangentCourse {
     std::int64_t stretch = 0;
   };
   std::map<std::uint64_t, Known> known_;  // by pattern
+  /// A tangent with columns of effects where nothing may stand, from which one it was made
+  /// and when.
+  struct Refreshed {
+    std::size_t of = 0;
+    std::size_t place = 0;
+    std::int64_t since = 0;
+  };
+  std::optional<Refreshed> refreshed_;
 };
 
 }  // namespace mjdiag
