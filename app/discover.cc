@@ -40,7 +40,7 @@ struct DiscoverCommand {
   OutputOptions output;
   MeasurementOptions records;
   std::optional<bool> doubt;
-  std::string engine = kSearch;
+  std::string engine = kFilter;
   DiscoverOptions search;
 };
 
@@ -72,8 +72,8 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
       log.Show(progress.what + AtMost(progress.most_seconds), progress.best);
     }
   };
-  return command.engine == kFilter ? DiscoverByFilter(machine, measurements, options)
-                                   : Discover(machine, measurements, options);
+  return command.engine == kFilter ? mjdiag::Discover(machine, measurements, options)
+                                   : DiscoverBySearch(machine, measurements, options);
 }
 
 // A plant that cannot be written must not cost the answer, which took its time.
@@ -138,7 +138,8 @@ void AddDiscover(CLI::App& app) {
   AddMeasurementOptions(*command, options->records);
   command
       ->add_option("--train-share", options->search.train_share,
-                   "Share of the record, from its start, that fits see")
+                   "Share of every record, from its start, that fits see, where none is "
+                   "held out")
       ->check(Within(kLeastShare, kMostShare));
   command
       ->add_option("--bandwidth", options->search.bandwidth,

@@ -34,13 +34,14 @@ std::vector<Index> Horizons(const MeasuredRun& run) {
 }
 
 /// Moments from which the longest horizon is in the same record.
-std::vector<Index> Starts(const MeasuredRun& run, Index longest, Index skip) {
+std::vector<Index> Starts(const MeasuredRun& run, Index longest,
+                          const std::vector<Index>& skip) {
   std::vector<Index> starts;
   const Index most = std::clamp<Index>(kLengths * run.samples() / longest, 1, kStarts);
   const Index every = std::max<Index>(1, run.samples() / most);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Index first = run.records[i].sample;
-    for (Index k = skip; k + longest < run.SamplesOf(i); k += every) {
+    for (Index k = skip[i]; k + longest < run.SamplesOf(i); k += every) {
       starts.push_back(first + k);
     }
   }
@@ -106,6 +107,11 @@ class Forecast {
 
 Prediction Predict(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, Index skip) {
+  return Predict(machine, run, path, std::vector<Index>(run.records.size(), skip));
+}
+
+Prediction Predict(const Machine& machine, const MeasuredRun& run,
+                   const FilterPath& path, const std::vector<Index>& skip) {
   const std::vector<Index> horizons = Horizons(run);
   const std::vector<Index> starts = Starts(run, horizons.back(), skip);
   std::vector<Errors> errors(starts.size());

@@ -31,5 +31,8 @@ struct Prediction {
 /// @param skip  samples at the start of every record that count for nothing
 Prediction Predict(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, Eigen::Index skip);
+/// @param skip  the same of every record
+Prediction Predict(const Machine& machine, const MeasuredRun& run,
+                   const FilterPath& path, const std::vector<Eigen::Index>& skip);
 
 }  // namespace mjdiag

@@ -173,7 +173,7 @@ struct Discovery {
   /// what looks odd in the record.
   std::vector<std::string> notes;
 
-  double train_share = 0.0;  ///< of the record that fits saw; of several 1
+  double train_share = 0.0;  ///< of every record that fits saw; 1 beside unseen ones
   /// Of every record; those that fits saw first.
   std::vector<RecordReplay> records;
   /// The first that they saw, and the first that they did not; null if there is none.
@@ -233,6 +233,8 @@ struct DiscoverOptions {
   std::function<void(const DiscoveryProgress& progress)> progress;
 };
 
+/// One engine for every machine: a filter with latent forces, one regression and fits with
+/// MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw (answer/).
 /// @param machine  the nominal one
 /// InputError if the record lacks what the replay needs or cannot be judged (see
 /// data_check.h), and on a choice that means nothing (candidate_choice.h).
@@ -242,13 +244,9 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 
-/// The same by one engine for every machine: a filter with latent forces, one regression and
-/// fits with MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw
-/// (answer/). Its budget is in seconds; the bandwidth is nothing to it. InputError on records
-/// with a plant of their own, too.
-Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
+Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
                            const DiscoverOptions& options);
-Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
+Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
                            const Record* validation, const DiscoverOptions& options);
 
 /// Whether the record says of a number that it is another one than the model has.

@@ -178,9 +178,7 @@ void Discoverer::AddComparisons() {
   work_->Add(2.0 * problem_.RunWork());
   discovery_.records = ReplayAll(measurements_, changes_, options_.seed, falls_);
   const Index skip = problem_.skip();
-  const Index train = problem_.train();
-  const bool one = measurements_.fit.size() == 1;
-  AddMismatchFigures(skip, train, one ? train - skip : 0, discovery_);
+  AddMismatchFigures(skip, discovery_);
 }
 
 void Discoverer::AddLimits() {

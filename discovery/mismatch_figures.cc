@@ -13,10 +13,16 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// rms of measured minus simulated of records, samples first .. first + samples - 1.
-/// @param samples  0: to the end
+/// From a share of each record to another one.
+struct Stretch {
+  double begin = 0.0;
+  double end = 1.0;
+};
+
+/// rms of measured minus simulated of a stretch of records.
+/// @param skip  samples at their start that count for nothing
 std::map<std::string, double> ChannelRms(
-    const std::vector<const Comparison*>& comparisons, Index first, Index samples) {
+    const std::vector<const Comparison*>& comparisons, Index skip, Stretch stretch) {
   std::map<std::string, double> squares;
   std::map<std::string, double> counts;
   for (const Comparison* comparison : comparisons) {
@@ -24,7 +30,13 @@ std::map<std::string, double> ChannelRms(
       const Channel& measured = comparison->measured.At(channel.name);
       const VectorXd difference =
           measured.samples - comparison->simulated.At(channel.name).samples;
-      const Index n = samples > 0 ? samples : difference.size() - first;
+      const auto at = [&](double share) {
+        return static_cast<Index>(
+            std::lround(share * static_cast<double>(difference.size())));
+      };
+      const Index end = at(stretch.end);
+      const Index first = std::min(std::max(at(stretch.begin), skip), end - 1);
+      const Index n = end - first;
       const VectorXd counted =
           measured.measured.size() == 0
               ? VectorXd(difference.segment(first, n))
@@ -61,16 +73,20 @@ void SetGains(Discovery& discovery) {
              discovery.noise_floor);
 }
 
-void AddMismatchFigures(Index first, Index train, Index samples, Discovery& discovery) {
+void AddMismatchFigures(Index skip, Discovery& discovery) {
   const auto figures = [&](const Comparison RecordReplay::*model) {
     std::vector<const Comparison*> seen;
     std::vector<const Comparison*> unseen;
     for (const RecordReplay& replay : discovery.records) {
       (replay.seen ? seen : unseen).push_back(&(replay.*model));
     }
-    return Discovery::Figures{
-        ChannelRms(seen, first, samples),
-        unseen.empty() ? ChannelRms(seen, train, 0) : ChannelRms(unseen, first, 0)};
+    if (!unseen.empty()) {
+      return Discovery::Figures{ChannelRms(seen, skip, {}),
+                                ChannelRms(unseen, skip, {})};
+    }
+    const double share = discovery.train_share;
+    return Discovery::Figures{ChannelRms(seen, skip, {0.0, share}),
+                              ChannelRms(seen, skip, {share, 1.0})};
   };
   discovery.mismatch_before = figures(&RecordReplay::before);
   discovery.mismatch_after = figures(&RecordReplay::after);

@@ -11,10 +11,7 @@ namespace mjdiag {
 void SetGains(Discovery& discovery);
 
 /// Its mismatch, noise floor and gains, from its records.
-/// @param first    sample from which they count
-/// @param train    of a single record, how many fits saw
-/// @param samples  of what fits saw, so many count; 0: all
-void AddMismatchFigures(Eigen::Index first, Eigen::Index train, Eigen::Index samples,
-                        Discovery& discovery);
+/// @param skip  samples at the start of every record that count for nothing
+void AddMismatchFigures(Eigen::Index skip, Discovery& discovery);
 
 }  // namespace mjdiag

@@ -45,11 +45,13 @@ void AddDiscoveryFacts(Page& page, const Discovery& discovery,
                                        : "measured input, in open loop");
   }
   const auto seen = std::ranges::count(discovery.records, true, &RecordReplay::seen);
+  const std::string part = discovery.train_share < 1.0
+                               ? "the first " + ShareText(discovery.train_share) + " of "
+                               : "";
   if (seen > 1) {
-    facts.emplace_back("Fitted to", std::to_string(seen) + " records");
-  } else if (discovery.train_share > 0.0) {
-    facts.emplace_back("Fitted to", "the first " + ShareText(discovery.train_share) +
-                                        " of the record");
+    facts.emplace_back("Fitted to", part + std::to_string(seen) + " records");
+  } else if (!part.empty()) {
+    facts.emplace_back("Fitted to", part + "the record");
   }
   if (!run.extended_plant.empty()) {
     facts.emplace_back("Extended plant", run.extended_plant);

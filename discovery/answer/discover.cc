@@ -142,13 +142,12 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
 
 }  // namespace
 
-Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
+Discovery Discover(const Machine& machine, const Measurements& measurements,
                            const DiscoverOptions& options) {
   RunningTime time(options);
-  const Measurements parts = WithUnseen(measurements, options.train_share);
   Discovery discovery;
-  discovery.notes = NotesOfChecks(machine.plant(), parts, options.doubt);
-  const SplitRun run = Split(parts, options.train_share);
+  discovery.notes = NotesOfChecks(machine.plant(), measurements, options.doubt);
+  const SplitRun run = Split(measurements, options.train_share);
   const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen, {});
   discovery.setup = machine.setup().name;
   discovery.train_share = run.share;
@@ -198,18 +197,18 @@ Discovery DiscoverByFilter(const Machine& machine, const Measurements& measureme
     time.Say("figures", 0.9);
     const Changes changes = ChangesOf(discovery);
     const bool follows = AddReplays(
-        parts, changes, machine.setup().compare.skip_samples, options.seed, discovery);
+        measurements, changes, machine.setup().compare.skip_samples, options.seed, discovery);
     if (follows) AddPredictions(data, judged, discovery);
-    AddLadderOf(data, judged, parts, follows, discovery);
+    AddLadderOf(data, judged, measurements, follows, discovery);
     AddFaultLimits(data, judged, discovery);
   }
   NoteTime(time, options, explained, judged, discovery);
   return discovery;
 }
 
-Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
+Discovery Discover(const Machine& machine, const Record& measured,
                            const Record* validation, const DiscoverOptions& options) {
-  return DiscoverByFilter(machine, MeasurementsOf(machine, measured, validation),
+  return Discover(machine, MeasurementsOf(machine, measured, validation),
                           options);
 }
 

@@ -60,13 +60,13 @@ VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
 }
 
 /// Mean square in units of what accelerates the joints, less that of errors.
-/// @param first  sample from which they count
+/// @param counts  which samples do
 double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual,
-               Eigen::Index first) {
+               const SampleMask& counts) {
   double sum = 0.0;
   for (std::size_t j = 0; j < forces.size(); ++j) {
     const MissingForce& force = forces[j];
-    const VectorXd counted = force.value.tail(force.value.size() - first);
+    const VectorXd counted = Kept(force.value, counts);
     const double square = counted.squaredNorm() / static_cast<double>(counted.size()) -
                           force.sd * force.sd;
     const double scale = usual[static_cast<Eigen::Index>(j)];
@@ -88,9 +88,11 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Model& model = judged.answer.fit.model;
   MissingShare share;
   const VectorXd usual = UsualForces(given, data.run.seen, judged.nothing.seen);
+  const SampleMask all_seen = SampleMask::Constant(data.run.seen.samples(), true);
   const auto is_there = [&](const Machine& machine, const FilterPath& path) {
     return AsksForForces(machine, data.run.seen, path) &&
-           PowerOf(MissingForces(machine, path), usual, 0) > kNegligible * kNegligible;
+           PowerOf(MissingForces(machine, path), usual, all_seen) >
+               kNegligible * kNegligible;
   };
   share.is_missing = is_there(given, judged.nothing.seen);
   if (model.empty()) {
@@ -101,17 +103,16 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Machine changed = data.With(model);
   share.is_left = is_there(changed, judged.answer.seen);
   const auto share_along = [&](const MeasuredRun& run, const FilterPath& path,
-                               Eigen::Index first) {
-    const double before = PowerOf(MissingForces(given, path), usual, first);
+                               const SampleMask& counts) {
+    const double before = PowerOf(MissingForces(given, path), usual, counts);
     if (!(before > 0.0)) return std::numeric_limits<double>::infinity();
-    return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual, first) / before);
+    return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual, counts) / before);
   };
   try {
-    share.left =
-        share_along(data.run.unseen, judged.nothing.unseen, data.run.first_unseen);
+    share.left = share_along(data.run.unseen, judged.nothing.unseen, data.run.New());
     // A machine that rests in what no fit saw lacks nothing there.
     if (!std::isfinite(share.left)) {
-      share.left = share_along(data.run.seen, judged.nothing.seen, 0);
+      share.left = share_along(data.run.seen, judged.nothing.seen, all_seen);
     }
   } catch (const NumericalError&) {
     share.left = 1.0;

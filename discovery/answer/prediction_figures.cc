@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "mjdiag/comparison/prediction.h"
 #include "mjdiag/discovery/mismatch_figures.h"
@@ -38,9 +39,13 @@ void AddPredictions(const AnswerData& data, const UnseenJudgement& judged,
   const Index skip = data.machine.setup().compare.skip_samples;
   const auto predict = [&](const ModelOnRuns& one, bool of_seen) {
     const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
+    std::vector<Index> skips;
+    for (std::size_t r = 0; r < run.records.size(); ++r) {
+      skips.push_back(of_seen ? std::min(skip, run.SamplesOf(r) / 2)
+                              : std::max(skip, data.run.seen_of[r]));
+    }
     return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen,
-                   of_seen ? std::min(skip, run.samples() / 2)
-                           : std::max(skip, data.run.first_unseen));
+                   skips);
   };
   // Before and after in what was fitted, and in what was not.
   const std::array all{predict(judged.nothing, true), predict(judged.answer, true),

@@ -27,12 +27,7 @@ constexpr double kDiverged = std::numeric_limits<double>::infinity();
 void AddMismatch(const Measurements& measurements, const Changes& changes, Index skip,
                  std::uint64_t seed, bool follows, Discovery& discovery) {
   discovery.records = ReplayAll(measurements, changes, seed, follows);
-  const bool one = measurements.fit.size() == 1 && measurements.unseen.empty();
-  const auto train = static_cast<Index>(
-      std::lround(discovery.train_share *
-                  static_cast<double>(measurements.fit.front().record.samples())));
-  const Index first = std::min(skip, train - 1);
-  AddMismatchFigures(first, train, one ? train - first : 0, discovery);
+  AddMismatchFigures(skip, discovery);
 }
 
 VectorXd ScaledAlong(const AnswerData& data, const Model& model, const MeasuredRun& run,
@@ -44,12 +39,13 @@ VectorXd ScaledAlong(const AnswerData& data, const Model& model, const MeasuredR
   }
 }
 
-/// Of samples from `first` on.
-VectorXd Behind(const VectorXd& scaled, const KeptGains& gains, Index first) {
-  const auto begin = std::ranges::find_if(
-      gains.readings,
-      [&](const KeptGains::Reading& one) { return one.sample >= first; });
-  return scaled.tail(gains.readings.end() - begin);
+/// Of some samples.
+VectorXd Of(const VectorXd& scaled, const KeptGains& gains, const SampleMask& samples) {
+  SampleMask counts(scaled.size());
+  for (Index row = 0; row < scaled.size(); ++row) {
+    counts[row] = samples[gains.readings[static_cast<std::size_t>(row)].sample];
+  }
+  return Kept(scaled, counts);
 }
 
 double RmsOf(const VectorXd& scaled) {
@@ -142,9 +138,9 @@ void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
         step.train = RmsOf(scaled[i]);
         return;
       case 1:
-        step.held_out = RmsOf(Behind(
-            ScaledAlong(data, model, data.run.unseen, answer.unseen, unseen_gains),
-            unseen_gains, data.run.first_unseen));
+        step.held_out =
+            RmsOf(Of(ScaledAlong(data, model, data.run.unseen, answer.unseen, unseen_gains),
+                     unseen_gains, data.run.New()));
         return;
       default:
         break;

@@ -4,37 +4,38 @@
 #include <cmath>
 #include <utility>
 
-#include "mjdiag/signals/error.h"
-
 namespace mjdiag {
 
 using Eigen::Index;
 
-namespace {
-
-void RequireSharedPlant(const std::vector<MeasuredRecord>& records) {
-  for (const MeasuredRecord& one : records) {
-    if (!one.own_plant) continue;
-    throw InputError(one.name, "has a plant of its own",
-                     "records of one load at a time, each with the setup of that load");
+SampleMask SplitRun::New() const {
+  SampleMask all = SampleMask::Constant(unseen.samples(), true);
+  for (std::size_t r = 0; r < seen_of.size(); ++r) {
+    all.segment(unseen.records[r].sample, seen_of[r]).setConstant(false);
   }
+  return all;
 }
 
-}  // namespace
-
 SplitRun Split(const Measurements& measurements, double train_share) {
-  RequireSharedPlant(measurements.fit);
-  RequireSharedPlant(measurements.unseen);
   MeasuredRun run = RunOf(measurements.fit);
   if (!measurements.unseen.empty()) {
-    return {std::move(run), RunOf(measurements.unseen), 0, 1.0};
+    MeasuredRun unseen = RunOf(measurements.unseen);
+    const std::vector<Index> none(unseen.records.size(), 0);
+    return {std::move(run), std::move(unseen), none, 1.0};
   }
-  const Index samples = run.samples();
-  const auto wished =
-      static_cast<Index>(std::lround(train_share * static_cast<double>(samples)));
-  const Index seen = std::clamp<Index>(wished, 1, samples - 1);
-  return {Part(run, 0, seen), run, seen,
-          static_cast<double>(seen) / static_cast<double>(samples)};
+  std::vector<Index> seen_of;
+  std::vector<MeasuredRun> parts;
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    const Index samples = run.SamplesOf(r);
+    const auto wished =
+        static_cast<Index>(std::lround(train_share * static_cast<double>(samples)));
+    seen_of.push_back(std::clamp<Index>(wished, 1, samples - 1));
+    parts.push_back(Part(run, r, seen_of.back()));
+  }
+  MeasuredRun seen = Joined(parts);
+  const double share =
+      static_cast<double>(seen.samples()) / static_cast<double>(run.samples());
+  return {std::move(seen), std::move(run), std::move(seen_of), share};
 }
 
 }  // namespace mjdiag

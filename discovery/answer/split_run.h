@@ -1,9 +1,11 @@
 #pragma once
 // What of measurements fits see, and what they do not: records of their own, else the end of
-// the one that is fitted. A filter comes to that end from the beginning: begun anew in the
-// midst of a motion it would tell where it began from what is to be judged.
+// every one that is fitted, for each may show what no other one does. A filter comes to that
+// end from the beginning: begun anew in the midst of a motion it would tell where it began
+// from what is to be judged.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/plugin/replay/tracking.h"
@@ -12,16 +14,19 @@ namespace mjdiag {
 
 struct SplitRun {
   MeasuredRun seen;
-  /// Records that they do not see, or the whole of the one of which they see the beginning.
+  /// Records that they do not see, or the whole of those of which they see the beginnings.
   MeasuredRun unseen;
-  /// Sample of it at which that begins which they do not see.
-  Eigen::Index first_unseen = 0;
+  /// How many samples at the beginning of each of its records they see: all 0, or none 0.
+  std::vector<Eigen::Index> seen_of;
   double share = 1.0;  ///< of the records for fits that these see
+
+  /// Whether `unseen` goes on from where `seen` ends.
+  bool GoesOn() const { return seen_of.front() > 0; }
+  /// Which samples of `unseen` they do not see.
+  SampleMask New() const;
 };
 
-/// @param measurements  of one plant, WithUnseen
-/// @param train_share   of a single record
-/// InputError on records with a plant of their own: latent forces are those of one plant.
+/// @param train_share  of every record, where there are none that nothing is fitted to
 SplitRun Split(const Measurements& measurements, double train_share);
 
 }  // namespace mjdiag

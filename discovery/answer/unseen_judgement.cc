@@ -40,7 +40,7 @@ FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
 void FollowUnseen(const AnswerData& data, const FilterNoise& given, ModelOnRuns& one) {
   const Machine machine = data.With(one.fit.model);
   const MeasuredRun& run = data.run.unseen;
-  const bool goes_on = data.run.first_unseen > 0;
+  const bool goes_on = data.run.GoesOn();
   const std::vector<FilterStart> starts =
       goes_on ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
   one.unseen_deviance = std::numeric_limits<double>::infinity();

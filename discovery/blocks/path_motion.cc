@@ -29,8 +29,9 @@ ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
   ParallelFor(static_cast<int>(path.first.size()), [&](int number) {
     const auto record = static_cast<std::size_t>(number);
     const Index first = path.first[record];
-    TickMap map(machine);
-    RecordedInputs inputs(machine, run);
+    const Machine during = DuringRecord(run.records[record], machine);
+    TickMap map(during);
+    RecordedInputs inputs(during, run);
     VectorXd forces = VectorXd::Zero(nv);
     for (Index k = first; k < first + run.SamplesOf(record); ++k) {
       const PlantState& state = path.states[static_cast<std::size_t>(k)];

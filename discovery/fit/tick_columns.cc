@@ -24,8 +24,9 @@ Ticks TicksAlong(const Machine& machine, const MeasuredRun& run, const FilterPat
                  std::size_t record) {
   const Index first = path.first[record];
   const Index end = path.EndOf(record);
-  TickMap map(machine);
-  RecordedInputs inputs(machine, run);
+  const Machine during = DuringRecord(run.records[record], machine);
+  TickMap map(during);
+  RecordedInputs inputs(during, run);
   VectorXd forces = VectorXd::Zero(map.model().nv);
   Ticks ticks{{}, MatrixXd::Zero(path.sensors(), end - first)};
   for (Index k = first; k < end; ++k) {

@@ -162,12 +162,34 @@ Machine Machine::WithoutSteps() const {
         {Lasting(InputDelay()), actuator.element, Eigen::VectorXd::Constant(1, half)});
   }
   Machine changed = With(late);
-  ModelPtr model = CopyModel(*changed.plant_);
+  changed.DampBetweenSteps();
+  return changed;
+}
+
+void Machine::DampBetweenSteps() {
+  ModelPtr model = CopyModel(*plant_);
+  const double half = 0.5 * model->opt.timestep;
   const Eigen::VectorXd of_motors = MotorBiasAtQpos0(*model).damping.diagonal();
   for (int dof = 0; dof < model->nv; ++dof) {
     model->dof_armature[dof] += half * (of_motors[dof] - model->dof_damping[dof]);
   }
-  changed.Adopt(std::move(model));
+  Adopt(std::move(model));
+  is_without_steps_ = true;
+}
+
+Machine Machine::ChangedAs(const Machine& other) const {
+  const auto further = [](const auto& all, const auto& own) {
+    const auto known = std::min(own.size(), all.size());
+    return std::decay_t<decltype(all)>(
+        all.begin() + static_cast<std::ptrdiff_t>(known), all.end());
+  };
+  const Changes& all = other.changes_;
+  Changes changes;
+  changes.faults = further(all.faults, changes_.faults);
+  changes.effects = further(all.effects, changes_.effects);
+  changes.numbers = further(all.numbers, changes_.numbers);
+  Machine changed = WithSubsteps(other.rates().substeps).With(changes);
+  if (other.is_without_steps_ && !is_without_steps_) changed.DampBetweenSteps();
   return changed;
 }
 

@@ -73,6 +73,9 @@ class Machine {
   /// of dampers D that it takes at the end of a step, (M - h D / 2) of those that it takes at
   /// the beginning: inputs act h / 2 later here, and rotors make up for what damps.
   Machine WithoutSteps() const;
+  /// With what With and WithoutSteps have made of another one since it had the changes of
+  /// this one, in its steps: this machine with another load, for example.
+  Machine ChangedAs(const Machine& other) const;
   /// The same plant, resting where it does, under another setup that names the same
   /// channels.
   Machine WithSetup(Setup setup) const;
@@ -84,12 +87,14 @@ class Machine {
   struct Derived;
 
   void Adopt(std::shared_ptr<const mjModel> plant);
+  void DampBetweenSteps();
 
   std::shared_ptr<const Setup> setup_;
   std::shared_ptr<const mjModel> plant_;
   std::vector<int> sensor_addresses_;
   std::vector<int> actuator_addresses_;
   Changes changes_;
+  bool is_without_steps_ = false;
   std::shared_ptr<Derived> derived_;
 };
 

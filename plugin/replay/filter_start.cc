@@ -167,18 +167,19 @@ std::vector<Index> LatentDofs(const Machine& machine, const MeasuredRun& run) {
 
 std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun& run,
                                       const VectorXd& reading_sd) {
-  TickMap map(machine);
-  RecordedInputs inputs(machine, run);
-  const mjModel& model = map.model();
-  const Index nv = model.nv;
+  const Index nv = machine.plant().nv;
   const VectorXd rates = TypicalRates(run);
   std::vector<FilterStart> starts;
   for (std::size_t r = 0; r < run.records.size(); ++r) {
     const Index first = run.records[r].sample;
+    const Machine during = DuringRecord(run.records[r], machine);
+    TickMap map(during);
+    RecordedInputs inputs(during, run);
+    const mjModel& model = map.model();
     FilterStart start;
-    start.state = StillAt(machine, run, first);
+    start.state = StillAt(during, run, first);
     const TickTangent tangent =
-        TangentAt(map, inputs, start.state, first, machine.rates().tick(), {});
+        TangentAt(map, inputs, start.state, first, during.rates().tick(), {});
     MatrixXd seen = tangent.C.leftCols(nv);
     for (Index i = 0; i < seen.rows(); ++i) {
       // A rate of a velocity or of a force says nothing of velocities.

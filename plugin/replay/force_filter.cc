@@ -29,16 +29,16 @@ class RecordFilter {
  public:
   RecordFilter(const Machine& machine, const MeasuredRun& run, std::size_t record,
                FilterPath& path)
-      : machine_(machine),
+      : machine_(DuringRecord(run.records[record], machine)),
         run_(run),
         first_(run.records[record].sample),
         clock_begins_(run.TickOf(first_)),
         samples_(run.SamplesOf(record)),
         start_(path.starts[record]),
         path_(path),
-        map_(machine),
-        course_(machine, map_, path.dofs),
-        inputs_(machine, run),
+        map_(machine_),
+        course_(machine_, map_, path.dofs),
+        inputs_(machine_, run),
         kalman_(path.dofs, path.noise, path.sample_time),
         applied_(VectorXd::Zero(machine.plant().nv)) {}
 
@@ -65,7 +65,7 @@ class RecordFilter {
     return course_.Next(state_, applied_, clock_begins_ + k, inputs_, sd, force_sd);
   }
 
-  const Machine& machine_;
+  Machine machine_;  // during the record
   const MeasuredRun& run_;
   Index first_;
   Index clock_begins_;  // tick

@@ -79,9 +79,10 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
   const Index ns = path.pulled.rows() - nf - 1;
   ParallelFor(static_cast<int>(path.first.size()), [&](int number) {
     const auto record = static_cast<std::size_t>(number);
-    TickMap map(machine);
+    const Machine during = DuringRecord(run.records[record], machine);
+    TickMap map(during);
     const mjModel& model = map.model();
-    RecordedInputs inputs(machine, run);
+    RecordedInputs inputs(during, run);
     PlantState state = path.starts[record].state;
     VectorXd latent = VectorXd::Zero(nf);
     VectorXd applied = VectorXd::Zero(model.nv);

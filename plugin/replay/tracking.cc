@@ -147,13 +147,6 @@ void RecordFollower::Follow(const Watch& watch, Track& track) {
   }
 }
 
-/// The machine of a record with those changes, in the steps of the others.
-Machine DuringRecord(const RecordStart& record, const Machine& nominal,
-                     const Machine& changed, const Changes& changes) {
-  if (!record.machine) return changed;
-  return record.machine->WithSubsteps(nominal.rates().substeps).With(changes);
-}
-
 Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& run,
              const Observer& observer, bool states, const Watch& watch) {
   const Machine machine = nominal.With(changes);
@@ -168,7 +161,7 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
     const auto i = static_cast<std::size_t>(number);
     if (watch.record) watch.record();
     const MeasuredRun record = Part(run, i, run.SamplesOf(i));
-    const Machine during = DuringRecord(run.records[i], nominal, machine, changes);
+    const Machine during = DuringRecord(run.records[i], machine);
     RecordFollower(during, record, observer, i, run.records[i].sample)
         .Follow(watch, track);
   };
@@ -182,6 +175,10 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
 }
 
 }  // namespace
+
+Machine DuringRecord(const RecordStart& record, const Machine& machine) {
+  return record.machine ? record.machine->ChangedAs(machine) : machine;
+}
 
 void ChooseSolver(mjModel& model) {
   const bool limited = std::any_of(model.jnt_limited, model.jnt_limited + model.njnt,

@@ -33,6 +33,9 @@ struct RecordStart {
   Eigen::Index ticks_before = 0;
 };
 
+/// A machine as it was during a record.
+Machine DuringRecord(const RecordStart& record, const Machine& machine);
+
 /// What of measured records the replay needs, in the setup's order: one after the other,
 /// each from its own start.
 struct MeasuredRun {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mjdiag/signals/error.h"
 #include "support/arm.h"
 
 namespace mjdiag {
@@ -14,7 +13,8 @@ TEST(SplitRun, LeavesTheEndOfASingleRecordUnseen) {
       MeasurementsOf(arm.machine, test::Arm::Measure(), nullptr);
   const SplitRun run = Split(measurements, 0.7);
   const Eigen::Index samples = measurements.fit.front().record.samples();
-  EXPECT_EQ(run.seen.samples(), run.first_unseen);
+  EXPECT_EQ(run.seen.samples(), run.seen_of.front());
+  EXPECT_EQ(run.New().count(), samples - run.seen_of.front());
   EXPECT_EQ(run.unseen.samples(), samples) << "a filter comes there from its beginning";
   EXPECT_NEAR(run.share, 0.7, 1.0 / static_cast<double>(samples));
 }
@@ -25,16 +25,24 @@ TEST(SplitRun, LeavesRecordsForValidationUnseenAndFitsAllOfTheOthers) {
   const SplitRun run = Split(MeasurementsOf(arm.machine, record, &record), 0.7);
   EXPECT_EQ(run.seen.samples(), record.samples());
   EXPECT_EQ(run.unseen.samples(), record.samples());
-  EXPECT_EQ(run.first_unseen, 0);
+  EXPECT_FALSE(run.GoesOn());
+  EXPECT_TRUE(run.New().all());
   EXPECT_EQ(run.share, 1.0);
 }
 
-TEST(SplitRun, RefusesARecordWithAPlantOfItsOwn) {
+TEST(SplitRun, LeavesTheEndOfEveryRecordUnseenForEachMayShowSomethingOfItsOwn) {
   const test::Arm arm;
-  Measurements measurements =
-      MeasurementsOf(arm.machine, test::Arm::Measure(), nullptr);
-  measurements.fit.front().own_plant = true;
-  EXPECT_THROW(Split(measurements, 0.7), InputError);
+  const Record record = test::Arm::Measure();
+  Measurements measurements = MeasurementsOf(arm.machine, record, nullptr);
+  measurements.fit.push_back(measurements.fit.front());
+  const SplitRun run = Split(measurements, 0.7);
+  ASSERT_EQ(run.seen.records.size(), 2u);
+  EXPECT_EQ(run.seen.records[1].sample, run.seen_of[0]);
+  EXPECT_EQ(run.unseen.records[1].sample, record.samples());
+  const SampleMask is_new = run.New();
+  EXPECT_FALSE(is_new[record.samples()]) << "the second record begins there";
+  EXPECT_TRUE(is_new[2 * record.samples() - 1]);
+  EXPECT_NEAR(run.share, 0.7, 1.0 / static_cast<double>(record.samples()));
 }
 
 }  // namespace
