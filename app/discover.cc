@@ -40,7 +40,7 @@ struct DiscoverCommand {
   OutputOptions output;
   MeasurementOptions records;
   std::optional<bool> doubt;
-  std::string engine = kFilter;
+  std::string engine = kSearch;
   DiscoverOptions search;
 };
 
@@ -72,8 +72,8 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
       log.Show(progress.what + AtMost(progress.most_seconds), progress.best);
     }
   };
-  return command.engine == kFilter ? mjdiag::Discover(machine, measurements, options)
-                                   : DiscoverBySearch(machine, measurements, options);
+  return command.engine == kFilter ? DiscoverByFilter(machine, measurements, options)
+                                   : Discover(machine, measurements, options);
 }
 
 // A plant that cannot be written must not cost the answer, which took its time.

@@ -315,7 +315,7 @@ Discovery Discoverer::Run() {
   return std::move(discovery_);
 }
 
-Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
+Discovery Discover(const Machine& machine, const Measurements& measurements,
                    const DiscoverOptions& options) {
   Measurements split = WithUnseen(measurements, options.train_share);
   const std::vector<std::string> notes =
@@ -325,9 +325,9 @@ Discovery DiscoverBySearch(const Machine& machine, const Measurements& measureme
   return discovery;
 }
 
-Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
+Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options) {
-  return DiscoverBySearch(machine, MeasurementsOf(machine, measured, validation), options);
+  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
 }
 
 Changes ChangesOf(const Discovery& discovery) {

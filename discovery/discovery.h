@@ -233,8 +233,6 @@ struct DiscoverOptions {
   std::function<void(const DiscoveryProgress& progress)> progress;
 };
 
-/// One engine for every machine: a filter with latent forces, one regression and fits with
-/// MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw (answer/).
 /// @param machine  the nominal one
 /// InputError if the record lacks what the replay needs or cannot be judged (see
 /// data_check.h), and on a choice that means nothing (candidate_choice.h).
@@ -244,9 +242,13 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
 
-Discovery DiscoverBySearch(const Machine& machine, const Measurements& measurements,
+/// The same by one engine for every machine: a filter with latent forces, one regression and
+/// fits with MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw
+/// (answer/). Its budget is in seconds; the bandwidth is nothing to it; without validation
+/// records the end of every record is what no fit sees.
+Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
                            const DiscoverOptions& options);
-Discovery DiscoverBySearch(const Machine& machine, const Record& measured,
+Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
                            const Record* validation, const DiscoverOptions& options);
 
 /// Whether the record says of a number that it is another one than the model has.

@@ -14,6 +14,7 @@
 #include "mjdiag/discovery/answer/fault_figures.h"
 #include "mjdiag/discovery/answer/force_figures.h"
 #include "mjdiag/discovery/answer/found_members.h"
+#include "mjdiag/discovery/answer/found_moments.h"
 #include "mjdiag/discovery/answer/missing_share.h"
 #include "mjdiag/discovery/answer/posterior.h"
 #include "mjdiag/discovery/answer/prediction_figures.h"
@@ -22,8 +23,8 @@
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
+#include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/hypotheses/problem.h"
-#include "mjdiag/plugin/replay/input_noise.h"
 #include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -104,9 +105,9 @@ ExplainOptions OptionsOfSearch(const Machine& machine, const DiscoverOptions& op
 }
 
 /// Behind the smoothing that the inputs deserve.
-SplitRun WithInputsFelt(SplitRun run, const VectorXd& widths) {
-  run.seen = WithSmoothedInputs(std::move(run.seen), widths);
-  run.unseen = WithSmoothedInputs(std::move(run.unseen), widths);
+SplitRun WithInputsFelt(SplitRun run, double width) {
+  run.seen = WithInputsOver(run.seen, width);
+  run.unseen = WithInputsOver(run.unseen, width);
   return run;
 }
 
@@ -142,8 +143,8 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
 
 }  // namespace
 
-Discovery Discover(const Machine& machine, const Measurements& measurements,
-                           const DiscoverOptions& options) {
+Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
+                   const DiscoverOptions& options) {
   RunningTime time(options);
   Discovery discovery;
   discovery.notes = NotesOfChecks(machine.plant(), measurements, options.doubt);
@@ -157,7 +158,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   time.Say("the machine as given", 0.0);
   const Explained explained =
       Explain(machine, run.seen, reading_sd, OptionsOfSearch(machine, options, time));
-  const SplitRun felt = WithInputsFelt(run, explained.widths);
+  const SplitRun felt = WithInputsFelt(run, explained.input_width);
   const AnswerData data{machine, felt, reading_sd, explained.blocks, explained.steps};
   NoteInputNoise(machine, run, felt, discovery.notes);
   time.Say("what unseen data say", kShareOfSearch);
@@ -171,8 +172,9 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   if (share.is_left && !judged.answer.fit.model.empty()) {
     discovery.force_left = share.left;
   }
-  AddMembers(data, judged, PosteriorOf(explained, judged),
-             CoordinateSd(data, judged.answer), discovery);
+  const CoordinateErrors errors = CoordinateErrorsOf(data, judged.answer);
+  AddMembers(data, judged, PosteriorOf(explained, judged), errors.sd, discovery);
+  AddMoments(data, judged.answer, errors, discovery);
   // A force without a name is described, not explained.
   if (discovery.verdict == DiscoveryVerdict::kExplained &&
       !std::ranges::all_of(discovery.causes, &FoundCause::HasName)) {
@@ -196,8 +198,9 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   if (options.figures) {
     time.Say("figures", 0.9);
     const Changes changes = ChangesOf(discovery);
-    const bool follows = AddReplays(
-        measurements, changes, machine.setup().compare.skip_samples, options.seed, discovery);
+    const bool follows =
+        AddReplays(measurements, changes, machine.setup().compare.skip_samples,
+                   options.seed, discovery);
     if (follows) AddPredictions(data, judged, discovery);
     AddLadderOf(data, judged, measurements, follows, discovery);
     AddFaultLimits(data, judged, discovery);
@@ -206,10 +209,9 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   return discovery;
 }
 
-Discovery Discover(const Machine& machine, const Record& measured,
-                           const Record* validation, const DiscoverOptions& options) {
-  return Discover(machine, MeasurementsOf(machine, measured, validation),
-                          options);
+Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
+                   const Record* validation, const DiscoverOptions& options) {
+  return DiscoverByFilter(machine, MeasurementsOf(machine, measured, validation), options);
 }
 
 }  // namespace mjdiag

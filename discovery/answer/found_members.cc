@@ -113,13 +113,14 @@ struct KindSum {
 
 }  // namespace
 
-VectorXd CoordinateSd(const AnswerData& data, const ModelOnRuns& answer) {
+CoordinateErrors CoordinateErrorsOf(const AnswerData& data, const ModelOnRuns& answer) {
   constexpr int kFolds = 20;
   constexpr double kStep = 1e-3;
   const ModelFit& fit = answer.fit;
   const auto coordinates = CoordinatesOf(data.blocks, fit.model);
   const VectorXd x = Place(coordinates, fit.model);
-  if (x.size() == 0) return fit.sd;
+  const CoordinateErrors of_fit{fit.sd, MatrixXd::Identity(x.size(), x.size())};
+  if (x.size() == 0) return of_fit;
   const KeptGains gains = KeepGains(answer.seen);
   const auto run_at = [&](const VectorXd& at) {
     return PredictAlong(data.With(At(coordinates, fit.model, at)), data.run.seen,
@@ -141,7 +142,7 @@ VectorXd CoordinateSd(const AnswerData& data, const ModelOnRuns& answer) {
       J.col(i) = (run_at(moved) - left) / step;
     });
   } catch (const NumericalError&) {
-    return fit.sd;
+    return of_fit;
   }
   MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
   const Eigen::LLT<MatrixXd> solved(H);
@@ -159,7 +160,9 @@ VectorXd CoordinateSd(const AnswerData& data, const ModelOnRuns& answer) {
   between *= static_cast<double>(kFolds) / (kFolds - 1);
   const MatrixXd root = solved.solve(between);
   const MatrixXd covariance = solved.solve(root.transpose());
-  return within.diagonal().cwiseMax(covariance.diagonal()).cwiseSqrt();
+  const VectorXd scale = within.diagonal().cwiseSqrt().cwiseInverse();
+  return {within.diagonal().cwiseMax(covariance.diagonal()).cwiseSqrt(),
+          scale.asDiagonal() * within * scale.asDiagonal()};
 }
 
 void AddMembers(const AnswerData& data, const UnseenJudgement& judged,

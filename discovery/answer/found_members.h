@@ -20,8 +20,13 @@
 
 namespace mjdiag {
 
-/// Standard deviations of the coordinates of a model.
-Eigen::VectorXd CoordinateSd(const AnswerData& data, const ModelOnRuns& answer);
+/// How the coordinates of a model (CoordinatesOf) are off.
+struct CoordinateErrors {
+  Eigen::VectorXd sd;
+  Eigen::MatrixXd correlation;
+};
+
+CoordinateErrors CoordinateErrorsOf(const AnswerData& data, const ModelOnRuns& answer);
 
 /// Causes, numbers and kinds of the answer.
 /// @param sd  of its coordinates

@@ -16,7 +16,7 @@ using Eigen::Index;
 
 namespace {
 
-constexpr double kLongest = 0.1;  // [s]
+constexpr double kHorizon = 0.1;  // [s]
 
 std::map<std::string, double> ErrorsOver(const Prediction& prediction, Index horizon) {
   std::map<std::string, double> errors;
@@ -56,7 +56,7 @@ void AddPredictions(const AnswerData& data, const UnseenJudgement& judged,
   }
   Index horizon = 0;
   for (Index h = 0; h < longest; ++h) {
-    if (all.front().horizons[static_cast<std::size_t>(h)] > kLongest * (1.0 + 1e-9))
+    if (all.front().horizons[static_cast<std::size_t>(h)] > kHorizon * (1.0 + 1e-9))
       break;
     if (std::ranges::all_of(all, [&](const auto& one) { return IsFinite(one, h); })) {
       horizon = h;

@@ -88,7 +88,7 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
 ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
   ModelOnRuns nothing;
   // Of an empty model the search has it with the physics steps that it chose.
-  const bool as_given = data.steps && explained.widths.isZero(0.0);
+  const bool as_given = data.steps && explained.input_width == 0.0;
   nothing.seen = explained.fit.model.empty() ? explained.path
                  : as_given                  ? explained.nothing
                                              : FilterLikeliestFrom(

@@ -20,6 +20,7 @@
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/input_noise.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
@@ -56,7 +57,7 @@ class Search {
   struct Proposal {
     SettledModel settled;
     bool steps = true;
-    VectorXd widths;  ///< of the inputs
+    double input_width = 0.0;  ///< [ticks]
     MeasuredRun run;
   };
   void Adopt(Proposal proposal);
@@ -84,9 +85,9 @@ class Search {
   std::optional<Proposal> BestMove(const Whitenings& whitenings,
                                    const ExactColumns& exact);
   /// How much of its inputs did the machine not feel?
-  std::optional<Proposal> SmoothedInputs(const Whitenings& whitenings) const;
+  std::optional<Proposal> SmoothedInputs() const;
   Proposal AsItIs() const {
-    return {{found_.fit, found_.path}, steps_, found_.widths, run_};
+    return {{found_.fit, found_.path}, steps_, found_.input_width, run_};
   }
   /// Takes what is better; false if nothing pays.
   bool Step();
@@ -102,6 +103,9 @@ class Search {
       return found_.blocks[member.block].candidate.has_value();
     });
     return static_cast<std::size_t>(causes) > options_.most_causes;
+  }
+  bool MayBe(const ModelMove& move) const {
+    return !HasTooManyCauses(After(move, found_.fit.model));
   }
   bool IsStopped() const { return options_.stop && options_.stop(); }
   bool IsOver() const {
@@ -150,7 +154,7 @@ void Search::Adopt(Proposal proposal) {
   found_.score = proposal.settled.score();
   found_.fit = std::move(proposal.settled.fit);
   found_.path = std::move(proposal.settled.path);
-  found_.widths = std::move(proposal.widths);
+  found_.input_width = proposal.input_width;
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
@@ -178,8 +182,18 @@ std::optional<Search::Proposal> Search::BestForces(const Whitenings& whitenings,
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
-  // values are those of the regression until the filter has been run with them.
-  return BestOf(moves, 1, 0, whitenings, {});
+  // values are those of the regression until the filter has been run with them. What does
+  // not run so leaves the next one.
+  constexpr std::size_t kMost = 3;
+  for (const ModelMove* move :
+       ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
+    Moves one;
+    one.score = moves.score;
+    one.best = {*move};
+    if (auto best = BestOf(one, 1, 0, whitenings, {})) return best;
+    if (IsOver()) break;
+  }
+  return std::nullopt;
 }
 
 std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
@@ -192,7 +206,7 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
   AsFitted as_it_is;
   const ModelFit& own = AsItIsBehind({moves.noise, false}, whitenings, as_it_is);
   if (auto settled = Resettled(whitenings, moves.noise, own)) {
-    return Proposal{std::move(*settled), steps_, found_.widths, run_};
+    return Proposal{std::move(*settled), steps_, found_.input_width, run_};
   }
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
@@ -256,9 +270,7 @@ std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t m
     } catch (const InputError&) {
     }
   };
-  const auto may_be = [&](const ModelMove& move) {
-    return !HasTooManyCauses(After(move, found_.fit.model));
-  };
+  const auto may_be = [&](const ModelMove& move) { return MayBe(move); };
   for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
     if (IsOver()) break;
     const Model model = After(*move, found_.fit.model);
@@ -315,7 +327,7 @@ std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t m
   }
   if (!best) return std::nullopt;
   return Proposal{std::move(*settled[*best]), steps_ != tried[*best].judged.second,
-                  found_.widths, run_};
+                  found_.input_width, run_};
 }
 
 /// Of a model that nothing is better than. Where first order says that something is, and a
@@ -344,24 +356,16 @@ bool Search::ChooseSteps() {
   return true;
 }
 
-std::optional<Search::Proposal> Search::SmoothedInputs(
-    const Whitenings& whitenings) const {
-  const Machine machine = With(found_.fit.model);
-  const InputChoice choice = ChooseInputs(machine, as_measured_, found_.path,
-                                          whitenings, found_.widths, found_.blocks);
-  if (choice.widths == found_.widths) return std::nullopt;
-  MeasuredRun run = WithSmoothedInputs(as_measured_, choice.widths);
-  SettledModel settled{found_.fit,
-                       FilterLikeliestFrom(machine, run, reading_sd_, found_.path.dofs,
-                                           {choice.noise, found_.path.noise})};
-  if (found_.path.deviance + PriceOfWidths(found_.widths) <
-      settled.path.deviance + PriceOfWidths(choice.widths) + kLeastGain) {
-    return std::nullopt;
-  }
-  std::string text = "inputs over";
-  for (const double width : choice.widths) text += " " + std::to_string(width);
-  Say(text + " ticks: " + Difference(settled.score()));
-  return Proposal{std::move(settled), steps_, choice.widths, std::move(run)};
+std::optional<Search::Proposal> Search::SmoothedInputs() const {
+  const double width = found_.input_width;
+  std::optional<InputChoice> choice = ChooseInputs(With(found_.fit.model), as_measured_,
+                                                   reading_sd_, found_.path, width);
+  if (!choice) return std::nullopt;
+  SettledModel settled{found_.fit, std::move(choice->path)};
+  Say("inputs over " + std::to_string(choice->width) + " ticks: " +
+      Difference(settled.score() + PriceOfWidth(choice->width) - PriceOfWidth(width)));
+  return Proposal{std::move(settled), steps_, choice->width,
+                  WithInputsOver(as_measured_, choice->width)};
 }
 
 void Search::AddCurves() {
@@ -374,50 +378,44 @@ void Search::AddCurves() {
 bool Search::Step() {
   const Whitenings whitenings = WhiteningsOf(found_.path);
   std::optional<Proposal> move;
-  const bool is_first = found_.fit.model.empty();
-  // What noise of the inputs explains is found before anything else, or when nothing is left.
-  if (is_first) move = SmoothedInputs(whitenings);
-  if (move) {
-    Adopt(std::move(*move));
-    return true;
-  }
-  const ExactColumns exact = ExactColumnsOf(
-      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
-      run_, found_.path, found_.blocks, found_.fit.model);
-  if (looks_at_forces_) move = BestForces(whitenings, exact);
+  // What noise of the inputs explains is found before anything else, and looked for again
+  // where what is large, and where everything has been found.
+  bool asks_inputs = found_.fit.model.empty() && found_.input_width == 0.0;
+  if (asks_inputs) move = SmoothedInputs();
   if (!move) {
-    looks_at_forces_ = false;
-    move = BestMove(whitenings, exact);
+    const ExactColumns exact =
+        ExactColumnsOf([&](const Model& model) { return With(model); },
+                       With(found_.fit.model, !steps_), run_, found_.path,
+                       found_.blocks, found_.fit.model);
+    if (looks_at_forces_) {
+      move = BestForces(whitenings, exact);
+      looks_at_forces_ = move.has_value();
+      if (!move && !asks_inputs) {
+        asks_inputs = true;
+        move = SmoothedInputs();
+        looks_at_forces_ = move.has_value();
+      }
+    }
+    if (!move) move = BestMove(whitenings, exact);
+    if (!move && !asks_inputs) move = SmoothedInputs();
   }
-  if (!move && !is_first) move = SmoothedInputs(whitenings);
   if (move) Adopt(std::move(*move));
   return move.has_value();
 }
 
 void Search::Prepare() {
-  FilterPath stepped;
-  std::optional<FilterPath> unstepped;
-  ParallelForAll(2, [&](int number) {
-    if (number == 0) stepped = FilterLikeliest(machine_, run_, reading_sd_);
-    if (number == 1) {
-      try {
-        unstepped = FilterLikeliest(machine_.WithoutSteps(), run_, reading_sd_);
-      } catch (const NumericalError&) {
-      }
-    }
-  });
-  found_.nothing = stepped;
-  found_.score = stepped.deviance;
-  found_.path = std::move(stepped);
-  if (unstepped && unstepped->deviance < found_.score - kLeastGain) {
-    Say("without physics steps: " + Difference(unstepped->deviance));
-    steps_ = false;
-    found_.score = unstepped->deviance;
-    found_.path = std::move(*unstepped);
+  found_.path = FilterLikeliest(machine_, run_, reading_sd_);
+  found_.nothing = found_.path;
+  found_.score = found_.path.deviance;
+  if (ChooseSteps()) {
+    found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
+                                      {found_.path.noise});
+    found_.score = found_.path.deviance;
   }
-  found_.widths = VectorXd::Zero(run_.inputs.rows());
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
-  BoundByRecord(candidates_, machine_, MotionAlong(machine_, run_, found_.path));
+  const ObservedMotion motion = MotionAlong(machine_, run_, found_.path);
+  BoundByRecord(candidates_, machine_, motion);
+  BoundDriveLimits(candidates_, machine_, motion);
   BoundByReadings(candidates_, machine_, run_);
   const std::vector<PlantNumber> in_doubt = IsExact(machine_.plant())
                                                 ? std::vector<PlantNumber>{}

@@ -45,7 +45,7 @@ struct Explained {
   FilterPath path;                  ///< of that with the model
   double score = 0.0;               ///< -2 ln L and what the model costs
   bool steps = true;                ///< the physics steps of the model are part of it
-  Eigen::VectorXd widths;           ///< over which every input is smoothed [ticks]
+  double input_width = 0.0;         ///< over which inputs are smoothed [ticks]
   std::vector<Decision> decisions;  ///< what was tried, in that order
   /// What could be in the place of members (Moves::near), where the search came to its end:
   /// by how much worse each is stands in ModelMove::score.

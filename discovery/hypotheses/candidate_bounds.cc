@@ -128,4 +128,19 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
   }
 }
 
+void BoundDriveLimits(std::vector<Candidate>& candidates, const Machine& machine,
+                      const ObservedMotion& motion) {
+  for (Candidate& candidate : candidates) {
+    const Site site{candidate.site, candidate.joint, candidate.channel};
+    const SiteMotion at{machine.plant(), machine.linear(), motion, site};
+    for (FitParameter& parameter : candidate.parameters) {
+      if (parameter.role != Role::kLimit) continue;
+      const VectorXd f = at.before_gear();
+      const double usual =
+          std::sqrt(2.0 * f.squaredNorm() / static_cast<double>(f.size()));
+      Narrow(parameter, usual, f.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
 }  // namespace mjdiag

@@ -25,4 +25,10 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
 void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
                      const MeasuredRun& run);
 
+/// A limit of a drive is no lower than the amplitude of a sine as large as what the drive is
+/// asked for, sqrt(2) times its rms: below it is at its limit most of the time, and follows
+/// nothing.
+void BoundDriveLimits(std::vector<Candidate>& candidates, const Machine& machine,
+                      const ObservedMotion& motion);
+
 }  // namespace mjdiag

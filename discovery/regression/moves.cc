@@ -143,8 +143,12 @@ bool MoveSearch::MayCome(const Block& block) const {
   if (looked_ == Looked::kAtForces) {
     if (block.IsOfDrive()) return false;
     if (block.IsSmoothFriction()) return true;
+    // At once where it is known to creep, or must not.
     if (block.IsDryFriction() && block.IsSimplest()) {
-      return any([&](const Block& in) { return in.group == block.group; });
+      return any([&](const Block& in) { return in.group == block.group; }) ||
+             std::ranges::none_of(blocks_, [&](const Block& other) {
+               return other.IsSmoothFriction() && other.group == block.group;
+             });
     }
   }
   return !block.IsResistance() || block.IsSimplest() ||

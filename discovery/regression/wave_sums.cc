@@ -14,31 +14,42 @@ using Eigen::VectorXd;
 
 VectorXcd WaveSums(const VectorXd& g, const VectorXd& angle, const VectorXd& increment,
                    Index count) {
-  constexpr Index kFiner = 16;
+  // Of twice as many waves as are asked for a Gaussian over eight points of the grid is
+  // right to 1e-4 of the largest sum [Greengard 2004, (9) to (14)].
+  constexpr Index kFiner = 2;
+  constexpr Index kSide = 4;  // points
   constexpr double kTurn = 2.0 * std::numbers::pi;
-  const auto size = static_cast<Index>(
-      std::bit_ceil(static_cast<std::size_t>(kFiner * std::max<Index>(count, 1))));
+  const Index waves = std::max<Index>(count, 2);
+  const auto size =
+      static_cast<Index>(std::bit_ceil(static_cast<std::size_t>(kFiner * waves)));
+  const double finer = static_cast<double>(size) / static_cast<double>(waves);
+  const double tau = std::numbers::pi * kSide /
+                     (finer * (finer - 0.5) * std::pow(static_cast<double>(waves), 2));
+  const double step = kTurn / static_cast<double>(size);
+  const auto middle = static_cast<double>(waves / 2);
   VectorXcd grid = VectorXcd::Zero(size);
   for (Index k = 0; k < g.size(); ++k) {
     const double turns = increment[k] / kTurn;
     const double place = (turns - std::floor(turns)) * static_cast<double>(size);
     const auto below = static_cast<Index>(place);
-    const double above = place - static_cast<double>(below);
-    const std::complex<double> value = g[k] * std::polar(1.0, angle[k]);
-    grid[below % size] += (1.0 - above) * value;
-    grid[(below + 1) % size] += above * value;
+    // Waves are counted from the middle one.
+    const std::complex<double> value =
+        g[k] * std::polar(1.0, angle[k] + middle * increment[k]);
+    for (Index i = 1 - kSide; i <= kSide; ++i) {
+      const double away = step * (place - static_cast<double>(below + i));
+      grid[(below + i + size) % size] += std::exp(-away * away / (4.0 * tau)) * value;
+    }
   }
   VectorXcd sums(size);
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::Unscaled);
   fft.inv(sums, grid);
   VectorXcd first(count);
+  const double scale = std::sqrt(std::numbers::pi / tau) / static_cast<double>(size);
   for (Index m = 0; m < count; ++m) {
-    // Of the triangle that every value is spread by.
-    const double x =
-        std::numbers::pi * static_cast<double>(m) / static_cast<double>(size);
-    const double spread = m == 0 ? 1.0 : std::sin(x) / x;
-    first[m] = sums[m] / (spread * spread);
+    const double wave = static_cast<double>(m) - middle;
+    const Index at = (m - waves / 2 + size) % size;
+    first[m] = scale * std::exp(wave * wave * tau) * sums[at];
   }
   return first;
 }

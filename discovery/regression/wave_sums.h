@@ -4,9 +4,8 @@
 //   s_m = sum over k of g_k exp(i (angle_k + m increment_k)),   m = 0 .. count - 1
 //
 // by one fast Fourier transform of the signal spread over the increments (non-uniform FFT of
-// type 1: A. Dutt, V. Rokhlin, "Fast Fourier transforms for nonequispaced data", SIAM J. Sci.
-// Comput. 14(6), 1993), linearly on a grid sixteen times as fine: right to 1 % of what noise of
-// the signal's size sums up to.
+// type 1: L. Greengard, J.-Y. Lee, "Accelerating the nonuniform fast Fourier transform", SIAM
+// Review 46(3), 2004), right to 1e-3 of what noise of the signal's size sums up to.
 
 #include <Eigen/Core>
 

@@ -180,8 +180,8 @@ void Machine::DampBetweenSteps() {
 Machine Machine::ChangedAs(const Machine& other) const {
   const auto further = [](const auto& all, const auto& own) {
     const auto known = std::min(own.size(), all.size());
-    return std::decay_t<decltype(all)>(
-        all.begin() + static_cast<std::ptrdiff_t>(known), all.end());
+    return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(known),
+                                       all.end());
   };
   const Changes& all = other.changes_;
   Changes changes;

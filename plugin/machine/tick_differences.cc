@@ -79,10 +79,12 @@ TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
 
 void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
                               std::int64_t tick, TickControl& control,
-                              std::span<const Index> dofs, const VectorXd& sd,
-                              const VectorXd& force_sd, TickTangent& tangent) {
+                              std::span<const Index> dofs, bool positions,
+                              const VectorXd& sd, const VectorXd& force_sd,
+                              TickTangent& tangent) {
   for (const Index dof : dofs) {
     for (const Index state : {dof, force_steps_.size() + dof}) {
+      if (state == dof && !positions) continue;
       const double step = std::max(steps_[state], sd[state]);
       Column(from, forces, tick, control, state, step, tangent);
     }

@@ -33,10 +33,11 @@ class TickDifferences {
   ///   (F(x + sd_i e_i) - F(x - sd_i e_i)) / (2 sd_i)
   /// M. Norgaard, N. K. Poulsen, O. Ravn, "New developments in state estimation for
   /// nonlinear systems", Automatica 36(11), 2000.
-  /// @param sd        of the state, ns
-  /// @param force_sd  of the forces, nv
+  /// @param positions  with columns q
+  /// @param sd         of the state, ns
+  /// @param force_sd   of the forces, nv
   void Refresh(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
-               TickControl& control, std::span<const Eigen::Index> dofs,
+               TickControl& control, std::span<const Eigen::Index> dofs, bool positions,
                const Eigen::VectorXd& sd, const Eigen::VectorXd& force_sd,
                TickTangent& tangent);
   /// Velocity that a force of 1 gives a degree of freedom in a tick where the model is drawn.

@@ -41,6 +41,7 @@ TickMap::TickMap(const Machine& machine)
     late_.push_back(StageOf(*model_, sensor) == mjSTAGE_ACC);
     reads_at_end_ |= late_.back();
   }
+  friction_.resize(static_cast<std::size_t>(model_->nv + model_->ntendon));
   last_.reading = VectorXd::Zero(sensors());
   probed_.reading = last_.reading;
 }
@@ -65,20 +66,33 @@ void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& 
   data_->time = static_cast<double>(tick) * tick_;
   stepper.Hold({forces.data(), static_cast<std::size_t>(forces.size())});
   result.pattern = 0xcbf29ce484222325ULL;
+  std::ranges::fill(friction_, Friction{});
   stepper.Advance(*model_, *data_, control, [&] {
     for (int row = 0; row < data_->nefc; ++row) {
-      Mix(result.pattern, static_cast<std::uint64_t>(data_->efc_type[row]));
-      Mix(result.pattern, static_cast<std::uint64_t>(data_->efc_id[row]));
-      // Which way a joint slides makes no difference to its first order.
+      const int type = data_->efc_type[row];
+      const int id = data_->efc_id[row];
       const int state = data_->efc_state[row];
-      const bool slides =
-          state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
-      Mix(result.pattern, slides ? 100 : static_cast<std::uint64_t>(state));
+      if (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON) {
+        Friction& friction = friction_[static_cast<std::size_t>(
+            type == mjCNSTR_FRICTION_DOF ? id : model_->nv + id)];
+        // Which way a joint slides makes no difference to its first order.
+        const bool slides =
+            state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
+        (slides ? friction.slides : friction.sticks) = true;
+        continue;
+      }
+      Mix(result.pattern, static_cast<std::uint64_t>(type));
+      Mix(result.pattern, static_cast<std::uint64_t>(id));
+      Mix(result.pattern, static_cast<std::uint64_t>(state));
     }
     for (const int motor : stepper.off()) {
       Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
     }
   });
+  // In which steps of a tick a joint sticks that slides in others is noise.
+  for (const Friction& friction : friction_) {
+    Mix(result.pattern, (friction.sticks ? 1U : 0U) + (friction.slides ? 2U : 0U));
+  }
   std::ranges::copy(stepper.outputs(), result.reading.begin());
   if (reads_at_end_) {
     mj_step1(model_.get(), data_.get());

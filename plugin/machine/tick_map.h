@@ -29,7 +29,7 @@ class TickMap {
     PlantState state;         ///< x'
     Eigen::VectorXd reading;  ///< ny: y, and y' of sensors that read at the end
     /// Of what decides by switching: constraints that are active and how, in every
-    /// physics step, and actuators that are off.
+    /// physics step, of dry friction in all steps together, and actuators that are off.
     std::uint64_t pattern = 0;
     bool diverged = false;
   };
@@ -60,6 +60,12 @@ class TickMap {
   void Advance(Stepper& stepper, const PlantState& from, const Eigen::VectorXd& forces,
                std::int64_t tick, TickControl& control, Result& result);
 
+  /// What the dry friction of a joint or a tendon does in a tick.
+  struct Friction {
+    bool sticks = false;
+    bool slides = false;
+  };
+
   double tick_;  // [s]
   ModelPtr model_;
   DataPtr data_;
@@ -69,7 +75,8 @@ class TickMap {
   std::vector<int> addresses_;
   std::vector<bool> late_;
   bool reads_at_end_ = false;
-  Result last_;  // of Run
+  std::vector<Friction> friction_;  // of joints, then of tendons
+  Result last_;                     // of Run
   Result probed_;
 };
 

@@ -133,6 +133,78 @@ PlantState StillAt(const Machine& machine, const MeasuredRun& run, Index sample)
   return state;
 }
 
+/// Where a record begins.
+/// @param rates  of the readings of the whole run (TypicalRates)
+FilterStart StartOf(const Machine& machine, const MeasuredRun& run, std::size_t r,
+                    const VectorXd& reading_sd, const VectorXd& rates) {
+  const Index nv = machine.plant().nv;
+  const Index first = run.records[r].sample;
+  const Machine during = DuringRecord(run.records[r], machine);
+  TickMap map(during);
+  RecordedInputs inputs(during, run);
+  const mjModel& model = map.model();
+  FilterStart start;
+  start.state = StillAt(during, run, first);
+  const TickTangent tangent =
+      TangentAt(map, inputs, start.state, first, during.rates().tick(), {});
+  MatrixXd seen = tangent.C.leftCols(nv);
+  for (Index i = 0; i < seen.rows(); ++i) {
+    // A rate of a velocity or of a force says nothing of velocities.
+    const bool position =
+        tangent.C.row(i).segment(nv, nv).isZero(0.0) && !map.ReadsAtEnd(i);
+    if (!position) seen.row(i).setZero();
+  }
+  // Of all motions that give such readings that which strains the springs least.
+  VectorXd weight(nv);
+  for (Index dof = 0; dof < nv; ++dof) {
+    weight[dof] = 1.0 / (1.0 + model.jnt_stiffness[model.dof_jntid[dof]]);
+  }
+  const VectorXd scale = reading_sd.cwiseInverse();
+  const MatrixXd weighted = scale.asDiagonal() * seen * weight.cwiseSqrt().asDiagonal();
+  const MatrixXd place =
+      weight.cwiseSqrt().asDiagonal() * PseudoInverse(weighted) * scale.asDiagonal();
+  VectorXd rate(seen.rows());
+  VectorXd rate_sd(seen.rows());
+  for (Index i = 0; i < seen.rows(); ++i) {
+    const Rate first_rate =
+        FirstRate(run.outputs.row(i).segment(first, run.SamplesOf(r)).transpose(),
+                  reading_sd[i], run.sample_time);
+    rate[i] = first_rate.value;
+    rate_sd[i] = first_rate.sd;
+  }
+  start.state.velocity = place * rate;
+
+  const VectorXd mass = PlantForces(model, start.state.position).Mass().diagonal();
+  constexpr double kKnownTo = 10.0;  // times the noise of the readings
+  const MatrixXd squared = place.cwiseAbs2();
+  const VectorXd reading_variance = squared * reading_sd.cwiseAbs2();
+  const VectorXd rate_variance = squared * rate_sd.cwiseAbs2();
+  VectorXd position = kKnownTo * reading_variance.cwiseSqrt();
+  VectorXd speed = rate_variance.cwiseSqrt();
+  // Of the usual motion: its energy, and the force that makes it within 20 ms.
+  const VectorXd usual = place * rates;
+  start.usual = usual.cwiseAbs();
+  const double energy = mass.dot(start.usual.cwiseAbs2());
+  const double force = mass.dot(start.usual) / 0.02;
+  for (Index dof = 0; dof < nv; ++dof) {
+    const double stiffness = model.jnt_stiffness[model.dof_jntid[dof]];
+    constexpr double kAnywhere = 0.1;  // m or rad
+    if (stiffness > 0.0) {
+      const double strain = std::min(kAnywhere, force / stiffness);
+      position[dof] = std::hypot(position[dof], strain);
+      speed[dof] = std::hypot(speed[dof], strain * std::sqrt(stiffness / mass[dof]));
+    } else if (position[dof] == 0.0) {
+      position[dof] = kAnywhere;
+      speed[dof] = energy > 0.0 ? std::sqrt(energy / mass[dof]) : kAnywhere;
+      start.usual[dof] = speed[dof];
+    }
+  }
+  const double command = run.inputs.size() > 0 ? run.inputs.cwiseAbs().maxCoeff() : 1.0;
+  start.sd.resize(TangentSize(model));
+  start.sd << position, speed, VectorXd::Constant(model.na, std::max(1e-3, command));
+  return start;
+}
+
 }  // namespace
 
 std::vector<Index> LatentDofs(const Machine& machine, const MeasuredRun& run) {
@@ -167,76 +239,10 @@ std::vector<Index> LatentDofs(const Machine& machine, const MeasuredRun& run) {
 
 std::vector<FilterStart> FilterStarts(const Machine& machine, const MeasuredRun& run,
                                       const VectorXd& reading_sd) {
-  const Index nv = machine.plant().nv;
   const VectorXd rates = TypicalRates(run);
   std::vector<FilterStart> starts;
   for (std::size_t r = 0; r < run.records.size(); ++r) {
-    const Index first = run.records[r].sample;
-    const Machine during = DuringRecord(run.records[r], machine);
-    TickMap map(during);
-    RecordedInputs inputs(during, run);
-    const mjModel& model = map.model();
-    FilterStart start;
-    start.state = StillAt(during, run, first);
-    const TickTangent tangent =
-        TangentAt(map, inputs, start.state, first, during.rates().tick(), {});
-    MatrixXd seen = tangent.C.leftCols(nv);
-    for (Index i = 0; i < seen.rows(); ++i) {
-      // A rate of a velocity or of a force says nothing of velocities.
-      const bool position =
-          tangent.C.row(i).segment(nv, nv).isZero(0.0) && !map.ReadsAtEnd(i);
-      if (!position) seen.row(i).setZero();
-    }
-    // Of all motions that give such readings that which strains the springs least.
-    VectorXd weight(nv);
-    for (Index dof = 0; dof < nv; ++dof) {
-      weight[dof] = 1.0 / (1.0 + model.jnt_stiffness[model.dof_jntid[dof]]);
-    }
-    const VectorXd scale = reading_sd.cwiseInverse();
-    const MatrixXd weighted =
-        scale.asDiagonal() * seen * weight.cwiseSqrt().asDiagonal();
-    const MatrixXd place =
-        weight.cwiseSqrt().asDiagonal() * PseudoInverse(weighted) * scale.asDiagonal();
-    VectorXd rate(seen.rows());
-    VectorXd rate_sd(seen.rows());
-    for (Index i = 0; i < seen.rows(); ++i) {
-      const Rate first_rate =
-          FirstRate(run.outputs.row(i).segment(first, run.SamplesOf(r)).transpose(),
-                    reading_sd[i], run.sample_time);
-      rate[i] = first_rate.value;
-      rate_sd[i] = first_rate.sd;
-    }
-    start.state.velocity = place * rate;
-
-    const VectorXd mass = PlantForces(model, start.state.position).Mass().diagonal();
-    constexpr double kKnownTo = 10.0;  // times the noise of the readings
-    const MatrixXd squared = place.cwiseAbs2();
-    const VectorXd reading_variance = squared * reading_sd.cwiseAbs2();
-    const VectorXd rate_variance = squared * rate_sd.cwiseAbs2();
-    VectorXd position = kKnownTo * reading_variance.cwiseSqrt();
-    VectorXd speed = rate_variance.cwiseSqrt();
-    // Of the usual motion: its energy, and the force that makes it within 20 ms.
-    start.usual = (place * rates).cwiseAbs();
-    const double energy = mass.dot(start.usual.cwiseAbs2());
-    const double force = mass.dot(start.usual) / 0.02;
-    for (Index dof = 0; dof < nv; ++dof) {
-      const double stiffness = model.jnt_stiffness[model.dof_jntid[dof]];
-      constexpr double kAnywhere = 0.1;  // m or rad
-      if (stiffness > 0.0) {
-        const double strain = std::min(kAnywhere, force / stiffness);
-        position[dof] = std::hypot(position[dof], strain);
-        speed[dof] = std::hypot(speed[dof], strain * std::sqrt(stiffness / mass[dof]));
-      } else if (position[dof] == 0.0) {
-        position[dof] = kAnywhere;
-        speed[dof] = energy > 0.0 ? std::sqrt(energy / mass[dof]) : kAnywhere;
-        start.usual[dof] = speed[dof];
-      }
-    }
-    const double command =
-        run.inputs.size() > 0 ? run.inputs.cwiseAbs().maxCoeff() : 1.0;
-    start.sd.resize(TangentSize(model));
-    start.sd << position, speed, VectorXd::Constant(model.na, std::max(1e-3, command));
-    starts.push_back(std::move(start));
+    starts.push_back(StartOf(machine, run, r, reading_sd, rates));
   }
   return starts;
 }

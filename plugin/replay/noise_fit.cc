@@ -11,6 +11,7 @@
 #include "mjdiag/plugin/machine/tick_differences.h"
 #include "mjdiag/plugin/machine/tick_map.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -30,16 +31,25 @@ struct Stretch {
   Index count = 0;
 };
 
-// Of so many readings, in some pieces of every record, the noise is known as well as anybody
-// needs it: its logarithm to sqrt(2 / 3600) = 0.024.
+// Of so many readings, in some pieces of every record, the noise is known to 2 %: its
+// logarithm to sqrt(2 / 3600) = 0.024. What that leaves in -2 ln L of all readings grows with
+// how many more these are, so that small machines, of which more takes no longer, have more.
 constexpr Index kEnough = 3600;
 constexpr Index kPieces = 4;
 constexpr Index kShortest = 100;
 
+/// As many as take no longer than those of a machine with that many states.
+Index EnoughOf(Index states) {
+  constexpr double kLarge = 24.0;
+  const double times = std::pow(kLarge / static_cast<double>(states), 2);
+  return static_cast<Index>(kEnough * std::clamp(times, 1.0, 4.0));
+}
+
 /// Four pieces of a record, of `of_all` samples of `sensors` of a run; of a short one all of
 /// it.
-std::vector<Stretch> PiecesOf(Index first, Index count, Index of_all, Index sensors) {
-  const Index enough = kEnough / sensors;
+std::vector<Stretch> PiecesOf(Index first, Index count, Index of_all, Index sensors,
+                              Index states) {
+  const Index enough = EnoughOf(states) / sensors;
   const Index piece = std::max(kShortest, enough * count / of_all / kPieces);
   if (of_all <= enough || piece * kPieces >= count) return {{first, count}};
   std::vector<Stretch> pieces;
@@ -95,9 +105,9 @@ class NoiseSearch {
   NoiseSearch(const FilterPath& path, const VectorXd& reading_sd, double longest)
       : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
     for (std::size_t r = 0; r < path.first.size(); ++r) {
-      std::ranges::copy(
-          PiecesOf(path.first[r], path.EndOf(r) - path.first[r], path.samples(), ny_),
-          std::back_inserter(pieces_));
+      std::ranges::copy(PiecesOf(path.first[r], path.EndOf(r) - path.first[r],
+                                 path.samples(), ny_, path.pulled.rows()),
+                        std::back_inserter(pieces_));
     }
     const double tick = path.sample_time;
     const Shown shown = ShownBy(path.tangents.front(), path.dofs, reading_sd);
@@ -305,13 +315,18 @@ FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd,
   return search.NoiseOf(slow.deviance() < fast.deviance() ? slow.x : fast.x);
 }
 
+/// Of a filter: those of the machine, its latent forces and the clock.
+Index StatesOf(const Machine& machine, const std::vector<Index>& dofs) {
+  return TangentSize(machine.plant()) + std::ssize(dofs) + 1;
+}
+
 /// Pieces of every record, each a record of its own.
-MeasuredRun PiecesOf(const MeasuredRun& run) {
+MeasuredRun PiecesOf(const MeasuredRun& run, Index states) {
   std::vector<MeasuredRun> pieces;
   for (std::size_t r = 0; r < run.records.size(); ++r) {
     const Index first = run.records[r].sample;
     for (const Stretch& piece :
-         PiecesOf(first, run.SamplesOf(r), run.samples(), run.outputs.rows())) {
+         PiecesOf(first, run.SamplesOf(r), run.samples(), run.outputs.rows(), states)) {
       pieces.push_back(Excerpt(run, piece.first, piece.count));
     }
   }
@@ -324,7 +339,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const VectorXd& reading_sd) {
   const std::vector<Index> dofs = LatentDofs(machine, run);
   // Pieces tell the noise as well as all of a run.
-  const MeasuredRun pieces = PiecesOf(run);
+  const MeasuredRun pieces = PiecesOf(run, StatesOf(machine, dofs));
   const double longest = LongestMemory(run);
   std::vector<FilterStart> starts = FilterStarts(machine, pieces, reading_sd);
   const FilterNoise fast = FollowingNoise(machine, pieces, dofs, starts, reading_sd);
@@ -370,7 +385,7 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
                                const std::vector<Index>& dofs,
                                const std::vector<FilterNoise>& near) {
-  const MeasuredRun pieces = PiecesOf(run);
+  const MeasuredRun pieces = PiecesOf(run, StatesOf(machine, dofs));
   const double longest = LongestMemory(run);
   const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
   std::optional<FilterPath> best;

@@ -99,6 +99,27 @@ std::vector<Index> TangentCourse::RestlessAt(const PlantState& from, const Vecto
   return dofs;
 }
 
+bool TangentCourse::HoldsFor(const Refreshed& before, const Refreshed& now,
+                             const VectorXd& force_sd) const {
+  if (before.of != now.of || now.since < before.since ||
+      now.since - before.since >= of_effects_ ||
+      before.standing.size() != now.standing.size()) {
+    return false;
+  }
+  constexpr double kNear = 0.3;  // of what is not known
+  for (std::size_t i = 0; i < now.standing.size(); ++i) {
+    const Standing& was = before.standing[i];
+    const Standing& is = now.standing[i];
+    if (was.dof != is.dof || std::abs(is.spread - was.spread) > kNear * was.spread ||
+        std::abs(is.velocity - was.velocity) > kNear * was.spread ||
+        std::abs(is.next - was.next) > kNear * was.spread ||
+        std::abs(is.force - was.force) > kNear * force_sd[is.dof]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
                                 std::int64_t tick, TickControl& control,
                                 const VectorXd& sd, const VectorXd& force_sd) {
@@ -120,19 +141,24 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
     }
   }
   std::vector<Index> dofs = RestlessAt(from, sd, force_sd);
-  const bool may_stand = !dofs.empty();
-  if (with_effects_.empty() && !may_stand) return known.place;
-  if (!may_stand && refreshed_ && refreshed_->of == known.place &&
-      tick >= refreshed_->since && tick - refreshed_->since < of_effects_) {
-    return refreshed_->place;
+  if (with_effects_.empty() && dofs.empty()) return known.place;
+  Refreshed now{known.place, tangents.size(), tick, {}};
+  for (const Index dof : dofs) {
+    const double spread =
+        sd[from.velocity.size() + dof] + force_sd[dof] * differences_.VelocityOf(dof);
+    now.standing.push_back({dof, from.velocity[dof], map_.last().state.velocity[dof],
+                            forces[dof], spread});
   }
-  for (const Index dof : with_effects_) {
-    if (std::ranges::find(dofs, dof) == dofs.end()) dofs.push_back(dof);
-  }
+  if (refreshed_ && HoldsFor(*refreshed_, now, force_sd)) return refreshed_->place;
   TickTangent here = tangents[known.place];
-  differences_.Refresh(from, forces, tick, control, dofs, sd, force_sd, here);
-  refreshed_.reset();
-  if (!may_stand) refreshed_ = Refreshed{known.place, tangents.size(), tick};
+  // Dry friction does not ask where a joint is.
+  std::erase_if(dofs, [&](Index dof) {
+    return std::ranges::find(with_effects_, dof) != with_effects_.end();
+  });
+  differences_.Refresh(from, forces, tick, control, dofs, false, sd, force_sd, here);
+  differences_.Refresh(from, forces, tick, control, with_effects_, true, sd, force_sd,
+                       here);
+  refreshed_ = std::move(now);
   tangents.push_back(std::move(here));
   return tangents.size() - 1;
 }

@@ -49,13 +49,26 @@ class TangentCourse {
     std::int64_t stretch = 0;
   };
   std::map<std::uint64_t, Known> known_;  // by pattern
-  /// A tangent with columns of effects where nothing may stand, from which one it was made
-  /// and when.
+  /// A joint that may stand: its velocity, that after the tick, its latent force and how far
+  /// its velocity may be off.
+  struct Standing {
+    Eigen::Index dof = 0;
+    double velocity = 0.0;
+    double next = 0.0;
+    double force = 0.0;
+    double spread = 0.0;
+  };
+  /// A tangent with columns of effects and of joints that may stand, from which one it was
+  /// made and when.
   struct Refreshed {
     std::size_t of = 0;
     std::size_t place = 0;
     std::int64_t since = 0;
+    std::vector<Standing> standing;
   };
+  /// Whether the one is as good as the other would be.
+  bool HoldsFor(const Refreshed& before, const Refreshed& now,
+                const Eigen::VectorXd& force_sd) const;
   std::optional<Refreshed> refreshed_;
 };
 

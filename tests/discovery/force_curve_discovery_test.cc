@@ -90,7 +90,7 @@ TEST(ForceCurveDiscovery, LearnsALawOverTheVelocityBehindTheFilter) {
   DiscoverOptions options;
   options.figures = false;
   const Discovery answer =
-      Discover(stage.machine, MeasureOutside(law, stage), nullptr, options);
+      DiscoverByFilter(stage.machine, MeasureOutside(law, stage), nullptr, options);
   ASSERT_NE(Curve(answer), nullptr);
   EXPECT_NE(Curve(answer)->unnamed.find("load velocity"), std::string::npos);
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kPartlyExplained);

@@ -119,6 +119,17 @@ TEST_F(LoadedRecords, ShowOneCauseInAllOfThem) {
   EXPECT_THAT(found.causes[0].cause.effect->name(), HasSubstr("friction"));
 }
 
+TEST_F(LoadedRecords, ShowItToTheFilterAsWell) {
+  DiscoverOptions options;
+  options.doubt = false;
+  options.figures = false;
+  const Discovery found =
+      DiscoverByFilter(Load("plant.xml"), Read("loaded.xml"), options);
+  ASSERT_EQ(found.causes.size(), 1u);
+  EXPECT_EQ(found.causes[0].cause.site, "stage");
+  EXPECT_THAT(found.causes[0].cause.effect->name(), HasSubstr("friction"));
+}
+
 TEST_F(LoadedRecords, OfAnotherMachineAreRefused) {
   EXPECT_EQ(test::MessageOf<InputError>([&] { Read("other.xml"); }),
             "other.xml: has other joints than 'stage'; expected the joints, actuators "

@@ -21,7 +21,8 @@ constexpr const char* kOther = "viscous_friction@shoulder:coefficient=0.2";
 struct Judged {
   Judged(const std::vector<std::string>& seen, const std::vector<std::string>& unseen)
       : run{ToMeasuredRun(arm.setup(), test::Arm::Measure(seen, 1.0, 64)),
-            ToMeasuredRun(arm.setup(), test::Arm::Measure(unseen, 1.0, 64, 2)), 0},
+            ToMeasuredRun(arm.setup(), test::Arm::Measure(unseen, 1.0, 64, 2)),
+            {0}},
         explained(Explain(arm.machine, run.seen, sd, {.seconds = 300.0})),
         data{arm.machine, run, sd, explained.blocks, explained.steps},
         judgement(JudgeUnseen(data, explained, [] { return false; })) {}

@@ -27,8 +27,7 @@ TEST(WaveSums, AreThoseOfEveryWaveByItself) {
     for (Index k = 0; k < kSamples; ++k) {
       sum += g[k] * std::polar(1.0, angle[k] + static_cast<double>(m) * x[k]);
     }
-    // Twice what the grid is off by.
-    EXPECT_LT(std::abs(sums[m] - sum), 0.02 * g.norm()) << m;
+    EXPECT_LT(std::abs(sums[m] - sum), 1e-3 * g.norm()) << m;
   }
 }
 
