@@ -138,8 +138,7 @@ void AddDiscover(CLI::App& app) {
   AddMeasurementOptions(*command, options->records);
   command
       ->add_option("--train-share", options->search.train_share,
-                   "Share of every record, from its start, that fits see, where none is "
-                   "held out")
+                   "Share of the record, from its start, that fits see")
       ->check(Within(kLeastShare, kMostShare));
   command
       ->add_option("--bandwidth", options->search.bandwidth,

@@ -173,7 +173,7 @@ struct Discovery {
   /// what looks odd in the record.
   std::vector<std::string> notes;
 
-  double train_share = 0.0;  ///< of every record that fits saw; 1 beside unseen ones
+  double train_share = 0.0;  ///< of what may be fitted that fits saw
   /// Of every record; those that fits saw first.
   std::vector<RecordReplay> records;
   /// The first that they saw, and the first that they did not; null if there is none.

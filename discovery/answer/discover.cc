@@ -144,7 +144,7 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
 }  // namespace
 
 Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
-                   const DiscoverOptions& options) {
+                           const DiscoverOptions& options) {
   RunningTime time(options);
   Discovery discovery;
   discovery.notes = NotesOfChecks(machine.plant(), measurements, options.doubt);
@@ -210,8 +210,9 @@ Discovery DiscoverByFilter(const Machine& machine, const Measurements& measureme
 }
 
 Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
-                   const Record* validation, const DiscoverOptions& options) {
-  return DiscoverByFilter(machine, MeasurementsOf(machine, measured, validation), options);
+                           const Record* validation, const DiscoverOptions& options) {
+  return DiscoverByFilter(machine, MeasurementsOf(machine, measured, validation),
+                          options);
 }
 
 }  // namespace mjdiag

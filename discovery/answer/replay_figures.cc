@@ -138,9 +138,9 @@ void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
         step.train = RmsOf(scaled[i]);
         return;
       case 1:
-        step.held_out =
-            RmsOf(Of(ScaledAlong(data, model, data.run.unseen, answer.unseen, unseen_gains),
-                     unseen_gains, data.run.New()));
+        step.held_out = RmsOf(
+            Of(ScaledAlong(data, model, data.run.unseen, answer.unseen, unseen_gains),
+               unseen_gains, data.run.New()));
         return;
       default:
         break;

@@ -113,7 +113,8 @@ TEST(Answer, NamesNoMoreCausesThanItMay) {
   DiscoverOptions options;
   options.most_causes = 1;
   options.figures = false;
-  EXPECT_THAT(DiscoverByFilter(arm.machine, record, nullptr, options).causes, SizeIs(1));
+  EXPECT_THAT(DiscoverByFilter(arm.machine, record, nullptr, options).causes,
+              SizeIs(1));
 }
 
 }  // namespace
