@@ -45,10 +45,9 @@ void AddDiscoveryFacts(Page& page, const Discovery& discovery,
                                        : "measured input, in open loop");
   }
   const auto seen = std::ranges::count(discovery.records, true, &RecordReplay::seen);
+  const double share = discovery.train_share;
   const std::string part =
-      discovery.train_share < 1.0
-          ? "the first " + ShareText(discovery.train_share) + " of "
-          : "";
+      share > 0.0 && share < 1.0 ? "the first " + ShareText(share) + " of " : "";
   if (seen > 1) {
     facts.emplace_back("Fitted to", part + std::to_string(seen) + " records");
   } else if (!part.empty()) {
