@@ -62,8 +62,7 @@ std::vector<Column> TickColumns(const Machine& machine, const MeasuredRun& run,
     const Ticks own = TicksAlong(machine, run, path, record);
     ParallelFor(static_cast<int>(others.size()), [&](int number) {
       const auto o = static_cast<std::size_t>(number);
-      const MeasuredRun& inputs = others[o].run != nullptr ? *others[o].run : run;
-      const Ticks ticks = TicksAlong(others[o].machine, inputs, path, record);
+      const Ticks ticks = TicksAlong(others[o].machine, run, path, record);
       const Index first = path.first[record];
       for (std::size_t k = 0; k < ticks.states.size(); ++k) {
         states[o].row(first + static_cast<Index>(k)) =

@@ -14,8 +14,7 @@ namespace mjdiag {
 
 struct OtherMachine {
   Machine machine;
-  double step = 1.0;                 ///< by which the difference is divided
-  const MeasuredRun* run = nullptr;  ///< with inputs of its own; null: those of the run
+  double step = 1.0;  ///< by which the difference is divided
 };
 
 /// Of each, its tick less that of the machine of the path, from where the path is. Both read

@@ -13,8 +13,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kStretchTime = 0.01;  // [s]
-// Forces of effects change sooner: with a velocity of some Hz they are the same within this
-// to a hundredth.
+// Forces of effects change sooner: a motion of some Hz changes them by a hundredth within this.
 constexpr double kStretchOfEffects = 0.001;  // [s]
 
 /// Of two tangents, of positions and velocities each by itself, which have units of their
