@@ -32,6 +32,20 @@ FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
   return noise;
 }
 
+/// Whether unseen readings are as likely as those that fits saw, but for chance: the mean of
+/// -2 ln L of n readings has a standard deviation of sqrt(2 / n).
+bool IsAsExpected(const AnswerData& data, const ModelOnRuns& one) {
+  constexpr double kChance = 4.0;  // standard deviations
+  const auto taken = [](const FilterPath& path) {
+    return static_cast<double>(path.counts.count());
+  };
+  const double seen = taken(one.seen);
+  const double unseen = taken(one.unseen) - (data.run.GoesOn() ? seen : 0.0);
+  if (!(unseen > 0.0) || !(seen > 0.0)) return true;
+  return one.unseen_deviance / unseen <
+         one.seen.deviance / seen + kChance * std::sqrt(2.0 / unseen);
+}
+
 /// Along what fits did not see, behind the noise of what they saw. A model that is all but
 /// exact there has next to no latent forces, and a filter that is so sure of itself does not
 /// come back from where a joint sticks a moment longer: behind a thousandth or a hundredth
@@ -62,6 +76,7 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given, ModelOnRuns&
       one.unseen = std::move(path);
     } catch (const NumericalError&) {
     }
+    if (IsAsExpected(data, one)) break;
   }
   if (!std::isfinite(one.unseen_deviance)) {
     throw NumericalError("replay: diverges on unseen data");
@@ -71,14 +86,18 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given, ModelOnRuns&
 /// Values and noise of a model anew.
 ModelOnRuns Refitted(const AnswerData& data, const Model& model,
                      const std::vector<Eigen::Index>& dofs,
-                     const std::vector<FilterNoise>& near, const FilterNoise& given) {
+                     const std::vector<FilterNoise>& near, const FilterNoise& given,
+                     const std::function<bool()>& is_over) {
   constexpr int kIterations = 4;
   ModelOnRuns one;
+  const MachineWith in_time = [&](const Model& other) {
+    if (is_over()) throw NumericalError("fit: asked to end");
+    return data.With(other);
+  };
   const FilterPath path =
       FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near);
-  one.fit =
-      FitModel([&](const Model& other) { return data.With(other); }, data.run.seen,
-               path, KeepGains(path), data.blocks, model, kIterations);
+  one.fit = FitModel(in_time, data.run.seen, path, KeepGains(path), data.blocks, model,
+                     kIterations);
   one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
                             path.starts, path.noise);
   FollowUnseen(data, given, one);
@@ -189,7 +208,7 @@ bool UnseenJudge::DropWorst() {
     }
     try {
       ModelOnRuns without = Refitted(data_, Without(model, m), answer.seen.dofs, Near(),
-                                     judged_.nothing.seen.noise);
+                                     judged_.nothing.seen.noise, is_over_);
       judged_.losses[m] = LossOf(without);
       const bool is_worst =
           !best || judged_.losses[m].Total() < judged_.losses[worst].Total();
@@ -198,7 +217,8 @@ bool UnseenJudge::DropWorst() {
         best = std::move(without);
       }
     } catch (const NumericalError&) {
-      // The machine does not run without it.
+      // The machine does not run without it, or there is no time.
+      judged_.is_cut_short = judged_.is_cut_short || is_over_();
     } catch (const InputError&) {
     }
   }
@@ -278,7 +298,7 @@ bool UnseenJudge::ExchangeOne() {
       other[m] = {one.block, one.values};
       try {
         ModelOnRuns fitted = Refitted(data_, other, judged_.answer.seen.dofs, Near(),
-                                      judged_.nothing.seen.noise);
+                                      judged_.nothing.seen.noise, is_over_);
         const MemberLoss loss = LossOf(fitted);
         judged_.exchanges[m].push_back({one.block, fitted.fit.model[m].values, loss});
         // The simpler one where it is as good.

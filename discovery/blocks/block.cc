@@ -160,6 +160,12 @@ std::vector<Block> BlocksOf(const Machine& machine,
   for (const Candidate& candidate : candidates) {
     const std::string name = Describe(candidate);
     const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
+    // A law that changes a number that is in doubt, or that is known where others are not, is
+    // said as that number; a fault parameter has a name of its own, and friction is found as
+    // what it is where the plant has none.
+    const bool is_number = number && !candidate.effect->IsFault() &&
+                           candidate.effect->family() != Family::kFriction;
+    if (is_number && !numbers.empty()) continue;
     const bool repeats = PeriodPlace(candidate) < std::ssize(candidate.parameters);
     blocks.push_back({.name = name,
                       .candidate = candidate,
@@ -261,8 +267,10 @@ double SizePrice(const Block& block, const VectorXd& values) {
 }
 
 double PriceOf(const Block& block, Index shapes) {
-  const double odds = block.candidate ? block.candidate->effect->odds() : 1.0;
-  return kClaim - 2.0 * std::log(kMissing * odds) +
+  // A number that is known to some percent is off; by how much, SizePrice asks.
+  const double probability =
+      block.candidate ? kMissing * block.candidate->effect->odds() : 1.0;
+  return kClaim - 2.0 * std::log(probability) +
          2.0 * std::log(std::max(1.0, static_cast<double>(shapes)));
 }
 

@@ -85,7 +85,8 @@ double SizePrice(double x);
 /// Of all sizes of a block with values.
 double SizePrice(const Block& block, const Eigen::VectorXd& values);
 
-/// Those of a machine: candidates, then numbers that no candidate stands for.
+/// Those of a machine: candidates, then numbers. A law that changes a number is one of them only
+/// where no numbers are in doubt, or as a fault parameter, which then stands for the number.
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates,
                             const std::vector<PlantNumber>& numbers);

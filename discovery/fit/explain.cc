@@ -61,6 +61,8 @@ class Search {
   };
   void Adopt(Proposal proposal);
   void KeepRivals(const Moves& moves);
+  /// What a rival is worth once it has been fitted. @param score  less that of the model
+  void Rate(const Model& rival, double score);
   std::optional<SettledModel> Resettled(const Whitenings& whitenings, std::size_t noise,
                                         const ModelFit& as_it_is) const;
   std::string Difference(double score) const {
@@ -77,8 +79,12 @@ class Search {
   const ModelFit& AsItIsBehind(const Judged& judged, const Whitenings& whitenings,
                                AsFitted& known) const;
   /// The best of some moves, fitted; none if none pays.
+  /// @param iterations     of a fit; 0: at the values of the regression
+  /// @param beside_itself  where there are none: beside the model as it is, behind its noise
+  ///                       anew
   std::optional<Proposal> BestOf(const Moves& moves, std::size_t most, int iterations,
-                                 const Whitenings& whitenings, AsFitted as_it_is);
+                                 const Whitenings& whitenings, AsFitted as_it_is,
+                                 bool beside_itself);
   std::optional<Proposal> BestForces(const Whitenings& whitenings,
                                      const ExactColumns& exact);
   std::optional<Proposal> BestMove(const Whitenings& whitenings,
@@ -136,6 +142,8 @@ class Search {
   std::vector<Candidate> candidates_;
   /// What is large comes first.
   bool looks_at_forces_ = true;
+  /// What is simple comes first, too.
+  bool at_every_shape_ = false;
   Explained found_;
 };
 
@@ -177,20 +185,22 @@ std::optional<SettledModel> Search::Resettled(const Whitenings& whitenings,
 std::optional<Search::Proposal> Search::BestForces(const Whitenings& whitenings,
                                                    const ExactColumns& exact) {
   const Moves moves = ForceMovesOf(With(found_.fit.model), run_, found_.path,
-                                   found_.blocks, exact.terms);
+                                   found_.blocks, exact.terms, at_every_shape_);
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them. What does
   // not run so leaves the next one.
   constexpr std::size_t kMost = 3;
+  bool beside_itself = true;
   for (const ModelMove* move :
        ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
     Moves one;
     one.score = moves.score;
     one.best = {*move};
-    if (auto best = BestOf(one, 1, 0, whitenings, {})) return best;
+    if (auto best = BestOf(one, 1, 0, whitenings, {}, beside_itself)) return best;
     if (IsOver()) break;
+    beside_itself = false;  // what it is worth is known by now
   }
   return std::nullopt;
 }
@@ -199,7 +209,8 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
                                                  const ExactColumns& exact) {
   const Moves moves =
       MovesOf(With(found_.fit.model), run_, found_.path, whitenings.maps(),
-              found_.blocks, exact.terms, exact.other_steps);
+              found_.blocks, exact.terms, exact.other_steps,
+              {.at_forces = false, .at_every_shape = at_every_shape_});
   if (moves.other_steps && ChooseSteps()) return AsItIs();
   KeepRivals(moves);
   AsFitted as_it_is;
@@ -209,15 +220,18 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
   }
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
-  return BestOf(moves, 4, kIterations, whitenings, std::move(as_it_is));
+  return BestOf(moves, 4, kIterations, whitenings, std::move(as_it_is), false);
 }
 
 ModelFit Search::Fitted(const Model& model, const Whitenings& whitenings,
                         const Judged& judged, int iterations) const {
   const bool steps = steps_ != judged.second;
-  return FitModel([&](const Model& one) { return With(one, steps); }, run_, found_.path,
-                  whitenings.behind[judged.first].gains(), found_.blocks, model,
-                  iterations);
+  const MachineWith in_time = [&](const Model& one) {
+    if (IsOver()) throw NumericalError("fit: asked to end");
+    return With(one, steps);
+  };
+  return FitModel(in_time, run_, found_.path, whitenings.behind[judged.first].gains(),
+                  found_.blocks, model, iterations);
 }
 
 const ModelFit& Search::AsItIsBehind(const Judged& judged, const Whitenings& whitenings,
@@ -231,7 +245,7 @@ const ModelFit& Search::AsItIsBehind(const Judged& judged, const Whitenings& whi
 std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t most,
                                                int iterations,
                                                const Whitenings& whitenings,
-                                               AsFitted as_it_is) {
+                                               AsFitted as_it_is, bool beside_itself) {
   const auto fitted = [&](const Model& model, const Judged& judged) {
     return Fitted(model, whitenings, judged, iterations);
   };
@@ -261,6 +275,7 @@ std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t m
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
       Say(text + Describe(found_.blocks, fit.model));
+      Rate(model, -gain);
       if (gain < kLeastGain) {
         Decide(fit.model, -gain, "fitted, it is worth less than it costs");
       }
@@ -277,7 +292,7 @@ std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t m
     if (iterations > 0) continue;
     try_one(Abrupt(found_.blocks, model), *move);
     // A noise that is less likely than another one is no reason for a law.
-    try_one(found_.fit.model, *move);
+    if (beside_itself) try_one(found_.fit.model, *move);
   }
   std::ranges::sort(tried, std::greater<>(), &Tried::gain);
   // Kept gains are those of what the machine was without a move: which is the best is said
@@ -318,6 +333,7 @@ std::optional<Search::Proposal> Search::BestOf(const Moves& moves, std::size_t m
   for (std::size_t i = 0; i < settled.size(); ++i) {
     if (!settled[i]) continue;
     const double score = settled[i]->score() - found_.score;
+    Rate(settled[i]->fit.model, score);
     Decide(settled[i]->fit.model, score,
            best == i ? "taken"
            : score < -kLeastGain
@@ -338,6 +354,13 @@ void Search::KeepRivals(const Moves& moves) {
       move.score = std::max(0.0, move.score - moves.score);
       found_.rivals.push_back(std::move(move));
     }
+  }
+}
+
+void Search::Rate(const Model& rival, double score) {
+  for (ModelMove& move : found_.rivals) {
+    if (SameBlocks(After(move, found_.fit.model), rival))
+      move.score = std::max(0.0, score);
   }
 }
 
@@ -435,8 +458,10 @@ Explained Search::Run() {
   Prepare();
   try {
     StepOn();
-    if (options_.choice.only.empty() && !IsOver()) {
-      AddCurves();
+    // What is left may have a shape that shows beside nothing simple, or no name.
+    if (!IsOver()) {
+      if (options_.choice.only.empty()) AddCurves();
+      at_every_shape_ = true;
       looks_at_forces_ = true;
       StepOn();
     }

@@ -28,7 +28,7 @@ VectorXd LeftBehind(const ModelMove& move, const std::vector<Term>& terms,
 
 Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, std::vector<Block>& blocks,
-                   const std::vector<Term>& terms) {
+                   const std::vector<Term>& terms, bool at_every_shape) {
   const MissingForceRows missing(path, SmoothForces(path).value);
   MissingForceMap::Rest rest = MissingForceMap::RestOf(missing);
   // How lasting the rest is nobody knows before something is explained.
@@ -45,7 +45,8 @@ Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
     std::vector<const RowMap*> all;
     for (const MissingForceMap& one : maps) all.push_back(&one);
     // What physics steps make is no force that lasts.
-    moves = MovesOf(machine, run, path, all, blocks, terms, {}, Looked::kAtForces);
+    moves = MovesOf(machine, run, path, all, blocks, terms, {},
+                    {.at_forces = true, .at_every_shape = at_every_shape});
     if (moves.best.empty()) break;
     rest = maps.front().RestOf(LeftBehind(moves.best.front(), terms, maps.front()));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -63,6 +64,9 @@ class MoveSearch {
                : first_of_term_.back() + std::ssize(terms_.back().columns) + 1;
   }
   SetOfColumns ColumnsOf(const Change& change) const;
+  /// Terms that may leave for one that comes in.
+  std::vector<std::vector<std::size_t>> LeavingTogether() const;
+  std::vector<Variation> Promising(const Scored& here) const;
   /// What comes in with its amplitudes, the last first.
   /// @param amplitudes  of all columns, those of what comes in last
   std::vector<std::pair<const Variation&, VectorXd>> AddedOf(
@@ -129,8 +133,8 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
 
 // The shape of a resistance shows where the velocity changes its sign, which no filter
 // knows that lacks it: first the simplest comes in, and then, along the motion with that, the
-// others in its place. What has no shape is in with all
-// that it can be.
+// others in its place; where nothing simple is left, all of them. What has no shape is in with
+// all that it can be.
 bool MoveSearch::MayCome(const Block& block) const {
   const auto any = [&](const auto& is) {
     return std::ranges::any_of(
@@ -140,7 +144,7 @@ bool MoveSearch::MayCome(const Block& block) const {
     return false;
   }
   // What cancels the inputs explains a machine that hardly moves, whatever holds it.
-  if (looked_ == Looked::kAtForces) {
+  if (looked_.at_forces) {
     if (block.IsOfDrive()) return false;
     if (block.IsSmoothFriction()) return true;
     // At once where it is known to creep, or must not.
@@ -151,7 +155,7 @@ bool MoveSearch::MayCome(const Block& block) const {
              });
     }
   }
-  return !block.IsResistance() || block.IsSimplest() ||
+  return looked_.at_every_shape || !block.IsResistance() || block.IsSimplest() ||
          any([&](const Block& in) { return in.group == block.group; });
 }
 
@@ -305,23 +309,67 @@ void MoveSearch::Keep(const std::vector<Scored>& scored) {
   }
 }
 
+// One in the place of two, or of all, is what a regression that takes one after the other
+// does not see.
+std::vector<std::vector<std::size_t>> MoveSearch::LeavingTogether() const {
+  constexpr std::size_t kMostInPairs = 6;
+  std::vector<std::vector<std::size_t>> sets;
+  const std::size_t count = terms_.size();
+  for (std::size_t t = 0; t < count; ++t) sets.push_back({t});
+  for (std::size_t t = 0; t < count && count <= kMostInPairs; ++t) {
+    for (std::size_t s = t + 1; s < count; ++s) sets.push_back({t, s});
+  }
+  if (count > 2) {
+    sets.emplace_back(count);
+    std::iota(sets.back().begin(), sets.back().end(), std::size_t{0});
+  }
+  return sets;
+}
+
+std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
+  const RowMap& map = *maps_[here.noise];
+  const SetOfColumns set = ColumnsOf({});
+  std::vector<const Column*> columns;
+  std::vector<std::size_t> of_term;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    for (const Column& column : terms_[t].columns) {
+      columns.push_back(&column);
+      of_term.push_back(t);
+    }
+  }
+  const MatrixXd W = map.Of(columns);
+  const auto model_without = [&](const std::vector<std::size_t>& removed) {
+    WhitenedModel model{map.left(), {}, {}};
+    for (const std::size_t t : removed) model.left -= map.Of({&terms_[t].removed});
+    for (std::size_t i = 0; i < of_term.size(); ++i) {
+      const bool is_out = std::ranges::find(removed, of_term[i]) != removed.end();
+      (is_out ? model.removed : model.in).push_back(static_cast<Index>(i));
+    }
+    // What stays in does what it can.
+    if (removed.empty() && W.cols() > 0) model.left -= W * here.fit.amplitudes;
+    if (!removed.empty() && !model.in.empty()) {
+      const MatrixXd in = W(Eigen::indexing::all, model.in);
+      MatrixXd G = in.transpose() * in;
+      G.diagonal() += VectorXd(set.sd(model.in)).cwiseAbs2().cwiseInverse();
+      model.left -= in * G.llt().solve(in.transpose() * model.left);
+    }
+    return model;
+  };
+  std::vector<WhitenedModel> models{model_without({})};
+  for (const std::vector<std::size_t>& removed : LeavingTogether()) {
+    models.push_back(model_without(removed));
+  }
+  return PromisingVariations(machine_, along_, map, W, set.sd, models, blocks_,
+                             [this](const Block& block) { return MayCome(block); });
+}
+
 Moves MoveSearch::Run() {
   Whiten();
   const Scored here = ScoreOf({});
   moves_.score = here.score;
   moves_.noise = here.noise;
   moves_.other_steps = here.other_steps;
-  const RowMap& map = *maps_[here.noise];
-  const SetOfColumns set = ColumnsOf({});
-  std::vector<const Column*> columns;
-  for (const Term& term : terms_) {
-    for (const Column& column : term.columns) columns.push_back(&column);
-  }
-  const MatrixXd W = map.Of(columns);
-  VectorXd left = map.left();
-  if (W.cols() > 0) left -= W * here.fit.amplitudes;
-  kept_ = PromisingVariations(machine_, along_, map, left, W, set.sd, blocks_,
-                              [this](const Block& block) { return MayCome(block); });
+  kept_ = Promising(here);
   moves_.variations = std::ssize(kept_);
   Whiten();
 
@@ -354,9 +402,9 @@ Moves MoveSearch::Run() {
     all.front() = std::move(further.front());
   }
   changes.clear();
-  for (std::size_t t = 0; t < terms_.size(); ++t) {
-    changes.push_back({{t}, {}});
-    for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({{t}, {v}});
+  for (const std::vector<std::size_t>& removed : LeavingTogether()) {
+    if (removed.size() == 1) changes.push_back({removed, {}});
+    for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({removed, {v}});
   }
   std::ranges::move(ScoresOf(changes), std::back_inserter(all));
   std::ranges::sort(all, {}, &Scored::score);

@@ -58,8 +58,12 @@ struct Moves {
   Eigen::Index variations = 0;
 };
 
-/// What may come in: what acts along the motion, or anything.
-enum class Looked { kAtForces, kAtAll };
+/// What may come in.
+struct Looked {
+  bool at_forces = false;  ///< what acts along the motion only
+  /// Resistances of every shape, also where the simplest of their kind is not in.
+  bool at_every_shape = false;
+};
 
 /// @param maps         of the path, behind one noise each
 /// @param blocks       receive the prices of their shapes
@@ -67,8 +71,7 @@ enum class Looked { kAtForces, kAtAll };
 ///                     nothing
 Moves MovesOf(const Machine& machine, const MeasuredRun& run, const FilterPath& path,
               const std::vector<const RowMap*>& maps, std::vector<Block>& blocks,
-              const std::vector<Term>& terms, const Column& other_steps,
-              Looked looked = Looked::kAtAll);
+              const std::vector<Term>& terms, const Column& other_steps, Looked looked);
 
 /// A model that is worse by that is less than e^-10 times as likely.
 inline constexpr double kNear = 20.0;

@@ -25,12 +25,101 @@ constexpr Index kProbes = 32;
 constexpr std::size_t kOfBlock = 3;
 // Of a group, which are alike.
 constexpr std::size_t kOfGroup = 4;
+// That could be in the place of a member.
+constexpr std::size_t kInPlace = 6;
 
 MatrixXd WhiteNoise(Index rows, Index columns) {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
 }
+
+/// Products of columns with what models leave, with the columns of the model and with
+/// white noises.
+class Products {
+ public:
+  Products(const RowMap& map, const MatrixXd& W,
+           const std::vector<WhitenedModel>& models)
+      : models_(std::ssize(models)), k_(W.cols()) {
+    u.resize(W.rows(), models_ + k_ + kProbes);
+    for (Index i = 0; i < models_; ++i) {
+      u.col(i) = models[static_cast<std::size_t>(i)].left;
+    }
+    u.rightCols(k_ + kProbes) << W, WhiteNoise(W.rows(), kProbes);
+    transposed = map.TransposedTimes(u);
+  }
+
+  /// u^T times columns in units of what is known of their amplitudes.
+  MatrixXd Of(const Variation& one) const {
+    const Index m = one.sd.size();
+    MatrixXd products(u.cols(), m);
+    for (Index a = 0; a < m; ++a) {
+      for (Index j = 0; j < u.cols(); ++j) {
+        products(j, a) = one.sd[a] * transposed[static_cast<std::size_t>(j)].Times(
+                                         one.columns[static_cast<std::size_t>(a)]);
+      }
+    }
+    return products;
+  }
+  Index FirstOfModel() const { return models_; }
+
+  MatrixXd u;
+  std::vector<RowMap::Transposed> transposed;
+
+ private:
+  Index models_;
+  Index k_;
+};
+
+/// How much columns take away of what a model leaves, in -2 ln, by their products.
+class PromiseBeside {
+ public:
+  PromiseBeside(const WhitenedModel& model, Index place, const Products& products,
+                const MatrixXd& G, const VectorXd& sd)
+      : place_(place), first_(products.FirstOfModel()) {
+    for (const Index i : model.in) in_.push_back(first_ + i);
+    if (!in_.empty()) {
+      MatrixXd own = G(model.in, model.in);
+      own.diagonal() += VectorXd(sd(model.in)).cwiseAbs2().cwiseInverse();
+      H_.compute(own);
+    }
+    if (model.removed.empty()) return;
+    std::vector<Index> out;
+    for (const Index i : model.removed) out.push_back(first_ + i);
+    const MatrixXd own = products.u.transpose() *
+                         products.u(Eigen::indexing::all, out) *
+                         VectorXd(sd(model.removed)).asDiagonal();
+    // Gains are known to a quarter.
+    least_ = 0.5 * Gain(own);
+  }
+
+  /// Of what could be in the place of members, by what those do.
+  double least() const { return least_; }
+
+  double Gain(const MatrixXd& products) const {
+    const Index m = products.cols();
+    VectorXd b = products.row(place_).transpose();
+    const auto probed = products.bottomRows(kProbes);
+    MatrixXd G = probed.transpose() * probed / static_cast<double>(kProbes);
+    if (!in_.empty()) {
+      const MatrixXd cross = products(in_, Eigen::indexing::all);
+      const MatrixXd solved = H_.solve(cross);
+      // What the set can do itself is known only as well as the probes measure.
+      G -= 0.9 * cross.transpose() * solved;
+    }
+    G.diagonal().array() = G.diagonal().array().max(0.0) + 1.0;
+    const Eigen::LLT<MatrixXd> solved(G);
+    if (solved.info() != Eigen::Success || !b.allFinite()) return 0.0;
+    return b.head(m).dot(solved.solve(b));
+  }
+
+ private:
+  Index place_;
+  Index first_;
+  std::vector<Index> in_;  // rows of products
+  Eigen::LLT<MatrixXd> H_;
+  double least_ = 0.0;
+};
 
 struct Promise {
   double gain = 0.0;
@@ -60,68 +149,49 @@ Column WavesOf(const Sweep& sweep, const Block& block) {
   return column;
 }
 
+/// The best of a block beside one model.
+class BestOfBlock {
+ public:
+  bool MayTake(double gain) const {
+    return best.size() < kOfBlock || gain > best.back().gain;
+  }
+  void Take(double gain, Variation one) {
+    if (!MayTake(gain)) return;
+    best.push_back({gain, std::move(one)});
+    std::ranges::sort(best, std::greater<>(), &Promise::gain);
+    if (best.size() > kOfBlock) best.pop_back();
+  }
+  std::vector<Promise> best;
+};
+
 }  // namespace
 
 std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along, const RowMap& map,
-    const VectorXd& left, const MatrixXd& W, const VectorXd& sd,
+    const MatrixXd& W, const VectorXd& sd, const std::vector<WhitenedModel>& models,
     std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come) {
-  const Index k = W.cols();
-  MatrixXd u(W.rows(), 1 + k + kProbes);
-  u << left, W, WhiteNoise(W.rows(), kProbes);
-  const auto transposed = map.TransposedTimes(u);
-  Eigen::LLT<MatrixXd> H;
-  if (k > 0) {
-    MatrixXd G = W.transpose() * W;
-    G.diagonal() += sd.cwiseAbs2().cwiseInverse();
-    H.compute(G);
+  const Products products(map, W, models);
+  const MatrixXd G = W.transpose() * W;
+  std::vector<PromiseBeside> beside;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    beside.emplace_back(models[i], static_cast<Index>(i), products, G, sd);
   }
-  /// How much columns take away of what the model leaves, in -2 ln, by their products with
-  /// u, in units of what is known of their amplitudes.
-  const auto gain_of = [&](const MatrixXd& products) {
-    const Index m = products.cols();
-    const VectorXd b = products.row(0).transpose();
-    const auto probed = products.bottomRows(kProbes);
-    MatrixXd G = probed.transpose() * probed / static_cast<double>(kProbes);
-    if (k > 0) {
-      const MatrixXd cross = products.middleRows(1, k);
-      const MatrixXd shared = cross.transpose() * H.solve(cross);
-      // What the set can do itself is known only as well as the probes measure.
-      G -= 0.9 * shared;
-    }
-    G.diagonal().array() = G.diagonal().array().max(0.0) + 1.0;
-    const Eigen::LLT<MatrixXd> solved(G);
-    if (solved.info() != Eigen::Success || !b.allFinite()) return 0.0;
-    return b.head(m).dot(solved.solve(b));
-  };
-  const auto products_of = [&](const Variation& one) {
-    const Index m = one.sd.size();
-    MatrixXd products(u.cols(), m);
-    for (Index a = 0; a < m; ++a) {
-      for (Index j = 0; j < u.cols(); ++j) {
-        products(j, a) = one.sd[a] * transposed[static_cast<std::size_t>(j)].Times(
-                                         one.columns[static_cast<std::size_t>(a)]);
-      }
-    }
-    return products;
-  };
-  std::vector<std::vector<Promise>> promises(blocks.size());
+  // By block and model.
+  std::vector<std::vector<BestOfBlock>> promises(
+      blocks.size(), std::vector<BestOfBlock>(models.size()));
   ParallelFor(static_cast<int>(blocks.size()), [&](int number) {
     const auto place = static_cast<std::size_t>(number);
-    std::vector<Promise>& best = promises[place];
-    const auto take = [&](double gain, Variation&& one) {
-      if (best.size() == kOfBlock && gain <= best.back().gain) return;
-      best.push_back({gain, std::move(one)});
-      std::ranges::sort(best, std::greater<>(), &Promise::gain);
-      if (best.size() > kOfBlock) best.pop_back();
-    };
+    std::vector<BestOfBlock>& best = promises[place];
     Block& block = blocks[place];
     if (!may_come(block)) return;
     const std::optional<Sweep> sweep = SweepOf(machine, along, block);
     if (!sweep) {
       ForEachVariation(machine, along, place, block, [&](Variation&& one) {
-        const double gain = gain_of(products_of(one));
-        take(gain, std::move(one));
+        const MatrixXd of_one = products.Of(one);
+        for (std::size_t i = 0; i < models.size(); ++i) {
+          const double gain = beside[i].Gain(of_one);
+          if (best[i].MayTake(gain)) best[i].Take(gain, one);
+        }
       });
       return;
     }
@@ -135,45 +205,54 @@ std::vector<Variation> PromisingVariations(
     block.price = PriceOf(block, sweep->count);
     if (first.columns.empty()) return;
     // Of every period at once: the sine and the cosine times u.
-    Eigen::MatrixXcd sums(sweep->count, u.cols());
-    for (Index j = 0; j < u.cols(); ++j) {
-      sums.col(j) = WaveSums(
-          transposed[static_cast<std::size_t>(j)].Along(WavesOf(*sweep, block)),
-          sweep->angle, sweep->increment, sweep->count);
+    Eigen::MatrixXcd sums(sweep->count, products.u.cols());
+    for (Index j = 0; j < sums.cols(); ++j) {
+      sums.col(j) = WaveSums(products.transposed[static_cast<std::size_t>(j)].Along(
+                                 WavesOf(*sweep, block)),
+                             sweep->angle, sweep->increment, sweep->count);
     }
-    VectorXd gains(sweep->count);
-    for (Index m = 0; m < sweep->count; ++m) {
-      const double value = sweep->value(m);
-      if (value < lowest || value > highest) {
-        gains[m] = 0.0;
-        continue;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      VectorXd gains(sweep->count);
+      for (Index m = 0; m < sweep->count; ++m) {
+        const double value = sweep->value(m);
+        if (value < lowest || value > highest) {
+          gains[m] = 0.0;
+          continue;
+        }
+        MatrixXd of_wave(sums.cols(), 2);
+        of_wave.col(0) = first.sd[0] * sums.row(m).imag().transpose();
+        of_wave.col(1) = first.sd[1] * sums.row(m).real().transpose();
+        gains[m] = beside[i].Gain(of_wave);
       }
-      MatrixXd products(u.cols(), 2);
-      products.col(0) = first.sd[0] * sums.row(m).imag().transpose();
-      products.col(1) = first.sd[1] * sums.row(m).real().transpose();
-      gains[m] = gain_of(products);
-    }
-    for (Index m = 0; m < gains.size(); ++m) {
-      const double before = m > 0 ? gains[m - 1] : 0.0;
-      const double after = m + 1 < gains.size() ? gains[m + 1] : 0.0;
-      if (gains[m] <= before || gains[m] < after) continue;
-      if (best.size() == kOfBlock && gains[m] <= best.back().gain) continue;
-      take(gains[m], of_shape(m));
+      for (Index m = 0; m < gains.size(); ++m) {
+        const double before = m > 0 ? gains[m - 1] : 0.0;
+        const double after = m + 1 < gains.size() ? gains[m + 1] : 0.0;
+        if (gains[m] <= before || gains[m] < after) continue;
+        if (best[i].MayTake(gains[m])) best[i].Take(gains[m], of_shape(m));
+      }
     }
   });
-  std::vector<Promise> all;
-  for (std::size_t place = 0; place < promises.size(); ++place) {
-    for (Promise& one : promises[place]) {
-      if (one.gain > 0.5 * blocks[place].price) all.push_back(std::move(one));
-    }
-  }
-  std::ranges::stable_sort(all, std::greater<>(), &Promise::gain);
-  std::map<std::string, std::size_t> of_group;
   std::vector<Variation> kept;
-  for (Promise& one : all) {
-    const std::string& group = blocks[one.variation.block].group;
-    if (!group.empty() && ++of_group[group] > kOfGroup) continue;
-    kept.push_back(std::move(one.variation));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    std::vector<Promise> all;
+    for (std::size_t place = 0; place < promises.size(); ++place) {
+      for (Promise& one : promises[place][i].best) {
+        const double least = std::max(0.5 * blocks[place].price, beside[i].least());
+        if (one.gain > least) all.push_back(std::move(one));
+      }
+    }
+    std::ranges::stable_sort(all, std::greater<>(), &Promise::gain);
+    std::map<std::string, std::size_t> of_group;
+    std::size_t in_place = 0;
+    for (Promise& one : all) {
+      const std::string& group = blocks[one.variation.block].group;
+      if (!group.empty() && ++of_group[group] > kOfGroup) continue;
+      if (i > 0 && ++in_place > kInPlace) break;
+      const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
+        return other.block == one.variation.block && other.shape == one.variation.shape;
+      });
+      if (!is_known) kept.push_back(std::move(one.variation));
+    }
   }
   return kept;
 }

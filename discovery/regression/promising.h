@@ -1,5 +1,6 @@
 #pragma once
-// The most promising variations of every block along what a model leaves of a run.
+// The most promising variations of every block along what a model leaves of a run, and along
+// what it would leave without some of its members: what could be in their place.
 
 #include <Eigen/Core>
 #include <functional>
@@ -10,14 +11,22 @@
 
 namespace mjdiag {
 
+/// A model without some of its members, of none of them the model itself, whitened.
+struct WhitenedModel {
+  Eigen::VectorXd left;
+  std::vector<Eigen::Index> in;       ///< columns that are in
+  std::vector<Eigen::Index> removed;  ///< of those that are not
+};
+
+/// @param W         whitened columns of the model, rows x k
+/// @param sd        of their amplitudes beforehand
+/// @param models    the first is the model itself
 /// @param may_come  which blocks are looked at
-/// @param left    what is left, whitened
-/// @param W       whitened columns that are in, rows x k
-/// @param sd      of their amplitudes beforehand
-/// @param blocks  receive the prices of their shapes
+/// @param blocks    receive the prices of their shapes
 std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along, const RowMap& map,
-    const Eigen::VectorXd& left, const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
-    std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come);
+    const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
+    const std::vector<WhitenedModel>& models, std::vector<Block>& blocks,
+    const std::function<bool(const Block&)>& may_come);
 
 }  // namespace mjdiag
