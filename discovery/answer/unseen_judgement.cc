@@ -32,20 +32,6 @@ FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
   return noise;
 }
 
-/// Whether unseen readings are as likely as those that fits saw, but for chance: the mean of
-/// -2 ln L of n readings has a standard deviation of sqrt(2 / n).
-bool IsAsExpected(const AnswerData& data, const ModelOnRuns& one) {
-  constexpr double kChance = 4.0;  // standard deviations
-  const auto taken = [](const FilterPath& path) {
-    return static_cast<double>(path.counts.count());
-  };
-  const double seen = taken(one.seen);
-  const double unseen = taken(one.unseen) - (data.run.GoesOn() ? seen : 0.0);
-  if (!(unseen > 0.0) || !(seen > 0.0)) return true;
-  return one.unseen_deviance / unseen <
-         one.seen.deviance / seen + kChance * std::sqrt(2.0 / unseen);
-}
-
 /// Along what fits did not see, behind the noise of what they saw. A model that is all but
 /// exact there has next to no latent forces, and a filter that is so sure of itself does not
 /// come back from where a joint sticks a moment longer: behind a thousandth or a hundredth
@@ -76,7 +62,6 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given, ModelOnRuns&
       one.unseen = std::move(path);
     } catch (const NumericalError&) {
     }
-    if (IsAsExpected(data, one)) break;
   }
   if (!std::isfinite(one.unseen_deviance)) {
     throw NumericalError("replay: diverges on unseen data");
