@@ -75,14 +75,11 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
                      const std::function<bool()>& is_over) {
   constexpr int kIterations = 4;
   ModelOnRuns one;
-  const MachineWith in_time = [&](const Model& other) {
-    if (is_over()) throw NumericalError("fit: asked to end");
-    return data.With(other);
-  };
   const FilterPath path =
       FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near);
-  one.fit = FitModel(in_time, data.run.seen, path, KeepGains(path), data.blocks, model,
-                     kIterations);
+  one.fit =
+      FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
+               data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
   one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
                             path.starts, path.noise);
   FollowUnseen(data, given, one);

@@ -4,7 +4,7 @@
 // grid (variations), and numbers of the plant.
 //
 // The price is -2 ln of how often it is what is missing, kMissing times the odds of its
-// effect, 2 ln of how many shapes it has, and what a claim has to be worth, odds of 1000;
+// effect, 1 of a number, 2 ln of how many shapes it has, and what a claim has to be worth, odds of 1000;
 // sizes are known beforehand to a spread, which follows from the machine's own scales
 // (Effect::Spread).
 

@@ -226,11 +226,9 @@ std::optional<Search::Proposal> Search::BestMove(const Whitenings& whitenings,
 ModelFit Search::Fitted(const Model& model, const Whitenings& whitenings,
                         const Judged& judged, int iterations) const {
   const bool steps = steps_ != judged.second;
-  const MachineWith in_time = [&](const Model& one) {
-    if (IsOver()) throw NumericalError("fit: asked to end");
-    return With(one, steps);
-  };
-  return FitModel(in_time, run_, found_.path, whitenings.behind[judged.first].gains(),
+  return FitModel(InTime([&](const Model& one) { return With(one, steps); },
+                         [this] { return IsOver(); }),
+                  run_, found_.path, whitenings.behind[judged.first].gains(),
                   found_.blocks, model, iterations);
 }
 

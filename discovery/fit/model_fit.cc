@@ -134,6 +134,14 @@ class KnownCost final : public ceres::CostFunction {
 
 }  // namespace
 
+MachineWith InTime(MachineWith machine_with, std::function<bool()> is_over) {
+  return [machine_with = std::move(machine_with),
+          is_over = std::move(is_over)](const Model& model) {
+    if (is_over()) throw NumericalError("fit: asked to end");
+    return machine_with(model);
+  };
+}
+
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
                   const std::vector<Block>& blocks, const Model& start,

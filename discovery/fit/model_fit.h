@@ -30,6 +30,9 @@ struct ModelFit {
 
 using MachineWith = std::function<Machine(const Model&)>;
 
+/// The same as long as it is not over: from then on NumericalError, which ends a fit.
+MachineWith InTime(MachineWith machine_with, std::function<bool()> is_over);
+
 /// NumericalError where the run with the first values diverges; InputError where the plant
 /// cannot be so.
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,

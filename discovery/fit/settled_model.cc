@@ -16,9 +16,11 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
                     const std::vector<Block>& blocks, ModelFit fit,
                     const std::vector<FilterNoise>& near,
                     const std::function<bool()>& is_over) {
+  const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
+    return FilterLikeliestFrom(machine_with(model), run, reading_sd, dofs, from);
+  };
   SettledModel settled{std::move(fit), {}};
-  settled.path =
-      FilterLikeliestFrom(machine_with(settled.fit.model), run, reading_sd, dofs, near);
+  settled.path = filter(settled.fit.model, near);
   if (settled.fit.model.empty()) return settled;
   // Values that are off make latent forces large, behind which values are hardly seen:
   // where fits behind the noise of the last filter gain no more, one behind a smaller may.
@@ -31,10 +33,7 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
     const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
     double gain = 0.0;
     try {
-      const MachineWith in_time = [&](const Model& model) {
-        if (is_over()) throw NumericalError("fit: asked to end");
-        return machine_with(model);
-      };
+      const MachineWith in_time = InTime(machine_with, is_over);
       const FitOf fitted = [&](const Model& start) {
         return FitModel(in_time, run, path, gains, blocks, start, 4);
       };
@@ -47,8 +46,7 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
           before - next.fit.deviance - next.fit.prior > kLeastGain) {
         std::vector<FilterNoise> from{path.noise};
         if (smaller > 0) from.push_back(noises[smaller]);
-        next.path = FilterLikeliestFrom(machine_with(next.fit.model), run, reading_sd,
-                                        dofs, from);
+        next.path = filter(next.fit.model, from);
         gain = settled.score() - next.score();
         if (gain > 0.0) settled = std::move(next);
       }

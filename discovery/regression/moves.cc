@@ -338,9 +338,13 @@ std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
     }
   }
   const MatrixXd W = map.Of(columns);
+  const MatrixXd G = W.transpose() * W;
+  columns.clear();
+  for (const Term& term : terms_) columns.push_back(&term.removed);
+  const MatrixXd without = map.Of(columns);
   const auto model_without = [&](const std::vector<std::size_t>& removed) {
     WhitenedModel model{map.left(), {}, {}};
-    for (const std::size_t t : removed) model.left -= map.Of({&terms_[t].removed});
+    for (const std::size_t t : removed) model.left -= without.col(Index(t));
     for (std::size_t i = 0; i < of_term.size(); ++i) {
       const bool is_out = std::ranges::find(removed, of_term[i]) != removed.end();
       (is_out ? model.removed : model.in).push_back(static_cast<Index>(i));
@@ -349,9 +353,9 @@ std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
     if (removed.empty() && W.cols() > 0) model.left -= W * here.fit.amplitudes;
     if (!removed.empty() && !model.in.empty()) {
       const MatrixXd in = W(Eigen::indexing::all, model.in);
-      MatrixXd G = in.transpose() * in;
-      G.diagonal() += VectorXd(set.sd(model.in)).cwiseAbs2().cwiseInverse();
-      model.left -= in * G.llt().solve(in.transpose() * model.left);
+      MatrixXd H = G(model.in, model.in);
+      H.diagonal() += VectorXd(set.sd(model.in)).cwiseAbs2().cwiseInverse();
+      model.left -= in * H.llt().solve(in.transpose() * model.left);
     }
     return model;
   };

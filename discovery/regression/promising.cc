@@ -36,17 +36,17 @@ MatrixXd WhiteNoise(Index rows, Index columns) {
 
 /// Products of columns with what models leave, with the columns of the model and with
 /// white noises.
-class Products {
- public:
+struct Products {
   Products(const RowMap& map, const MatrixXd& W,
            const std::vector<WhitenedModel>& models)
-      : models_(std::ssize(models)), k_(W.cols()) {
-    u.resize(W.rows(), models_ + k_ + kProbes);
-    for (Index i = 0; i < models_; ++i) {
+      : u(W.rows(), std::ssize(models) + W.cols() + kProbes),
+        first_of_W(std::ssize(models)) {
+    for (Index i = 0; i < first_of_W; ++i) {
       u.col(i) = models[static_cast<std::size_t>(i)].left;
     }
-    u.rightCols(k_ + kProbes) << W, WhiteNoise(W.rows(), kProbes);
+    u.rightCols(W.cols() + kProbes) << W, WhiteNoise(W.rows(), kProbes);
     transposed = map.TransposedTimes(u);
+    of_W = u.transpose() * W;
   }
 
   /// u^T times columns in units of what is known of their amplitudes.
@@ -61,51 +61,46 @@ class Products {
     }
     return products;
   }
-  Index FirstOfModel() const { return models_; }
 
   MatrixXd u;
-  std::vector<RowMap::Transposed> transposed;
-
- private:
-  Index models_;
-  Index k_;
+  Index first_of_W;
+  std::vector<RowMap::Transposed> transposed;  // W^T u of the map
+  MatrixXd of_W;                               // u^T W
 };
 
 /// How much columns take away of what a model leaves, in -2 ln, by their products.
 class PromiseBeside {
  public:
+  /// @param place  of the model
   PromiseBeside(const WhitenedModel& model, Index place, const Products& products,
-                const MatrixXd& G, const VectorXd& sd)
-      : place_(place), first_(products.FirstOfModel()) {
-    for (const Index i : model.in) in_.push_back(first_ + i);
+                const VectorXd& sd)
+      : place_(place) {
+    for (const Index i : model.in) in_.push_back(products.first_of_W + i);
     if (!in_.empty()) {
-      MatrixXd own = G(model.in, model.in);
-      own.diagonal() += VectorXd(sd(model.in)).cwiseAbs2().cwiseInverse();
-      H_.compute(own);
+      MatrixXd H = products.of_W(in_, model.in);
+      H.diagonal() += VectorXd(sd(model.in)).cwiseAbs2().cwiseInverse();
+      H_.compute(H);
     }
     if (model.removed.empty()) return;
-    std::vector<Index> out;
-    for (const Index i : model.removed) out.push_back(first_ + i);
-    const MatrixXd own = products.u.transpose() *
-                         products.u(Eigen::indexing::all, out) *
-                         VectorXd(sd(model.removed)).asDiagonal();
     // Gains are known to a quarter.
-    least_ = 0.5 * Gain(own);
+    least_ = 0.5 * Gain(products.of_W(Eigen::indexing::all, model.removed) *
+                        VectorXd(sd(model.removed)).asDiagonal());
   }
 
   /// Of what could be in the place of members, by what those do.
   double least() const { return least_; }
 
+  /// @param products  u^T times columns
   double Gain(const MatrixXd& products) const {
     const Index m = products.cols();
-    VectorXd b = products.row(place_).transpose();
+    const VectorXd b = products.row(place_).transpose();
     const auto probed = products.bottomRows(kProbes);
     MatrixXd G = probed.transpose() * probed / static_cast<double>(kProbes);
     if (!in_.empty()) {
       const MatrixXd cross = products(in_, Eigen::indexing::all);
-      const MatrixXd solved = H_.solve(cross);
+      const MatrixXd shared = cross.transpose() * H_.solve(cross);
       // What the set can do itself is known only as well as the probes measure.
-      G -= 0.9 * cross.transpose() * solved;
+      G -= 0.9 * shared;
     }
     G.diagonal().array() = G.diagonal().array().max(0.0) + 1.0;
     const Eigen::LLT<MatrixXd> solved(G);
@@ -115,7 +110,6 @@ class PromiseBeside {
 
  private:
   Index place_;
-  Index first_;
   std::vector<Index> in_;  // rows of products
   Eigen::LLT<MatrixXd> H_;
   double least_ = 0.0;
@@ -171,10 +165,9 @@ std::vector<Variation> PromisingVariations(
     const MatrixXd& W, const VectorXd& sd, const std::vector<WhitenedModel>& models,
     std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come) {
   const Products products(map, W, models);
-  const MatrixXd G = W.transpose() * W;
   std::vector<PromiseBeside> beside;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    beside.emplace_back(models[i], static_cast<Index>(i), products, G, sd);
+    beside.emplace_back(models[i], static_cast<Index>(i), products, sd);
   }
   // By block and model.
   std::vector<std::vector<BestOfBlock>> promises(
@@ -211,19 +204,19 @@ std::vector<Variation> PromisingVariations(
                                  WavesOf(*sweep, block)),
                              sweep->angle, sweep->increment, sweep->count);
     }
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      VectorXd gains(sweep->count);
-      for (Index m = 0; m < sweep->count; ++m) {
-        const double value = sweep->value(m);
-        if (value < lowest || value > highest) {
-          gains[m] = 0.0;
-          continue;
-        }
-        MatrixXd of_wave(sums.cols(), 2);
-        of_wave.col(0) = first.sd[0] * sums.row(m).imag().transpose();
-        of_wave.col(1) = first.sd[1] * sums.row(m).real().transpose();
-        gains[m] = beside[i].Gain(of_wave);
+    MatrixXd all_gains = MatrixXd::Zero(sweep->count, std::ssize(models));
+    for (Index m = 0; m < sweep->count; ++m) {
+      const double value = sweep->value(m);
+      if (value < lowest || value > highest) continue;
+      MatrixXd of_wave(sums.cols(), 2);
+      of_wave.col(0) = first.sd[0] * sums.row(m).imag().transpose();
+      of_wave.col(1) = first.sd[1] * sums.row(m).real().transpose();
+      for (std::size_t i = 0; i < models.size(); ++i) {
+        all_gains(m, static_cast<Index>(i)) = beside[i].Gain(of_wave);
       }
+    }
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const auto gains = all_gains.col(static_cast<Index>(i));
       for (Index m = 0; m < gains.size(); ++m) {
         const double before = m > 0 ? gains[m - 1] : 0.0;
         const double after = m + 1 < gains.size() ? gains[m + 1] : 0.0;
