@@ -28,19 +28,15 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.95;
 constexpr int kMostCauses = 20;
-constexpr double kUsualBudget = 300.0;  // [s]
+constexpr double kUsualBudget = 60.0;  // [s]
 constexpr double kLeastBudget = 1e-3;
 constexpr double kMostBudget = 1e9;
-
-constexpr const char* kSearch = "search";
-constexpr const char* kFilter = "filter";
 
 struct DiscoverCommand {
   MachineOptions machine;
   OutputOptions output;
   MeasurementOptions records;
   std::optional<bool> doubt;
-  std::string engine = kSearch;
   DiscoverOptions search;
 };
 
@@ -72,8 +68,7 @@ Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
       log.Show(progress.what + AtMost(progress.most_seconds), progress.best);
     }
   };
-  return command.engine == kFilter ? DiscoverByFilter(machine, measurements, options)
-                                   : Discover(machine, measurements, options);
+  return Discover(machine, measurements, options);
 }
 
 // A plant that cannot be written must not cost the answer, which took its time.
@@ -141,19 +136,15 @@ void AddDiscover(CLI::App& app) {
                    "Share of the record, from its start, that fits see")
       ->check(Within(kLeastShare, kMostShare));
   command
-      ->add_option("--bandwidth", options->search.bandwidth,
-                   "Bandwidth of the observer [Hz]; 0: from the record")
-      ->check(Within(0.0, 1e6));
-  command
       ->add_option("--causes", options->search.most_causes, "Most causes to look for")
       ->check(CLI::Range(1, kMostCauses));
   // Bound to the variable itself, a flag that is not given would count as 0: no doubt.
   command->add_flag_function(
       "--doubt,!--no-doubt",
       [options](std::int64_t count) { options->doubt = count > 0; },
-      "Fit the numbers of the plant with every cause, as far as they are not known "
-      "beforehand, or take them as true; without either they are fitted where the "
-      "plant does not say that it is exact");
+      "Numbers of the plant may be what is wrong, as far as they are not known "
+      "beforehand, or they are true; without either they may where the plant does not "
+      "say that it is exact");
   command->add_option("--known", options->search.known,
                       "What is as the plant says, a kind of numbers such as mass, or "
                       "one such as mass@stage; may be repeated");
@@ -169,17 +160,10 @@ void AddDiscover(CLI::App& app) {
       ->allow_extra_args(false);
   options->search.budget = kUsualBudget;
   command
-      ->add_option(
-          "--budget", options->search.budget,
-          "Seconds of work of two ordinary cores, 300 if not given, after which "
-          "the best answer so far is given, if it has not settled before: the same on "
-          "every machine")
+      ->add_option("--budget", options->search.budget,
+                   "Seconds, 60 if not given, after which the best answer so far is "
+                   "given, if it has not settled before")
       ->check(Within(kLeastBudget, kMostBudget));
-  command
-      ->add_option("--engine", options->engine,
-                   "How: search, by runs of the plant, or filter, by one filter and "
-                   "regression for every machine, whose budget is in seconds")
-      ->check(CLI::IsMember({kSearch, kFilter}));
   AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);

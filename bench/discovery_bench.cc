@@ -16,7 +16,6 @@
 
 #include "bench/timing.h"
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "support/changes.h"
 
@@ -29,16 +28,13 @@ double LargestMiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// Processor time of a nominal replay: the median of some, each of a problem that knows
-/// none yet.
-double ReplayTime(const Machine& machine, const Record& measured,
-                  const DiscoverOptions& options) {
+/// Processor time of a nominal replay: the median of some.
+double ReplayTime(const Machine& machine, const Record& measured) {
+  const Excitation replay = Replay(machine.setup(), measured);
   std::vector<double> times(5);
   for (double& time : times) {
-    const DiscoveryProblem problem =
-        PoseProblem(machine, measured, options.train_share, options.bandwidth);
-    time =
-        Seconds(ProcessTime, [&] { benchmark::DoNotOptimize(problem.Residual({})); });
+    time = Seconds(ProcessTime,
+                   [&] { benchmark::DoNotOptimize(Simulate(machine, replay, {})); });
   }
   return Median(times);
 }
@@ -54,7 +50,7 @@ void DiscoverIn(benchmark::State& state, const std::string& folder, double share
                                    FollowTrajectory(machine.setup(), motion), {});
   DiscoverOptions options;
   for (auto _ : state) {
-    const double replay = ReplayTime(machine, measured, options);
+    const double replay = ReplayTime(machine, measured);
     const double worked = ProcessTime();
     const double start = ClockTime();
     const Discovery discovery = Discover(machine, measured, nullptr, options);

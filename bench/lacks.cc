@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/fit/explain.h"
-#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/replay/sensor_noise.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 
 namespace mjdiag {
@@ -42,7 +42,7 @@ int Main(int argc, char** argv) {
     std::fflush(stdout);
   };
   const Explained found =
-      Explain(machine, run, SensorNoise(machine.channels(), run, {}), options);
+      Explain(machine, run, SensorNoise(machine.channels(), run), options);
   std::printf("score %.1f from %.1f\n", found.score, found.nothing.deviance);
   const FilterPath& path = found.path;
   for (Eigen::Index j = 0; j < path.dof_count(); ++j) {

@@ -5,7 +5,7 @@
 
 #include "mjdiag/comparison/noise_floor.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
-#include "mjdiag/plugin/replay/motion_path.h"
+#include "mjdiag/plugin/replay/motion_of_readings.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/signals/error.h"

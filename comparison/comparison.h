@@ -67,7 +67,7 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
                        const RunOptions& options);
 
 /// Whether a machine falls that is driven with the inputs of the record alone, and has left
-/// its rest (motion_path.h). InputError as above.
+/// its rest (motion_of_readings.h). InputError as above.
 bool Falls(const Machine& machine, const Record& measured);
 
 /// What is predicted over one tick, of a machine and of the same with changes, behind the

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
-#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/plugin/machine/input_course.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/replay/motion_path.h"
+#include "mjdiag/plugin/replay/motion_of_readings.h"
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/derivative.h"
 #include "mjdiag/signals/error.h"
@@ -24,6 +24,38 @@ using Eigen::VectorXd;
 // Of the control rate: what is faster no filter tells from noise.
 constexpr double kFastestOfControl = 0.1;
 constexpr int kFilterOrder = 2;  // forwards and backwards: four
+
+constexpr double kFastestOfMotion = 32.0;  // times its bandwidth
+
+/// Changes of every row in a tick, over 20 ms to each side.
+MatrixXd ChangesOf(const MatrixXd& rows, double tick) {
+  constexpr double kSide = 0.02;  // [s]
+  const auto side = std::max<Index>(2, static_cast<Index>(std::lround(kSide / tick)));
+  MatrixXd changes(rows.rows(), rows.cols());
+  for (Index k = 0; k < rows.cols(); ++k) {
+    const Index first = std::max<Index>(0, k - side);
+    const Index last = std::min(rows.cols() - 1, k + side);
+    changes.col(k) = (rows.col(last) - rows.col(first)) /
+                     static_cast<double>(std::max<Index>(1, last - first));
+  }
+  return changes;
+}
+
+/// [rad a tick] Of the fastest reading, by its rms acceleration over its rms velocity.
+double MotionBandwidth(const MeasuredRun& run) {
+  const MatrixXd velocity = ChangesOf(run.outputs, run.sample_time);
+  const MatrixXd acceleration = ChangesOf(velocity, run.sample_time);
+  return (acceleration.rowwise().norm().array() /
+          velocity.rowwise().norm().array().max(1e-300))
+      .maxCoeff();
+}
+
+/// 32 times the bandwidth of the motion [Hz], its rms acceleration over its rms velocity:
+/// what is faster goes with no motion.
+double FastestForce(const MeasuredRun& run) {
+  return kFastestOfMotion * MotionBandwidth(run) /
+         (2.0 * std::numbers::pi * run.sample_time);
+}
 
 /// Continued by two periods of the band on either side, by point reflection: a record may
 /// begin and end in mid-motion.

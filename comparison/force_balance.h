@@ -39,7 +39,7 @@ struct FilteredRun {
   double bandwidth = 0.0;  ///< [Hz]
 };
 
-/// Of the filter of a run [Hz]: the fastest force that goes with the motion (FastestForce),
+/// Of the filter of a run [Hz]: the fastest force that goes with the motion,
 /// or what a filter at the control rate still tells from noise.
 double BalanceBandwidth(const Machine& machine, const MeasuredRun& run);
 

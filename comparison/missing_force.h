@@ -24,12 +24,4 @@ struct MissingForce {
 
 std::vector<MissingForce> MissingForces(const Machine& machine, const FilterPath& path);
 
-/// Degrees of freedom with a force of their own: those that are driven, as many as there are
-/// sensors; all of them where that many sensors are there.
-std::vector<Eigen::Index> ForcedDofs(const Machine& machine);
-
-/// 32 times the bandwidth of the motion [Hz], its rms acceleration over its rms velocity:
-/// what is faster goes with no motion.
-double FastestForce(const MeasuredRun& run);
-
 }  // namespace mjdiag

@@ -7,20 +7,20 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/fit/decision.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
-#include "mjdiag/discovery/hypotheses/work.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/discovery/record_replay.h"
-#include "mjdiag/discovery/selection/discovery_verdict.h"
-#include "mjdiag/discovery/unexplained/signature.h"
-#include "mjdiag/discovery/unexplained/unknown_input.h"
+#include "mjdiag/discovery/signature/signature.h"
+#include "mjdiag/discovery/verdict.h"
 #include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/plant/plant_number.h"
@@ -92,8 +92,7 @@ struct FoundCause {
 struct FoundKind {
   Kind kind = Kind::kUnknownForce;
   std::string site;
-  /// That it is this kind there, whichever of its laws: from what the best model without it
-  /// loses on data that no fit saw (discovery_kinds.cc), or the sum of the laws' shares of one
+  /// That it is this kind there, whichever of its laws: the sum of the laws' shares of one
   /// posterior (answer/posterior.h).
   double probability = 0.0;
   /// Of the unseen mismatch that the answer takes away, what is back without it.
@@ -133,22 +132,23 @@ struct FaultLimit {
   double after = 0.0;   ///< with the extended plant
 };
 
-/// What a discovery did, in seconds of work (work.h).
+/// Without a budget a discovery ends when it is done.
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// What a discovery did, in seconds.
 struct Budget {
   double used = 0.0;
-  double limit = Work::kUnlimited;
+  double limit = kUnlimited;
   bool stopped = false;               ///< it was asked to end
   std::vector<std::string> left_out;  ///< what it did not come to
 };
 
 /// A discovery under way, for people.
 struct DiscoveryProgress {
-  std::string what;       ///< is being tried
-  double fraction = 0.0;  ///< of a round that is done
-  std::string best;       ///< "coulomb_friction@load (mismatch 100 % to 7 %)"
-  /// Seconds that the whole budget takes on this machine, by the time of a run of the plant
-  /// as it is given; infinite without a budget.
-  double most_seconds = 0.0;
+  std::string what;           ///< is being tried
+  double fraction = 0.0;      ///< of a round that is done
+  std::string best;           ///< "coulomb_friction@load (mismatch 100 % to 7 %)"
+  double most_seconds = 0.0;  ///< the budget
 };
 
 struct Discovery {
@@ -157,9 +157,6 @@ struct Discovery {
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
   std::vector<FoundKind> kinds;  ///< the most probable first
-  /// How probable it is that noise is all that the causes leave, and no law that is in no
-  /// list is among them (completeness.h); their probabilities count it.
-  double complete = 1.0;
   /// Share of the force that was missing which is left, rms along data that no fit saw;
   /// none: no more than noise is left, or nothing was found.
   std::optional<double> force_left;
@@ -201,8 +198,8 @@ struct Discovery {
   double colour_after = 0.0;
 
   std::vector<LadderStep> ladder;
-  std::vector<UnknownSignal> forces_before;  ///< unexplained, at the driven joints
-  std::vector<UnknownSignal> forces_after;
+  std::vector<MissingForce> forces_before;  ///< unexplained, at the driven joints
+  std::vector<MissingForce> forces_after;
   std::vector<LawPlot> laws;
   std::vector<FaultLimit> fault_limits;
   double sample_time = 0.0;
@@ -214,10 +211,9 @@ struct Discovery {
 
 struct DiscoverOptions {
   double train_share = 0.7;
-  double bandwidth = 0.0;  ///< of the observer [Hz]; 0: from the record
   int most_causes = 8;
-  /// Numbers of the plant are not taken as true but fitted with every hypothesis, as far
-  /// as they are not known beforehand (DoubtOf).
+  /// Numbers of the plant are not taken as true: they may be what is wrong, as far as they
+  /// are not known beforehand (DoubtOf).
   bool doubt = false;
   /// Those that are as the plant says all the same: "all", a kind ("mass") or one
   /// ("mass@stage").
@@ -226,13 +222,16 @@ struct DiscoverOptions {
   std::uint64_t seed = 1;
   /// Causes that may be named: all but for these choices.
   CandidateChoice choice;
-  /// Seconds of work after which a discovery ends with the best answer so far.
-  double budget = Work::kUnlimited;
+  /// Seconds after which a discovery ends with the best answer so far.
+  double budget = kUnlimited;
   /// Whether it is asked to do so at once; called from any thread. May be empty.
   std::function<bool()> stop;
   std::function<void(const DiscoveryProgress& progress)> progress;
 };
 
+/// By one engine for every machine: a filter with latent forces, one regression and fits with
+/// MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw (answer/).
+/// Without validation records that is the end of every record.
 /// @param machine  the nominal one
 /// InputError if the record lacks what the replay needs or cannot be judged (see
 /// data_check.h), and on a choice that means nothing (candidate_choice.h).
@@ -241,15 +240,6 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
 /// @param validation  a record of another motion that nothing is fitted to, or null
 Discovery Discover(const Machine& machine, const Record& measured,
                    const Record* validation, const DiscoverOptions& options);
-
-/// The same by one engine for every machine: a filter with latent forces, one regression and
-/// fits with MuJoCo's own ticks (fit/explain.h), and a judgement by data that no fit saw
-/// (answer/). Its budget is in seconds; the bandwidth is nothing to it; without validation
-/// records the end of every record is what no fit sees.
-Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
-                           const DiscoverOptions& options);
-Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
-                           const Record* validation, const DiscoverOptions& options);
 
 /// Whether the record says of a number that it is another one than the model has.
 bool IsOff(const CalibratedNumber& number);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjdiag/discovery/selection/completeness.h"
-
 namespace mjdiag {
 namespace {
 
@@ -19,8 +17,7 @@ double TimesAsLikely(const Alternative& alternative, const FoundCause& named) {
 
 }  // namespace
 
-std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named,
-                                     double complete) {
+std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named) {
   if (named.empty()) return {};
   std::vector<CauseSet> sets(1);
   for (const FoundCause& found : named) sets.front().causes.push_back(found.cause);
@@ -37,9 +34,7 @@ std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named,
       sum += set.probability;
     }
   }
-  for (CauseSet& set : sets) {
-    set.probability = AmongAllLaws(set.probability / sum, complete);
-  }
+  for (CauseSet& set : sets) set.probability /= sum;
   std::ranges::stable_sort(sets, std::ranges::greater{}, &CauseSet::probability);
   const auto unlikely = std::ranges::find_if(
       sets, [](const CauseSet& set) { return set.probability < kLeastShare; });

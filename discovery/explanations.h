@@ -22,9 +22,6 @@ struct CauseSet {
 };
 
 /// Likeliest first, at most 8 and each of 1 % or more; none if nothing is named.
-/// @param complete  Discovery::complete: the rest is the probability of sets with a law that
-///                  is in no list
-std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named,
-                                     double complete = 1.0);
+std::vector<CauseSet> ExplanationsOf(const std::vector<FoundCause>& named);
 
 }  // namespace mjdiag

@@ -101,18 +101,6 @@ Measurements MeasurementsOf(const Machine& machine, const Record& measured,
   return measurements;
 }
 
-Measurements WithUnseen(Measurements measurements, double fit_share) {
-  std::vector<MeasuredRecord>& fit = measurements.fit;
-  if (!measurements.unseen.empty() || fit.size() < 2) return measurements;
-  const auto records = static_cast<double>(fit.size());
-  const auto kept = std::clamp<std::ptrdiff_t>(std::lround(fit_share * records), 1,
-                                               std::ssize(fit) - 1);
-  measurements.unseen.assign(std::make_move_iterator(fit.begin() + kept),
-                             std::make_move_iterator(fit.end()));
-  fit.erase(fit.begin() + kept, fit.end());
-  return measurements;
-}
-
 MeasuredRun RunOf(const std::vector<MeasuredRecord>& records) {
   std::vector<MeasuredRun> runs;
   for (const MeasuredRecord& one : records) {

@@ -43,10 +43,6 @@ Measurements ReadMeasurements(const Machine& nominal,
 Measurements MeasurementsOf(const Machine& machine, const Record& measured,
                             const Record* unseen);
 
-/// Of several records without one to validate with, as many of the last as are left
-/// beyond `fit_share` of them, one at least, become unseen.
-Measurements WithUnseen(Measurements measurements, double fit_share);
-
 /// All of them in one run. InputError as ToMeasuredRun.
 MeasuredRun RunOf(const std::vector<MeasuredRecord>& records);
 

@@ -53,63 +53,6 @@ bool AnyFalls(const Measurements& measurements) {
          std::ranges::any_of(measurements.unseen, falls);
 }
 
-Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
-                           const Changes& changes) {
-  Eigen::Index samples = 0;
-  std::vector<Eigen::Index> first;
-  for (const MeasuredRecord& one : records) {
-    first.push_back(samples);
-    samples += one.record.samples();
-  }
-  const Channels& channels = records.front().machine.channels();
-  Eigen::MatrixXd errors(static_cast<Eigen::Index>(channels.sensors.size()), samples);
-  ParallelFor(static_cast<int>(records.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    const auto& [record, machine, name, notes, own_plant] = records[i];
-    RunOptions quiet;
-    quiet.noise_scale = 0.0;
-    const Record simulated =
-        Simulate(machine.With(changes), Replay(machine.setup(), record), quiet);
-    Eigen::Index row = 0;
-    for (const SensorSetup& sensor : channels.sensors) {
-      const Channel& measured = record.At(sensor.channel);
-      Eigen::VectorXd error = measured.samples - simulated.At(sensor.channel).samples;
-      if (measured.measured.size() > 0) error = measured.measured.select(error, 0.0);
-      errors.row(row++).segment(first[i], record.samples()) = error;
-    }
-  });
-  return errors;
-}
-
-double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& changes,
-               const Eigen::VectorXd& noise_sd) {
-  double sum = 0.0;
-  try {
-    const Eigen::MatrixXd errors = FreeErrors(records, changes);
-    Eigen::Index first = 0;
-    for (const auto& [record, machine, name, notes, own_plant] : records) {
-      const Eigen::Index skip = machine.setup().compare.skip_samples;
-      const Eigen::Index n = record.samples() - skip;
-      for (Eigen::Index i = 0; i < errors.rows(); ++i) {
-        const Channel& measured =
-            record.At(machine.channels().sensors[static_cast<std::size_t>(i)].channel);
-        const Eigen::Index count =
-            measured.measured.size() > 0
-                ? std::max<Eigen::Index>(1, measured.measured.tail(n).count())
-                : n;
-        const double square = errors.row(i).segment(first + skip, n).squaredNorm() /
-                              static_cast<double>(count);
-        sum += 0.5 * std::log1p(square / (noise_sd[i] * noise_sd[i]));
-      }
-      first += record.samples();
-    }
-  } catch (const NumericalError&) {
-    return std::numeric_limits<double>::infinity();
-  }
-  return sum / static_cast<double>(noise_sd.size() *
-                                   static_cast<Eigen::Index>(records.size()));
-}
-
 std::map<std::string, double> MeanReplayErrors(
     const std::vector<MeasuredRecord>& records, const Changes& changes) {
   std::map<std::string, double> mean;

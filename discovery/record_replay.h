@@ -30,17 +30,6 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
 /// Whether the machine falls on any of the records.
 bool AnyFalls(const Measurements& measurements);
 
-/// Measured less simulated of every sensor, one record after the other, sensors x
-/// samples; 0 where it was not measured. NumericalError where one diverges.
-Eigen::MatrixXd FreeErrors(const std::vector<MeasuredRecord>& records,
-                           const Changes& changes);
-
-/// How far free simulation of records is off beside a model: the mean over sensors and
-/// records of ln sqrt(1 + e^2 / r^2), e the rms of what was measured less what was
-/// simulated, r that of the sensor's noise. Infinite where one diverges.
-double FreeRun(const std::vector<MeasuredRecord>& records, const Changes& changes,
-               const Eigen::VectorXd& noise_sd);
-
 /// Channel or derived signal -> relative error (ReplayErrors), mean over records [%].
 std::map<std::string, double> MeanReplayErrors(
     const std::vector<MeasuredRecord>& records, const Changes& changes);

@@ -163,7 +163,7 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
            InputError: records that do not fit.)")
       .def("discover", &DoDiscover, py::arg("records"), py::kw_only(),
            py::arg("validation") = py::none(), py::arg("data") = py::none(),
-           py::arg("budget") = 300.0, py::arg("only") = std::vector<std::string>(),
+           py::arg("budget") = 60.0, py::arg("only") = std::vector<std::string>(),
            py::arg("without") = std::vector<std::string>(),
            py::arg("known") = std::vector<std::string>(), py::arg("doubt") = py::none(),
            py::arg("most_causes") = DiscoverOptions{}.most_causes,
@@ -176,12 +176,12 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
            lists files with what was set in each (docs/setup.md).
            validation: those of other motions, to which nothing is fitted.
            data: folder of the files of a manifest.
-           budget: seconds of work of two cores; then the best answer so far is given,
-           and so it is at Ctrl-C (Discovery.stopped).
+           budget: seconds; then the best answer so far is given, and so it is at Ctrl-C
+           (Discovery.stopped).
            only, without: families, effects, effects at a site or fault parameters that
            may or may not be named.
            known: numbers of the plant that are as it says.
-           doubt: whether the others are fitted; None: unless the plant says that it is
+           doubt: whether the others may be wrong; None: unless the plant says that it is
            exact.
            most_causes: that are looked for.
            train_share: of a single record, that fits see.

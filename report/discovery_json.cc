@@ -85,8 +85,7 @@ json CausesOf(const Discovery& discovery) {
 
 json ExplanationList(const Discovery& discovery) {
   json explanations = json::array();
-  for (const CauseSet& explanation :
-       ExplanationsOf(discovery.causes, discovery.complete)) {
+  for (const CauseSet& explanation : ExplanationsOf(discovery.causes)) {
     json causes = json::array();
     for (const Cause& cause : explanation.causes) causes.push_back(IdentityOf(cause));
     explanations.push_back(
@@ -231,7 +230,6 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
   return {{"schema", "mjdiag.discovery/1"},
           {"setup", discovery.setup},
           {"verdict", VerdictName(discovery.verdict)},
-          {"complete", Finite(discovery.complete)},
           {"force_left", discovery.force_left ? Finite(*discovery.force_left) : json()},
           {"kinds", KindsOf(discovery)},
           {"causes", CausesOf(discovery)},

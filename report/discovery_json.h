@@ -23,7 +23,7 @@ namespace mjdiag {
 ///   fault_limits [{fault, before, after}]: smallest detectable change
 ///   unexplained  {signature, site, variable, factor, shape, explained_share, period,
 ///                exponent, runner_up, runner_up_share}
-///   budget       {used, limit, stopped, left_out: [text]}, in seconds of work (work.h)
+///   budget       {used, limit, stopped, left_out: [text]}, in seconds
 ///   notes        [text]
 ///
 /// All in SI units. Numbers without a finite value are null, and so is a figure that

@@ -214,8 +214,8 @@ void AddLaws(Page& page, const Discovery& discovery) {
 
 /// Unit of what is left at the site of the signature.
 std::string UnitOfRest(const Discovery& discovery) {
-  for (const UnknownSignal& force : discovery.forces_after) {
-    if (force.site == discovery.unexplained_site) return force.unit;
+  for (const MissingForce& force : discovery.forces_after) {
+    if (force.joint == discovery.unexplained_site) return force.unit;
   }
   return "";
 }

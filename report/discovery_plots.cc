@@ -81,21 +81,16 @@ void AddLimitLevels(TimePlot& plot, double limit, const std::string& name) {
       {"-" + FormatQuantity(limit, plot.unit), CurveRole::kNoise, -level});
 }
 
-TimePlot UnexplainedPlot(const UnknownSignal& signal, const std::string& plant,
+TimePlot UnexplainedPlot(const MissingForce& force, const std::string& plant,
                          double start_time, double sample_time) {
   TimePlot plot;
-  plot.caption = "Unexplained at " + signal.site + ", " + plant;
-  plot.quantity = signal.site;
-  plot.unit = signal.unit;
+  plot.caption = "Unexplained at " + force.joint + ", " + plant;
+  plot.quantity = force.joint;
+  plot.unit = force.unit;
   plot.start_time = start_time;
   plot.sample_time = sample_time;
-  VectorXd value = signal.value;
-  if (2 * signal.edge < value.size()) {
-    value.head(signal.edge).setConstant(kNothing);
-    value.tail(signal.edge).setConstant(kNothing);
-  }
-  plot.curves = {{"unexplained", CurveRole::kMismatch, value}};
-  AddLimitLevels(plot, 2.0 * signal.sd, "±2 sd of its error: ");
+  plot.curves = {{"unexplained", CurveRole::kMismatch, force.value}};
+  AddLimitLevels(plot, 2.0 * force.sd, "±2 sd of its error: ");
   plot.height = 180;
   return plot;
 }
@@ -129,11 +124,11 @@ std::vector<TimePlot> UnexplainedPlots(const Discovery& discovery) {
   const RecordReplay* first = discovery.Fitted();
   const double start = first != nullptr ? first->before.measured.start_time() : 0.0;
   std::vector<TimePlot> plots;
-  for (const UnknownSignal& before : discovery.forces_before) {
+  for (const MissingForce& before : discovery.forces_before) {
     plots.push_back(
         UnexplainedPlot(before, "plant as given", start, discovery.sample_time));
-    for (const UnknownSignal& after : discovery.forces_after) {
-      if (after.site != before.site || !HasFound(discovery)) continue;
+    for (const MissingForce& after : discovery.forces_after) {
+      if (after.joint != before.joint || !HasFound(discovery)) continue;
       plots.push_back(
           UnexplainedPlot(after, "extended plant", start, discovery.sample_time));
     }

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "mjdiag/discovery/explanations.h"
-#include "mjdiag/discovery/selection/completeness.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/kinds_text.h"
@@ -211,8 +210,7 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
              UnseenText(discovery);
     case DiscoveryVerdict::kPartlyExplained:
       return KindsSentence(discovery) + FoundText(discovery) + UnseenText(discovery) +
-             (discovery.unexplained || discovery.force_left ||
-                      !IsComplete(discovery.complete)
+             (discovery.unexplained || discovery.force_left
                   ? " Something is left" + ForceLeftText(discovery) + "."
                   : " Noise is left.") +
              SignatureText(discovery);
@@ -264,20 +262,13 @@ Table CauseTable(const Discovery& discovery) {
 Table ExplanationTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Probability", true}, {""}, {"Explanation"}};
-  const std::vector<CauseSet> explanations =
-      ExplanationsOf(discovery.causes, discovery.complete);
-  double others = 1.0;
-  for (const CauseSet& explanation : explanations) others -= explanation.probability;
-  const bool may_be_others = !explanations.empty() && others >= kConsidered;
-  if (explanations.size() < 2 && !may_be_others) return table;
+  const std::vector<CauseSet> explanations = ExplanationsOf(discovery.causes);
+  if (explanations.size() < 2) return table;
   for (const CauseSet& explanation : explanations) {
     std::vector<std::string> causes;
     for (const Cause& cause : explanation.causes) causes.push_back(CauseName(cause));
     table.rows.push_back({Percent(100.0 * explanation.probability),
                           Bar(explanation.probability), Join(causes)});
-  }
-  if (may_be_others) {
-    table.rows.push_back({Percent(100.0 * others), Bar(others), kUnlisted});
   }
   return table;
 }

@@ -198,7 +198,7 @@ HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t 
   HardCase hard;
   const auto visible = DrawUntilThere([&]() -> std::optional<VisibleSize> {
     hard.numbers = DrawNumbers(model.plant(), random);
-    return VisibleSize(model.WithNumbers(hard.numbers), substeps, motion, seed);
+    return VisibleSize(model.WithNumbers(hard.numbers), substeps, motion);
   });
   if (plan.outside) {
     constexpr std::size_t kSites = 5;  // that are tried of a law

@@ -12,7 +12,7 @@
 namespace mjdiag {
 namespace {
 
-constexpr double kBudget = 120.0;  // [s] of work, that of the command
+constexpr double kBudget = 60.0;  // [s], that of the command
 
 /// Of all sensors; infinite where the model cannot be run.
 double UnseenMismatch(const Machine& model, const HardCase& hard,

@@ -110,8 +110,6 @@ StudyTable CountsOf(const std::vector<HardOutcome>& outcomes) {
   counts.Add("within the budget", all, [](const HardOutcome& o) {
     return o.answer.budget.used <= o.answer.budget.limit;
   });
-  counts.AddFigure("work [s]", all,
-                   [](const HardOutcome& o) { return o.answer.budget.used; });
   counts.AddFigure("time [s]", all, [](const HardOutcome& o) { return o.seconds; });
   return counts.Take();
 }
@@ -150,7 +148,6 @@ std::vector<Cell> RowOf(const HardOutcome& outcome, std::uint64_t seed) {
           IsOutside(outcome) ? WordOf(outcome.outside) : WordOf(outcome.verdict),
           outcome.before,
           outcome.after,
-          outcome.answer.budget.used,
           outcome.seconds};
 }
 
@@ -180,16 +177,16 @@ std::vector<StudyTable> HardStudy(const Machine& model, bool nothing,
   StudyTable empty;
   empty.title =
       "Hidden in measurements of a machine that is not quite " + model.setup().name;
-  empty.columns = {"seed",  "hidden",   "records fitted + unseen",
-                   "found", "outcome",  "unseen mismatch / noise before",
-                   "after", "work [s]", "s"};
+  empty.columns = {"seed",  "hidden",  "records fitted + unseen",
+                   "found", "outcome", "unseen mismatch / noise before",
+                   "after", "s"};
   empty.notes = {
       "All numbers of the plant are off by draws from what is known of them, the "
       "measurement has twice the physics steps of the model, and every cause adds at "
       "least 200 to the squared innovations beyond what wrong numbers explain and what "
       "the steps of the model hide.",
       "In brackets the probabilities of what was found. Two fitted records without an "
-      "unseen one: discovery keeps the second one for that itself."};
+      "unseen one: the end of each is what no fit sees."};
   GrowingTable runs(std::move(empty), options.row);
   std::vector<HardOutcome> outcomes(static_cast<std::size_t>(options.runs));
   ParallelInOrder(

@@ -6,11 +6,11 @@
 
 #include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
-#include "mjdiag/discovery/hypotheses/problem.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/observed_runs.h"
 
 namespace mjdiag {
 namespace {
@@ -48,23 +48,6 @@ Record RunWithCauses(const Machine& machine, const std::vector<Cause>& causes,
   return Simulate(machine.With(ChangesOf(causes)), motion, options);
 }
 
-/// The nominal motion posed with the noise of that seed.
-DiscoveryProblem PoseNominal(const Machine& machine, std::uint64_t seed) {
-  RunOptions noisy;
-  noisy.seed = seed;
-  return PoseProblem(machine, Simulate(machine, NominalMotion(machine.setup()), noisy),
-                     1.0, 0.0);
-}
-
-/// What a cause adds without noise: the scaled innovations of the nominal plant on a
-/// clean run.
-VectorXd CleanResidual(const DiscoveryProblem& problem, const Cause& cause) {
-  const Setup& setup = problem.machine().setup();
-  const Record clean =
-      RunWithCauses(problem.machine(), {cause}, NominalMotion(setup), 1, 0.0);
-  return problem.WithRun(ToMeasuredRun(setup, clean)).Residual({});
-}
-
 /// The least squared innovations that any of the columns adds beside what the
 /// amplitudes of all others explain.
 double LeastOwnShare(const Eigen::MatrixXd& columns) {
@@ -79,33 +62,32 @@ double LeastOwnShare(const Eigen::MatrixXd& columns) {
   return least;
 }
 
-Scales MeasureScales(const DiscoveryProblem& problem, const Candidate& candidate,
+Scales MeasureScales(const Machine& machine, const Candidate& candidate,
                      const Record& nominal) {
-  const mjModel& plant = problem.machine().plant();
+  const mjModel& plant = machine.plant();
   const auto joint = static_cast<int>(candidate.joint);
   const int id = plant.dof_jntid[joint];
   const std::string name =
-      "joint." +
-      problem.machine().linear().coordinates[static_cast<std::size_t>(joint)];
+      "joint." + machine.linear().coordinates[static_cast<std::size_t>(joint)];
   const VectorXd& q = nominal.At(name).samples;
   const double tick = nominal.sample_time();
   Scales scales;
   scales.stroke = q.maxCoeff() - q.minCoeff();
   scales.speed =
       (q.tail(q.size() - 1) - q.head(q.size() - 1)).cwiseAbs().maxCoeff() / tick;
-  const std::vector<Index> driven = DrivenJoints(problem.machine().linear());
+  const std::vector<Index> driven = DrivenJoints(machine.linear());
   std::size_t motor = 0;
   for (std::size_t u = 0; u < driven.size(); ++u) {
     if (driven[u] == candidate.joint) motor = u;
   }
-  scales.force = nominal.At(problem.machine().setup().channels.actuators[motor].channel)
+  scales.force = nominal.At(machine.setup().channels.actuators[motor].channel)
                      .samples.cwiseAbs()
                      .maxCoeff();
   scales.stiffness = plant.jnt_stiffness[id];
   const int address = plant.jnt_qposadr[id];
   scales.strain = (q.array() - plant.qpos_spring[address]).abs().maxCoeff();
   scales.damping = plant.dof_damping[joint];
-  scales.mass = problem.machine().linear().M(joint, joint);
+  scales.mass = machine.linear().M(joint, joint);
   scales.duration = nominal.duration();
   return scales;
 }
@@ -149,7 +131,7 @@ Cause DrawEffect(const Machine& machine, const std::string& type,
   quiet.log_joints = true;
   const Excitation motion = NominalMotion(machine.setup());
   const Record nominal = Simulate(machine, motion, quiet);
-  const DiscoveryProblem problem = PoseNominal(machine, seed);
+  const ObservedRuns runs(machine, motion);
 
   if (type == NoiseEffect().name()) return DrawNoise(machine.channels(), random);
   const std::vector<Candidate> sites = SitesOf(machine, type);
@@ -158,12 +140,12 @@ Cause DrawEffect(const Machine& machine, const std::string& type,
                      "an effect of docs/effects.md, or a fault");
   }
   const Candidate& site = sites[random.Index(sites.size())];
-  const Sized shape = site.effect->Draw(MeasureScales(problem, site, nominal), random);
+  const Sized shape = site.effect->Draw(MeasureScales(machine, site, nominal), random);
   const auto at = [&](double scale) {
     return Cause{site.effect, site.site, shape(scale)};
   };
   const auto shows = [&](double scale) {
-    return CleanResidual(problem, at(scale)).squaredNorm();
+    return runs.InnovationsOf(ChangesOf({at(scale)})).squaredNorm();
   };
   const double target = random.Log(size.least, size.most);
   double scale = 1.0;
@@ -200,12 +182,16 @@ std::vector<Cause> DrawEffects(const Machine& machine,
           DrawEffect(machine, types[i], size, 1000 * seed + 10 * draw + i));
     }
     if (causes.size() < 2) return causes;
-    const DiscoveryProblem problem = PoseNominal(machine, seed);
-    Eigen::MatrixXd columns(problem.run().outputs.size(), 0);
+    const ObservedRuns runs(machine, NominalMotion(machine.setup()));
+    std::vector<VectorXd> shown;
     for (const Cause& cause : causes) {
       if (cause.effect->form() == Form::kNoise) continue;  // like nothing else
-      columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
-      columns.rightCols(1) = CleanResidual(problem, cause);
+      shown.push_back(runs.InnovationsOf(ChangesOf({cause})));
+    }
+    if (shown.empty()) return causes;
+    Eigen::MatrixXd columns(shown.front().size(), std::ssize(shown));
+    for (Index i = 0; i < columns.cols(); ++i) {
+      columns.col(i) = shown[static_cast<std::size_t>(i)];
     }
     if (LeastOwnShare(columns) >= kOwnShare * size.least) return causes;
   }

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/answer/discriminating_experiment.h"
+#include "mjdiag/discovery/answer/raised_noise.h"
 #include "mjdiag/discovery/checks/data_check.h"
-#include "mjdiag/discovery/selection/discriminating_experiment.h"
-#include "mjdiag/discovery/unexplained/sensor_noise.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/site.h"

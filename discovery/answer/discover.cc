@@ -24,7 +24,7 @@
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/input_choice.h"
-#include "mjdiag/discovery/hypotheses/problem.h"
+#include "mjdiag/plugin/replay/sensor_noise.h"
 #include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -143,13 +143,13 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
 
 }  // namespace
 
-Discovery DiscoverByFilter(const Machine& machine, const Measurements& measurements,
-                           const DiscoverOptions& options) {
+Discovery Discover(const Machine& machine, const Measurements& measurements,
+                   const DiscoverOptions& options) {
   RunningTime time(options);
   Discovery discovery;
   discovery.notes = NotesOfChecks(machine.plant(), measurements, options.doubt);
   const SplitRun run = Split(measurements, options.train_share);
-  const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen, {});
+  const VectorXd reading_sd = SensorNoise(machine.channels(), run.seen);
   discovery.setup = machine.setup().name;
   discovery.train_share = run.share;
   discovery.sample_time = machine.rates().tick();
@@ -209,10 +209,9 @@ Discovery DiscoverByFilter(const Machine& machine, const Measurements& measureme
   return discovery;
 }
 
-Discovery DiscoverByFilter(const Machine& machine, const Record& measured,
-                           const Record* validation, const DiscoverOptions& options) {
-  return DiscoverByFilter(machine, MeasurementsOf(machine, measured, validation),
-                          options);
+Discovery Discover(const Machine& machine, const Record& measured,
+                   const Record* validation, const DiscoverOptions& options) {
+  return Discover(machine, MeasurementsOf(machine, measured, validation), options);
 }
 
 }  // namespace mjdiag

@@ -1,9 +1,9 @@
 #include "mjdiag/discovery/answer/fault_figures.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
-#include "mjdiag/discovery/fault_limits.h"
 #include "mjdiag/plugin/plant/fault.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -11,9 +11,31 @@
 
 namespace mjdiag {
 
+using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
+
+constexpr Index kPartsOfRun = 10;
+
+/// |theta| + 3 sd(theta).
+/// @param phi  response of innovations to a change of the fault parameter by 1
+double HiddenFault(const VectorXd& phi, const VectorXd& e) {
+  const double all = phi.squaredNorm();
+  const double theta = phi.dot(e) / all;
+  // Every part's share of theta: what the record would say with that part doubled.
+  const Index length = phi.size() / kPartsOfRun;
+  double variance = 0.0;
+  for (Index p = 0; p < kPartsOfRun; ++p) {
+    const auto part = phi.segment(p * length, length);
+    const double share =
+        (part.dot(e.segment(p * length, length)) - theta * part.squaredNorm()) / all;
+    variance += share * share;
+  }
+  constexpr double kSigmas = 3.0;
+  return std::abs(theta) + kSigmas * std::sqrt(variance * kPartsOfRun /
+                                               static_cast<double>(kPartsOfRun - 1));
+}
 
 /// A model with its gains, and what it leaves behind them.
 struct Beside {

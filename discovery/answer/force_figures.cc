@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,7 +11,7 @@
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/law.h"
-#include "mjdiag/discovery/unexplained/motion_variables.h"
+#include "mjdiag/discovery/signature/motion_variables.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
@@ -29,10 +28,10 @@ namespace {
 constexpr Index kPointsOfLaw = 3000;
 constexpr Index kLeastSamples = 400;  // FindSignature
 
-const UnknownSignal* SignalAt(const std::vector<UnknownSignal>& signals,
-                              const std::string& site) {
-  const auto found = std::ranges::find(signals, site, &UnknownSignal::site);
-  return found == signals.end() ? nullptr : &*found;
+const MissingForce* ForceAt(const std::vector<MissingForce>& forces,
+                            const std::string& joint) {
+  const auto found = std::ranges::find(forces, joint, &MissingForce::joint);
+  return found == forces.end() ? nullptr : &*found;
 }
 
 std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& judged,
@@ -44,13 +43,12 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
   LawPlot plot;
   plot.cause = Describe(candidate);
   plot.site = CoordinateNames(plant)[static_cast<std::size_t>(candidate.joint)];
-  const UnknownSignal* after = SignalAt(discovery.forces_after, plot.site);
+  const MissingForce* after = ForceAt(discovery.forces_after, plot.site);
   if (after == nullptr) return std::nullopt;
   const FilterPath& path = judged.nothing.seen;
   const auto without =
-      SignalsOf(ForcesBeside(data.With(Without(model, member)), data.run.seen, path),
-                path.sample_time);
-  const UnknownSignal& force = *SignalAt(without, plot.site);
+      ForcesBeside(data.With(Without(model, member)), data.run.seen, path);
+  const MissingForce& force = *ForceAt(without, plot.site);
   const bool hinge = plant.jnt_type[plant.dof_jntid[candidate.joint]] == mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, data.run.seen.inputs.rows() - 1));
@@ -66,21 +64,7 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
 
 }  // namespace
 
-std::vector<UnknownSignal> SignalsOf(const std::vector<MissingForce>& forces,
-                                     double sample_time) {
-  std::vector<UnknownSignal> signals;
-  for (const MissingForce& force : forces) {
-    // How fast it changes is how far it is told.
-    const Index last = force.value.size() - 1;
-    const double rate = (force.value.tail(last) - force.value.head(last)).norm() /
-                        std::max(force.value.norm(), 1e-300) / sample_time;
-    signals.push_back({force.joint, force.unit, force.value, force.sd, 0,
-                       rate / (2.0 * std::numbers::pi)});
-  }
-  return signals;
-}
-
-void DrawLaw(const LawAxis& axis, const UnknownSignal& force, const VectorXd& explained,
+void DrawLaw(const LawAxis& axis, const MissingForce& force, const VectorXd& explained,
              const Cause& cause, LawPlot& plot) {
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;
@@ -102,14 +86,12 @@ ObservedMotion MotionOfAnswer(const AnswerData& data, const UnseenJudgement& jud
 void AddForces(const AnswerData& data, const UnseenJudgement& judged,
                Discovery& discovery) {
   const FilterPath& path = judged.nothing.seen;
-  discovery.forces_before =
-      SignalsOf(MissingForces(data.With({}), path), path.sample_time);
+  discovery.forces_before = MissingForces(data.With({}), path);
   discovery.forces_after = discovery.forces_before;
   if (judged.answer.fit.model.empty()) return;
   try {
     discovery.forces_after =
-        SignalsOf(ForcesBeside(data.With(judged.answer.fit.model), data.run.seen, path),
-                  path.sample_time);
+        ForcesBeside(data.With(judged.answer.fit.model), data.run.seen, path);
   } catch (const NumericalError&) {
     discovery.notes.push_back(
         "behind the noise of the plant as given the machine diverges with what was "
@@ -141,18 +123,18 @@ void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
 
 void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
                   const ObservedMotion& motion, Discovery& discovery) {
-  const std::vector<UnknownSignal>& forces = discovery.forces_after;
+  const std::vector<MissingForce>& forces = discovery.forces_after;
   if (forces.empty() || forces.front().value.size() < kLeastSamples) return;
-  const UnknownSignal& force =
-      *std::ranges::max_element(forces, std::less<>(), [](const UnknownSignal& one) {
+  const MissingForce& force =
+      *std::ranges::max_element(forces, std::less<>(), [](const MissingForce& one) {
         return one.value.norm() / std::max(one.sd, 1e-300);
       });
   const std::vector<std::string>& names = data.machine.linear().coordinates;
   std::vector<std::string> joints;
-  for (const UnknownSignal& one : forces) {
-    if (std::ranges::find(names, one.site) != names.end()) joints.push_back(one.site);
+  for (const MissingForce& one : forces) {
+    if (std::ranges::find(names, one.joint) != names.end()) joints.push_back(one.joint);
   }
-  const Index joint = std::ranges::find(names, force.site) - names.begin();
+  const Index joint = std::ranges::find(names, force.joint) - names.begin();
   if (joint == std::ssize(names)) return;
   const VectorXd still =
       StillSpeeds(data.machine.plant(), judged.answer.seen.noise.reading,
@@ -160,7 +142,7 @@ void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
   const auto all = MotionVariables(data.machine, motion, joints, joint, still[joint],
                                    data.run.seen.records.size());
   const std::vector<Variable> variables(all.begin(), all.end());
-  discovery.unexplained = FindSignature(force.site, force.value, force.unit,
+  discovery.unexplained = FindSignature(force.joint, force.value, force.unit,
                                         std::max(force.sd, 1e-300), variables);
   discovery.unexplained_site = discovery.unexplained->site;
 }

@@ -2,8 +2,6 @@
 // Where a model is wrong and over what: forces that it lacks, laws as curves through what the
 // rest of the model leaves, and what the last rest depends on.
 
-#include <vector>
-
 #include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
@@ -13,13 +11,9 @@
 
 namespace mjdiag {
 
-/// The same by joint and frequency: how fast a force changes is how far it is told.
-std::vector<UnknownSignal> SignalsOf(const std::vector<MissingForce>& forces,
-                                     double sample_time);
-
 /// A law over what it depends on, and the force that all but it leave, at points.
 /// @param explained  what it explains of that
-void DrawLaw(const LawAxis& axis, const UnknownSignal& force,
+void DrawLaw(const LawAxis& axis, const MissingForce& force,
              const Eigen::VectorXd& explained, const Cause& cause, LawPlot& plot);
 
 /// The motion that the machine with the answer made in what fits saw.

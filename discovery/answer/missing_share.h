@@ -16,7 +16,7 @@
 
 #include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
-#include "mjdiag/discovery/selection/discovery_verdict.h"
+#include "mjdiag/discovery/verdict.h"
 
 namespace mjdiag {
 

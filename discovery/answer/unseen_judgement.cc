@@ -32,36 +32,62 @@ FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
   return noise;
 }
 
-/// Along what fits did not see, behind the noise of what they saw. A model that is all but
-/// exact there has next to no latent forces, and a filter that is so sure of itself does not
-/// come back from where a joint sticks a moment longer: behind a thousandth or a hundredth
-/// of the latent forces of the machine as given, if unseen data are likelier there.
+/// What fits did not see as a filter follows it, where it is likelier than what is known.
+void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& followed,
+                ModelOnRuns& one) {
+  try {
+    FilterPath path = followed();
+    double deviance = path.deviance;
+    if (data.run.GoesOn()) {
+      // Up to there it is what the filter does in what fits saw.
+      deviance -= RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
+                                 path.starts, path.noise)
+                      .deviance;
+    }
+    if (!(deviance < one.unseen_deviance)) return;
+    one.unseen_deviance = deviance;
+    one.unseen = std::move(path);
+  } catch (const NumericalError&) {
+  }
+}
+
+/// The same behind the likeliest noise near one.
+void FollowUnseenNear(const AnswerData& data, const FilterNoise& near,
+                      ModelOnRuns& one) {
+  const FilterNoise begin = near;  // of `one` itself, maybe
+  TakeUnseen(
+      data,
+      [&] {
+        return FilterLikeliestNear(data.With(one.fit.model), data.run.unseen,
+                                   data.reading_sd, one.seen.dofs, begin);
+      },
+      one);
+}
+
+/// Along what fits did not see, behind the noise that is likeliest there: another motion asks
+/// other things of what a model lacks, and whose values are right is the question, not whose
+/// noise is. Begun from the noise of what fits saw, and from one with a hundredth of the
+/// latent forces of the machine as given: a model that is all but exact has next to none,
+/// and a filter that is so sure of itself does not come back from where a joint sticks a
+/// moment longer.
 /// @param given  noise of the machine as given
-void FollowUnseen(const AnswerData& data, const FilterNoise& given, ModelOnRuns& one) {
+void FollowUnseen(const AnswerData& data, const FilterNoise& given,
+                  const std::function<bool()>& is_over, ModelOnRuns& one) {
   const Machine machine = data.With(one.fit.model);
   const MeasuredRun& run = data.run.unseen;
-  const bool goes_on = data.run.GoesOn();
   const std::vector<FilterStart> starts =
-      goes_on ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
+      data.run.GoesOn() ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
   one.unseen_deviance = std::numeric_limits<double>::infinity();
-  for (const double part : {0.0, 1e-3, 1e-2}) {
+  for (const double part : {0.0, 1e-2}) {
     const FilterNoise noise = AtLeast(one.seen.noise, part, given);
     if (part > 0.0 && noise.size == one.seen.noise.size) continue;
-    try {
-      FilterPath path = RunForceFilter(machine, run, one.seen.dofs, starts, noise);
-      double deviance = path.deviance;
-      if (goes_on) {
-        // Up to there it is what the filter does in what fits saw.
-        deviance -= part == 0.0 ? one.seen.deviance
-                                : RunForceFilter(machine, data.run.seen, one.seen.dofs,
-                                                 starts, noise)
-                                      .deviance;
-      }
-      if (!(deviance < one.unseen_deviance)) continue;
-      one.unseen_deviance = deviance;
-      one.unseen = std::move(path);
-    } catch (const NumericalError&) {
-    }
+    TakeUnseen(
+        data,
+        [&] { return RunForceFilter(machine, run, one.seen.dofs, starts, noise); },
+        one);
+  }
+  if (std::isfinite(one.unseen_deviance) && !is_over()) {
+    FollowUnseenNear(data, one.unseen.noise, one);
   }
   if (!std::isfinite(one.unseen_deviance)) {
     throw NumericalError("replay: diverges on unseen data");
@@ -82,11 +108,12 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
                data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
   one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
                             path.starts, path.noise);
-  FollowUnseen(data, given, one);
+  FollowUnseen(data, given, is_over, one);
   return one;
 }
 
-ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
+ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
+                      const std::function<bool()>& is_over) {
   ModelOnRuns nothing;
   // Of an empty model the search has it with the physics steps that it chose.
   const bool as_given = data.steps && explained.input_width == 0.0;
@@ -96,16 +123,30 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained) {
                                                    data.With({}), data.run.seen, data.reading_sd,
                                                    explained.nothing.dofs, {explained.nothing.noise});
   try {
-    FollowUnseen(data, nothing.seen.noise, nothing);
+    FollowUnseen(data, nothing.seen.noise, is_over, nothing);
   } catch (const NumericalError&) {
     // Behind the noise of what fits saw it does not stay with the rest.
     nothing.seen.noise =
         FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd).noise;
     nothing.seen = RunForceFilter(data.With({}), data.run.seen, nothing.seen.dofs,
                                   nothing.seen.starts, nothing.seen.noise);
-    FollowUnseen(data, nothing.seen.noise, nothing);
+    FollowUnseen(data, nothing.seen.noise, is_over, nothing);
   }
   return nothing;
+}
+
+/// Where the search for the noise of one model ended is not where that of another did: what
+/// suits the other may suit it as well.
+void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
+                       ModelOnRuns& one) {
+  FollowUnseenNear(data, other.unseen.noise, one);
+  try {
+    FilterPath path =
+        FilterLikeliestNear(data.With(one.fit.model), data.run.seen, data.reading_sd,
+                            one.seen.dofs, other.seen.noise);
+    if (path.deviance < one.seen.deviance) one.seen = std::move(path);
+  } catch (const NumericalError&) {
+  }
 }
 
 /// That unseen data speak against it by more than fits are off, or that it is not worth its
@@ -192,6 +233,16 @@ bool UnseenJudge::DropWorst() {
       ModelOnRuns without = Refitted(data_, Without(model, m), answer.seen.dofs, Near(),
                                      judged_.nothing.seen.noise, is_over_);
       judged_.losses[m] = LossOf(without);
+      if (IsRefuted(judged_.losses[m])) {
+        if (is_over_()) {
+          // What was not looked at in the same way speaks against nothing.
+          judged_.losses[m] = {kNeeded, kNeeded};
+          judged_.is_cut_short = true;
+          break;
+        }
+        LookBehindNoiseOf(without, data_, judged_.answer);
+        judged_.losses[m] = LossOf(without);
+      }
       const bool is_worst =
           !best || judged_.losses[m].Total() < judged_.losses[worst].Total();
       if (IsRefuted(judged_.losses[m]) && is_worst) {
@@ -281,7 +332,11 @@ bool UnseenJudge::ExchangeOne() {
       try {
         ModelOnRuns fitted = Refitted(data_, other, judged_.answer.seen.dofs, Near(),
                                       judged_.nothing.seen.noise, is_over_);
-        const MemberLoss loss = LossOf(fitted);
+        MemberLoss loss = LossOf(fitted);
+        if (loss.Total() < -kLeastGain && !is_over_()) {
+          LookBehindNoiseOf(fitted, data_, judged_.answer);
+          loss = LossOf(fitted);
+        }
         judged_.exchanges[m].push_back({one.block, fitted.fit.model[m].values, loss});
         // The simpler one where it is as good.
         const bool is_simpler = one.values.size() < model[m].values.size();
@@ -302,7 +357,7 @@ bool UnseenJudge::ExchangeOne() {
 }
 
 UnseenJudgement UnseenJudge::Run() {
-  judged_.nothing = NothingOf(data_, explained_);
+  judged_.nothing = NothingOf(data_, explained_, is_over_);
   judged_.answer = {explained_.fit, explained_.path, {}, 0.0};
   judged_.places.resize(explained_.fit.model.size());
   std::iota(judged_.places.begin(), judged_.places.end(), std::size_t{0});
@@ -312,7 +367,7 @@ UnseenJudgement UnseenJudge::Run() {
     return std::move(judged_);
   }
   try {
-    FollowUnseen(data_, judged_.nothing.seen.noise, judged_.answer);
+    FollowUnseen(data_, judged_.nothing.seen.noise, is_over_, judged_.answer);
   } catch (const NumericalError&) {
     Decide(Names(explained_.fit.model), kNeeded,
            "left out: the machine with it diverges on unseen data");

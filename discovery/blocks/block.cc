@@ -5,9 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "mjdiag/discovery/blocks/candidate_trials.h"
 #include "mjdiag/discovery/blocks/curve_block.h"
-#include "mjdiag/discovery/hypotheses/fitted_model.h"
-#include "mjdiag/discovery/screening/trial.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/scales.h"

@@ -69,6 +69,9 @@ struct BlockMotion {
 /// Whether values are such as its law, or the number, can have.
 bool IsAllowed(const Block& block, const TrialValues& values);
 
+/// How probable it is that a model lacks an effect of odds 1 at a site where the machine
+/// has it: models are made by people who know their machine.
+inline constexpr double kMissing = 0.1;
 /// So many spreads from what is known is another machine.
 inline constexpr double kFarthest = 9.0;
 /// So many times what it is said to be, or as many times less, is no motor's constant: an

@@ -35,8 +35,8 @@ InputChoice BestOf(const std::vector<double>& widths, const Machine& machine,
   ParallelForAll(static_cast<int>(widths.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     try {
-      paths[i] = FilterLikeliestFrom(machine, WithInputsOver(run, widths[i]),
-                                     reading_sd, path.dofs, {path.noise});
+      paths[i] = FilterLikeliestNear(machine, WithInputsOver(run, widths[i]),
+                                     reading_sd, path.dofs, path.noise);
     } catch (const NumericalError&) {
     }
   });

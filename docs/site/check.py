@@ -98,7 +98,7 @@ def check_sources():
     theory = (ROOT / "docs/theory.md").read_text(encoding="utf-8")
     count = len(equations.equations(theory))
     faults = [f"docs/theory.md: {fault}" for fault in equations.faults(theory, ROOT)]
-    if count < 40:
+    if count < 30:
         faults.append(f"only {count} equations found: they are not read any more")
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
         for name in re.findall(r"`([a-z_]+/[\w/]+\.(?:h|cc|py))`",

@@ -38,15 +38,10 @@ TangentRecorder::TangentRecorder(const mjModel& plant, const MechanicalModel& mo
       motors_(all_motors_),
       mass_(plant.nv, plant.nv),
       tick_(NoTime(plant.nv)) {
-  MoveTo(model);
-}
-
-void TangentRecorder::MoveTo(const MechanicalModel& model) {
   stiffness_ = model.K - MatrixXd(springs_.asDiagonal());
   damping_ = model.D - MatrixXd(dampers_.asDiagonal());
   stiffness_ -= all_motors_.stiffness;
   damping_ -= all_motors_.damping;
-  known_.clear();
 }
 
 bool TangentRecorder::MassChanged(const mjModel& plant, const mjData& data) {

@@ -45,9 +45,6 @@ class TangentRecorder {
   /// @param plant  the nominal one, which `model` is the linear model of
   TangentRecorder(const mjModel& plant, const MechanicalModel& model);
 
-  /// From the next substep on the machine is about there and not about its rest any more.
-  /// @param model  of the nominal plant (MotionLinearization)
-  void MoveTo(const MechanicalModel& model);
   /// After every substep. @param plant  of the run, changes and all
   /// @param off  actuators that are an open circuit in it
   void Substep(const mjModel& plant, const mjData& data, std::span<const int> off = {});

@@ -13,8 +13,7 @@ ErrorDynamics::ErrorDynamics(const Observer& observer, Index block)
       observer_(observer),
       C_(observer.innovation_sd.cwiseInverse().asDiagonal() * observer.tick.C),
       LC_(observer.L * observer.tick.C),
-      weight_(observer.innovation_sd.cwiseInverse()),
-      always_(weight_.cwiseInverse().asDiagonal() * C_) {}
+      weight_(observer.innovation_sd.cwiseInverse()) {}
 
 // The state that what was leaves is none.
 void ErrorDynamics::Begin() {
@@ -27,19 +26,14 @@ void ErrorDynamics::Begin() {
 
 void ErrorDynamics::Add(const TickTangent& tick, const SampleMask& measured,
                         const SampleMask& counted) {
-  const MatrixXd& L = observer_.GainAt(sample_);
-  const MatrixXd& C = observer_.OutputsAt(sample_);
-  ++sample_;
+  const MatrixXd& L = observer_.L;
   if (measured.size() > 0 && !measured.all()) {
     const MatrixXd pull = L * measured.cast<double>().matrix().asDiagonal();
-    Add(tick.A - pull * (observer_.following ? C : always_), tick.B, pull);
-  } else if (observer_.following) {
-    Add(tick.A - L * C, tick.B, L);
+    Add(tick.A - pull * observer_.tick.C, tick.B, pull);
   } else {
     Add(tick.A - LC_, tick.B, L);
   }
   Miss(counted.size() > 0 ? counted : measured);
-  if (observer_.following && in_open_ == 0) open_.C = weight_.asDiagonal() * C;
   if (++in_open_ < block_) return;
   blocks_.push_back(std::move(open_));
   in_open_ = 0;
@@ -62,16 +56,15 @@ void ErrorDynamics::Miss(const SampleMask& counted) {
 }
 
 // The mean over a block is that of its ends, x and next, whose sum it is applied to.
-MatrixXd ErrorDynamics::SeenMean(const Block& block) const {
-  const MatrixXd& C = block.C.size() > 0 ? block.C : C_;
-  return block_ == 1 ? C : MatrixXd(0.5 * std::sqrt(static_cast<double>(block_)) * C);
+MatrixXd ErrorDynamics::SeenMean() const {
+  return block_ == 1 ? C_ : MatrixXd(0.5 * std::sqrt(static_cast<double>(block_)) * C_);
 }
 
 template <typename Drive, typename Seen>
 MatrixXd ErrorDynamics::Respond(Index blocks, Index signals, const Drive& drive,
                                 const Seen& seen) const {
   const Index ny = C_.rows();
-  const MatrixXd always = SeenMean({});
+  const MatrixXd always = SeenMean();
   MatrixXd x = MatrixXd::Zero(C_.cols(), signals);
   MatrixXd next(x.rows(), x.cols());
   MatrixXd response(ny * blocks, signals);
@@ -80,14 +73,9 @@ MatrixXd ErrorDynamics::Respond(Index blocks, Index signals, const Drive& drive,
     drive(next, k);
     if (block_ > 1) x += next;
     auto now = response.middleRows(ny * k, ny);
-    const Block& block = blocks_[static_cast<std::size_t>(k)];
-    if (block.C.size() > 0) {
-      now.noalias() = SeenMean(block) * x;
-    } else {
-      now.noalias() = always * x;
-    }
+    now.noalias() = always * x;
     seen(now, k);
-    const VectorXd& share = block.seen;
+    const VectorXd& share = blocks_[static_cast<std::size_t>(k)].seen;
     if (share.size() > 0) now.array().colwise() *= share.array();
     x.swap(next);
   }
@@ -142,7 +130,7 @@ ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) con
     if (share.size() > 0) e.col(k) = share.cwiseProduct(e.col(k)).eval();
   }
   const double root = std::sqrt(static_cast<double>(block_));
-  const MatrixXd always = SeenMean({});
+  const MatrixXd always = SeenMean();
   Adjoint adjoint{MatrixXd(blocks, C_.cols() / 2), MatrixXd(blocks, ny)};
   VectorXd multiplier = VectorXd::Zero(C_.cols());
   VectorXd later = VectorXd::Zero(ny);
@@ -152,16 +140,8 @@ ErrorDynamics::Adjoint ErrorDynamics::AdjointOf(const VectorXd& innovations) con
       multiplier = blocks_[static_cast<std::size_t>(k + 1)].F.transpose() * multiplier;
     }
     const Block& block = blocks_[static_cast<std::size_t>(k)];
-    if (block.C.size() > 0) {
-      if (block_ > 1) multiplier += SeenMean(block).transpose() * e.col(k);
-      if (k + 1 < blocks) {
-        multiplier +=
-            SeenMean(blocks_[static_cast<std::size_t>(k + 1)]).transpose() * later;
-      }
-    } else {
-      multiplier +=
-          always.transpose() * (block_ > 1 ? VectorXd(e.col(k) + later) : later);
-    }
+    multiplier +=
+        always.transpose() * (block_ > 1 ? VectorXd(e.col(k) + later) : later);
     adjoint.forces.row(k) = (block.B.transpose() * multiplier).transpose();
     adjoint.readings.row(k) =
         (root * weight_.cwiseProduct(e.col(k)) - block.L.transpose() * multiplier)

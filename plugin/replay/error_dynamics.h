@@ -5,10 +5,8 @@
 //
 //   xt[k+1] = (A_k - L C) xt[k] + B_k f[k] - L d[k],     e[k] = C xt[k] + d[k] + noise
 //
-// L and C are L_k and C_k where the observer follows the motion. f is held over a tick. A_k
-// and B_k are the first order of the nonlinear tick where
-// the run is (tangent.h). Everything that screening needs is linear in f and d; what it
-// finds is fitted on the nonlinear plant afterwards.
+// f is held over a tick. A_k and B_k are the first order of the nonlinear tick where the run
+// is (tangent.h).
 //
 // To be fast, the equations step over blocks of ticks, over which f and d are averaged;
 // responses are block averages times the root of the block length, so that they compare
@@ -65,7 +63,6 @@ class ErrorDynamics {
     Eigen::MatrixXd L;  // of unit errors of every sensor
     /// Share of its ticks in which a sensor shows something, ny; empty: all of them.
     Eigen::VectorXd seen{};
-    Eigen::MatrixXd C{};  // over innovation_sd, where it moves; empty: as always
   };
   /// drive(x', k) adds what drives block k, seen(y, k) what the readings show of it
   /// beside the states.
@@ -73,13 +70,12 @@ class ErrorDynamics {
   Eigen::MatrixXd Respond(Eigen::Index blocks, Eigen::Index signals, const Drive& drive,
                           const Seen& seen) const;
   /// What a block shows of the sum of the states at its ends.
-  Eigen::MatrixXd SeenMean(const Block& block) const;
+  Eigen::MatrixXd SeenMean() const;
   void Add(const Eigen::MatrixXd& F, const Eigen::MatrixXd& B,
            const Eigen::MatrixXd& L);
   /// Takes sensors that do not count at this tick out of the open block.
   void Miss(const SampleMask& counted);
 
-  Eigen::Index sample_ = 0;
   std::vector<Block> blocks_;
   Block open_;  // not yet whole
   Eigen::Index in_open_ = 0;
@@ -88,7 +84,6 @@ class ErrorDynamics {
   Eigen::MatrixXd C_;  // over innovation_sd
   Eigen::MatrixXd LC_;
   Eigen::VectorXd weight_;
-  Eigen::MatrixXd always_;  // C of an observer that follows no motion
 };
 
 /// Averages of blocks of `block` samples times sqrt(block); columns are signals stacked

@@ -63,9 +63,8 @@ void ForceKalman::Start(const VectorXd& sd) {
 
 void ForceKalman::MoveTo(const TickTangent& tangent) {
   if (tangent_ == &tangent) return;
+  Unsettle();
   tangent_ = &tangent;
-  steady_ = false;
-  moved_ = true;
   B_ = ForcesOf(tangent.B, dofs_);
   D_ = ForcesOf(tangent.D, dofs_);
   const auto forces = B_.leftCols(noise_.white.size());
@@ -87,18 +86,16 @@ void ForceKalman::Expect(Index sensor, bool late, double innovation, double spee
     c_.tail(nf).setZero();
   }
   // A clock that is off by nothing that shows is left out, and the gains stay.
-  constexpr double kShows = 1e-6;
+  constexpr double kShows = 1e-3;  // of its variance
   const bool clock_shows = std::pow(noise_.clock * speed, 2) >
                            kShows * noise_.reading[sensor] * noise_.reading[sensor];
   c_[ns + nf - 1] = clock_shows ? speed : 0.0;
   if (clock_shows) Unsettle();
+  known_ = steady_ && taken_.size() < taken_before_.size() &&
+           taken_before_[taken_.size()] == sensor;
+  if (steady_ && !known_) Unsettle();
   taken_.push_back(sensor);
-  known_ = steady_ && taken_.size() <= taken_before_.size() &&
-           taken_before_[taken_.size() - 1] == sensor;
-  if (!known_) {
-    Unsettle();
-    Pc_.noalias() = P * c_;
-  }
+  if (!known_) Pc_.noalias() = P * c_;
   S_ = known_ ? variances_[sensor] : c_.dot(Pc_) + R;
   last_innovation = innovation - c_.dot(z);
 }
@@ -136,6 +133,12 @@ void ForceKalman::TakeWeighted(Index sensor, bool late, double innovation, doubl
 }
 
 void ForceKalman::Unsettle() {
+  if (steady_) {
+    for (const Index sensor : taken_) {
+      P.noalias() -=
+          variances_[sensor] * gains_.col(sensor) * gains_.col(sensor).transpose();
+    }
+  }
   steady_ = false;
   moved_ = true;
 }
@@ -146,10 +149,9 @@ void ForceKalman::Advance() {
   const MatrixXd& A = tangent_->A;
   z.head(ns) = (A * z.head(ns) + B_ * z.tail(nf)).eval();
   z.tail(nf).array() *= rho_.array();
-  const bool same = taken_ == taken_before_;
+  if (taken_ != taken_before_) Unsettle();
   std::swap(taken_, taken_before_);
   taken_.clear();
-  if (!same) Unsettle();
   if (steady_) return;
   top_.noalias() = A * P.topRows(ns);
   top_.noalias() += B_ * P.bottomRows(nf);

@@ -51,6 +51,7 @@ class ForceKalman {
   const Eigen::VectorXd& rho() const { return rho_; }
 
  private:
+  /// P is not what it was a tick ago: it makes up for what was taken with kept gains.
   void Unsettle();
   void Expect(Eigen::Index sensor, bool late, double innovation, double speed);
   void Correct(Eigen::Index sensor);

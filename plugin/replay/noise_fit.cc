@@ -59,6 +59,15 @@ std::vector<Stretch> PiecesOf(Index first, Index count, Index of_all, Index sens
   return pieces;
 }
 
+/// A quarter of each, which coarse steps are judged by.
+std::vector<Stretch> QuarterOf(std::vector<Stretch> pieces) {
+  constexpr Index kParts = 4;
+  for (Stretch& piece : pieces) {
+    piece.count = std::min(piece.count, std::max(kShortest, piece.count / kParts));
+  }
+  return pieces;
+}
+
 /// -2 ln L of some pieces, of every sensor.
 VectorXd DeviancesOf(const FilterPath& path, const std::vector<Stretch>& pieces,
                      const FilterNoise& noise) {
@@ -109,6 +118,7 @@ class NoiseSearch {
                                  path.samples(), ny_, path.pulled.rows()),
                         std::back_inserter(pieces_));
     }
+    quarter_ = QuarterOf(pieces_);
     const double tick = path.sample_time;
     const Shown shown = ShownBy(path.tangents.front(), path.dofs, reading_sd);
     unit_ = shown.unit;
@@ -149,7 +159,7 @@ class NoiseSearch {
          {std::pair(1.0, 0.0), std::pair(0.5, 1.0), std::pair(0.0, 1.0)}) {
       VectorXd clock = VectorXd::Zero(lower_.size());
       clock.tail(2) << size, memory;
-      kinds_.push_back({{clock, Index{-1}}});
+      of_clock_.push_back({{clock, Index{-1}}});
     }
   }
 
@@ -175,18 +185,40 @@ class NoiseSearch {
     return noise;
   }
   /// From a noise on, by steps that shrink by a third from `step` to `last`, natural
-  /// logarithms.
+  /// logarithms. A clock that shows is different at every reading, so that no gain is kept:
+  /// it is asked for where the rest is settled to a factor.
   Point Descend(const FilterNoise& noise, double step, double last) const {
     VectorXd x(lower_.size());
     x << noise.size.array().log().matrix(), noise.memory.array().log().matrix(),
         noise.white.array().log().matrix(), noise.reading.array().log().matrix(),
         std::log(noise.clock), std::log(noise.clock_memory);
-    Point best = Evaluate(x);
+    constexpr double kRough = 1.5;  // a factor of 4
+    const std::vector<Stretch>* by = step > kRough ? &quarter_ : &pieces_;
+    bool has_clock = false;
+    Point best = Evaluate(WithClock(x, lower_[clock()]), *by);
+    const auto ask_for_clock = [&] {
+      if (has_clock) return;
+      for (const double size :
+           {std::log(noise.clock), upper_[clock()] + std::log(0.1)}) {
+        Point with = Evaluate(WithClock(best.x, size), *by);
+        if (!(with.deviance() < best.deviance() - kGain)) continue;
+        best = std::move(with);
+        has_clock = true;
+      }
+    };
     for (; step >= last; step /= 3.0) {
+      if (step <= kRough && by == &quarter_) {
+        by = &pieces_;
+        best = Evaluate(best.x, *by);
+      }
+      if (step <= kRough) ask_for_clock();
       constexpr int kRounds = 2;
       for (int round = 0; round < kRounds; ++round) {
         bool moved = false;
-        for (const auto& kind : kinds_) moved |= Move(kind, step, best);
+        for (const auto& kind : kinds_) moved |= Move(kind, step, *by, best);
+        if (has_clock) {
+          for (const auto& kind : of_clock_) moved |= Move(kind, step, *by, best);
+        }
         if (!moved) break;
       }
     }
@@ -194,9 +226,17 @@ class NoiseSearch {
   }
 
  private:
-  Point Evaluate(const VectorXd& x) const {
+  // Less is noise of the search.
+  static constexpr double kGain = 0.2;
+
+  Index clock() const { return 3 * nf_ + ny_; }
+  VectorXd WithClock(VectorXd x, double size) const {
+    x[clock()] = size;
+    return x;
+  }
+  Point Evaluate(const VectorXd& x, const std::vector<Stretch>& by) const {
     Point point{x.cwiseMax(lower_).cwiseMin(upper_), {}};
-    point.deviances = DeviancesOf(path_, pieces_, NoiseOf(point.x));
+    point.deviances = DeviancesOf(path_, by, NoiseOf(point.x));
     return point;
   }
 
@@ -215,12 +255,14 @@ class NoiseSearch {
     return std::clamp(-slope / bend, -kMost, kMost);
   }
 
-  bool Move(const Kind& kind, double step, Point& best) const {
+  bool Move(const Kind& kind, double step, const std::vector<Stretch>& by,
+            Point& best) const {
     VectorXd all = VectorXd::Zero(best.x.size());
     for (const auto& [direction, sensor] : kind) all += step * direction;
     Point tried[2];
-    ParallelFor(
-        2, [&](int i) { tried[i] = Evaluate(best.x + (i == 0 ? 1.0 : -1.0) * all); });
+    ParallelFor(2, [&](int i) {
+      tried[i] = Evaluate(best.x + (i == 0 ? 1.0 : -1.0) * all, by);
+    });
     VectorXd each = VectorXd::Zero(best.x.size());
     for (const auto& [direction, sensor] : kind) {
       const auto of = [sensor](const Point& point) {
@@ -228,14 +270,12 @@ class NoiseSearch {
       };
       each += LeastOf(of(tried[1]), of(best), of(tried[0])) * step * direction;
     }
-    // Less is noise of the search.
-    constexpr double kGain = 0.2;
     const double before = best.deviance();
     const auto take = [&](Point& point) {
       if (point.deviance() < best.deviance()) best = std::move(point);
     };
     if (!each.isZero(0.0)) {
-      Point mixed = Evaluate(best.x + each);
+      Point mixed = Evaluate(best.x + each, by);
       take(mixed);
     }
     take(tried[0]);
@@ -245,11 +285,13 @@ class NoiseSearch {
 
   const FilterPath& path_;
   std::vector<Stretch> pieces_;
+  std::vector<Stretch> quarter_;
   Index nf_;
   Index ny_;
   VectorXd unit_;
   VectorXd lower_, upper_;
   std::vector<Kind> kinds_;
+  std::vector<Kind> of_clock_;
 };
 
 }  // namespace
@@ -407,6 +449,17 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
   FilterPath refined = RunForceFilter(machine, run, dofs, starts,
                                       Refined(path, reading_sd, longest, kMedium));
   return refined.deviance < path.deviance ? refined : path;
+}
+
+FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
+                               const VectorXd& reading_sd,
+                               const std::vector<Index>& dofs,
+                               const FilterNoise& near) {
+  const MeasuredRun pieces = PiecesOf(run, StatesOf(machine, dofs));
+  const FilterPath path = RunForceFilter(
+      machine, pieces, dofs, FilterStarts(machine, pieces, reading_sd), near);
+  return RunForceFilter(machine, run, dofs, FilterStarts(machine, run, reading_sd),
+                        Refined(path, reading_sd, LongestMemory(run), kMedium));
 }
 
 }  // namespace mjdiag

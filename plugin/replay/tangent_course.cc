@@ -45,6 +45,21 @@ bool AreAlike(const TickTangent& a, const TickTangent& b) {
   return true;
 }
 
+/// The same of the columns of some degrees of freedom, each by itself.
+bool ColumnsAreAlike(const TickTangent& a, const TickTangent& b,
+                     const std::vector<Index>& dofs) {
+  constexpr double kAlike = 1e-3;
+  const Index nv = a.B.cols();
+  const auto close = [](const auto& one, const auto& other) {
+    return (one - other).norm() <= kAlike * one.norm();
+  };
+  return std::ranges::all_of(dofs, [&](Index dof) {
+    return close(a.A.col(dof), b.A.col(dof)) &&
+           close(a.A.col(nv + dof), b.A.col(nv + dof)) &&
+           close(a.B.col(dof), b.B.col(dof));
+  });
+}
+
 /// Where effects push: their forces may change within less than a stretch.
 std::vector<Index> DofsWithEffects(const Machine& machine) {
   std::vector<Index> dofs;
@@ -101,7 +116,7 @@ std::vector<Index> TangentCourse::RestlessAt(const PlantState& from, const Vecto
 bool TangentCourse::HoldsFor(const Refreshed& before, const Refreshed& now,
                              const VectorXd& force_sd) const {
   if (before.of != now.of || now.since < before.since ||
-      now.since - before.since >= of_effects_ ||
+      now.since - before.since >= before.stretch ||
       before.standing.size() != now.standing.size()) {
     return false;
   }
@@ -141,7 +156,7 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   }
   std::vector<Index> dofs = RestlessAt(from, sd, force_sd);
   if (with_effects_.empty() && dofs.empty()) return known.place;
-  Refreshed now{known.place, tangents.size(), tick, {}};
+  Refreshed now{known.place, tangents.size(), tick, of_effects_, {}};
   for (const Index dof : dofs) {
     const double spread =
         sd[from.velocity.size() + dof] + force_sd[dof] * differences_.VelocityOf(dof);
@@ -150,6 +165,7 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   }
   if (refreshed_ && HoldsFor(*refreshed_, now, force_sd)) return refreshed_->place;
   TickTangent here = tangents[known.place];
+  const bool may_stand = !dofs.empty();
   // Dry friction does not ask where a joint is.
   std::erase_if(dofs, [&](Index dof) {
     return std::ranges::find(with_effects_, dof) != with_effects_.end();
@@ -157,9 +173,16 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   differences_.Refresh(from, forces, tick, control, dofs, false, sd, force_sd, here);
   differences_.Refresh(from, forces, tick, control, with_effects_, true, sd, force_sd,
                        here);
+  // What stands may begin to move at any time.
+  if (!may_stand && refreshed_ && refreshed_->of == now.of &&
+      ColumnsAreAlike(tangents[refreshed_->place], here, with_effects_)) {
+    now.place = refreshed_->place;
+    now.stretch = std::min(2 * refreshed_->stretch, shortest_);
+  } else {
+    tangents.push_back(std::move(here));
+  }
   refreshed_ = std::move(now);
-  tangents.push_back(std::move(here));
-  return tangents.size() - 1;
+  return refreshed_->place;
 }
 
 }  // namespace mjdiag

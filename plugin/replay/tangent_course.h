@@ -64,6 +64,7 @@ class TangentCourse {
     std::size_t of = 0;
     std::size_t place = 0;
     std::int64_t since = 0;
+    std::int64_t stretch = 0;
     std::vector<Standing> standing;
   };
   /// Whether the one is as good as the other would be.

@@ -9,7 +9,6 @@
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/tangent.h"
-#include "mjdiag/plugin/replay/motion_path.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/runtime/simulation.h"
@@ -61,42 +60,25 @@ VectorXd PullOf(const Machine& machine) {
 /// One record of a run, beside the machine with all that is put into it.
 class RecordFollower {
  public:
-  /// @param number  of the record in the run that the observer is for
   /// @param first   its first sample there
   RecordFollower(const Machine& machine, const MeasuredRun& record,
-                 const Observer& observer, std::size_t number, Index first)
+                 const Observer& observer, Index first)
       : record_(record),
-        observer_(observer),
-        pull_(PullOf(machine)),
         first_(first),
+        L_(observer.L * PullOf(machine).asDiagonal()),
         plant_(StartPlant(machine, record.records.front().readings)),
         stepper_(machine),
         control_(machine, record) {
     ChooseSolver(*plant_.model);
-    if (!observer.following) return;
-    const MotionPoint& start = observer.following->path->starts[number];
-    VectorXd::Map(plant_.data->qpos, plant_.model->nq) = start.position;
-    VectorXd::Map(plant_.data->qvel, plant_.model->nv) = start.velocity;
   }
 
   /// Into its columns of the track.
   void Follow(const Watch& watch, Track& track);
 
  private:
-  /// The gain of sample k of the record.
-  void TakeGain(Index k) {
-    const Eigen::MatrixXd& gain = observer_.GainAt(first_ + k);
-    if (&gain == taken_) return;
-    taken_ = &gain;
-    L_ = gain * pull_.asDiagonal();
-  }
-
   const MeasuredRun& record_;
-  const Observer& observer_;
-  VectorXd pull_;
   Index first_;
   Eigen::MatrixXd L_;
-  const Eigen::MatrixXd* taken_ = nullptr;
   StartedPlant plant_;
   Stepper stepper_;
   RecordedInputs control_;
@@ -139,7 +121,6 @@ void RecordFollower::Follow(const Watch& watch, Track& track) {
     }
     if (counts.size() > 0) counted = counts.col(k);
     if (watch.tick) watch.tick(measured, counted);
-    TakeGain(k);
     correction.noalias() = L_ * innovation;
     q += correction.head(nv);
     v += correction.tail(nv);
@@ -162,7 +143,7 @@ Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& 
     if (watch.record) watch.record();
     const MeasuredRun record = Part(run, i, run.SamplesOf(i));
     const Machine during = DuringRecord(run.records[i], machine);
-    RecordFollower(during, record, observer, i, run.records[i].sample)
+    RecordFollower(during, record, observer, run.records[i].sample)
         .Follow(watch, track);
   };
   const auto records = static_cast<int>(run.records.size());
@@ -352,27 +333,12 @@ Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRu
 Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
                 const Observer& observer, ErrorDynamics& dynamics) {
   TangentRecorder recorder(machine.plant(), machine.linear());
-  Index sample = 0;
-  const MechanicalModel* about = nullptr;
-  const auto take_place = [&] {
-    if (!observer.following || sample >= run.samples()) return;
-    const MotionPath& path = *observer.following->path;
-    const MechanicalModel& here =
-        path.stretches[path.of_sample[static_cast<std::size_t>(sample)]].model;
-    if (&here != about) recorder.MoveTo(here);
-    about = &here;
-  };
   const Watch watch{
-      [&] {
-        dynamics.Begin();
-        take_place();
-      },
+      [&] { dynamics.Begin(); },
       [&recorder](const mjModel& changed, const mjData& data,
                   std::span<const int> off) { recorder.Substep(changed, data, off); },
       [&](const SampleMask& measured, const SampleMask& counted) {
         dynamics.Add(recorder.EndTick(), measured, counted);
-        ++sample;
-        take_place();
       }};
   return Follow(machine, changes, run, observer, true, watch);
 }

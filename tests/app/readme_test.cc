@@ -1,6 +1,7 @@
 // The commands of README.md and of its tour, as they stand there, in a folder that has
 // nothing but the machines.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -77,6 +78,9 @@ TEST(Readme, CommandsDoWhatTheySay) {
     if (command.rfind("mjdiag discover --setup mjcf/servo", 0) == 0) continue;
     // Other tests wait for the answers of a minute, and for the best motion.
     command = std::regex_replace(command, std::regex("--budget [0-9]+"), "--budget 10");
+    // Beside other tests the clock goes faster.
+    command = std::regex_replace(command, std::regex("^mjdiag discover "),
+                                 "mjdiag discover --budget 300 ");
     command = std::regex_replace(command, std::regex("^mjdiag excite "),
                                  "mjdiag excite --budget 5 ");
     // FOLDER is where the reader has the records of the servo.
@@ -97,11 +101,10 @@ TEST(Readme, CommandsDoWhatTheySay) {
                            "out/filters/filters.json", "out/drag/report.html"}) {
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
   }
-  // Nobody knows the numbers of a measured machine exactly.
   if (emps) {
     const auto document = nlohmann::json::parse(
         ReadAll(folder.path() / "out/found/discovery.json"), nullptr, false);
-    EXPECT_FALSE(document["calibration"].empty());
+    EXPECT_THAT(document["causes"].dump(), testing::HasSubstr("friction"));
   }
 }
 

@@ -6,9 +6,9 @@
 
 #include <atomic>
 
-#include "discovery/stage_under_test.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "support/stage.h"
 
 namespace mjdiag {
 namespace {
@@ -33,7 +33,7 @@ class Budget : public ::testing::Test {
   }
   /// Of a search that may do all it would: once for all tests, for it takes the longest.
   const Discovery& Free() const {
-    static const Discovery free = Answer(Within(Work::kUnlimited));
+    static const Discovery free = Answer(Within(kUnlimited));
     return free;
   }
   static std::string Named(const Discovery& discovery) {
@@ -47,7 +47,7 @@ class Budget : public ::testing::Test {
     return names;
   }
 
-  const test::StageUnderTest stage_;
+  const test::Stage stage_;
   const Record record_ =
       stage_.Measure({"coulomb_friction@load:force=18",
                       "force_ripple@load:amplitude=1.5,period=0.02,phase=0.7"});
@@ -57,38 +57,35 @@ TEST_F(Budget, ChangesNothingOfAnAnswerThatEndsWithinIt) {
   const Discovery& free = Free();
   ASSERT_EQ(free.causes.size(), 2u);
   EXPECT_TRUE(free.budget.left_out.empty());
-  const Discovery bound = Answer(Within(2.0 * free.budget.used));
+  const Discovery bound = Answer(Within(20.0 * free.budget.used));
   EXPECT_EQ(Named(bound), Named(free));
   EXPECT_EQ(bound.notes, free.notes);
-  EXPECT_EQ(bound.budget.used, free.budget.used);
 }
 
-TEST_F(Budget, GivesTheSameAnswerWithAnyNumberOfThreads) {
-  const double all = Free().budget.used;
-  for (const double part : {0.2, 0.5, 0.8}) {
-    const Discovery several = Answer(Within(part * all));
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const Discovery alone = Answer(Within(part * all));
-    EXPECT_EQ(Named(alone), Named(several)) << part;
-    EXPECT_EQ(alone.notes, several.notes) << part;
-    EXPECT_EQ(alone.budget.used, several.budget.used) << part;
-  }
+TEST_F(Budget, IsNeededForNoAnswerToBeTheSameWithAnyNumberOfThreads) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Discovery alone = Answer(Within(kUnlimited));
+  EXPECT_EQ(Named(alone), Named(Free()));
+  EXPECT_EQ(alone.notes, Free().notes);
 }
 
-TEST_F(Budget, EndsASearchNearItAndSaysWhatIsLeftOut) {
-  const double all = Free().budget.used;
-  for (const double part : {0.2, 0.4, 0.6}) {
-    const Discovery answer = Answer(Within(part * all));
-    EXPECT_LT(answer.budget.used, 1.3 * part * all + 0.05 * all) << part;
-    EXPECT_FALSE(answer.budget.left_out.empty()) << part;
-    EXPECT_THAT(answer.notes, Contains(HasSubstr("ended by its budget of"))) << part;
-    EXPECT_THAT(answer.notes, Contains(HasSubstr("--budget"))) << part;
-  }
+// A budget is of the clock, which asserts nothing here: what it leaves out is said.
+TEST_F(Budget, SaysWhatIsLeftOut) {
+  const Discovery answer = Answer(Within(0.05 * Free().budget.used));
+  EXPECT_FALSE(answer.budget.left_out.empty());
+  EXPECT_THAT(answer.notes, Contains(HasSubstr("ended by its budget of")));
+  EXPECT_THAT(answer.notes, Contains(HasSubstr("--budget")));
 }
 
+// Asked to end with the first cause in hand.
 TEST_F(Budget, LeavesTheBestCauseSoFar) {
-  const double all = Free().budget.used;
-  const Discovery answer = Answer(Within(0.6 * all));
+  DiscoverOptions options = Within(kUnlimited);
+  std::atomic<bool> has_one = false;
+  options.progress = [&](const DiscoveryProgress& progress) {
+    if (!progress.best.empty()) has_one = true;
+  };
+  options.stop = [&] { return has_one.load(); };
+  const Discovery answer = Answer(options);
   ASSERT_FALSE(answer.causes.empty());
   EXPECT_EQ(answer.causes[0].cause.name(), "coulomb_friction");
   for (const CauseParameter& parameter : answer.causes[0].parameters) {
@@ -105,18 +102,18 @@ TEST_F(Budget, TooSmallForAnySearchSaysNotThatThereIsNothing) {
 
 TEST_F(Budget, EndsSoonAfterItIsAskedTo) {
   std::atomic<int> asked = 0;
-  DiscoverOptions options = Within(Work::kUnlimited);
+  DiscoverOptions options = Within(kUnlimited);
   options.stop = [&] { return ++asked > 40; };  // in the midst of the first fits
   const Discovery answer = Answer(options);
   EXPECT_TRUE(answer.budget.stopped);
   EXPECT_THAT(answer.notes, Contains(HasSubstr("it was stopped")));
   EXPECT_THAT(answer.budget.left_out, Contains("further causes"));
-  EXPECT_LT(answer.budget.used, 0.4 * Free().budget.used);
+  EXPECT_LT(answer.budget.used, Free().budget.used);
 }
 
 TEST_F(Budget, NamesOnlyWhatWasChosen) {
   EXPECT_EQ(Free().causes.size(), 2u);
-  DiscoverOptions options = Within(Work::kUnlimited);
+  DiscoverOptions options = Within(kUnlimited);
   options.choice.without = {"coulomb_friction"};
   EXPECT_THAT(Named(Answer(options)), Not(HasSubstr("coulomb_friction@")));
   const Record noisy = stage_.Measure({"encoder_noise@load_encoder:sd=1.5e-8"});
@@ -126,7 +123,7 @@ TEST_F(Budget, NamesOnlyWhatWasChosen) {
 
 TEST_F(Budget, ProgressTellsTheBestAnswerSoFar) {
   std::vector<std::string> best;
-  DiscoverOptions options = Within(Work::kUnlimited);
+  DiscoverOptions options = Within(kUnlimited);
   options.progress = [&](const DiscoveryProgress& progress) {
     EXPECT_FALSE(progress.what.empty());
     best.push_back(progress.best);

@@ -37,12 +37,6 @@ TEST(Explanations, AreOneWhereNothingElseSurvives) {
   EXPECT_EQ(sets[0].causes[1].name(), "force_ripple");
 }
 
-TEST(Explanations, LeaveRoomForALawThatIsInNoList) {
-  const std::vector<FoundCause> named{Found(kFriction, 0.4)};
-  EXPECT_EQ(ExplanationsOf(named, 1.0)[0].probability, 1.0);
-  EXPECT_LT(ExplanationsOf(named, 0.0)[0].probability, 0.5);
-}
-
 TEST(Explanations, ExchangeOneCauseAtATime) {
   const auto sets = ExplanationsOf(
       {Found(kFriction, 0.8, {{ParseEffect(kDrag), 0.2}}),

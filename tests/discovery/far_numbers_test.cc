@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "discovery/stage_under_test.h"
 #include "mjdiag/discovery/discovery.h"
+#include "support/stage.h"
 
 namespace mjdiag {
 namespace {
@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-Discovery InDoubt(const test::StageUnderTest& stage, const Record& record) {
+Discovery InDoubt(const test::Stage& stage, const Record& record) {
   DiscoverOptions options;
   options.figures = false;
   options.doubt = true;
@@ -26,7 +26,7 @@ Discovery InDoubt(const test::StageUnderTest& stage, const Record& record) {
 }
 
 TEST(FarNumbers, AreSaidWithHowFarTheyAre) {
-  const test::StageUnderTest stage;
+  const test::Stage stage;
   // A mass and a motor constant are known to 5 %, and share it: five of that each.
   const Record record = stage.Measure({}, {{"eta", std::exp(-0.5)}});
   const Discovery discovery = InDoubt(stage, record);
@@ -35,13 +35,13 @@ TEST(FarNumbers, AreSaidWithHowFarTheyAre) {
 }
 
 TEST(FarNumbers, AreNotSaidOfANumberThatIsOffAsNumbersAre) {
-  const test::StageUnderTest stage;
+  const test::Stage stage;
   const Record record = stage.Measure({}, {{"eta", 0.97}});
   EXPECT_THAT(InDoubt(stage, record).notes,
               Not(Contains(HasSubstr("times what the plant says"))));
 }
 
-Discovery OfDelay(const test::StageUnderTest& stage, double steps) {
+Discovery OfDelay(const test::Stage& stage, double steps) {
   const double delay = steps * stage.machine.plant().opt.timestep;
   const Record record =
       stage.Measure({"input_delay@drive:delay=" + std::to_string(delay)});
@@ -52,7 +52,7 @@ Discovery OfDelay(const test::StageUnderTest& stage, double steps) {
 }
 
 TEST(StepsOfTheSimulation, AreNoCause) {
-  const test::StageUnderTest stage;
+  const test::Stage stage;
   const Discovery half = OfDelay(stage, 0.5);
   EXPECT_TRUE(half.causes.empty());
   EXPECT_EQ(half.verdict, DiscoveryVerdict::kNoDiscrepancy);

@@ -108,23 +108,10 @@ TEST_F(LoadedRecords, HaveTheirOwnPlants) {
 }
 
 TEST_F(LoadedRecords, ShowOneCauseInAllOfThem) {
-  Measurements measurements = Read("loaded.xml");
-  measurements.unseen = measurements.fit;  // or one of the two would be held out
-  DiscoverOptions options;
-  options.doubt = false;
-  options.budget = 30.0;
-  const Discovery found = Discover(Load("plant.xml"), measurements, options);
-  ASSERT_EQ(found.causes.size(), 1u);
-  EXPECT_EQ(found.causes[0].cause.site, "stage");
-  EXPECT_THAT(found.causes[0].cause.effect->name(), HasSubstr("friction"));
-}
-
-TEST_F(LoadedRecords, ShowItToTheFilterAsWell) {
   DiscoverOptions options;
   options.doubt = false;
   options.figures = false;
-  const Discovery found =
-      DiscoverByFilter(Load("plant.xml"), Read("loaded.xml"), options);
+  const Discovery found = Discover(Load("plant.xml"), Read("loaded.xml"), options);
   ASSERT_EQ(found.causes.size(), 1u);
   EXPECT_EQ(found.causes[0].cause.site, "stage");
   EXPECT_THAT(found.causes[0].cause.effect->name(), HasSubstr("friction"));

@@ -99,12 +99,10 @@ TEST(MismatchPlots, ShadeWhatWasNotFittedAndLeaveOutWhatDoesNotCount) {
   EXPECT_TRUE(MismatchPlots(before, &after, 0.0, 3).at(0).bands.empty());
 }
 
-TEST(UnexplainedPlots, LeaveOutTheEnds) {
+TEST(UnexplainedPlots, ShowTheForceAndTheLimitsOfItsError) {
   const auto plots = UnexplainedPlots(SampleDiscovery());
   ASSERT_EQ(plots.size(), 2u);
   const Eigen::VectorXd& value = plots[0].curves.at(0).values;
-  EXPECT_TRUE(std::isnan(value[39]));
-  EXPECT_TRUE(std::isnan(value[1960]));
   EXPECT_NEAR(value[125], 20.0, 1e-9);
   EXPECT_DOUBLE_EQ(plots[0].levels.at(0).value, 1.6);
 }

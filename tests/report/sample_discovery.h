@@ -96,8 +96,8 @@ inline Discovery SampleDiscovery() {
        1.3,
        {{"force", 4.6}, {"q", 0.01}},
        {{"force", 6.0}}}};
-  discovery.forces_before = {{"load", "N", SampleSine(20.0), 0.8, 40, 25.0}};
-  discovery.forces_after = {{"load", "N", SampleSine(0.5), 0.4, 40, 25.0}};
+  discovery.forces_before = {{"load", "N", SampleSine(20.0), 14.0, 0.8, 0.01}};
+  discovery.forces_after = {{"load", "N", SampleSine(0.5), 0.35, 0.4, 0.01}};
   discovery.laws = {SampleLaw()};
   discovery.fault_limits = {{"zeta", 0.2, 0.01},
                             {"beta", std::numeric_limits<double>::infinity(), 0.5}};

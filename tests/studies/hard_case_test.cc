@@ -110,8 +110,8 @@ TEST(HardCase, NeedsAMachineThatFollowsTrajectories) {
 
 TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
   const Machine model = Emps();
-  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
-                            1);
+  const VisibleSize visible(model, model.rates().substeps,
+                            DefaultMotion(model.setup()));
   const auto part = [&](const Cause& cause) {
     return visible.Shown(cause, visible.NoOthers()) /
            visible.Innovations(cause).squaredNorm();
@@ -125,9 +125,9 @@ TEST(VisibleSize, IsWhatNoNumbersOfThePlantExplain) {
 // of its speed.
 TEST(VisibleSize, IsNothingBesideALawThatDoesTheSame) {
   const Machine model = Emps();
-  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
-                            1);
-  const Cause drift = ParseEffect("encoder_drift@load_encoder:rate=1e-3");
+  const VisibleSize visible(model, model.rates().substeps,
+                            DefaultMotion(model.setup()));
+  const Cause drift = ParseEffect("encoder_drift@load_encoder:rate=2e-3");
   EXPECT_GT(visible.Shown(drift, visible.NoOthers()), kLeastShown);
   EXPECT_LT(visible.ShownBesideOtherLaws(drift), kLeastTold);
   const Cause ripple = ParseEffect("force_ripple@load:amplitude=10,period=0.01");
@@ -139,7 +139,7 @@ TEST(VisibleSize, IsNotHiddenByStepsThatOnlyMakeInputsEarly) {
   const Machine model = Emps().WithSensorNoise(Eigen::VectorXd::Constant(1, 1e-8));
   const Cause cause = ParseEffect("coulomb_friction@load:force=2");
   const auto shown = [&](int substeps) {
-    const VisibleSize visible(model, substeps, DefaultMotion(model.setup()), 1);
+    const VisibleSize visible(model, substeps, DefaultMotion(model.setup()));
     return visible.Shown(cause, visible.NoOthers());
   };
   const double same = shown(model.rates().substeps);
@@ -148,8 +148,8 @@ TEST(VisibleSize, IsNotHiddenByStepsThatOnlyMakeInputsEarly) {
 
 TEST(VisibleSize, IsNothingBesideACauseThatDoesTheSame) {
   const Machine model = Emps();
-  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
-                            1);
+  const VisibleSize visible(model, model.rates().substeps,
+                            DefaultMotion(model.setup()));
   const Cause cause = ParseEffect("coulomb_friction@load:force=2");
   const Eigen::VectorXd one = visible.Innovations(cause);
   EXPECT_GT(visible.Shown(cause, visible.NoOthers()), 200.0);
@@ -160,16 +160,16 @@ TEST(VisibleSize, IsNothingBesideACauseThatDoesTheSame) {
 // these may be off, and no further, whatever the first order says.
 TEST(VisibleSize, OfAWeakMotorIsWhatWrongNumbersCost) {
   const Machine model = Emps();
-  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
-                            1);
+  const VisibleSize visible(model, model.rates().substeps,
+                            DefaultMotion(model.setup()));
   const Cause weak = ParseEffect("motor_constant@drive:factor=0.8");
   EXPECT_LT(visible.Shown(weak, visible.NoOthers()), 20.0);
 }
 
 TEST(VisibleSize, OfALawWithASimplerOneInItIsWhatTellsThemApart) {
   const Machine model = Emps();
-  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
-                            1);
+  const VisibleSize visible(model, model.rates().substeps,
+                            DefaultMotion(model.setup()));
   const auto told = [&](const char* law) {
     return visible.ShownBesideSimplerLaw(ParseEffect(law));
   };
@@ -180,8 +180,8 @@ TEST(VisibleSize, OfALawWithASimplerOneInItIsWhatTellsThemApart) {
 
 TEST(VisibleSize, BesideOtherLawsIsWhatTellsACauseFromThemWithTheOthersThere) {
   const Machine model = Emps();
-  const VisibleSize visible(model, model.rates().substeps, DefaultMotion(model.setup()),
-                            1);
+  const VisibleSize visible(model, model.rates().substeps,
+                            DefaultMotion(model.setup()));
   const Cause ripple = ParseEffect("force_ripple@load:amplitude=10,period=0.01");
   const auto told = [&](const char* law) {
     return visible.ShownBesideOtherLaws({ripple, ParseEffect(law)}, 1);

@@ -12,7 +12,7 @@
 //      as friction does
 //
 // It is not looked for among the laws: it is learned where none of them is left
-// (discovery/unexplained/learned_curve.h).
+// (discovery/blocks/curve_block.h).
 
 #include <Eigen/Core>
 #include <array>

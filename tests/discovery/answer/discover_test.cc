@@ -24,7 +24,7 @@ const Discovery& Friction() {
     const test::Arm arm;
     const Record record =
         test::Arm::Measure({"coulomb_friction@elbow:force=0.05"}, 1.0, 64);
-    return DiscoverByFilter(arm.machine, record, nullptr, WithDoubt());
+    return Discover(arm.machine, record, nullptr, WithDoubt());
   }();
   return found;
 }
@@ -77,7 +77,7 @@ Discovery Heavy(const DiscoverOptions& options) {
   const test::Arm arm;
   const Machine light = arm.machine.WithNumbers(
       {{FindPlantNumber(arm.machine.plant(), "mass@fore"), 1.0 / 1.1}});
-  return DiscoverByFilter(light, test::Arm::Measure({}, 1.0, 64), nullptr, options);
+  return Discover(light, test::Arm::Measure({}, 1.0, 64), nullptr, options);
 }
 
 TEST(Answer, WritesEveryNumberThatDiffersIntoTheExtendedPlant) {
@@ -113,8 +113,7 @@ TEST(Answer, NamesNoMoreCausesThanItMay) {
   DiscoverOptions options;
   options.most_causes = 1;
   options.figures = false;
-  EXPECT_THAT(DiscoverByFilter(arm.machine, record, nullptr, options).causes,
-              SizeIs(1));
+  EXPECT_THAT(Discover(arm.machine, record, nullptr, options).causes, SizeIs(1));
 }
 
 }  // namespace

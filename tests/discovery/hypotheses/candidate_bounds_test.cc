@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "discovery/stage_under_test.h"
+#include "discovery/stage_motion.h"
 
 namespace mjdiag {
 namespace {
@@ -17,11 +17,10 @@ const FitParameter& Parameter(const std::vector<Candidate>& candidates,
 }
 
 TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
-  const test::StageUnderTest stage;
-  const DiscoveryProblem problem = stage.Pose(stage.Measure({}));
+  const test::Stage stage;
   auto candidates = ListCandidates(stage.machine);
   const auto before = candidates;
-  const ObservedMotion motion = problem.MotionOf(problem.Nominal());
+  const ObservedMotion motion = test::MotionOf(stage);
   BoundByRecord(candidates, stage.machine, motion);
   const double speed = motion.velocity.cwiseAbs().maxCoeff();
   const FitParameter& velocity =
@@ -39,7 +38,7 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
 
 // An encoder of 1 um says nothing of waves that repeat with it, or are smaller than half.
 TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
-  const test::StageUnderTest stage;
+  const test::Stage stage;
   auto candidates = ListCandidates(stage.machine);
   MeasuredRun run = ToMeasuredRun(stage.machine.setup(), stage.Measure({}));
   constexpr double kStep = 1e-6;
@@ -56,7 +55,7 @@ TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
 }
 
 TEST(ListCandidates, EndWhereALawBecomesOtherPhysics) {
-  const test::StageUnderTest stage;
+  const test::Stage stage;
   const auto candidates = ListCandidates(stage.machine);
   EXPECT_EQ(Parameter(candidates, "flexible_mode@load", "damping_ratio").upper, 0.3);
   // Simulated it may be more.

@@ -63,29 +63,6 @@ TEST(Observer, KnowsTheSpreadOfInnovationsOfATrueModel) {
   EXPECT_NEAR(residual.squaredNorm() / n, 1.0, 5.0 * std::sqrt(2.0 / n) + 0.03);
 }
 
-// Against the autocorrelation of the impulse response of e = (I - C (z I - F)^-1 L) n.
-TEST(Observer, KnowsTheColourOfInnovationsOfATrueModel) {
-  const test::Stage stage;
-  const Observer observer =
-      Design(stage.machine, stage.machine.linear(), VectorXd::Constant(1, 1e-8), 60.0);
-  const MatrixXd F = observer.tick.A - observer.L * observer.tick.C;
-  constexpr Eigen::Index kLong = 20000;
-  VectorXd h(kLong);
-  h[0] = 1.0;
-  MatrixXd state = -observer.L;
-  for (Eigen::Index k = 1; k < kLong; ++k) {
-    h[k] = (observer.tick.C * state)(0);
-    state = F * state;
-  }
-  const VectorXd correlation = NoiseCorrelation(observer, 0, 12);
-  for (Eigen::Index l = 1; l <= 12; ++l) {
-    EXPECT_NEAR(correlation[l - 1],
-                h.head(kLong - l).dot(h.tail(kLong - l)) / h.squaredNorm(), 1e-9)
-        << l;
-  }
-  EXPECT_LT(correlation[0], -1e-3);
-}
-
 TEST(Observer, RefusesAMotionThatNoSensorSees) {
   const test::Stage stage;
   MechanicalModel model = stage.machine.linear();
