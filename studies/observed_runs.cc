@@ -53,9 +53,8 @@ ObservedRuns::ObservedRuns(const Machine& machine, const Excitation& motion)
       observer_(ObserverOf(machine, quiet_)),
       settling_(SettlingOf(quiet_, observer_)),
       dynamics_(observer_, 1) {
-  FollowRun(machine_, {}, quiet_, observer_, dynamics_);
-  motion_ =
-      ObserveMotion(machine_, quiet_, FollowRun(machine_, {}, quiet_, observer_, true));
+  motion_ = ObserveMotion(machine_, quiet_,
+                          FollowRun(machine_, {}, quiet_, observer_, dynamics_));
 }
 
 MeasuredRun ObservedRuns::RunOf(const Machine& measured) const {

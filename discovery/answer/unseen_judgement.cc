@@ -54,12 +54,11 @@ void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& follo
 /// The same behind the likeliest noise near one.
 void FollowUnseenNear(const AnswerData& data, const FilterNoise& near,
                       ModelOnRuns& one) {
-  const FilterNoise begin = near;  // of `one` itself, maybe
   TakeUnseen(
       data,
       [&] {
         return FilterLikeliestNear(data.With(one.fit.model), data.run.unseen,
-                                   data.reading_sd, one.seen.dofs, begin);
+                                   data.reading_sd, one.seen.dofs, near);
       },
       one);
 }

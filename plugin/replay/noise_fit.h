@@ -6,9 +6,9 @@
 // starts twice, from all slow and from all fast.
 //
 // Searched are logarithms, a kind of noise at a time (sizes, memories, both along the same
-// random walk, white forces, readings, the clock), by steps of 64 down to 1.15, coarse ones on a quarter of the readings: every joint
-// goes to where the parabola through -2 ln L of the sensor that shows it best is least, all
-// at once, if the whole gains by that. On 3600 readings in pieces of every record, and up to
+// random walk, white forces, readings, the clock), by steps of 64 down to 1.15, coarse ones on
+// a quarter of the readings: every joint goes to where the parabola through -2 ln L of the
+// sensor that shows it best is least, all at once, if the whole gains by that. On 3600 readings in pieces of every record, and up to
 // four times as many of a small machine.
 
 #include <Eigen/Core>

@@ -16,31 +16,34 @@ constexpr double kStretchTime = 0.01;  // [s]
 // Forces of effects change sooner: a motion of some Hz changes them by a hundredth within this.
 constexpr double kStretchOfEffects = 0.001;  // [s]
 
+template <typename Part>
+bool AreClose(const Part& one, const Part& other) {
+  constexpr double kAlike = 1e-3;
+  return (one - other).norm() <= kAlike * one.norm();
+}
+
 /// Of two tangents, of positions and velocities each by itself, which have units of their
 /// own.
 bool AreAlike(const TickTangent& a, const TickTangent& b) {
-  constexpr double kAlike = 1e-3;
   const Index nv = a.B.cols();
-  const auto close = [](const auto& one, const auto& other) {
-    return (one - other).norm() <= kAlike * one.norm();
-  };
   const Index ns = a.A.rows();
   const Index begins[] = {0, nv, 2 * nv, ns};
   for (int i = 0; i < 3; ++i) {
     const Index rows = begins[i + 1] - begins[i];
     for (int j = 0; j < 3; ++j) {
       const Index columns = begins[j + 1] - begins[j];
-      if (!close(a.A.block(begins[i], begins[j], rows, columns),
-                 b.A.block(begins[i], begins[j], rows, columns))) {
+      if (!AreClose(a.A.block(begins[i], begins[j], rows, columns),
+                    b.A.block(begins[i], begins[j], rows, columns))) {
         return false;
       }
     }
-    if (!close(a.B.middleRows(begins[i], rows), b.B.middleRows(begins[i], rows))) {
+    if (!AreClose(a.B.middleRows(begins[i], rows), b.B.middleRows(begins[i], rows))) {
       return false;
     }
   }
   for (Index i = 0; i < a.C.rows(); ++i) {
-    if (!close(a.C.row(i), b.C.row(i)) || !close(a.D.row(i), b.D.row(i))) return false;
+    if (!AreClose(a.C.row(i), b.C.row(i)) || !AreClose(a.D.row(i), b.D.row(i)))
+      return false;
   }
   return true;
 }
@@ -48,15 +51,11 @@ bool AreAlike(const TickTangent& a, const TickTangent& b) {
 /// The same of the columns of some degrees of freedom, each by itself.
 bool ColumnsAreAlike(const TickTangent& a, const TickTangent& b,
                      const std::vector<Index>& dofs) {
-  constexpr double kAlike = 1e-3;
   const Index nv = a.B.cols();
-  const auto close = [](const auto& one, const auto& other) {
-    return (one - other).norm() <= kAlike * one.norm();
-  };
   return std::ranges::all_of(dofs, [&](Index dof) {
-    return close(a.A.col(dof), b.A.col(dof)) &&
-           close(a.A.col(nv + dof), b.A.col(nv + dof)) &&
-           close(a.B.col(dof), b.B.col(dof));
+    return AreClose(a.A.col(dof), b.A.col(dof)) &&
+           AreClose(a.A.col(nv + dof), b.A.col(nv + dof)) &&
+           AreClose(a.B.col(dof), b.B.col(dof));
   });
 }
 
