@@ -258,6 +258,21 @@ Index RepeatsInside(const VectorXd& x) {
   return total;
 }
 
+/// Whether a reading turns around within one of its steps: a parabola whose top is in a step
+/// for 2 h samples is two steps off another h away, what is cut off in motion at least h.
+bool TurnsAround(const VectorXd& x, const Repeats& run) {
+  constexpr double kSteps = 4.0;
+  const Index side = std::max<Index>(5, run.count / 2);
+  if (run.first < side || run.end() + side > x.size()) return false;
+  double step = 0.0;
+  for (Index k = run.first - side + 1; k < run.end() + side; ++k) {
+    step = std::max(step, std::abs(x[k] - x[k - 1]));
+  }
+  const double top = x[run.first];
+  return std::max(std::abs(top - x[run.first - side]),
+                  std::abs(top - x[run.end() - 1 + side])) <= kSteps * step;
+}
+
 void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
   constexpr Index kLeast = 10;
   constexpr double kShare = 0.005;
@@ -276,7 +291,7 @@ void RecordCheck::CheckSaturation(const SensorSetup& sensor) const {
     bool should_move = false;
     bool cut_off = false;
     for (const Repeats& run : runs) {
-      if (x[run.first] != extreme) continue;
+      if (x[run.first] != extreme || TurnsAround(x, run)) continue;
       if (first < 0) first = run.first;
       total += run.count;
       should_move |= expected != nullptr &&

@@ -32,10 +32,16 @@ import numpy as np
 LEAST_BOUND = 1e-12  # [N, N m] MuJoCo makes no friction constraint of a bound of nothing
 FRICTION_OF_DOF = 1  # mjCNSTR_FRICTION_DOF
 SLIDE_OR_HINGE = (2, 3)  # mjJNT_SLIDE, mjJNT_HINGE
+BODY, XBODY, JOINT, GEOM, SITE = 1, 2, 3, 5, 6  # mjOBJ_BODY and so on
 AT_JOINT = (0, 1)  # mjTRN_JOINT, mjTRN_JOINTINPARENT
 RUNGE_KUTTA = 1  # mjINT_RK4
 
-SITES = {"command": "actuator", "reading": "sensor", "noise": "sensor"}  # others: joints
+SITES = {
+    "command": "actuator",
+    "reading": "sensor",
+    "late reading": "sensor",
+    "noise": "sensor",
+}  # others: joints
 
 LAWS = {}  # name: (kind, function, number of values)
 
@@ -359,6 +365,11 @@ def encoder_periodic_error(y, time, amplitude, period, phase):
 @_law("reading", 2)
 def encoder_drift(y, time, rate):
     return y + rate * time
+
+
+@_law("late reading", 2)
+def encoder_delay(y, rate, delay):
+    return y - delay * rate
 
 
 # What does not act in a step: `prepare` moves zeros of hinges, and noise is that of the

@@ -264,14 +264,52 @@ def _set_bounds(kinds, ids, friction, bounds):
         friction[(np.asarray(kinds) == FRICTION_OF_DOF) & (np.asarray(ids) == dof)] = bound
 
 
+def _frame(model, data, kind, place):
+    """Where a frame is, how it is turned, and how fast it turns and moves."""
+    names = {BODY: "xi", XBODY: "x", GEOM: "geom_x", SITE: "site_x"}[kind]
+    bodies = {GEOM: "geom_bodyid", SITE: "site_bodyid"}
+    body = getattr(model, bodies[kind])[place] if kind in bodies else place
+    position = np.reshape(getattr(data, names + "pos"), (-1, 3))[place]
+    rotation = np.reshape(getattr(data, names + "mat"), (-1, 3, 3))[place]
+    turning, moving = np.reshape(data.cvel, (-1, 2, 3))[body]
+    centre = np.reshape(data.subtree_com, (-1, 3))[model.body_rootid[body]]
+    return position, rotation, turning, moving + np.cross(turning, position - centre)
+
+
+def _rates(model, data, sensor):
+    """Of the joint, the tendon, the actuator or the frame whose position a sensor reads.
+    Which numbers MuJoCo has for tendons and actuators changes with its version; what is read
+    does not."""
+    kind, place = model.sensor_objtype[sensor], model.sensor_objid[sensor]
+    if kind == JOINT:
+        return [data.qvel[model.jnt_dofadr[place]]]
+    if kind in (BODY, XBODY, GEOM, SITE):
+        position, _, _, velocity = _frame(model, data, kind, place)
+        if model.sensor_refid[sensor] < 0:
+            return velocity
+        origin, rotation, turning, moving = _frame(
+            model, data, model.sensor_reftype[sensor], model.sensor_refid[sensor])
+        return rotation.T @ (velocity - moving - np.cross(turning, position - origin))
+    read = data.sensordata[model.sensor_adr[sensor]]
+    if place < model.ntendon and data.ten_length[place] == read:
+        return [data.ten_velocity[place]]
+    return [data.actuator_velocity[place]]
+
+
 def distort(model, data):
     """The readings of all sensors, data.sensordata with the errors of encoders in it."""
     readings = np.array(data.sensordata, dtype=float)
     for law in _prepared(model):
-        if law.kind == "reading":
-            first = model.sensor_adr[law.id]
-            for i in range(first, first + model.sensor_dim[law.id]):
-                readings[i] = law.function(float(readings[i]), data.time, *law.values)
+        if law.kind not in ("reading", "late reading"):
+            continue
+        first, size = model.sensor_adr[law.id], model.sensor_dim[law.id]
+        own = readings[first : first + size]
+        if law.kind == "late reading":
+            readings[first : first + size] = law.function(
+                own, np.asarray(_rates(model, data, law.id)), *law.values)
+            continue
+        for i in range(size):
+            own[i] = law.function(float(own[i]), data.time, *law.values)
     return readings
 
 

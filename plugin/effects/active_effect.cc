@@ -22,8 +22,9 @@ ActiveEffects::ActiveEffects(const Channels& channels, const mjModel& model,
   }
 }
 
-void ActiveEffects::Distort(std::span<double> readings, double time) noexcept {
-  for (const auto& effect : effects_) effect->Distort(readings, time);
+void ActiveEffects::Distort(const mjModel& model, const mjData& data,
+                            std::span<double> readings, double time) noexcept {
+  for (const auto& effect : effects_) effect->Distort(model, data, readings, time);
 }
 
 void ActiveEffects::Act(const mjModel& model, mjData& data,

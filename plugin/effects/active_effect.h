@@ -21,8 +21,9 @@ class ActiveEffect {
  public:
   virtual ~ActiveEffect() = default;
   /// Changes readings, one for each sensor channel of the setup, taken at `time` [s]
-  /// since the start of the run.
-  virtual void Distort(std::span<double> /*readings*/, double /*time*/) noexcept {}
+  /// since the start of the run, where data have positions and velocities.
+  virtual void Distort(const mjModel&, const mjData&, std::span<double> /*readings*/,
+                       double /*time*/) noexcept {}
   /// Changes the command in data.ctrl, of this physics step.
   virtual void Drive(const mjModel&, mjData&) noexcept {}
   /// What it adds to the damping of its joint in this step [N s/m]. Less than nothing
@@ -56,7 +57,8 @@ class ActiveEffects {
                 const std::vector<PlacedEffect>& effects);
 
   /// The readings of a control tick, setup order.
-  void Distort(std::span<double> readings, double time) noexcept;
+  void Distort(const mjModel& model, const mjData& data, std::span<double> readings,
+               double time) noexcept;
   /// Once a physics step, after positions and velocities and before accelerations,
   /// with the commands of the tick in data.ctrl: changes them and sets
   /// data.qfrc_applied of the joints that have such effects.

@@ -13,17 +13,23 @@ using Eigen::Index;
 // A motor that pushes one stage from another strains stiff guides as well; the joint
 // that gives way is the one that it drives: the largest share of the work at a
 // frequency far below all guides, (K + w^2 M)^-1 d weighed with d, for every column d.
+using Response = Eigen::LDLT<Eigen::MatrixXd>;
+
+Response ResponseOf(const MechanicalModel& model) {
+  constexpr double kOmega = 2.0 * std::numbers::pi * 5.0;  // [rad/s]
+  return Response(model.K + kOmega * kOmega * model.M);
+}
+
+Eigen::VectorXd Work(const Response& response, const Eigen::VectorXd& direction) {
+  return response.solve(direction).cwiseProduct(direction).cwiseAbs();
+}
+
 std::vector<Index> MostMoved(const MechanicalModel& model,
                              const Eigen::MatrixXd& directions) {
-  constexpr double kOmega = 2.0 * std::numbers::pi * 5.0;  // [rad/s]
-  const Eigen::MatrixXd work = (model.K + kOmega * kOmega * model.M)
-                                   .ldlt()
-                                   .solve(directions)
-                                   .cwiseProduct(directions)
-                                   .cwiseAbs();
+  const Response response = ResponseOf(model);
   std::vector<Index> joints(static_cast<std::size_t>(directions.cols()));
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    work.col(static_cast<Index>(i)).maxCoeff(&joints[i]);
+    Work(response, directions.col(static_cast<Index>(i))).maxCoeff(&joints[i]);
   }
   return joints;
 }
@@ -43,10 +49,29 @@ std::vector<Index> SeenJoints(const MechanicalModel& model) {
   return MostMoved(model, model.b);
 }
 
+std::vector<Index> ToldJoints(const MechanicalModel& model) {
+  constexpr double kTold = 0.01;  // of the work that a sensor's reading does
+  const Response response = ResponseOf(model);
+  std::vector<Index> joints;
+  Eigen::VectorXd others = Eigen::VectorXd::Ones(model.M.rows());
+  for (Index i = 0; i < model.b.cols(); ++i) {
+    const Eigen::VectorXd all = model.b.col(i);
+    const Eigen::VectorXd rest = all.cwiseProduct(others);
+    Index joint = 0;
+    const double most = Work(response, all).maxCoeff(&joint);
+    if (others[joint] == 0.0 && Work(response, rest).maxCoeff(&joint) < kTold * most) {
+      continue;
+    }
+    others[joint] = 0.0;
+    joints.push_back(joint);
+  }
+  return joints;
+}
+
 SiteMap::SiteMap(const mjModel& plant, const MechanicalModel& model,
                  const Channels& channels, bool with_seen)
     : plant_(plant), model_(model), channels_(channels), driven_(DrivenJoints(model)) {
-  if (with_seen) std::ranges::copy(SeenJoints(model), std::back_inserter(driven_));
+  if (with_seen) std::ranges::copy(ToldJoints(model), std::back_inserter(driven_));
   driven_ = Unique(std::move(driven_));
 }
 

@@ -26,6 +26,10 @@ struct Site {
 /// every sensor sees most.
 std::vector<Eigen::Index> DrivenJoints(const MechanicalModel& model);
 std::vector<Eigen::Index> SeenJoints(const MechanicalModel& model);
+/// Joints that the sensors tell: of every sensor the one that it sees most, of one that sees
+/// most what another has told already the next one: a second encoder, behind a gear that
+/// gives, tells how far that does.
+std::vector<Eigen::Index> ToldJoints(const MechanicalModel& model);
 
 /// A machine as effects look for their sites on it. Does not own what it is made of.
 class SiteMap {

@@ -43,7 +43,7 @@ void Stepper::Act(const mjModel& model, mjData& data, TickControl& control) noex
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       outputs_[i] = data.sensordata[sensors_[i]];
     }
-    effects_.Distort(outputs_, static_cast<double>(ticks_) * tick_);
+    effects_.Distort(model, data, outputs_, static_cast<double>(ticks_) * tick_);
     control.Tick(outputs_, inputs_);
     ++ticks_;
     off_.clear();

@@ -70,8 +70,9 @@ class Stepper {
     held_.assign(forces.begin(), forces.end());
   }
   /// What effects of the sensors make of readings, at a tick since the start.
-  void Distort(std::span<double> outputs, std::int64_t tick) noexcept {
-    effects_.Distort(outputs, static_cast<double>(tick) * tick_);
+  void Distort(const mjModel& model, const mjData& data, std::span<double> outputs,
+               std::int64_t tick) noexcept {
+    effects_.Distort(model, data, outputs, static_cast<double>(tick) * tick_);
   }
   /// Goes on as another one of the same machine would: the tick that it is at, and what
   /// its effects remember.

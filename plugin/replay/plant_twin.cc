@@ -278,7 +278,7 @@ void PlantTwin::Predict(VectorXd& reading) noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     outputs_[i] = data_->sensordata[machine_.sensor_addresses()[i]];
   }
-  effects_.Distort(outputs_, time_);
+  effects_.Distort(*model_, *data_, outputs_, time_);
   reading = VectorXd::Map(outputs_.data(), reading.size());
 }
 

@@ -97,7 +97,8 @@ inline const std::vector<std::string>& EveryEffectOfEmps() {
            "floor_vibration@load:amplitude=3.1,frequency=33.3,phase=0.7",
            "encoder_scale@load_encoder:factor=1.00013",
            "encoder_periodic_error@load_encoder:amplitude=3.1e-6,period=2e-3",
-           "encoder_drift@load_encoder:rate=1.7e-5"},
+           "encoder_drift@load_encoder:rate=1.7e-5",
+           "encoder_delay@load_encoder:delay=1.3e-4"},
           {.stroke = 0.2, .speed = 0.2, .force = 2.0, .mass = 95.0, .duration = 1.0},
           // Nothing in EMPS is held by a spring, and nothing turns.
           {"load", "", "drive", "load_encoder", ""}),

@@ -65,7 +65,7 @@ class ZeroOffsetEffect final : public Effect {
   /// Hinges that a sensor sees and on which the static force changes with the angle.
   std::vector<Site> CandidateSites(const SiteMap& map) const override {
     StaticForce force(map.plant());
-    std::vector<Index> joints = SeenJoints(map.model());
+    std::vector<Index> joints = ToldJoints(map.model());
     std::ranges::sort(joints);
     joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
     std::erase_if(joints, [&](Index joint) {

@@ -64,6 +64,7 @@ class HystereticStiffnessEffect final : public Effect {
       trials.push_back(
           {parts, at.JointEntry(2), [length](const Amplitudes& a) -> TrialValues {
              if (a[0] <= 0.0 || a[1] <= 0.0) return std::nullopt;
+             if (a[1] > kMostLoss * a[0]) return std::nullopt;
              return ValuesOf({a[0], a[1] / a[0], length});
            }});
     }

@@ -204,6 +204,24 @@ TEST(RestingRecord, ThatRepeatsWhereverItRestsIsNotSaturated) {
   EXPECT_THAT(subject.Check(record), IsEmpty());
 }
 
+// It turns within a step of its encoder, whose readings are the same there and have noise
+// elsewhere.
+TEST_F(EmpsRecord, ThatTurnsAroundWithinAStepIsNotSaturated) {
+  constexpr double kStep = 1.5e-6;
+  constexpr Index kTop = 2600;
+  constexpr Index kSide = 400;
+  const VectorXd noise = GaussianNoise(record_->samples(), 1e-9, 4);
+  const Record record = WithChanged(*record_, "q", [&](VectorXd& x) {
+    const double top = x.maxCoeff() + 1e-4;
+    for (Index k = kTop - kSide; k <= kTop + kSide; ++k) {
+      const double away = 8e-10 * static_cast<double>((k - kTop) * (k - kTop));
+      const double steps = std::round(away / kStep);
+      x[k] = top - kStep * steps + (steps > 0.0 ? noise[k] : 0.0);
+    }
+  });
+  EXPECT_THAT(subject_->Refusal(record), Not(HasSubstr("saturated")));
+}
+
 TEST(RestingRecord, OfAJointThatStandsStillIsNotSaturated) {
   const Subject subject("emps");
   for (const double step : {1e-4, 1e-7}) {

@@ -124,7 +124,14 @@ Json ModelJson(const mjModel& m) {
                {"actuator_forcerange", List(m.actuator_forcerange, m.nu * 2)},
                {"actuator_length0", List(m.actuator_length0, m.nu)},
                {"sensor_adr", Integers(m.sensor_adr, m.nsensor)},
-               {"sensor_dim", Integers(m.sensor_dim, m.nsensor)}});
+               {"sensor_dim", Integers(m.sensor_dim, m.nsensor)},
+               {"sensor_objtype", Integers(m.sensor_objtype, m.nsensor)},
+               {"sensor_objid", Integers(m.sensor_objid, m.nsensor)},
+               {"sensor_reftype", Integers(m.sensor_reftype, m.nsensor)},
+               {"sensor_refid", Integers(m.sensor_refid, m.nsensor)},
+               {"site_bodyid", Integers(m.site_bodyid, m.nsite)},
+               {"geom_bodyid", Integers(m.geom_bodyid, m.ngeom)},
+               {"body_rootid", Integers(m.body_rootid, m.nbody)}});
   return json;
 }
 
@@ -166,12 +173,16 @@ Json StepJson(const Machine& machine, mjData& d, ActiveEffects& effects) {
                {"efc_type", Integers(d.efc_type, d.nefc)},
                {"efc_id", Integers(d.efc_id, d.nefc)},
                {"efc_frictionloss", List(d.efc_frictionloss, d.nefc)},
+               {"site_xpos", List(d.site_xpos, m.nsite * 3)},
+               {"site_xmat", List(d.site_xmat, m.nsite * 9)},
+               {"cvel", List(d.cvel, m.nbody * 6)},
+               {"subtree_com", List(d.subtree_com, m.nbody * 3)},
                {"sensordata", List(d.sensordata, m.nsensordata)}};
   const std::vector<int>& sensors = machine.sensor_addresses();
   std::vector<double> readings;
   readings.reserve(sensors.size());
   for (const int address : sensors) readings.push_back(d.sensordata[address]);
-  effects.Distort(readings, d.time);
+  effects.Distort(m, d, readings, d.time);
   const std::vector<mjtNum> commanded = DriveForces(m, d);
   effects.Act(m, d);
   std::vector<mjtNum> force = DriveForces(m, d);

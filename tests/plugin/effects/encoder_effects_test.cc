@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "mjdiag/signals/error.h"
 #include "support/bonder.h"
 #include "support/changes.h"
 
@@ -20,14 +22,49 @@ Setup Emps() { return ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps"); }
 std::array<double, 3> Read(const std::string& effect, std::array<double, 3> readings,
                            double time) {
   const Machine bonder = test::Bonder();
+  const DataPtr data = MakeData(bonder.plant());
   ActiveEffects(bonder.channels(), bonder.plant(), {ParseEffect(effect)})
-      .Distort(readings, time);
+      .Distort(bonder.plant(), *data, readings, time);
   return readings;
 }
 
 TEST(EncoderEffects, ScaleMultipliesItsOwnEncoderOnly) {
   EXPECT_EQ(Read("encoder_scale@y_encoder:factor=1.5", {0.1, 0.2, 0.3}, 7.0),
             (std::array{0.1, 1.5 * 0.2, 0.3}));
+}
+
+// Of a tendon over two joints, a second encoder: both move.
+TEST(EncoderEffects, DelayReadsWhereTheMachineWasAMomentAgo) {
+  const Machine emps(Emps());
+  const DataPtr data = MakeData(emps.plant());
+  data->qvel[0] = 0.25;
+  std::array<double, 1> readings{0.2};
+  ActiveEffects effects(emps.channels(), emps.plant(),
+                        {ParseEffect("encoder_delay@load_encoder:delay=0.004")});
+  effects.Distort(emps.plant(), *data, readings, 0.0);
+  EXPECT_EQ(readings[0], 0.2 - 0.004 * 0.25);
+}
+
+// Its encoders are sites on moving scales: what is read a moment later is what the rate says.
+TEST(EncoderEffects, DelayOfAFrameReadsWhereItWasInItsReference) {
+  const Machine bonder = test::Bonder();
+  const DataPtr data = MakeData(bonder.plant());
+  for (int dof = 0; dof < bonder.plant().nv; ++dof) {
+    data->qvel[dof] = 0.01 * (dof % 3 - 1) + 0.002 * dof;
+  }
+  ActiveEffects effects(bonder.channels(), bonder.plant(),
+                        {ParseEffect("encoder_delay@y_encoder:delay=1e-6")});
+  const auto read = [&] {
+    mj_forward(&bonder.plant(), data.get());
+    return data->sensordata[bonder.sensor_addresses()[1]];
+  };
+  const double now = read();
+  std::array<double, 3> readings{0.0, now, 0.0};
+  effects.Distort(bonder.plant(), *data, readings, 0.0);
+  mj_integratePos(&bonder.plant(), data->qpos, data->qvel, -1e-6);
+  EXPECT_NEAR(readings[1], read(), 1e-12);
+  EXPECT_GT(std::abs(readings[1] - now), 1e-9);
+  EXPECT_EQ(readings[0], 0.0);
 }
 
 TEST(EncoderEffects, PeriodicErrorRepeatsWithItsPeriod) {

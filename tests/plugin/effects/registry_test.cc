@@ -247,7 +247,7 @@ TEST_F(CheckedEffect, ActsWithoutAllocating) {
   for (int step = 0; step < 100; ++step) {
     mj_step1(plant_.get(), data.get());
     const long allocated = test::CountAllocations([&] {
-      effects.Distort(readings, 1e-3 * step);
+      effects.Distort(*plant_, *data, readings, 1e-3 * step);
       effects.Act(*plant_, *data);
       effects.Release(*data);
     });
