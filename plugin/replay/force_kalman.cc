@@ -11,10 +11,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Readings further off count linearly (P. J. Huber, "Robust Estimation of a Location
-// Parameter", Ann. Math. Statist. 35, 1964): beyond 4 standard deviations noise is seen
-// once in 16,000 readings.
-constexpr double kCorner = 4.0;
 // Of the variances in a tick: a filter that remembers a thousand ticks is then within a
 // thousandth of its end.
 constexpr double kAtItsEnd = 1e-6;
@@ -94,16 +90,25 @@ void ForceKalman::Expect(Index sensor, bool late, double innovation, double spee
   known_ = steady_ && taken_.size() < taken_before_.size() &&
            taken_before_[taken_.size()] == sensor;
   if (steady_ && !known_) Unsettle();
-  taken_.push_back(sensor);
+  R_ = R;
   if (!known_) Pc_.noalias() = P * c_;
   S_ = known_ ? variances_[sensor] : c_.dot(Pc_) + R;
   last_innovation = innovation - c_.dot(z);
 }
 
 void ForceKalman::Correct(Index sensor) {
+  // What counts for less leaves more that is not known, without which a filter that has been
+  // left behind never comes back.
+  if (known_ && inflation > 1.0) {
+    Unsettle();
+    known_ = false;
+    Pc_.noalias() = P * c_;
+    S_ = c_.dot(Pc_) + R_;
+  }
+  taken_.push_back(sensor);
   variance = S_ * inflation;
   if (known_) {
-    gain = gains_.col(sensor) / inflation;
+    gain = gains_.col(sensor);
     z += last_innovation * gain;
     return;
   }

@@ -14,6 +14,11 @@ namespace mjdiag {
 
 class ForceKalman {
  public:
+  /// Readings further off count linearly (P. J. Huber, "Robust Estimation of a Location
+  /// Parameter", Ann. Math. Statist. 35, 1964): beyond 4 standard deviations noise is seen
+  /// once in 16,000 readings.
+  static constexpr double kCorner = 4.0;
+
   /// @param dofs  those with a latent force
   ForceKalman(const std::vector<Eigen::Index>& dofs, const FilterNoise& noise,
               double sample_time);
@@ -67,6 +72,7 @@ class ForceKalman {
   Eigen::MatrixXd top_;
   Eigen::VectorXd c_, Pc_;
   double S_ = 0.0;
+  double R_ = 0.0;
   bool known_ = false;  // its gain, from the tick before
   /// Whether P is what it was a tick ago, and the readings of a tick with their gains then.
   bool steady_ = false;

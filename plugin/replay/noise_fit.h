@@ -5,11 +5,8 @@
 // [Kristensen 2004]. Slow laws and a slow latent force explain each other, so that the search
 // starts twice, from all slow and from all fast.
 //
-// Searched are logarithms, a kind of noise at a time (sizes, memories, both along the same
-// random walk, white forces, readings, the clock), by steps of 64 down to 1.15, coarse ones on
-// a quarter of the readings: every joint goes to where the parabola through -2 ln L of the
-// sensor that shows it best is least, all at once, if the whole gains by that. On 3600 readings in pieces of every record, and up to
-// four times as many of a small machine.
+// Searched are logarithms (noise_search.h), on 3600 readings in pieces of every record, and up
+// to four times as many of a small machine.
 
 #include <Eigen/Core>
 #include <vector>
@@ -41,8 +38,7 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const std::vector<Eigen::Index>& dofs,
                                const std::vector<FilterNoise>& near);
 
-/// The same of a machine that is all but the one whose noise it begins with: one descent, in
-/// steps of 3.
+/// The same of a machine that is all but the one whose noise it begins with: one descent.
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
                                const std::vector<Eigen::Index>& dofs,
