@@ -154,7 +154,7 @@ bool SameBlocks(const Model& a, const Model& b) {
 SettledModel Search::Settled(ModelFit fit, const FilterNoise& near, bool steps) const {
   return Settle([&](const Model& model) { return With(model, steps); }, run_,
                 reading_sd_, found_.path.dofs, found_.blocks, std::move(fit),
-                {near, found_.path.noise}, [this] { return IsOver(); });
+                {near, found_.path.noise}, found_.score, [this] { return IsOver(); });
 }
 
 void Search::Adopt(Proposal proposal) {

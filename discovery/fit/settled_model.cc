@@ -1,5 +1,6 @@
 #include "mjdiag/discovery/fit/settled_model.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "mjdiag/discovery/fit/pruned_fit.h"
@@ -14,20 +15,20 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
                     const Eigen::VectorXd& reading_sd,
                     const std::vector<Eigen::Index>& dofs,
                     const std::vector<Block>& blocks, ModelFit fit,
-                    const std::vector<FilterNoise>& near,
+                    const std::vector<FilterNoise>& near, double beat,
                     const std::function<bool()>& is_over) {
-  const auto filter = [&](const Model& model, const std::vector<FilterNoise>& from) {
-    return FilterLikeliestFrom(machine_with(model), run, reading_sd, dofs, from);
-  };
   SettledModel settled{std::move(fit), {}};
-  settled.path = filter(settled.fit.model, near);
-  if (settled.fit.model.empty()) return settled;
+  settled.path =
+      FilterLikeliestFrom(machine_with(settled.fit.model), run, reading_sd, dofs, near);
   // Values that are off make latent forces large, behind which values are hardly seen:
   // where fits behind the noise of the last filter gain no more, one behind a smaller may.
   constexpr int kRounds = 6;
   constexpr std::size_t kSmaller = 2;  // of NoisesFrom
   std::size_t smaller = 0;
+  // A round gains less than the one before it.
+  constexpr double kInSight = 3.0;
   for (int round = 0; round < kRounds && !is_over(); ++round) {
+    if (settled.fit.model.empty()) break;
     const FilterPath& path = settled.path;
     const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
     const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
@@ -44,15 +45,18 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
           gains.left.squaredNorm() + gains.log_determinant + settled.fit.prior;
       if (next.fit.model.size() != settled.fit.model.size() ||
           before - next.fit.deviance - next.fit.prior > kLeastGain) {
-        std::vector<FilterNoise> from{path.noise};
-        if (smaller > 0) from.push_back(noises[smaller]);
-        next.path = filter(next.fit.model, from);
+        const Machine machine = machine_with(next.fit.model);
+        next.path = smaller > 0 ? FilterLikeliestFrom(machine, run, reading_sd, dofs,
+                                                      {path.noise, noises[smaller]})
+                                : FilterLikeliestNear(machine, run, reading_sd, dofs,
+                                                      path.noise);
         gain = settled.score() - next.score();
         if (gain > 0.0) settled = std::move(next);
       }
     } catch (const NumericalError&) {
     }
     if (gain < kLeastGain && smaller == kSmaller) break;
+    if (settled.score() - beat > kInSight * std::max(gain, kLeastGain)) break;
     smaller = gain < kLeastGain ? kSmaller : 0;
   }
   return settled;

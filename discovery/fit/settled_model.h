@@ -17,13 +17,14 @@ struct SettledModel {
 
 /// @param dofs     with a latent force
 /// @param near     noises to begin with
+/// @param beat     a score: where none better is in sight it ends
 /// @param is_over  ends it with what it has
 /// NumericalError where no run with the first values stays with what was measured.
 SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
                     const Eigen::VectorXd& reading_sd,
                     const std::vector<Eigen::Index>& dofs,
                     const std::vector<Block>& blocks, ModelFit fit,
-                    const std::vector<FilterNoise>& near,
+                    const std::vector<FilterNoise>& near, double beat,
                     const std::function<bool()>& is_over);
 
 }  // namespace mjdiag
