@@ -43,9 +43,14 @@ class Innovations {
     return kept_;
   }
 
+  /// At x, or where it was taken last: as long as innovations change little it does, too,
+  /// and it takes as many runs as there are coordinates.
   const MatrixXd& Jacobian(const VectorXd& x) {
-    if (J_.size() > 0 && x == J_at_) return J_;
+    constexpr double kLittle = 0.01;
     const VectorXd base = Of(x);
+    if (J_.size() > 0 && std::abs(base.squaredNorm() - J_of_) <= kLittle * J_of_) {
+      return J_;
+    }
     MatrixXd J(rows(), size());
     ParallelForAll(static_cast<int>(size()), [&](int number) {
       const Index i = number;
@@ -57,7 +62,7 @@ class Innovations {
       J.col(i) = (RunAt(moved) - base) / step;
     });
     J_ = std::move(J);
-    J_at_ = x;
+    J_of_ = base.squaredNorm();
     return J_;
   }
 
@@ -74,8 +79,8 @@ class Innovations {
   Model model_;
   std::vector<Coordinate> coordinates_;
   VectorXd at_, kept_;
-  VectorXd J_at_;
   MatrixXd J_;
+  double J_of_ = 0.0;  // squared innovations where it was taken
 };
 
 class InnovationCost final : public ceres::CostFunction {

@@ -15,18 +15,26 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
                     const Eigen::VectorXd& reading_sd,
                     const std::vector<Eigen::Index>& dofs,
                     const std::vector<Block>& blocks, ModelFit fit,
-                    const std::vector<FilterNoise>& near, double beat,
+                    const std::vector<FilterNoise>& near, double beat, double hoped,
                     const std::function<bool()>& is_over) {
+  // A round gains less than the one before it.
+  constexpr double kInSight = 3.0;
   SettledModel settled{std::move(fit), {}};
-  settled.path =
-      FilterLikeliestFrom(machine_with(settled.fit.model), run, reading_sd, dofs, near);
+  const auto is_in_sight = [&](double gain) {
+    return settled.score() - beat <= kInSight * std::max(gain, kLeastGain);
+  };
+  // The noise of the model so far is as large as what that lacks.
+  const Machine first = machine_with(settled.fit.model);
+  settled.path = RunForceFilter(first, run, dofs, FilterStarts(first, run, reading_sd),
+                                near.back());
+  if (!is_in_sight(hoped)) return settled;
+  settled.path = FilterLikeliestFrom(first, run, reading_sd, dofs, near);
   // Values that are off make latent forces large, behind which values are hardly seen:
   // where fits behind the noise of the last filter gain no more, one behind a smaller may.
   constexpr int kRounds = 6;
   constexpr std::size_t kSmaller = 2;  // of NoisesFrom
   std::size_t smaller = 0;
-  // A round gains less than the one before it.
-  constexpr double kInSight = 3.0;
+  if (!is_in_sight(hoped)) return settled;
   for (int round = 0; round < kRounds && !is_over(); ++round) {
     if (settled.fit.model.empty()) break;
     const FilterPath& path = settled.path;
@@ -56,7 +64,7 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
     } catch (const NumericalError&) {
     }
     if (gain < kLeastGain && smaller == kSmaller) break;
-    if (settled.score() - beat > kInSight * std::max(gain, kLeastGain)) break;
+    if (!is_in_sight(gain)) break;
     smaller = gain < kLeastGain ? kSmaller : 0;
   }
   return settled;

@@ -1,0 +1,380 @@
+#include "mjdiag/discovery/fit/model_search.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/discovery/blocks/curve_block.h"
+#include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/fit/exact_columns.h"
+#include "mjdiag/discovery/fit/input_choice.h"
+#include "mjdiag/discovery/fit/moved_model.h"
+#include "mjdiag/discovery/fit/pruned_fit.h"
+#include "mjdiag/discovery/fit/settled_model.h"
+#include "mjdiag/discovery/hypotheses/candidate_bounds.h"
+#include "mjdiag/discovery/regression/force_moves.h"
+#include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kIterations = 6;
+
+bool SameBlocks(const Model& a, const Model& b) {
+  return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
+}
+
+}  // namespace
+
+SettledModel ModelSearch::Settled(ModelFit fit, const FilterNoise& near, bool steps,
+                                  double hoped) const {
+  return Settle([&](const Model& model) { return With(model, steps); }, run_,
+                reading_sd_, found_.path.dofs, found_.blocks, std::move(fit),
+                {near, found_.path.noise}, found_.score, hoped,
+                [this] { return IsOver(); });
+}
+
+void ModelSearch::Adopt(Proposal proposal) {
+  if (!SameBlocks(found_.fit.model, proposal.settled.fit.model)) hopeless_.clear();
+  found_.score = proposal.settled.score();
+  found_.fit = std::move(proposal.settled.fit);
+  found_.path = std::move(proposal.settled.path);
+  found_.input_width = proposal.input_width;
+  run_ = std::move(proposal.run);
+  steps_ = proposal.steps;
+  found_.rivals.clear();  // of the model before
+  ChooseSteps();
+}
+
+/// The model as it is behind the noise that suits it by now; none if nothing is gained.
+std::optional<SettledModel> ModelSearch::Resettled(const Whitenings& whitenings,
+                                                   std::size_t noise,
+                                                   const ModelFit& as_it_is) const {
+  const KeptGains& own = whitenings.behind.front().gains();
+  const double before = own.left.squaredNorm() + own.log_determinant +
+                        found_.fit.prior + found_.fit.occam;
+  if (as_it_is.score() > before - kLeastGain) return std::nullopt;
+  SettledModel settled =
+      Settled(as_it_is, whitenings.noises[noise], steps_, before - as_it_is.score());
+  if (settled.score() > found_.score - kLeastGain) return std::nullopt;
+  Say("settled: " + Difference(settled.score()));
+  return settled;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
+    const Whitenings& whitenings, const ExactColumns& exact) {
+  const Moves moves = ForceMovesOf(With(found_.fit.model), run_, found_.path,
+                                   found_.blocks, exact.terms, at_every_shape_);
+  Say(std::to_string(moves.variations) + " shapes of forces, " +
+      std::to_string(moves.best.size()) + " moves");
+  // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
+  // values are those of the regression until the filter has been run with them. What does
+  // not run so leaves the next one.
+  constexpr std::size_t kMost = 3;
+  // What has just been settled is behind the noise that suits it.
+  bool beside_itself = found_.fit.model.empty();
+  for (const ModelMove* move :
+       ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
+    Moves one;
+    one.score = moves.score;
+    one.best = {*move};
+    if (auto best = BestOf(one, 1, 0, whitenings, {}, beside_itself)) return best;
+    if (IsOver()) break;
+    beside_itself = false;  // what it is worth is known by now
+  }
+  return std::nullopt;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whitenings,
+                                                           const ExactColumns& exact) {
+  const Moves moves =
+      MovesOf(With(found_.fit.model), run_, found_.path, whitenings.maps(),
+              found_.blocks, exact.terms, exact.other_steps,
+              {.at_forces = false, .at_every_shape = at_every_shape_});
+  if (moves.other_steps && ChooseSteps()) return AsItIs();
+  KeepRivals(moves);
+  AsFitted as_it_is;
+  const ModelFit& own = AsItIsBehind({moves.noise, false}, whitenings, as_it_is);
+  if (auto settled = Resettled(whitenings, moves.noise, own)) {
+    return Proposal{std::move(*settled), steps_, found_.input_width, run_};
+  }
+  Say(std::to_string(moves.variations) + " shapes, " +
+      std::to_string(moves.best.size()) + " moves");
+  return BestOf(moves, 4, kIterations, whitenings, std::move(as_it_is), false);
+}
+
+ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
+                             const Judged& judged, int iterations) const {
+  const bool steps = steps_ != judged.second;
+  return FitModel(InTime([&](const Model& one) { return With(one, steps); },
+                         [this] { return IsOver(); }),
+                  run_, found_.path, whitenings.behind[judged.first].gains(),
+                  found_.blocks, model, iterations);
+}
+
+const ModelFit& ModelSearch::AsItIsBehind(const Judged& judged,
+                                          const Whitenings& whitenings,
+                                          AsFitted& known) const {
+  const auto found = known.find(judged);
+  if (found != known.end()) return found->second;
+  ModelFit fit = Fitted(found_.fit.model, whitenings, judged, kIterations);
+  return known.emplace(judged, std::move(fit)).first->second;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
+    const Moves& moves, std::size_t most, int iterations, const Whitenings& whitenings,
+    AsFitted as_it_is, bool beside_itself) {
+  const auto fitted = [&](const Model& model, const Judged& judged) {
+    return Fitted(model, whitenings, judged, iterations);
+  };
+  struct Tried {
+    ModelFit fit;
+    Judged judged;
+    double gain = 0.0;
+  };
+  std::vector<Tried> tried;
+  const auto try_one = [&](const Model& model, const ModelMove& move) {
+    try {
+      const Judged judged{std::min(move.noise, whitenings.behind.size() - 1),
+                          move.other_steps};
+      ModelFit fit = fitted(model, judged);
+      double gain = moves.score - move.score;
+      if (iterations > 0) {
+        fit = Pruned(found_.blocks, std::move(fit),
+                     [&](const Model& other) { return fitted(other, judged); });
+        gain = AsItIsBehind(judged, whitenings, as_it_is).score() - fit.score();
+      }
+      const auto is_this = [&](const Model& other) {
+        return SameBlocks(other, fit.model);
+      };
+      if (std::ranges::any_of(hopeless_, is_this) ||
+          std::ranges::any_of(tried, is_this, [](const Tried& one) -> const Model& {
+            return one.fit.model;
+          })) {
+        return;
+      }
+      char text[80];
+      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
+                    -gain);
+      Say(text + Describe(found_.blocks, fit.model));
+      Rate(model, -gain);
+      if (gain < kLeastGain) {
+        Decide(fit.model, -gain, "fitted, it is worth less than it costs");
+      }
+      tried.push_back({std::move(fit), judged, gain});
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  };
+  const auto may_be = [&](const ModelMove& move) { return MayBe(move); };
+  for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
+    if (IsOver()) break;
+    const Model model = After(*move, found_.fit.model);
+    try_one(model, *move);
+    if (iterations > 0) continue;
+    try_one(Abrupt(found_.blocks, model), *move);
+    // A noise that is less likely than another one is no reason for a law.
+    if (beside_itself) try_one(found_.fit.model, *move);
+  }
+  std::ranges::sort(tried, std::greater<>(), &Tried::gain);
+  // Kept gains are those of what the machine was without a move: which is the best is said
+  // by the filters of the machines with each.
+  std::erase_if(tried, [&](const Tried& one) {
+    // Kept gains tell what is gained to a factor of two.
+    if (one.gain < std::max(kLeastGain, 0.5 * tried.front().gain)) {
+      Decide(one.fit.model, -one.gain, "another one is worth more than twice as much");
+      return true;
+    }
+    if (std::ranges::all_of(one.fit.model, [&](const Member& member) {
+          return IsAllowed(found_.blocks[member.block], member.values);
+        })) {
+      return false;
+    }
+    Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
+    return true;
+  });
+  std::vector<std::optional<SettledModel>> settled(tried.size());
+  ParallelForAll(static_cast<int>(tried.size()), [&](int number) {
+    const auto place = static_cast<std::size_t>(number);
+    const Tried& one = tried[place];
+    try {
+      settled[place] = Settled(one.fit, whitenings.noises[one.judged.first],
+                               steps_ != one.judged.second, one.gain);
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  });
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    if (!settled[i]) continue;
+    Say("  filtered: " + Difference(settled[i]->score()) + "  " +
+        Describe(found_.blocks, settled[i]->fit.model));
+    const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
+    if (settled[i]->score() < least) best = i;
+  }
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    constexpr double kHopeless = 3.0;
+    if (!settled[i] ||
+        settled[i]->score() - found_.score > kHopeless * std::abs(tried[i].gain)) {
+      hopeless_.push_back(tried[i].fit.model);
+    }
+    if (!settled[i]) continue;
+    const double score = settled[i]->score() - found_.score;
+    Rate(settled[i]->fit.model, score);
+    Decide(settled[i]->fit.model, score,
+           best == i ? "taken"
+           : score < -kLeastGain
+               ? "another one is better"
+               : "behind the noise that suits it, it is worth less than it costs");
+  }
+  if (!best) return std::nullopt;
+  return Proposal{std::move(*settled[*best]), steps_ != tried[*best].judged.second,
+                  found_.input_width, run_};
+}
+
+/// Of a model that nothing is better than. Where first order says that something is, and a
+/// fit does not, that is as good.
+void ModelSearch::KeepRivals(const Moves& moves) {
+  found_.rivals.clear();
+  for (const std::vector<ModelMove>* some : {&moves.best, &moves.near}) {
+    for (ModelMove move : *some) {
+      move.score = std::max(0.0, move.score - moves.score);
+      found_.rivals.push_back(std::move(move));
+    }
+  }
+}
+
+void ModelSearch::Rate(const Model& rival, double score) {
+  for (ModelMove& move : found_.rivals) {
+    if (SameBlocks(After(move, found_.fit.model), rival))
+      move.score = std::max(0.0, score);
+  }
+}
+
+bool ModelSearch::ChooseSteps() {
+  FilterPath path =
+      RunForceFilter(With(found_.fit.model, !steps_), run_, found_.path.dofs,
+                     found_.path.starts, found_.path.noise);
+  const double gain = found_.path.deviance - path.deviance;
+  if (gain < kLeastGain) return false;
+  steps_ = !steps_;
+  Say((steps_ ? "with physics steps: " : "without physics steps: ") +
+      std::to_string(-gain));
+  found_.score -= gain;
+  found_.path = std::move(path);
+  return true;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
+  const double width = found_.input_width;
+  std::optional<InputChoice> choice = ChooseInputs(With(found_.fit.model), as_measured_,
+                                                   reading_sd_, found_.path, width);
+  if (!choice) return std::nullopt;
+  SettledModel settled{found_.fit, std::move(choice->path)};
+  Say("inputs over " + std::to_string(choice->width) + " ticks: " +
+      Difference(settled.score() + PriceOfWidth(choice->width) - PriceOfWidth(width)));
+  return Proposal{std::move(settled), steps_, choice->width,
+                  WithInputsOver(as_measured_, choice->width)};
+}
+
+void ModelSearch::AddCurves() {
+  const ObservedMotion motion = MotionAlong(With(found_.fit.model), run_, found_.path);
+  std::ranges::move(
+      BlocksOf(machine_, CurveCandidates(machine_, candidates_, motion), {}),
+      std::back_inserter(found_.blocks));
+}
+
+bool ModelSearch::Step() {
+  const Whitenings whitenings = WhiteningsOf(found_.path);
+  std::optional<Proposal> move;
+  // What noise of the inputs explains is found before anything else, and looked for again
+  // where what is large, and where everything has been found.
+  bool asks_inputs = found_.fit.model.empty() && found_.input_width == 0.0;
+  if (asks_inputs) move = SmoothedInputs();
+  if (!move) {
+    const ExactColumns exact =
+        ExactColumnsOf([&](const Model& model) { return With(model); },
+                       With(found_.fit.model, !steps_), run_, found_.path,
+                       found_.blocks, found_.fit.model);
+    if (looks_at_forces_) {
+      move = BestForces(whitenings, exact);
+      looks_at_forces_ = move.has_value();
+      if (!move && !asks_inputs) {
+        asks_inputs = true;
+        move = SmoothedInputs();
+        looks_at_forces_ = move.has_value();
+      }
+    }
+    if (!move) move = BestMove(whitenings, exact);
+    if (!move && !asks_inputs) move = SmoothedInputs();
+  }
+  if (move) Adopt(std::move(*move));
+  return move.has_value();
+}
+
+void ModelSearch::Prepare() {
+  found_.path = FilterLikeliest(machine_, run_, reading_sd_);
+  found_.nothing = found_.path;
+  found_.score = found_.path.deviance;
+  if (ChooseSteps()) {
+    found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
+                                      {found_.path.noise});
+    found_.score = found_.path.deviance;
+  }
+  candidates_ = ChooseCandidates(machine_, options_.choice, true);
+  const ObservedMotion motion = MotionAlong(machine_, run_, found_.path);
+  BoundByRecord(candidates_, machine_, motion);
+  BoundDriveLimits(candidates_, machine_, motion);
+  BoundByReadings(candidates_, machine_, run_);
+  const std::vector<PlantNumber> in_doubt = IsExact(machine_.plant())
+                                                ? std::vector<PlantNumber>{}
+                                                : NumbersOf(machine_.plant());
+  found_.blocks = BlocksOf(machine_, candidates_, options_.numbers.value_or(in_doubt));
+}
+
+void ModelSearch::StepOn() {
+  while (!IsOver() && Step()) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%.1f  ", found_.score);
+    Say(text + Describe(found_.blocks, found_.fit.model));
+    if (options_.better) options_.better(found_);
+  }
+}
+
+Explained ModelSearch::Run() {
+  Prepare();
+  try {
+    StepOn();
+    // What is left may have a shape that shows beside nothing simple, or no name.
+    if (!IsOver()) {
+      if (options_.choice.only.empty()) AddCurves();
+      at_every_shape_ = true;
+      looks_at_forces_ = true;
+      StepOn();
+    }
+  } catch (const NumericalError&) {
+    // A machine that diverges beside what is measured, or the wish to end: what was found
+    // until then stays.
+  }
+  found_.steps = steps_;
+  found_.is_cut_short = IsOver();
+  return std::move(found_);
+}
+
+}  // namespace mjdiag

@@ -1,0 +1,139 @@
+#pragma once
+// The search for what a machine lacks along a run (explain.h): one model, changed by moves
+// (moves.h) as long as the filter of the machine with what a move makes of it, its noise anew,
+// predicts the run better than its price.
+
+#include <Eigen/Core>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjdiag/discovery/fit/exact_columns.h"
+#include "mjdiag/discovery/fit/explain.h"
+#include "mjdiag/discovery/fit/moved_model.h"
+#include "mjdiag/discovery/fit/settled_model.h"
+#include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+class ModelSearch {
+ public:
+  ModelSearch(const Machine& machine, const MeasuredRun& run,
+              const Eigen::VectorXd& reading_sd, const ExplainOptions& options)
+      : machine_(machine),
+        as_measured_(run),
+        run_(run),
+        reading_sd_(reading_sd),
+        options_(options) {}
+
+  Explained Run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  SettledModel Settled(ModelFit fit, const FilterNoise& near, bool steps,
+                       double hoped) const;
+  /// What the search may go on from.
+  struct Proposal {
+    SettledModel settled;
+    bool steps = true;
+    double input_width = 0.0;  ///< [ticks]
+    MeasuredRun run;
+  };
+  void Adopt(Proposal proposal);
+  void KeepRivals(const Moves& moves);
+  /// What a rival is worth once it has been fitted. @param score  less that of the model
+  void Rate(const Model& rival, double score);
+  std::optional<SettledModel> Resettled(const Whitenings& whitenings, std::size_t noise,
+                                        const ModelFit& as_it_is) const;
+  std::string Difference(double score) const {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f", score - found_.score);
+    return text;
+  }
+  /// Behind which of the whitenings, and whether with other steps.
+  using Judged = std::pair<std::size_t, bool>;
+  ModelFit Fitted(const Model& model, const Whitenings& whitenings,
+                  const Judged& judged, int iterations) const;
+  /// The model as it is, fitted behind gains that moves are compared behind.
+  using AsFitted = std::map<Judged, ModelFit>;
+  const ModelFit& AsItIsBehind(const Judged& judged, const Whitenings& whitenings,
+                               AsFitted& known) const;
+  /// The best of some moves, fitted; none if none pays.
+  /// @param iterations     of a fit; 0: at the values of the regression
+  /// @param beside_itself  where there are none: beside the model as it is, behind its noise
+  ///                       anew
+  std::optional<Proposal> BestOf(const Moves& moves, std::size_t most, int iterations,
+                                 const Whitenings& whitenings, AsFitted as_it_is,
+                                 bool beside_itself);
+  std::optional<Proposal> BestForces(const Whitenings& whitenings,
+                                     const ExactColumns& exact);
+  std::optional<Proposal> BestMove(const Whitenings& whitenings,
+                                   const ExactColumns& exact);
+  /// How much of its inputs did the machine not feel?
+  std::optional<Proposal> SmoothedInputs() const;
+  Proposal AsItIs() const {
+    return {{found_.fit, found_.path}, steps_, found_.input_width, run_};
+  }
+  /// Takes what is better; false if nothing pays.
+  bool Step();
+  /// What no law explains may be a force without a name.
+  void AddCurves();
+  void Prepare();
+  void StepOn();
+  void Decide(const Model& tried, double score, const std::string& why) {
+    found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
+  }
+  bool HasTooManyCauses(const Model& model) const {
+    const auto causes = std::ranges::count_if(model, [&](const Member& member) {
+      return found_.blocks[member.block].candidate.has_value();
+    });
+    return static_cast<std::size_t>(causes) > options_.most_causes;
+  }
+  bool MayBe(const ModelMove& move) const {
+    return !HasTooManyCauses(After(move, found_.fit.model));
+  }
+  bool IsStopped() const { return options_.stop && options_.stop(); }
+  bool IsOver() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count() >
+               options_.seconds ||
+           IsStopped();
+  }
+  void Say(const std::string& text) const {
+    if (options_.progress) options_.progress(text);
+  }
+
+  Machine With(const Model& model) const { return With(model, steps_); }
+  Machine With(const Model& model, bool steps) const {
+    if (IsStopped()) throw NumericalError("fit: asked to end");
+    const Machine machine = machine_.With(ChangesOf(found_.blocks, model));
+    return steps ? machine : machine.WithoutSteps();
+  }
+  /// Is the run of a machine with the physics steps of the model, as one that was simulated
+  /// with it, or of one that has none?
+  bool ChooseSteps();
+
+  const Machine& machine_;
+  bool steps_ = true;
+  const MeasuredRun& as_measured_;
+  MeasuredRun run_;  // with its inputs smoothed
+  const Eigen::VectorXd& reading_sd_;
+  const ExplainOptions& options_;
+  Clock::time_point begin_ = Clock::now();
+  std::vector<Candidate> candidates_;
+  /// What is large comes first.
+  bool looks_at_forces_ = true;
+  /// What is simple comes first, too.
+  bool at_every_shape_ = false;
+  /// Models that were tried in the place of this one and are far from it.
+  std::vector<Model> hopeless_;
+  Explained found_;
+};
+
+}  // namespace mjdiag
