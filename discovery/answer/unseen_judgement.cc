@@ -12,6 +12,7 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -57,8 +58,8 @@ void FollowUnseenNear(const AnswerData& data, const FilterNoise& near,
   TakeUnseen(
       data,
       [&] {
-        return FilterLikeliestNear(data.With(one.fit.model), data.run.unseen,
-                                   data.reading_sd, one.seen.dofs, near);
+        return FilterLikeliestFrom(data.With(one.fit.model), data.run.unseen,
+                                   data.reading_sd, one.seen.dofs, {near});
       },
       one);
 }
@@ -186,6 +187,9 @@ class UnseenJudge {
   }
   std::string Names(const Model& model) const { return Describe(data_.blocks, model); }
   void LeaveNothing();
+  /// Values and noises of some models anew; none of one that the machine cannot be.
+  std::vector<std::optional<ModelOnRuns>> RefittedAll(
+      const std::vector<Model>& models) const;
   /// Takes every member out; true if the worst one leaves the model.
   bool DropWorst();
   bool IsFree(std::size_t block, std::size_t place) const;
@@ -216,44 +220,53 @@ void UnseenJudge::LeaveNothing() {
   judged_.exchanges.clear();
 }
 
+std::vector<std::optional<ModelOnRuns>> UnseenJudge::RefittedAll(
+    const std::vector<Model>& models) const {
+  std::vector<std::optional<ModelOnRuns>> fitted(models.size());
+  ParallelForAll(static_cast<int>(models.size()), [&](int number) {
+    if (is_over_()) return;
+    const auto m = static_cast<std::size_t>(number);
+    try {
+      fitted[m] = Refitted(data_, models[m], judged_.answer.seen.dofs, Near(),
+                           judged_.nothing.seen.noise, is_over_);
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  });
+  return fitted;
+}
+
 bool UnseenJudge::DropWorst() {
   const ModelOnRuns& answer = judged_.answer;
   const Model& model = answer.fit.model;
   judged_.losses.assign(model.size(), {kNeeded, kNeeded});
   judged_.exchanges.assign(model.size(), {});
+  std::vector<Model> others;
+  for (std::size_t m = 0; m < model.size(); ++m) others.push_back(Without(model, m));
+  std::vector<std::optional<ModelOnRuns>> without = RefittedAll(others);
   std::optional<ModelOnRuns> best;
   std::size_t worst = 0;
   for (std::size_t m = 0; m < model.size(); ++m) {
-    if (is_over_()) {
-      judged_.is_cut_short = true;
-      break;
+    if (!without[m])
+      continue;  // the machine does not run without it, or no time is left
+    judged_.losses[m] = LossOf(*without[m]);
+    if (IsRefuted(judged_.losses[m])) {
+      if (is_over_()) {
+        // What was not looked at in the same way speaks against nothing.
+        judged_.losses[m] = {kNeeded, kNeeded};
+        continue;
+      }
+      LookBehindNoiseOf(*without[m], data_, judged_.answer);
+      judged_.losses[m] = LossOf(*without[m]);
     }
-    try {
-      ModelOnRuns without = Refitted(data_, Without(model, m), answer.seen.dofs, Near(),
-                                     judged_.nothing.seen.noise, is_over_);
-      judged_.losses[m] = LossOf(without);
-      if (IsRefuted(judged_.losses[m])) {
-        if (is_over_()) {
-          // What was not looked at in the same way speaks against nothing.
-          judged_.losses[m] = {kNeeded, kNeeded};
-          judged_.is_cut_short = true;
-          break;
-        }
-        LookBehindNoiseOf(without, data_, judged_.answer);
-        judged_.losses[m] = LossOf(without);
-      }
-      const bool is_worst =
-          !best || judged_.losses[m].Total() < judged_.losses[worst].Total();
-      if (IsRefuted(judged_.losses[m]) && is_worst) {
-        worst = m;
-        best = std::move(without);
-      }
-    } catch (const NumericalError&) {
-      // The machine does not run without it, or there is no time.
-      judged_.is_cut_short = judged_.is_cut_short || is_over_();
-    } catch (const InputError&) {
+    const bool is_worst =
+        !best || judged_.losses[m].Total() < judged_.losses[worst].Total();
+    if (IsRefuted(judged_.losses[m]) && is_worst) {
+      worst = m;
+      best = std::move(without[m]);
     }
   }
+  judged_.is_cut_short = judged_.is_cut_short || is_over_();
   if (!best) return false;
   judged_.refuted.push_back(Names({model[worst]}));
   Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
@@ -320,35 +333,36 @@ bool UnseenJudge::ExchangeOne() {
   const Model model = judged_.answer.fit.model;
   std::optional<ModelOnRuns> best;
   double gained = 0.0;
+  std::vector<std::pair<std::size_t, Instead>> exchanges;
+  std::vector<Model> others;
   for (std::size_t m = 0; m < model.size(); ++m) {
-    for (const Instead& one : InsteadOf(m)) {
-      if (is_over_()) {
-        judged_.is_cut_short = true;
-        return false;
-      }
-      Model other = model;
-      other[m] = {one.block, one.values};
-      try {
-        ModelOnRuns fitted = Refitted(data_, other, judged_.answer.seen.dofs, Near(),
-                                      judged_.nothing.seen.noise, is_over_);
-        MemberLoss loss = LossOf(fitted);
-        if (loss.Total() < -kLeastGain && !is_over_()) {
-          LookBehindNoiseOf(fitted, data_, judged_.answer);
-          loss = LossOf(fitted);
-        }
-        judged_.exchanges[m].push_back({one.block, fitted.fit.model[m].values, loss});
-        // The simpler one where it is as good.
-        const bool is_simpler = one.values.size() < model[m].values.size();
-        const double least = is_simpler ? 0.0 : kLeastGain;
-        if (!(loss.Total() < -least) || loss.Total() > -gained) continue;
-        if (!IsAllowed(data_.blocks[one.block], fitted.fit.model[m].values)) continue;
-        gained = -loss.Total();
-        best = std::move(fitted);
-      } catch (const NumericalError&) {
-      } catch (const InputError&) {
-      }
+    for (Instead& one : InsteadOf(m)) {
+      others.push_back(model);
+      others.back()[m] = {one.block, one.values};
+      exchanges.emplace_back(m, std::move(one));
     }
   }
+  std::vector<std::optional<ModelOnRuns>> fitted = RefittedAll(others);
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    if (!fitted[i]) continue;
+    const auto& [m, one] = exchanges[i];
+    MemberLoss loss = LossOf(*fitted[i]);
+    if (loss.Total() < -kLeastGain) {
+      if (is_over_()) continue;  // it was not looked at in the same way
+      LookBehindNoiseOf(*fitted[i], data_, judged_.answer);
+      loss = LossOf(*fitted[i]);
+    }
+    const VectorXd& values = fitted[i]->fit.model[m].values;
+    judged_.exchanges[m].push_back({one.block, values, loss});
+    // The simpler one where it is as good.
+    const bool is_simpler = one.values.size() < model[m].values.size();
+    const double least = is_simpler ? 0.0 : kLeastGain;
+    if (!(loss.Total() < -least) || loss.Total() > -gained) continue;
+    if (!IsAllowed(data_.blocks[one.block], values)) continue;
+    gained = -loss.Total();
+    best = std::move(fitted[i]);
+  }
+  judged_.is_cut_short = judged_.is_cut_short || is_over_();
   if (!best) return false;
   Decide(Names(best->fit.model), -gained, "taken: one exchanged for a likelier one");
   judged_.answer = std::move(*best);

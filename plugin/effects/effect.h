@@ -34,7 +34,7 @@ namespace mjdiag {
 struct EffectParameter {
   std::string name;
   Role role;
-  std::string unit;  ///< of a slide; see SiteUnit for a hinge
+  std::string unit;  ///< of a slide; see SiteUnit for what turns
   double minimum;
   double maximum;
   std::optional<double> fallback{};  ///< the value if none is given; none: required

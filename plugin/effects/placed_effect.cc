@@ -82,6 +82,27 @@ std::string HingeUnit(const std::string& unit) {
   return found == kUnits.end() ? unit : found->second;
 }
 
+/// Whether a sensor reads where a hinge is, or hinges along a tendon.
+bool ReadsAngle(const mjModel& model, int sensor) {
+  const int object = model.sensor_objid[sensor];
+  switch (model.sensor_type[sensor]) {
+    case mjSENS_JOINTPOS:
+      return model.jnt_type[object] == mjJNT_HINGE;
+    case mjSENS_TENDONPOS: {
+      const int first = model.tendon_adr[object];
+      for (int i = first; i < first + model.tendon_num[object]; ++i) {
+        if (model.wrap_type[i] != mjWRAP_JOINT ||
+            model.jnt_type[model.wrap_objid[i]] != mjJNT_HINGE) {
+          return false;
+        }
+      }
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 PlacedEffect Place(std::string_view name, std::string site,
@@ -201,12 +222,13 @@ std::string SiteUnit(const mjModel& model, const Effect& effect,
         MotorGain(model, motor) == 1.0 && model.actuator_biastype[motor] == mjBIAS_NONE;
     return same ? parameter.unit : "before the gear";
   }
-  if (effect.element() != mjOBJ_JOINT || HingeUnit(parameter.unit) == parameter.unit) {
-    return parameter.unit;
+  bool turns = false;
+  if (effect.element() == mjOBJ_JOINT) {
+    turns = model.jnt_type[FindElement(model, mjOBJ_JOINT, site)] == mjJNT_HINGE;
+  } else if (effect.element() == mjOBJ_SENSOR) {
+    turns = ReadsAngle(model, FindElement(model, mjOBJ_SENSOR, site));
   }
-  const int joint = FindElement(model, mjOBJ_JOINT, site);
-  return model.jnt_type[joint] == mjJNT_HINGE ? HingeUnit(parameter.unit)
-                                              : parameter.unit;
+  return turns ? HingeUnit(parameter.unit) : parameter.unit;
 }
 
 }  // namespace mjdiag

@@ -61,8 +61,8 @@ int CheckEffect(const mjModel& model, const PlacedEffect& effect);
 /// Puts what MuJoCo has natively of an effect into the model, after CheckEffect.
 void ApplyEffect(mjModel& model, const PlacedEffect& effect);
 
-/// The unit of a parameter at a joint: as in the registry for a slide; for a hinge N
-/// becomes N m, m becomes rad and kg becomes kg m^2. Other sites: as in the registry.
+/// The unit of a parameter: as in the registry for a slide; at a hinge, and at an encoder that
+/// reads hinges, N becomes N m, m becomes rad and kg becomes kg m^2.
 std::string SiteUnit(const mjModel& model, const Effect& effect,
                      const std::string& site, const EffectParameter& parameter);
 

@@ -29,9 +29,6 @@ struct Trial {
   /// What each amplitude is at least, at most 0; of no size: anything.
   Amplitudes least = {};
   bool summed = false;  ///< all signals have one amplitude: one fault, several joints
-  /// A factor of a reading: an observer that knows it pulls the less by it, and what it
-  /// would see otherwise is the innovations themselves.
-  bool scales_reading = false;
 };
 
 /// Trials over one parameter that has to be met closely: a period or a frequency. Each

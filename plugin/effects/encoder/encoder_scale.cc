@@ -25,9 +25,7 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
   // One that reads backwards is wired wrongly, which the check of the data says.
   double Least(const mjModel&, Eigen::Index, std::size_t) const override { return 0.0; }
   std::vector<Trial> Trials(const SiteMotion& at) const override {
-    Trial trial = LinearTrial(at.y(), {}, 1.0);
-    trial.scales_reading = true;
-    return {std::move(trial)};
+    return {LinearTrial(at.y(), {}, 1.0)};
   }
   // Rulers and gratings are right to a few parts in a thousand.
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.003}); }

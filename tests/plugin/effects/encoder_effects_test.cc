@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
+#include "support/any_machine.h"
 #include "support/bonder.h"
 #include "support/changes.h"
 
@@ -65,6 +66,26 @@ TEST(EncoderEffects, DelayOfAFrameReadsWhereItWasInItsReference) {
   EXPECT_NEAR(readings[1], read(), 1e-12);
   EXPECT_GT(std::abs(readings[1] - now), 1e-9);
   EXPECT_EQ(readings[0], 0.0);
+}
+
+TEST(EncoderEffects, HaveUnitsOfAnAngleWhereHingesAreRead) {
+  const Machine arm = test::MachineOf(
+      R"(<mujoco><worldbody><body><joint name="motor" type="hinge"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><body>
+      <joint name="flex" type="hinge" stiffness="9"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></body></worldbody>
+      <tendon><fixed name="both"><joint joint="motor" coef="1"/>
+      <joint joint="flex" coef="1"/></fixed></tendon>
+      <sensor><jointpos name="own" joint="motor"/><tendonpos name="link" tendon="both"/>
+      </sensor></mujoco>)",
+      "[rates]\ncontrol = 500.0\n[sensors.q]\nelement = \"own\"\nunit = \"rad\"\n");
+  const Effect& error = FindEffect("encoder_periodic_error");
+  for (const char* encoder : {"own", "link"}) {
+    EXPECT_EQ(SiteUnit(arm.plant(), error, encoder, error.parameters()[0]), "rad");
+  }
+  EXPECT_EQ(
+      SiteUnit(Machine(Emps()).plant(), error, "load_encoder", error.parameters()[0]),
+      "m");
 }
 
 TEST(EncoderEffects, PeriodicErrorRepeatsWithItsPeriod) {
