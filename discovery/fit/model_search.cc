@@ -229,7 +229,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (settled[i]->score() < least) best = i;
   }
   for (std::size_t i = 0; i < settled.size(); ++i) {
-    constexpr double kHopeless = 3.0;
+    constexpr double kHopeless = 10.0;  // times what it was to gain
     if (!settled[i] ||
         settled[i]->score() - found_.score > kHopeless * std::abs(tried[i].gain)) {
       hopeless_.push_back(tried[i].fit.model);

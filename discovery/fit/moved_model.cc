@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/fit/moved_model.h"
 
 #include <algorithm>
+#include <map>
 
 namespace mjdiag {
 
@@ -36,11 +37,20 @@ std::vector<const ModelMove*> ToBeFitted(
     const std::function<bool(const ModelMove&)>& may_be) {
   std::vector<const ModelMove*> chosen;
   bool has_single = most == 1;
+  // What imitates what is missing may come first with everything else beside it.
+  constexpr int kOfBlock = 2;
+  std::map<std::size_t, int> with_block;
   for (const ModelMove& move : moves.best) {
     if (move.score > moves.score - kLeastGain || !may_be(move)) continue;
+    if (std::ranges::any_of(move.added, [&](const Added& added) {
+          return with_block[added.variation.block] >= kOfBlock;
+        })) {
+      continue;
+    }
     const bool is_single = move.removed.empty() && move.added.size() == 1;
     if (chosen.size() >= most && (has_single || !is_single)) continue;
     chosen.push_back(&move);
+    for (const Added& added : move.added) ++with_block[added.variation.block];
     has_single = has_single || is_single;
   }
   return chosen;

@@ -15,8 +15,9 @@ Model After(const ModelMove& move, const Model& model);
 /// The same, friction that comes within a speed as one that is there at once.
 Model Abrupt(const std::vector<Block>& blocks, Model model);
 
-/// The best of all that may be, and the best that brings one block and nothing else: the
-/// fewer come at once, the nearer is first order to what a fit finds.
+/// The best of all that may be, of which no block comes in with more than two, and the best that
+/// brings one block and nothing else: the fewer come at once, the nearer is first order to what
+/// a fit finds.
 /// @param most  1: the best alone
 std::vector<const ModelMove*> ToBeFitted(
     const Moves& moves, std::size_t most,

@@ -17,24 +17,27 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
                     const std::vector<Block>& blocks, ModelFit fit,
                     const std::vector<FilterNoise>& near, double beat, double hoped,
                     const std::function<bool()>& is_over) {
-  // A round gains less than the one before it.
-  constexpr double kInSight = 3.0;
   SettledModel settled{std::move(fit), {}};
-  const auto is_in_sight = [&](double gain) {
-    return settled.score() - beat <= kInSight * std::max(gain, kLeastGain);
+  // Values of first order are off, and what sticks by them a fit may free; what is so much
+  // further off than it was to gain is nonsense.
+  constexpr double kNonsense = 300.0;
+  const auto is_nonsense = [&] {
+    return settled.score() - beat > kNonsense * std::max(hoped, kLeastGain);
   };
-  // The noise of the model so far is as large as what that lacks.
   const Machine first = machine_with(settled.fit.model);
-  settled.path = RunForceFilter(first, run, dofs, FilterStarts(first, run, reading_sd),
-                                near.back());
-  if (!is_in_sight(hoped)) return settled;
+  try {
+    settled.path = RunForceFilter(first, run, dofs,
+                                  FilterStarts(first, run, reading_sd), near.back());
+    if (is_nonsense()) return settled;
+  } catch (const NumericalError&) {
+  }
   settled.path = FilterLikeliestFrom(first, run, reading_sd, dofs, near);
   // Values that are off make latent forces large, behind which values are hardly seen:
   // where fits behind the noise of the last filter gain no more, one behind a smaller may.
   constexpr int kRounds = 6;
   constexpr std::size_t kSmaller = 2;  // of NoisesFrom
   std::size_t smaller = 0;
-  if (!is_in_sight(hoped)) return settled;
+  if (is_nonsense()) return settled;
   for (int round = 0; round < kRounds && !is_over(); ++round) {
     if (settled.fit.model.empty()) break;
     const FilterPath& path = settled.path;
@@ -64,7 +67,6 @@ SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
     } catch (const NumericalError&) {
     }
     if (gain < kLeastGain && smaller == kSmaller) break;
-    if (!is_in_sight(gain)) break;
     smaller = gain < kLeastGain ? kSmaller : 0;
   }
   return settled;

@@ -17,7 +17,7 @@ struct SettledModel {
 
 /// @param dofs     with a latent force
 /// @param near     noises to begin with, that of the model so far the last
-/// @param beat     a score: where none better is in sight it ends
+/// @param beat     a score: of what is nowhere near it nothing is fitted
 /// @param hoped    what it is to gain by first order
 /// @param is_over  ends it with what it has
 /// NumericalError where no run with the first values stays with what was measured.

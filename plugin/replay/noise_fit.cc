@@ -80,6 +80,19 @@ FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd,
   return slow.deviance < fast.deviance ? slow.noise : fast.noise;
 }
 
+/// Logarithms a part of the way from one to another.
+FilterNoise Between(const FilterNoise& from, const FilterNoise& to, double part) {
+  const auto mean = [part](const VectorXd& a, const VectorXd& b) -> VectorXd {
+    return a.array().pow(1.0 - part) * b.array().pow(part);
+  };
+  return {mean(from.reading, to.reading),
+          std::pow(from.clock, 1.0 - part) * std::pow(to.clock, part),
+          std::pow(from.clock_memory, 1.0 - part) * std::pow(to.clock_memory, part),
+          mean(from.size, to.size),
+          mean(from.memory, to.memory),
+          mean(from.white, to.white)};
+}
+
 /// Of a filter: those of the machine, its latent forces and the clock.
 Index StatesOf(const Machine& machine, const std::vector<Index>& dofs) {
   return TangentSize(machine.plant()) + std::ssize(dofs) + 1;
@@ -166,7 +179,20 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
   // forces of one that does not.
   follow(FollowingNoise(machine, pieces, dofs, of_pieces, reading_sd));
   if (!best) throw NumericalError("replay: diverged");
-  follow(Refined(*best, reading_sd, longest, true));
+  // Along its path a linear filter does not stick; the machine may, behind a noise that is so
+  // likely: on the way there it goes as far as it gains.
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    const FilterNoise from = best->noise;
+    const double before = best->deviance;
+    const FilterNoise to = Refined(*best, reading_sd, longest, true);
+    double part = 1.0;
+    for (; part > 0.2; part *= 0.5) {
+      follow(Between(from, to, part));
+      if (best->deviance < before) break;
+    }
+    if (part == 1.0 || part < 0.2) break;
+  }
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
   FilterPath refined = RunForceFilter(machine, run, dofs, starts,
