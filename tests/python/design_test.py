@@ -133,7 +133,8 @@ class CompareTest(Test):
         self.assertEqual(list(found.missing_force), ["shoulder", "elbow"])
         force = found.missing_force["elbow"]
         self.assertEqual((force.unit, force.value.shape), ("N m", (measured.samples,)))
-        self.assertLess(found.missing_force["shoulder"].rms, 0.02)
+        # Of the elbow's friction what the shoulder's force takes: its noise is found, too.
+        self.assertLess(found.missing_force["shoulder"].rms, 0.03)
         self.assertTrue(found.falls)
         # Friction is its force where the elbow turns, and less where it rests.
         self.assertTrue(0.1 < force.rms < 0.2)

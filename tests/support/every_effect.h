@@ -57,7 +57,8 @@ inline const std::vector<std::string>& EveryEffectOfAb383() {
        "floor_vibration@u1:amplitude=9.1,frequency=33.3,phase=0.7",
        "encoder_scale@x_encoder:factor=1.00013",
        "encoder_periodic_error@y_encoder:amplitude=3.1e-8,period=2e-5",
-       "encoder_drift@z_encoder:rate=1.7e-5"},
+       "encoder_drift@z_encoder:rate=1.7e-5",
+       "encoder_delay@y_encoder:delay=1.3e-5"},
       {.stroke = 4e-3, .speed = 0.3, .force = 250.0, .mass = 1.0, .duration = 1.0},
       {"X", "r2", "x_motor", "x_encoder", "Z"});
   return effects;

@@ -74,7 +74,7 @@ class EncoderDelayEffect final : public Effect {
         CentralDifferences(at.y().transpose(), at.motion.sample_time).transpose();
     return {LinearTrial(-rate, {}, 0.0, true)};
   }
-  Sized Draw(const Scales&, Random&) const override { return Proportional(5e-4); }
+  Sized Draw(const Scales&, Random&) const override { return Proportional(2e-4); }
 };
 
 }  // namespace

@@ -76,9 +76,11 @@ TEST(EncoderEffects, HaveUnitsOfAnAngleWhereHingesAreRead) {
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></body></worldbody>
       <tendon><fixed name="both"><joint joint="motor" coef="1"/>
       <joint joint="flex" coef="1"/></fixed></tendon>
+      <actuator><motor name="u" joint="motor"/></actuator>
       <sensor><jointpos name="own" joint="motor"/><tendonpos name="link" tendon="both"/>
       </sensor></mujoco>)",
-      "[rates]\ncontrol = 500.0\n[sensors.q]\nelement = \"own\"\nunit = \"rad\"\n");
+      "[rates]\ncontrol = 500.0\n[sensors.q]\nelement = \"own\"\nunit = \"rad\"\n"
+      "[actuators.u]\nelement = \"u\"\nunit = \"N m\"\n");
   const Effect& error = FindEffect("encoder_periodic_error");
   for (const char* encoder : {"own", "link"}) {
     EXPECT_EQ(SiteUnit(arm.plant(), error, encoder, error.parameters()[0]), "rad");
