@@ -117,7 +117,8 @@ VectorXd TickMap::Read(const PlantState& at, std::int64_t tick) {
   for (std::size_t i = 0; i < late_.size(); ++i) {
     reading[static_cast<Index>(i)] = late_[i] ? 0.0 : data_->sensordata[addresses_[i]];
   }
-  stepper_.Distort(*model_, *data_, {reading.data(), static_cast<std::size_t>(reading.size())}, tick);
+  stepper_.Distort(*model_, *data_,
+                   {reading.data(), static_cast<std::size_t>(reading.size())}, tick);
   return reading;
 }
 

@@ -89,14 +89,13 @@ TEST(ForceFilter, BeginsInMidMotion) {
 // knows less by that, too.
 TEST(ForceFilter, ComesBackFromWhatItWasLeftBehindBy) {
   const Slide slide;
-  const MeasuredRun run = slide.Measure(
-      [](double t) { return t > 1.5 && t < 1.51 ? 3.0 : 0.0; }, 3000);
+  const MeasuredRun run =
+      slide.Measure([](double t) { return t > 1.5 && t < 1.51 ? 3.0 : 0.0; }, 3000);
   FilterNoise noise = SomeNoise();
   noise.size[0] = 0.01;
   noise.white[0] = 1e-3;
-  const FilterPath path =
-      RunForceFilter(slide.machine, run, {0},
-                     FilterStarts(slide.machine, run, noise.reading), noise);
+  const FilterPath path = RunForceFilter(
+      slide.machine, run, {0}, FilterStarts(slide.machine, run, noise.reading), noise);
   // 1000 values: four standard deviations of a root mean square are 9 %.
   const double rms = path.innovations.rightCols(1000).norm() / std::sqrt(1000.0);
   EXPECT_NEAR(rms, kNoise, 0.15 * kNoise);
