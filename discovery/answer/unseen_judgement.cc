@@ -52,8 +52,8 @@ void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& follo
   }
 }
 
-/// The same behind the likeliest noise near one.
-void FollowUnseenNear(const AnswerData& data, const FilterNoise& near,
+/// The same behind the likeliest noise, from one and from one that follows anything.
+void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
                       ModelOnRuns& one) {
   TakeUnseen(
       data,
@@ -87,7 +87,7 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given,
         one);
   }
   if (std::isfinite(one.unseen_deviance) && !is_over()) {
-    FollowUnseenNear(data, one.unseen.noise, one);
+    FollowUnseenFrom(data, one.unseen.noise, one);
   }
   if (!std::isfinite(one.unseen_deviance)) {
     throw NumericalError("replay: diverges on unseen data");
@@ -139,7 +139,7 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
 /// suits the other may suit it as well.
 void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
                        ModelOnRuns& one) {
-  FollowUnseenNear(data, other.unseen.noise, one);
+  FollowUnseenFrom(data, other.unseen.noise, one);
   try {
     FilterPath path =
         FilterLikeliestNear(data.With(one.fit.model), data.run.seen, data.reading_sd,
@@ -247,8 +247,8 @@ bool UnseenJudge::DropWorst() {
   std::optional<ModelOnRuns> best;
   std::size_t worst = 0;
   for (std::size_t m = 0; m < model.size(); ++m) {
-    if (!without[m])
-      continue;  // the machine does not run without it, or no time is left
+    // The machine does not run without it, or no time is left.
+    if (!without[m]) continue;
     judged_.losses[m] = LossOf(*without[m]);
     if (IsRefuted(judged_.losses[m])) {
       if (is_over_()) {

@@ -10,9 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-// A motor that pushes one stage from another strains stiff guides as well; the joint
-// that gives way is the one that it drives: the largest share of the work at a
-// frequency far below all guides, (K + w^2 M)^-1 d weighed with d, for every column d.
+// (K + w^2 M)^-1 at a frequency far below all guides.
 using Response = Eigen::LDLT<Eigen::MatrixXd>;
 
 Response ResponseOf(const MechanicalModel& model) {
@@ -20,10 +18,13 @@ Response ResponseOf(const MechanicalModel& model) {
   return Response(model.K + kOmega * kOmega * model.M);
 }
 
+/// Of every joint, where a direction of forces moves it.
 Eigen::VectorXd Work(const Response& response, const Eigen::VectorXd& direction) {
   return response.solve(direction).cwiseProduct(direction).cwiseAbs();
 }
 
+// A motor that pushes one stage from another strains stiff guides as well; the joint
+// that gives way is the one that it drives, by the largest share of the work.
 std::vector<Index> MostMoved(const MechanicalModel& model,
                              const Eigen::MatrixXd& directions) {
   const Response response = ResponseOf(model);

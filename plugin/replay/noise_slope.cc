@@ -39,7 +39,8 @@ class Backwards {
  private:
   void Forwards();
   void Tick(Index k);
-  void Take(Index place);
+  /// @return the slope by the variance of that reading
+  double Take(Index place);
   VectorXd Slope() const;
 
   const FilterPath& path_;
@@ -88,7 +89,7 @@ void Backwards::Forwards() {
   pass_.Over(first_, count_);
 }
 
-void Backwards::Take(Index place) {
+double Backwards::Take(Index place) {
   const Reading& one = readings_[static_cast<std::size_t>(place)];
   const auto u = u_.col(place);
   const auto c = c_.col(place);
@@ -114,6 +115,7 @@ void Backwards::Take(Index place) {
   Q_.noalias() += 0.5 * c * du_.transpose();
   Z_ -= by_e * c;
   by_reading_[one.sensor] += by_S;
+  return by_S;
 }
 
 void Backwards::Tick(Index k) {
@@ -153,11 +155,9 @@ void Backwards::Tick(Index k) {
   Z_.head(ns_) = (tangent.A.transpose() * Z_.head(ns_)).eval();
   const Index begin = k > 0 ? ends_[static_cast<std::size_t>(k - 1)] : 0;
   for (Index i = ends_[static_cast<std::size_t>(k)] - 1; i >= begin; --i) {
-    const double before = by_reading_[readings_[static_cast<std::size_t>(i)].sensor];
-    Take(i);
+    const double by_S = Take(i);
     const Reading& one = readings_[static_cast<std::size_t>(i)];
     if (!one.late) continue;
-    const double by_S = by_reading_[one.sensor] - before;
     for (Index j = 0; j < nf_; ++j) {
       const double d = tangent.D(one.sensor, path_.dofs[static_cast<std::size_t>(j)]);
       by_white_[j] += by_S * d * d;
