@@ -5,7 +5,6 @@
 
 #include "mjdiag/comparison/noise_floor.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
-#include "mjdiag/plugin/replay/motion_of_readings.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/signals/error.h"
@@ -97,16 +96,6 @@ bool Leaves(const Record& measured, const Record& simulated,
     const double off = MismatchOf(channel, simulated.At(name), 0).cwiseAbs().maxCoeff();
     return off > y.maxCoeff() - y.minCoeff();
   });
-}
-
-/// Whether it has left its rest, and its readings say where it is.
-bool HasLeftRest(const Machine& machine, const Record& measured) {
-  for (const SensorSetup& sensor : machine.channels().sensors) {
-    if (measured.Find(sensor.channel) == nullptr) return false;
-  }
-  const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
-  constexpr double kPeriods = 25.0;
-  return !RestGainHolds(machine, run, kPeriods / run.Time().maxCoeff());
 }
 
 /// Noise of the sensors, none without any: of one that rests only rounding is left.
@@ -258,7 +247,8 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
 }
 
 bool Falls(const Machine& machine, const Record& measured) {
-  if (!machine.setup().control.axes.empty() || !HasLeftRest(machine, measured)) {
+  if (!machine.setup().control.axes.empty() ||
+      !CanBeFollowed(machine.setup(), measured)) {
     return false;
   }
   RunOptions quiet;

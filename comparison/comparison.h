@@ -66,8 +66,8 @@ Comparison Compare(const Machine& machine, const Record& measured,
 Comparison CompareFree(const Machine& machine, const Record& measured,
                        const RunOptions& options);
 
-/// Whether a machine falls that is driven with the inputs of the record alone, and has left
-/// its rest (motion_of_readings.h). InputError as above.
+/// Whether a machine falls that is driven with the inputs of the record alone, where that has
+/// all that the filter needs. InputError as above.
 bool Falls(const Machine& machine, const Record& measured);
 
 /// What is predicted over one tick, of a machine and of the same with changes, behind the

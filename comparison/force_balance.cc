@@ -194,7 +194,7 @@ FilteredRun FilterRun(const Machine& machine, const MeasuredRun& run,
 }
 
 VectorXd DriveFactors(const Machine& machine, const Machine& changed) {
-  const MatrixXd share = machine.linear().Gamma.cwiseAbs();
+  const MatrixXd share = machine.mechanics().Gamma.cwiseAbs();
   const std::vector<int>& motors = machine.actuator_addresses();
   VectorXd factors(std::ssize(motors));
   for (std::size_t i = 0; i < motors.size(); ++i) {

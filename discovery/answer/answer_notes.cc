@@ -30,7 +30,7 @@ namespace {
 void NoteQuiet(const AnswerData& data, const VectorXd& reading_noise,
                std::vector<std::string>& notes) {
   constexpr double kMoving = 50.0;  // times the sensor noise
-  const MechanicalModel& linear = data.machine.linear();
+  const MechanicalModel& linear = data.machine.mechanics();
   const std::vector<Index> seen = SeenJoints(linear);
   for (std::size_t y = 0; y < seen.size(); ++y) {
     const auto row = static_cast<Index>(y);

@@ -129,7 +129,7 @@ void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
       *std::ranges::max_element(forces, std::less<>(), [](const MissingForce& one) {
         return one.value.norm() / std::max(one.sd, 1e-300);
       });
-  const std::vector<std::string>& names = data.machine.linear().coordinates;
+  const std::vector<std::string>& names = data.machine.mechanics().coordinates;
   std::vector<std::string> joints;
   for (const MissingForce& one : forces) {
     if (std::ranges::find(names, one.joint) != names.end()) joints.push_back(one.joint);

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 namespace {
 
 SiteMotion At(const Machine& machine, const ObservedMotion& motion, const Site& site) {
-  return {machine.plant(), machine.linear(), motion, site};
+  return {machine.plant(), machine.mechanics(), motion, site};
 }
 
 /// The columns of a trial, each amplitude its own, or all of one.

@@ -93,7 +93,7 @@ std::vector<Candidate> CurveCandidates(const Machine& machine,
   for (const auto& [joint, at] : joints) {
     const Site site{at->site, joint, -1};
     const double spread =
-        ScalesOf({machine.plant(), machine.linear(), motion, site}).FrictionForce();
+        ScalesOf({machine.plant(), machine.mechanics(), motion, site}).FrictionForce();
     for (const auto& [of, other] : joints) {
       const VectorXd q = motion.position.row(of);
       if (!(q.maxCoeff() > q.minCoeff())) continue;

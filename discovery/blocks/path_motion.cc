@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/plant/operating_point.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -53,6 +54,15 @@ ObservedMotion MotionAlong(const Machine& machine, const MeasuredRun& run,
   // another thing of them, too.
   motion.own_acceleration = motion.acceleration;
   motion.inputs = InputsThatAct(machine, run, position, motion.velocity);
+  const std::vector<int>& actuators = machine.actuator_addresses();
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    const int activation = ActivationOf(model, actuators[i]);
+    if (activation < 0) continue;
+    for (Index k = 0; k < samples; ++k) {
+      motion.inputs(static_cast<Index>(i), k) =
+          path.states[static_cast<std::size_t>(k)].activation[activation];
+    }
+  }
   return motion;
 }
 

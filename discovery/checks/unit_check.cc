@@ -197,7 +197,7 @@ void CheckInputsOfAxes(const Setup& setup, const Record& measured,
 }
 
 bool IsStable(const Machine& machine) {
-  const Eigen::MatrixXd& K = machine.linear().K;
+  const Eigen::MatrixXd& K = machine.mechanics().K;
   const Eigen::MatrixXd symmetric = 0.5 * (K + K.transpose());
   const VectorXd values =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)

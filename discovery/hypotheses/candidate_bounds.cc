@@ -79,7 +79,7 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
   std::map<Index, Scales> scales;  // of every joint
   for (Candidate& candidate : candidates) {
     const Site site{candidate.site, candidate.joint, candidate.channel};
-    const SiteMotion at{machine.plant(), machine.linear(), motion, site};
+    const SiteMotion at{machine.plant(), machine.mechanics(), motion, site};
     if (!scales.contains(candidate.joint)) scales[candidate.joint] = ScalesOf(at);
     const Scales& own = scales[candidate.joint];
     const VectorXd spread = candidate.effect->Spread(own);
@@ -132,7 +132,7 @@ void BoundDriveLimits(std::vector<Candidate>& candidates, const Machine& machine
                       const ObservedMotion& motion) {
   for (Candidate& candidate : candidates) {
     const Site site{candidate.site, candidate.joint, candidate.channel};
-    const SiteMotion at{machine.plant(), machine.linear(), motion, site};
+    const SiteMotion at{machine.plant(), machine.mechanics(), motion, site};
     for (FitParameter& parameter : candidate.parameters) {
       if (parameter.role != Role::kLimit) continue;
       const VectorXd f = at.before_gear();

@@ -16,7 +16,7 @@ std::vector<MotionVariable> MotionVariables(const Machine& machine,
                                             Index site, double still,
                                             std::size_t records) {
   const mjModel& plant = machine.plant();
-  const std::vector<std::string>& coordinates = machine.linear().coordinates;
+  const std::vector<std::string>& coordinates = machine.mechanics().coordinates;
   std::vector<MotionVariable> variables;
   for (const std::string& name : joints) {
     const Index j = std::ranges::find(coordinates, name) - coordinates.begin();

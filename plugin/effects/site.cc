@@ -5,6 +5,8 @@
 #include <numbers>
 #include <set>
 
+#include "mjdiag/plugin/plant/channels.h"
+
 namespace mjdiag {
 namespace {
 
@@ -35,6 +37,12 @@ std::vector<Index> MostMoved(const MechanicalModel& model,
   return joints;
 }
 
+/// Laws of a joint act on slides and hinges.
+bool IsScalar(const mjModel& plant, Index dof) {
+  const int type = plant.jnt_type[plant.dof_jntid[dof]];
+  return type == mjJNT_SLIDE || type == mjJNT_HINGE;
+}
+
 std::vector<Index> Unique(const std::vector<Index>& joints) {
   const std::set<Index> set(joints.begin(), joints.end());
   return {set.begin(), set.end()};
@@ -57,6 +65,7 @@ std::vector<Index> ToldJoints(const MechanicalModel& model) {
   Eigen::VectorXd others = Eigen::VectorXd::Ones(model.M.rows());
   for (Index i = 0; i < model.b.cols(); ++i) {
     const Eigen::VectorXd all = model.b.col(i);
+    if (all.isZero(0.0)) continue;  // it sees no motion, as one of forces
     const Eigen::VectorXd rest = all.cwiseProduct(others);
     Index joint = 0;
     const double most = Work(response, all).maxCoeff(&joint);
@@ -89,6 +98,7 @@ std::vector<Site> SiteMap::Sensors() const {
   const std::vector<Index> seen = SeenJoints(model_);
   std::vector<Site> sites;
   for (std::size_t y = 0; y < channels_.sensors.size(); ++y) {
+    if (StageOf(plant_, channels_.sensors[y]) != mjSTAGE_POS) continue;  // no encoder
     sites.push_back({channels_.sensors[y].element, seen[y], static_cast<Index>(y)});
   }
   return sites;
@@ -98,6 +108,7 @@ std::vector<Site> SiteMap::Joints(const std::vector<Index>& joints) const {
   std::vector<Site> sites;
   sites.reserve(joints.size());
   for (const Index joint : joints) {
+    if (!IsScalar(plant_, joint)) continue;
     sites.push_back({model_.coordinates[static_cast<std::size_t>(joint)], joint, -1});
   }
   return sites;

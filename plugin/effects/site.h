@@ -44,8 +44,9 @@ class SiteMap {
   const Channels& channels() const { return channels_; }
 
   std::vector<Site> Actuators() const;
+  /// Those that read positions.
   std::vector<Site> Sensors() const;
-  /// Sites of the joints with those nq indices.
+  /// Sites of the joints with those indices that are slides or hinges.
   std::vector<Site> Joints(const std::vector<Eigen::Index>& joints) const;
   /// Those that an actuator moves, each once.
   const std::vector<Eigen::Index>& driven() const { return driven_; }

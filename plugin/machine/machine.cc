@@ -25,9 +25,9 @@ struct Machine::Derived {
 
   bool held;  // by controllers
   std::once_flag rest_once;
-  std::once_flag linear_once;
+  std::once_flag mechanics_once;
   RestPose rest;
-  MechanicalModel linear;
+  MechanicalModel mechanics;
 };
 
 namespace {
@@ -111,12 +111,18 @@ const RestPose& Machine::rest_pose() const& {
   return derived_->rest;
 }
 
-const MechanicalModel& Machine::linear() const& {
-  std::call_once(derived_->linear_once, [this] {
-    RequireScalarJoints(*plant_, channels());
-    derived_->linear = Linearize(*plant_, channels(), rest());
+const MechanicalModel& Machine::mechanics() const& {
+  std::call_once(derived_->mechanics_once, [this] {
+    MechanicalModel& model = derived_->mechanics;
+    model = Linearize(*plant_, channels(), rest());
+    model.b += VelocityOutputMatrix(*plant_, channels(), rest());
   });
-  return derived_->linear;
+  return derived_->mechanics;
+}
+
+const MechanicalModel& Machine::linear() const& {
+  RequireScalarJoints(*plant_, channels());
+  return mechanics();
 }
 
 Machine Machine::With(const Changes& changes) const {

@@ -54,7 +54,12 @@ class Machine {
   const Eigen::VectorXd& rest() const& { return rest_pose().qpos; }
   Eigen::VectorXd rest() const&& { return std::as_const(*this).rest(); }
   /// M, D, K, Gamma and b about it, as if no constraint acted (Linearize), found when
-  /// first asked for. InputError as RequireScalarJoints.
+  /// first asked for: of any machine what pushes and what sees where, with b of sensors
+  /// that read velocities (VelocityOutputMatrix).
+  const MechanicalModel& mechanics() const&;
+  MechanicalModel mechanics() const&& { return std::as_const(*this).mechanics(); }
+  /// That, of a machine whose motion about rest it tells. InputError as
+  /// RequireScalarJoints.
   const MechanicalModel& linear() const&;
   MechanicalModel linear() const&& { return std::as_const(*this).linear(); }
 

@@ -50,26 +50,41 @@ MatrixXd InputMatrix(const mjModel& model, const Channels& channels,
   return gamma;
 }
 
-bool ReadsPosition(const mjModel& model, const SensorSetup& sensor) {
-  return StageOf(model, sensor) == mjSTAGE_POS;
+/// What the sensors read, where the forces are.
+auto ReadingsAt(const Channels& channels, PlantForces& forces) {
+  return [&forces, addresses = SensorAddresses(channels, forces.model())]() -> VectorXd {
+    forces.Update();
+    return VectorXd::Map(forces.data().sensordata,
+                         forces.model().nsensordata)(addresses);
+  };
+}
+
+/// Columns of sensors of a stage; 0 of others.
+MatrixXd ColumnsOf(mjtStage stage, MatrixXd columns, const mjModel& model,
+                   const Channels& channels) {
+  for (std::size_t i = 0; i < channels.sensors.size(); ++i) {
+    if (StageOf(model, channels.sensors[i]) == stage) continue;
+    columns.col(static_cast<Index>(i)).setZero();
+  }
+  return columns;
 }
 
 }  // namespace
 
 MatrixXd OutputMatrix(const mjModel& model, const Channels& channels,
                       const VectorXd& position) {
-  const std::vector<int> addresses = SensorAddresses(channels, model);
   PlantForces forces(model, position);
-  const auto readings = [&]() -> VectorXd {
-    forces.Update();
-    return VectorXd::Map(forces.data().sensordata, model.nsensordata)(addresses);
-  };
-  MatrixXd b = ByPosition(forces, readings).transpose();
-  for (std::size_t i = 0; i < channels.sensors.size(); ++i) {
-    if (ReadsPosition(model, channels.sensors[i])) continue;
-    b.col(static_cast<Index>(i)).setZero();
-  }
-  return b;
+  return ColumnsOf(mjSTAGE_POS,
+                   ByPosition(forces, ReadingsAt(channels, forces)).transpose(), model,
+                   channels);
+}
+
+MatrixXd VelocityOutputMatrix(const mjModel& model, const Channels& channels,
+                              const VectorXd& position) {
+  PlantForces forces(model, position);
+  return ColumnsOf(mjSTAGE_VEL,
+                   ByVelocity(forces, ReadingsAt(channels, forces)).transpose(), model,
+                   channels);
 }
 
 MechanicalModel Linearize(const mjModel& model, const Channels& channels,
@@ -96,7 +111,7 @@ void RequireScalarJoints(const mjModel& model, const Channels& channels) {
                      "has dynamics of its own", "dyntype \"none\"");
   }
   for (const SensorSetup& sensor : channels.sensors) {
-    if (ReadsPosition(model, sensor)) continue;
+    if (StageOf(model, sensor) == mjSTAGE_POS) continue;
     throw InputError("sensor " + sensor.element, "does not read a position",
                      "a position sensor");
   }

@@ -21,6 +21,10 @@ namespace mjdiag {
 Eigen::MatrixXd OutputMatrix(const mjModel& model, const Channels& channels,
                              const Eigen::VectorXd& position);
 
+/// Of sensors that read velocities, their derivatives by those, nv x ny; 0 of others.
+Eigen::MatrixXd VelocityOutputMatrix(const mjModel& model, const Channels& channels,
+                                     const Eigen::VectorXd& position);
+
 /// M, D, K (springs and gravity), Gamma and b of the channels about the configuration
 /// `rest`, in tangent coordinates (tangent_coordinates.h), as if no constraint acted.
 /// Static friction is left out, as in [AB383], section 2.2.3. The input of an actuator

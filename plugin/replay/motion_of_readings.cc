@@ -110,19 +110,6 @@ class Configurations {
   MatrixXd step_;
 };
 
-double Largest(const MatrixXd& matrix) { return matrix.cwiseAbs().maxCoeff(); }
-
-std::vector<MechanicalModel> ModelsAt(const Machine& machine,
-                                      const std::vector<MotionPoint>& points) {
-  const MotionLinearization linearization(machine.plant(), machine.channels());
-  std::vector<MechanicalModel> models(points.size());
-  ParallelFor(static_cast<int>(points.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    models[i] = linearization.At(points[i]);
-  });
-  return models;
-}
-
 }  // namespace
 
 std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
@@ -152,33 +139,6 @@ std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
     points.push_back(std::move(*point));
   }
   return points;
-}
-
-bool RestGainHolds(const Machine& machine, const MeasuredRun& run, double bandwidth) {
-  constexpr Index kLooks = 64;
-  constexpr double kMass = 0.1;
-  constexpr double kOutputs = 0.1;
-  constexpr double kShare = 0.5;
-  std::vector<Index> samples;
-  const Index looks = std::min(kLooks, run.samples());
-  for (Index look = 0; look < looks; ++look) {
-    samples.push_back(look * (run.samples() - 1) / std::max<Index>(1, looks - 1));
-  }
-  const std::vector<MotionPoint> points = MotionOfReadings(machine, run, samples);
-  const MechanicalModel& rest = machine.linear();
-  const double omega = 2.0 * std::numbers::pi * bandwidth;
-  // Of an energy: units of the joints cancel.
-  const VectorXd unit = rest.M.diagonal().cwiseSqrt().cwiseInverse();
-  const auto change = [&](const MatrixXd& now, const MatrixXd& then) {
-    return Largest(unit.asDiagonal() * (now - then) * unit.asDiagonal());
-  };
-  const std::vector<MechanicalModel> models = ModelsAt(machine, points);
-  return std::ranges::none_of(models, [&](const MechanicalModel& now) {
-    return change(now.M, rest.M) > kMass ||
-           change(now.K, rest.K) > kShare * omega * omega ||
-           change(now.D, rest.D) > kShare * omega ||
-           Largest(now.b - rest.b) > kOutputs * Largest(rest.b);
-  });
 }
 
 }  // namespace mjdiag

@@ -1,6 +1,5 @@
 #pragma once
-// Where the readings of a run say that a machine was, and whether that is far from its rest:
-// joints that turn by a radian, plants that fall.
+// Where the readings of a run say that a machine was.
 //
 // The readings y say the configuration: joint positions with g(q) = y, from one moment to
 // the next by the step that strains springs least (start_state.h). Positions, velocities
@@ -24,15 +23,5 @@ struct MeasuredRun;
 std::vector<MotionPoint> MotionOfReadings(const Machine& machine,
                                           const MeasuredRun& run,
                                           const std::vector<Eigen::Index>& samples);
-
-/// Whether an observer of that bandwidth [Hz] may take the machine as what it is at rest.
-/// With w = 2 pi bandwidth and differences between rest and 64 moments of the run,
-///
-///   |dM| < 0.1,   |dK| < w^2 / 2,   |dD| < w / 2       in coordinates of unit mass,
-///   |db| < 0.1 of the largest entry:
-///
-/// what pulls the observer back is more than what the machine does by itself. True if the
-/// readings do not say the configuration.
-bool RestGainHolds(const Machine& machine, const MeasuredRun& run, double bandwidth);
 
 }  // namespace mjdiag
