@@ -226,6 +226,10 @@ bool Block::IsOfDrive() const {
                    : IsDrive(number->kind);
 }
 
+bool Block::IsWave() const {
+  return candidate && candidate->effect->Find(Role::kPhase).has_value();
+}
+
 bool Block::IsSimplest() const {
   if (!candidate) return true;
   return candidate->parameters.size() == 1 &&

@@ -303,27 +303,27 @@ void ModelSearch::AddCurves() {
 bool ModelSearch::Step() {
   const Whitenings whitenings = WhiteningsOf(found_.path);
   std::optional<Proposal> move;
-  // What noise of the inputs explains is found before anything else, and looked for again
-  // where what is large, and where everything has been found.
+  // What noise of the inputs explains is looked for beside the first law, and again where
+  // what is large, and where everything has been found.
   bool asks_inputs = found_.fit.model.empty() && found_.input_width == 0.0;
   if (asks_inputs) move = SmoothedInputs();
-  if (!move) {
-    const ExactColumns exact =
-        ExactColumnsOf([&](const Model& model) { return With(model); },
-                       With(found_.fit.model, !steps_), run_, found_.path,
-                       found_.blocks, found_.fit.model);
-    if (looks_at_forces_) {
-      move = BestForces(whitenings, exact);
-      looks_at_forces_ = move.has_value();
-      if (!move && !asks_inputs) {
-        asks_inputs = true;
-        move = SmoothedInputs();
-        looks_at_forces_ = move.has_value();
-      }
+  const ExactColumns exact = ExactColumnsOf(
+      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
+      run_, found_.path, found_.blocks, found_.fit.model);
+  if (looks_at_forces_) {
+    std::optional<Proposal> law = BestForces(whitenings, exact);
+    if (law && (!move || law->settled.score() < move->settled.score())) {
+      move = std::move(law);
     }
-    if (!move) move = BestMove(whitenings, exact);
-    if (!move && !asks_inputs) move = SmoothedInputs();
+    looks_at_forces_ = move.has_value();
+    if (!move && !asks_inputs) {
+      asks_inputs = true;
+      move = SmoothedInputs();
+      looks_at_forces_ = move.has_value();
+    }
   }
+  if (!move) move = BestMove(whitenings, exact);
+  if (!move && !asks_inputs) move = SmoothedInputs();
   if (move) Adopt(std::move(*move));
   return move.has_value();
 }

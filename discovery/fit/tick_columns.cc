@@ -4,6 +4,7 @@
 
 #include "mjdiag/plugin/machine/tick_map.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
+#include "mjdiag/plugin/replay/shared_bodies.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 
 namespace mjdiag {
@@ -28,9 +29,12 @@ Ticks TicksAlong(const Machine& machine, const MeasuredRun& run, const FilterPat
   TickMap map(during);
   RecordedInputs inputs(during, run);
   VectorXd forces = VectorXd::Zero(map.model().nv);
+  const SharedBodies bodies(map, path);
+  VectorXd placed = map.Begun(path.states[static_cast<std::size_t>(first)]).bodies;
   Ticks ticks{{}, MatrixXd::Zero(path.sensors(), end - first)};
   for (Index k = first; k < end; ++k) {
-    const PlantState& state = path.states[static_cast<std::size_t>(k)];
+    const PlantState state =
+        bodies.Placed(path.states[static_cast<std::size_t>(k)], placed);
     forces(path.dofs) = path.forces.col(k);
     const VectorXd read = map.Read(state, run.TickOf(k));
     inputs.StayAt(k);
@@ -42,6 +46,7 @@ Ticks TicksAlong(const Machine& machine, const MeasuredRun& run, const FilterPat
         ticks.readings(i, k + 1 - first) = ticked.reading[i];
       }
     }
+    placed = ticked.state.bodies;
     ticks.states.push_back(ticked.state);
   }
   return ticks;
@@ -53,7 +58,7 @@ std::vector<Column> TickColumns(const Machine& machine, const MeasuredRun& run,
                                 const FilterPath& path,
                                 const std::vector<OtherMachine>& others) {
   const mjModel& model = machine.plant();
-  const Index ns = TangentSize(model);
+  const Index ns = TangentSize(model) + path.states.front().bodies.size();
   const Index samples = path.samples();
   std::vector<MatrixXd> states(others.size(), MatrixXd::Zero(samples, ns));
   std::vector<MatrixXd> readings(others.size(),

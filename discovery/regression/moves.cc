@@ -125,9 +125,11 @@ void MoveSearch::Whiten() {
 }
 
 bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
-  const std::string& group = blocks_[kept_[variation].block].group;
+  const Block& block = blocks_[kept_[variation].block];
   return std::ranges::none_of(change.added, [&](std::size_t v) {
-    return v == variation || (!group.empty() && group == blocks_[kept_[v].block].group);
+    // Two of one block are two waves; of anything else two points of its grid.
+    return v == variation || (kept_[v].block == kept_[variation].block && !block.IsWave()) ||
+           (!block.group.empty() && block.group == blocks_[kept_[v].block].group);
   });
 }
 

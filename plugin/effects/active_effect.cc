@@ -18,7 +18,14 @@ ActiveEffects::ActiveEffects(const Channels& channels, const mjModel& model,
     effects_.push_back(std::move(active));
     const bool at_joint = placed.effect->element() == mjOBJ_JOINT;
     dof_of_.push_back(at_joint ? model.jnt_dofadr[element] : -1);
-    if (at_joint) dofs_.push_back(dof_of_.back());
+    if (!at_joint) continue;
+    dofs_.push_back(dof_of_.back());
+    CarriedBody* body = effects_.back()->Body();
+    if (body == nullptr) continue;
+    const std::string name = placed.effect->name() + "@" + placed.site;
+    const auto before = std::ranges::count_if(
+        bodies_, [&](const BodyOf& one) { return one.effect == name; });
+    bodies_.push_back({name, static_cast<int>(before), dof_of_.back(), body});
   }
 }
 

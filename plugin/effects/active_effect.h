@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mjdiag/plugin/setup/setup.h"
@@ -14,6 +15,14 @@
 namespace mjdiag {
 
 struct PlacedEffect;
+
+/// Where a body is that an effect adds to its joint: a state of the machine like the joint's
+/// own.
+struct CarriedBody {
+  double position = 0.0;
+  double velocity = 0.0;
+  bool has_begun = false;  ///< before, it is where its joint is
+};
 
 /// Nothing in it allocates, locks or throws. Effects with a memory begin at rest, at
 /// the state of their first step; values are read when it is made.
@@ -34,6 +43,8 @@ class ActiveEffect {
   /// Changes the bounds of dry friction, when all commands and forces of this step
   /// are known.
   virtual void Bind(const mjModel&, mjData&) noexcept {}
+  /// Null of one that adds no body.
+  virtual CarriedBody* Body() noexcept { return nullptr; }
   /// Takes the memory of another one of the same effect at the same site.
   virtual void Recall(const ActiveEffect&) noexcept {}
 };
@@ -69,6 +80,15 @@ class ActiveEffects {
   /// Takes the memory of all from another run of the same machine.
   void Recall(const ActiveEffects& other) noexcept;
 
+  struct BodyOf {
+    std::string effect;  ///< "flexible_mode@X"
+    int number = 0;      ///< of those with that name, from 0
+    int dof = 0;
+    CarriedBody* body = nullptr;
+  };
+  /// Those that effects add.
+  const std::vector<BodyOf>& bodies() const { return bodies_; }
+
  private:
   /// The force of all that damps the joints.
   void Damp(const mjModel& model, mjData& data) noexcept;
@@ -76,6 +96,7 @@ class ActiveEffects {
   std::vector<std::unique_ptr<ActiveEffect>> effects_;
   std::vector<int> dofs_;        // of those that act at joints, in their order
   std::vector<int> dof_of_;      // of every effect; -1: not at a joint
+  std::vector<BodyOf> bodies_;
   std::vector<double> damping_;  // nv, of a step
 };
 

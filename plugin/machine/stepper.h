@@ -74,6 +74,7 @@ class Stepper {
                std::int64_t tick) noexcept {
     effects_.Distort(model, data, outputs, static_cast<double>(tick) * tick_);
   }
+  const std::vector<ActiveEffects::BodyOf>& bodies() const { return effects_.bodies(); }
   /// Goes on as another one of the same machine would: the tick that it is at, and what
   /// its effects remember.
   void Recall(const Stepper& other) noexcept;

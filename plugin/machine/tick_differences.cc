@@ -18,13 +18,19 @@ namespace {
 
 constexpr double kStep = 1e-6;
 
-VectorXd StateSteps(const mjModel& model) {
-  VectorXd steps = VectorXd::Constant(TangentSize(model), kStep);
+VectorXd StateSteps(const TickMap& map) {
+  const mjModel& model = map.model();
+  VectorXd steps = VectorXd::Constant(map.states(), kStep);
   const double extent = std::clamp(model.stat.extent, 1e-3, 1e3);
   for (int dof = 0; dof < model.nv; ++dof) {
     if (!IsLength(model, dof)) continue;
     steps[dof] *= extent;
     steps[model.nv + dof] *= extent;
+  }
+  Index place = TangentSize(model);
+  for (const ActiveEffects::BodyOf& body : map.bodies()) {
+    steps[place++] = steps[body.dof];
+    steps[place++] = steps[model.nv + body.dof];
   }
   return steps;
 }
@@ -59,7 +65,7 @@ std::vector<Index> AllDofs(const mjModel& model) {
 TickDifferences::TickDifferences(TickMap& map, double tick, std::vector<Index> dofs)
     : map_(map),
       dofs_(std::move(dofs)),
-      steps_(StateSteps(map.model())),
+      steps_(StateSteps(map)),
       force_steps_(ForceSteps(map.model(), steps_, tick)) {}
 
 TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,

@@ -25,6 +25,25 @@ void Mix(std::uint64_t& hash, std::uint64_t value) {
   hash = (hash ^ value) * 0x100000001b3ULL;  // FNV-1a
 }
 
+void SetBodies(const VectorXd& state,
+               const std::vector<ActiveEffects::BodyOf>& bodies) {
+  if (state.size() != 2 * std::ssize(bodies)) return;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto place = 2 * static_cast<Index>(i);
+    *bodies[i].body = {state[place], state[place + 1], true};
+  }
+}
+
+VectorXd StateOf(const std::vector<ActiveEffects::BodyOf>& bodies) {
+  VectorXd state(2 * std::ssize(bodies));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto place = 2 * static_cast<Index>(i);
+    state[place] = bodies[i].body->position;
+    state[place + 1] = bodies[i].body->velocity;
+  }
+  return state;
+}
+
 }  // namespace
 
 TickMap::TickMap(const Machine& machine)
@@ -46,6 +65,16 @@ TickMap::TickMap(const Machine& machine)
   probed_.reading = last_.reading;
 }
 
+PlantState TickMap::Begun(PlantState state) const {
+  state.bodies.resize(2 * std::ssize(bodies()));
+  Index place = 0;
+  for (const ActiveEffects::BodyOf& one : bodies()) {
+    state.bodies[place++] = state.position[model_->jnt_qposadr[model_->dof_jntid[one.dof]]];
+    state.bodies[place++] = state.velocity[one.dof];
+  }
+  return state;
+}
+
 const TickMap::Result& TickMap::Run(const PlantState& from, const VectorXd& forces,
                                     std::int64_t tick, TickControl& control) {
   before_.Recall(stepper_);
@@ -63,6 +92,7 @@ const TickMap::Result& TickMap::Probe(const PlantState& from, const VectorXd& fo
 void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& forces,
                       std::int64_t tick, TickControl& control, Result& result) {
   SetState(*model_, from, *data_);
+  SetBodies(from.bodies, stepper.bodies());
   data_->time = static_cast<double>(tick) * tick_;
   stepper.Hold({forces.data(), static_cast<std::size_t>(forces.size())});
   result.pattern = 0xcbf29ce484222325ULL;
@@ -103,6 +133,7 @@ void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& 
     result.reading[static_cast<Index>(i)] = data_->sensordata[addresses_[i]];
   }
   result.state = StateOf(*model_, *data_);
+  result.state.bodies = StateOf(stepper.bodies());
   result.diverged = HasDiverged(*data_);
   if (result.diverged) mj_resetData(model_.get(), data_.get());
 }

@@ -9,7 +9,8 @@
 // accelerations and forces read at its end, under the commands of the tick: a controller that
 // reads those at a tick reads what the one before has made.
 //
-// Effects with a memory go on from one Run to the next; Probe leaves their memory as it is.
+// Bodies that effects add are where the state says; what else effects remember goes on from
+// one Run to the next, and Probe leaves it as it is.
 
 #include <mujoco/mujoco.h>
 
@@ -42,6 +43,15 @@ class TickMap {
   bool ReadsAtEnd(Eigen::Index sensor) const {
     return late_[static_cast<std::size_t>(sensor)];
   }
+
+  /// Numbers of a deviation from a state.
+  Eigen::Index states() const {
+    return TangentSize(*model_) + 2 * static_cast<Eigen::Index>(bodies().size());
+  }
+  /// Those that effects add, in the order of the state.
+  const std::vector<ActiveEffects::BodyOf>& bodies() const { return stepper_.bodies(); }
+  /// A state with every body where its joint is.
+  PlantState Begun(PlantState state) const;
 
   /// Of the last Run.
   const Result& last() const { return last_; }

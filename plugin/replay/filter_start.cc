@@ -87,8 +87,9 @@ TickTangent TangentAt(TickMap& map, RecordedInputs& inputs, const PlantState& st
                       Index sample, double tick, const std::vector<Index>& dofs) {
   const VectorXd none = VectorXd::Zero(map.model().nv);
   inputs.StayAt(sample);
-  map.Run(state, none, 0, inputs);
-  return TickDifferences(map, tick, dofs).Of(state, none, 0, inputs);
+  const PlantState begun = map.Begun(state);
+  map.Run(begun, none, 0, inputs);
+  return TickDifferences(map, tick, dofs).Of(begun, none, 0, inputs);
 }
 
 /// Degrees of freedom in the order in which a missing force is looked for: of every actuator

@@ -24,6 +24,18 @@ bool Counts(const MeasuredRun& run, Index sensor, Index sample) {
   return run.Counted().size() == 0 || run.Counted()(sensor, sample);
 }
 
+/// Of a state with the bodies of this machine's effects, which are known as their joints are.
+VectorXd WithBodies(const VectorXd& sd, const TickMap& map) {
+  VectorXd all(map.states());
+  Index place = TangentSize(map.model());
+  all.head(place) = sd.head(place);
+  for (const ActiveEffects::BodyOf& body : map.bodies()) {
+    all[place++] = sd[body.dof];
+    all[place++] = sd[map.model().nv + body.dof];
+  }
+  return all;
+}
+
 /// One record into its columns of the path.
 class RecordFilter {
  public:
@@ -99,9 +111,9 @@ const TickMap::Result& RecordFilter::Tick(Index k) {
 
 void RecordFilter::Run() {
   const mjModel& model = map_.model();
-  const Index ns = TangentSize(model);
+  const Index ns = map_.states();
   const Index nf = path_.dof_count();
-  state_ = start_.state;
+  state_ = map_.Begun(start_.state);
   latent_ = VectorXd::Zero(nf);
   kalman_.Start(start_.sd);
   std::size_t tangent = 0;
@@ -191,7 +203,12 @@ FilterPath RunForceFilter(const Machine& machine, const MeasuredRun& run,
   const Index ny = run.outputs.rows();
   const Index samples = run.samples();
   const auto nf = static_cast<Index>(dofs.size());
-  const Index n = TangentSize(machine.plant()) + nf + 1;
+  const TickMap map(machine);
+  for (const ActiveEffects::BodyOf& body : map.bodies()) {
+    path.bodies.emplace_back(body.effect, body.number);
+  }
+  for (FilterStart& start : path.starts) start.sd = WithBodies(start.sd, map);
+  const Index n = map.states() + nf + 1;
   path.of_tick.resize(static_cast<std::size_t>(samples));
   path.states.resize(static_cast<std::size_t>(samples));
   path.forces.resize(nf, samples);

@@ -24,6 +24,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/plugin/machine/machine.h"
@@ -37,7 +39,7 @@ namespace mjdiag {
 /// Of a record, before its first sample.
 struct FilterStart {
   PlantState state;
-  Eigen::VectorXd sd;     ///< of the state, in tangent coordinates
+  Eigen::VectorXd sd;     ///< of the state, in tangent coordinates; of bodies in a path
   Eigen::VectorXd usual;  ///< speeds during the run, by its readings, nv
 };
 
@@ -50,6 +52,8 @@ struct FilterPath {
   std::vector<std::size_t> of_tick;  ///< the tangent of every tick
   std::vector<Eigen::Index> first;   ///< sample at which every record begins
   std::vector<FilterStart> starts;   ///< of every record
+  /// That effects add: "flexible_mode@X", and which of those, from 0.
+  std::vector<std::pair<std::string, int>> bodies;
   std::vector<PlantState> states;    ///< after the readings of a tick, of every tick
   Eigen::MatrixXd forces;            ///< w there, nf x samples
   Eigen::MatrixXd innovations;       ///< ny x samples, 0 where nothing was measured

@@ -5,6 +5,7 @@
 #include "mjdiag/plugin/machine/tick_map.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/recorded_inputs.h"
+#include "mjdiag/plugin/replay/shared_bodies.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -83,7 +84,8 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
     TickMap map(during);
     const mjModel& model = map.model();
     RecordedInputs inputs(during, run);
-    PlantState state = path.starts[record].state;
+    PlantState state = map.Begun(path.starts[record].state);
+    const SharedBodies bodies(map, path);
     VectorXd latent = VectorXd::Zero(nf);
     VectorXd applied = VectorXd::Zero(model.nv);
     VectorXd z(ns + nf + 1);
@@ -111,7 +113,7 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
         }
       };
       take(false, read);
-      state = Moved(model, state, z);
+      state = Moved(model, state, bodies.Pulled(z));
       latent += z.segment(ns, nf);
       clock += z[ns + nf];
       applied(path.dofs) = latent;
@@ -127,7 +129,7 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
         for (Index j = 0; j < nf; ++j) {
           moved += tangent.B.col(path.dofs[static_cast<std::size_t>(j)]) * z[ns + j];
         }
-        next = Moved(model, next, moved);
+        next = Moved(model, next, bodies.Pulled(moved));
         latent += z.segment(ns, nf);
         clock += z[ns + nf];
       }

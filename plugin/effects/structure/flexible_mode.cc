@@ -27,24 +27,20 @@ class Appendage final : public RememberingEffect<Appendage> {
   void Push(const mjModel& model, mjData& data) noexcept override {
     const double q = data.qpos[joint_.position];
     const double v = data.qvel[joint_.dof];
-    if (!started_) {
-      x_ = q;
-      velocity_ = v;
-      started_ = true;
-    }
-    const double pull = stiffness_ * (x_ - q) + damping_ * (velocity_ - v);
+    if (!body_.has_begun) body_ = {q, v, true};
+    const double pull =
+        stiffness_ * (body_.position - q) + damping_ * (body_.velocity - v);
     data.qfrc_applied[joint_.dof] += mass_ * pull;
-    velocity_ -= model.opt.timestep * pull;
-    x_ += model.opt.timestep * velocity_;
+    body_.velocity -= model.opt.timestep * pull;
+    body_.position += model.opt.timestep * body_.velocity;
   }
+  CarriedBody* Body() noexcept override { return &body_; }
 
  private:
   double mass_;
   double stiffness_ = 0.0;
   double damping_ = 0.0;
-  double x_ = 0.0;
-  double velocity_ = 0.0;
-  bool started_ = false;
+  CarriedBody body_;
   JointOf joint_;
 };
 
