@@ -30,11 +30,4 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged);
 
 DiscoveryVerdict VerdictOf(const MissingShare& share, bool has_model);
 
-/// The forces that a model lacks along what fits saw, or did not, behind the noise of the
-/// machine as given.
-/// @param changed  the machine with the model
-/// @param path     of the machine as given
-std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
-                                       const FilterPath& path);
-
 }  // namespace mjdiag
