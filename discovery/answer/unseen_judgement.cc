@@ -349,16 +349,26 @@ std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
     }
   }
   if (!own.candidate || own.candidate->parameters.size() < 2) return instead;
+  const VectorXd& values = judged_.answer.fit.model[place].values;
   for (std::size_t b = 0; b < data_.blocks.size(); ++b) {
     const auto& simple = data_.blocks[b].candidate;
-    if (!simple || simple->parameters.size() != 1 ||
-        simple->site != own.candidate->site ||
-        simple->effect->kind() != own.candidate->effect->kind()) {
+    if (!simple || simple->parameters.size() >= own.candidate->parameters.size() ||
+        simple->site != own.candidate->site) {
       continue;
     }
-    const double size = SizeOf(judged_.answer.fit.model[place].values, own,
-                               simple->parameters.front().role);
-    if (size != 0.0) add(b, VectorXd::Constant(1, size));
+    // What it becomes at an end of its parameters.
+    for (auto law = own.candidate->effect->Simpler(
+             {own.candidate->effect, own.candidate->site, values});
+         law; law = law->effect->Simpler(*law)) {
+      if (law->effect->name() == simple->effect->name()) add(b, law->values);
+    }
+    if (simple->effect->kind() != own.candidate->effect->kind()) continue;
+    const double size = SizeOf(values, own, simple->parameters.front().role);
+    if (size == 0.0) continue;
+    if (simple->parameters.size() == 1) add(b, VectorXd::Constant(1, size));
+    if (!data_.blocks[b].IsSmoothFriction()) continue;
+    const FitParameter& speed = simple->parameters.back();
+    add(b, Eigen::Vector2d(size, std::sqrt(speed.lower * speed.upper)));
   }
   return instead;
 }

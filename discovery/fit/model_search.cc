@@ -79,26 +79,43 @@ std::optional<SettledModel> ModelSearch::Resettled(const Whitenings& whitenings,
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
     const Whitenings& whitenings, const ExactColumns& exact) {
-  const Moves moves = ForceMovesOf(With(found_.fit.model), run_, found_.path,
-                                   found_.blocks, exact.terms, at_every_shape_);
-  Say(std::to_string(moves.variations) + " shapes of forces, " +
-      std::to_string(moves.best.size()) + " moves");
+  const std::vector<Moves> rounds =
+      ForceMovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
+                   exact.terms, at_every_shape_);
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them. What does
-  // not run so leaves the next one.
+  // not run so leaves the next one; how long a rest lasts, the filter says.
   constexpr std::size_t kMost = 3;
   // What has just been settled is behind the noise that suits it.
   bool beside_itself = found_.fit.model.empty();
-  for (const ModelMove* move :
-       ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
-    Moves one;
-    one.score = moves.score;
-    one.best = {*move};
-    if (auto best = BestOf(one, 1, 0, whitenings, {}, beside_itself)) return best;
-    if (IsOver()) break;
-    beside_itself = false;  // what it is worth is known by now
+  std::optional<Proposal> best;
+  std::vector<Model> tried;
+  for (const Moves& moves : rounds) {
+    Say(std::to_string(moves.variations) + " shapes of forces, " +
+        std::to_string(moves.best.size()) + " moves");
+    for (const ModelMove* move : ToBeFitted(
+             moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
+      const Model model = After(*move, found_.fit.model);
+      if (std::ranges::any_of(tried,
+                              [&](const Model& one) { return SameBlocks(one, model); })) {
+        break;
+      }
+      tried.push_back(model);
+      Moves one;
+      one.score = moves.score;
+      one.best = {*move};
+      std::optional<Proposal> next = BestOf(one, 1, 0, whitenings, {}, beside_itself);
+      beside_itself = false;  // what it is worth is known by now
+      if (next) {
+        if (!best || next->settled.score() < best->settled.score()) {
+          best = std::move(next);
+        }
+        break;
+      }
+      if (IsOver()) return best;
+    }
   }
-  return std::nullopt;
+  return best;
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whitenings,
@@ -368,9 +385,10 @@ Explained ModelSearch::Run() {
       looks_at_forces_ = true;
       StepOn();
     }
-  } catch (const NumericalError&) {
+  } catch (const NumericalError& error) {
     // A machine that diverges beside what is measured, or the wish to end: what was found
     // until then stays.
+    Say(error.what());
   }
   found_.steps = steps_;
   found_.is_cut_short = IsOver();
