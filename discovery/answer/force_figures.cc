@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "mjdiag/discovery/answer/missing_power.h"
+#include "mjdiag/discovery/answer/missing_share.h"
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/law.h"

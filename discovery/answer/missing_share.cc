@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "mjdiag/comparison/mismatch.h"
-#include "mjdiag/discovery/answer/missing_power.h"
+#include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -41,6 +42,46 @@ bool AsksForForces(const Machine& machine, const MeasuredRun& run,
 
 }  // namespace
 
+VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
+                     const FilterPath& path) {
+  const mjModel& plant = machine.plant();
+  const VectorXd mass =
+      PlantForces(plant, VectorXd::Map(plant.qpos0, plant.nq)).Mass().diagonal();
+  const ObservedMotion motion = MotionAlong(machine, run, path);
+  VectorXd usual(path.dof_count());
+  for (Eigen::Index j = 0; j < usual.size(); ++j) {
+    const Eigen::Index dof = path.dofs[static_cast<std::size_t>(j)];
+    usual[j] = mass[dof] * Rms(motion.acceleration.row(dof).transpose());
+  }
+  return usual;
+}
+
+namespace {
+
+/// Mean square in units of what accelerates the joints, less that of errors.
+/// @param counts  which samples do
+double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual,
+               const SampleMask& counts) {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < forces.size(); ++j) {
+    const MissingForce& force = forces[j];
+    const VectorXd counted = Kept(force.value, counts);
+    const double square = counted.squaredNorm() / static_cast<double>(counted.size()) -
+                          force.sd * force.sd;
+    const double scale = usual[static_cast<Eigen::Index>(j)];
+    if (scale > 0.0) sum += std::max(0.0, square) / (scale * scale);
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
+                                       const FilterPath& path) {
+  return MissingForces(
+      changed, RunForceFilter(changed, run, path.dofs, path.starts, path.noise));
+}
+
 MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Machine given = data.With({});
   const Model& model = judged.answer.fit.model;
@@ -49,22 +90,31 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const SampleMask all_seen = SampleMask::Constant(data.run.seen.samples(), true);
   const auto is_there = [&](const Machine& machine, const FilterPath& path) {
     return AsksForForces(machine, data.run.seen, path) &&
-           InUnitsOf(usual, PowerOf(MissingForces(machine, path), all_seen)) >
+           PowerOf(MissingForces(machine, path), usual, all_seen) >
                kNegligible * kNegligible;
   };
   share.is_missing = is_there(given, judged.nothing.seen);
-  share.left = 1.0;
   if (model.empty()) {
+    share.left = 1.0;
     share.is_left = share.is_missing;
     return share;
   }
   const Machine changed = data.With(model);
   share.is_left = is_there(changed, judged.answer.seen);
+  const auto share_along = [&](const MeasuredRun& run, const FilterPath& path,
+                               const SampleMask& counts) {
+    const double before = PowerOf(MissingForces(given, path), usual, counts);
+    if (!(before > 0.0)) return std::numeric_limits<double>::infinity();
+    return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual, counts) / before);
+  };
   try {
-    const MissingPower power(data, judged.nothing);
-    const double before = InUnitsOf(usual, power.given());
-    if (before > 0.0) share.left = std::sqrt(InUnitsOf(usual, power.Of(changed)) / before);
+    share.left = share_along(data.run.unseen, judged.nothing.unseen, data.run.New());
+    // A machine that rests in what no fit saw lacks nothing there.
+    if (!std::isfinite(share.left)) {
+      share.left = share_along(data.run.seen, judged.nothing.seen, all_seen);
+    }
   } catch (const NumericalError&) {
+    share.left = 1.0;
   }
   return share;
 }

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
-#include "mjdiag/discovery/answer/missing_power.h"
+#include "mjdiag/discovery/answer/member_forces.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
@@ -157,10 +156,6 @@ bool IsRefuted(const MemberLoss& loss) {
   return loss.unseen < -kLeastGain || loss.Total() < 0.0;
 }
 
-bool ActsOnForces(const Block& block) {
-  return !block.candidate || block.candidate->effect->site() != SiteKind::kSensor;
-}
-
 /// What a member could be instead.
 struct Instead {
   std::size_t block = 0;
@@ -200,9 +195,6 @@ class UnseenJudge {
   bool DropWorst();
   bool IsFree(std::size_t block, std::size_t place) const;
   std::vector<Instead> InsteadOf(std::size_t place) const;
-  /// Members whose force nobody would miss (MissingPower).
-  /// @param without  the model without each
-  std::vector<bool> Idle(const std::vector<std::optional<ModelOnRuns>>& without);
   /// True if a member is exchanged.
   bool ExchangeOne();
   std::vector<FilterNoise> Near() const {
@@ -217,7 +209,6 @@ class UnseenJudge {
   const Explained& explained_;
   const std::function<bool()>& is_over_;
   UnseenJudgement judged_;
-  std::optional<MissingPower> power_;
 };
 
 void UnseenJudge::LeaveNothing() {
@@ -246,27 +237,6 @@ std::vector<std::optional<ModelOnRuns>> UnseenJudge::RefittedAll(
   return fitted;
 }
 
-std::vector<bool> UnseenJudge::Idle(
-    const std::vector<std::optional<ModelOnRuns>>& without) {
-  const Model& model = judged_.answer.fit.model;
-  std::vector<std::uint8_t> idle(model.size(), 0);
-  try {
-    if (!power_) power_.emplace(data_, judged_.nothing);
-    const VectorXd with = power_->Of(data_.With(model));
-    ParallelForAll(static_cast<int>(model.size()), [&](int number) {
-      const auto m = static_cast<std::size_t>(number);
-      if (!without[m] || !ActsOnForces(data_.blocks[model[m].block])) return;
-      try {
-        const VectorXd other = power_->Of(data_.With(without[m]->fit.model));
-        idle[m] = power_->WouldBeMissed(with, other) ? 0 : 1;
-      } catch (const NumericalError&) {
-      }
-    });
-  } catch (const NumericalError&) {
-  }
-  return {idle.begin(), idle.end()};
-}
-
 bool UnseenJudge::DropWorst() {
   const ModelOnRuns& answer = judged_.answer;
   const Model& model = answer.fit.model;
@@ -277,7 +247,7 @@ bool UnseenJudge::DropWorst() {
   std::vector<std::optional<ModelOnRuns>> without = RefittedAll(others);
   std::optional<ModelOnRuns> best;
   std::size_t worst = 0;
-  const std::vector<bool> idle = Idle(without);
+  const std::vector<bool> idle = NobodyWouldMiss(data_, answer);
   for (std::size_t m = 0; m < model.size(); ++m) {
     // The machine does not run without it, or no time is left.
     if (!without[m]) continue;
@@ -304,7 +274,8 @@ bool UnseenJudge::DropWorst() {
   Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
          IsRefuted(judged_.losses[worst])
              ? "left out: data that no fit saw are predicted as well without it"
-             : "left out: it takes away less than a hundredth of the force that is missing");
+             : "left out: it takes away less than a hundredth of the force that is "
+               "missing");
   judged_.answer = std::move(*best);
   judged_.places.erase(judged_.places.begin() + static_cast<std::ptrdiff_t>(worst));
   judged_.losses.clear();

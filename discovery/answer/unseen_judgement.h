@@ -4,7 +4,7 @@
 // that it costs included, for nothing of it was fitted there. Members are taken out one by
 // one, the others fitted anew each time with the noise that suits them; one that the unseen
 // data speak against, or that is not worth its price on both together, leaves the model, the
-// worst first, and so does one whose force nobody would miss (missing_power.h). What could be
+// worst first, and so does one whose force nobody would miss (member_forces.h). What could be
 // in the place of a member is fitted there, too: by first order the likeliest, and the
 // simplest laws of its kind; one that is better takes the place. A model that predicts unseen
 // data no better than the machine as given is none.

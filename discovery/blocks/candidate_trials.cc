@@ -19,8 +19,8 @@ std::vector<Trial> MakeTrials(const Machine& machine, const Candidate& candidate
 std::optional<Sweep> MakeSweep(const Machine& machine, const Candidate& candidate,
                                const ObservedMotion& motion, double duration) {
   const Site site{candidate.site, candidate.joint, candidate.channel};
-  return candidate.effect->MakeSweep({machine.plant(), machine.mechanics(), motion, site},
-                                     duration);
+  return candidate.effect->MakeSweep(
+      {machine.plant(), machine.mechanics(), motion, site}, duration);
 }
 
 }  // namespace mjdiag

@@ -93,11 +93,11 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
   for (const Moves& moves : rounds) {
     Say(std::to_string(moves.variations) + " shapes of forces, " +
         std::to_string(moves.best.size()) + " moves");
-    for (const ModelMove* move : ToBeFitted(
-             moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
+    for (const ModelMove* move :
+         ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
       const Model model = After(*move, found_.fit.model);
-      if (std::ranges::any_of(tried,
-                              [&](const Model& one) { return SameBlocks(one, model); })) {
+      if (std::ranges::any_of(
+              tried, [&](const Model& one) { return SameBlocks(one, model); })) {
         break;
       }
       tried.push_back(model);

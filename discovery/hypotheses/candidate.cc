@@ -45,7 +45,8 @@ std::string Describe(const Candidate& candidate) {
 }
 
 std::vector<Candidate> AllSites(const Machine& machine, bool with_seen) {
-  const SiteMap map(machine.plant(), machine.mechanics(), machine.channels(), with_seen);
+  const SiteMap map(machine.plant(), machine.mechanics(), machine.channels(),
+                    with_seen);
   std::vector<Candidate> candidates;
   for (const PlacedEffect& fault : FaultEffects(machine.plant())) {
     AddSitesOf(fault.effect, map, candidates);

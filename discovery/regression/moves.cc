@@ -128,7 +128,8 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
   const Block& block = blocks_[kept_[variation].block];
   return std::ranges::none_of(change.added, [&](std::size_t v) {
     // Two of one block are two waves; of anything else two points of its grid.
-    return v == variation || (kept_[v].block == kept_[variation].block && !block.IsWave()) ||
+    return v == variation ||
+           (kept_[v].block == kept_[variation].block && !block.IsWave()) ||
            (!block.group.empty() && block.group == blocks_[kept_[v].block].group);
   });
 }

@@ -94,8 +94,8 @@ class ActiveEffects {
   void Damp(const mjModel& model, mjData& data) noexcept;
 
   std::vector<std::unique_ptr<ActiveEffect>> effects_;
-  std::vector<int> dofs_;        // of those that act at joints, in their order
-  std::vector<int> dof_of_;      // of every effect; -1: not at a joint
+  std::vector<int> dofs_;    // of those that act at joints, in their order
+  std::vector<int> dof_of_;  // of every effect; -1: not at a joint
   std::vector<BodyOf> bodies_;
   std::vector<double> damping_;  // nv, of a step
 };

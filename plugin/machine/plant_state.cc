@@ -10,7 +10,8 @@ using Eigen::VectorXd;
 Index TangentSize(const mjModel& model) { return 2 * model.nv + model.na; }
 
 PlantState StateOf(const mjModel& model, const mjData& data) {
-  return {VectorXd::Map(data.qpos, model.nq), VectorXd::Map(data.qvel, model.nv),
+  return {VectorXd::Map(data.qpos, model.nq),
+          VectorXd::Map(data.qvel, model.nv),
           VectorXd::Map(data.act, model.na),
           {}};
 }

@@ -10,9 +10,9 @@
 namespace mjdiag {
 
 struct PlantState {
-  Eigen::VectorXd position;    ///< nq
-  Eigen::VectorXd velocity;    ///< nv
-  Eigen::VectorXd activation;  ///< na
+  Eigen::VectorXd position;     ///< nq
+  Eigen::VectorXd velocity;     ///< nv
+  Eigen::VectorXd activation;   ///< na
   Eigen::VectorXd bodies = {};  ///< x_1, x_1', x_2, ..
 };
 

@@ -69,7 +69,8 @@ PlantState TickMap::Begun(PlantState state) const {
   state.bodies.resize(2 * std::ssize(bodies()));
   Index place = 0;
   for (const ActiveEffects::BodyOf& one : bodies()) {
-    state.bodies[place++] = state.position[model_->jnt_qposadr[model_->dof_jntid[one.dof]]];
+    state.bodies[place++] =
+        state.position[model_->jnt_qposadr[model_->dof_jntid[one.dof]]];
     state.bodies[place++] = state.velocity[one.dof];
   }
   return state;

@@ -52,11 +52,12 @@ MatrixXd InputMatrix(const mjModel& model, const Channels& channels,
 
 /// What the sensors read, where the forces are.
 auto ReadingsAt(const Channels& channels, PlantForces& forces) {
-  return [&forces, addresses = SensorAddresses(channels, forces.model())]() -> VectorXd {
-    forces.Update();
-    return VectorXd::Map(forces.data().sensordata,
-                         forces.model().nsensordata)(addresses);
-  };
+  return
+      [&forces, addresses = SensorAddresses(channels, forces.model())]() -> VectorXd {
+        forces.Update();
+        return VectorXd::Map(forces.data().sensordata,
+                             forces.model().nsensordata)(addresses);
+      };
 }
 
 /// Columns of sensors of a stage; 0 of others.

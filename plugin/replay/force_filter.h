@@ -54,11 +54,11 @@ struct FilterPath {
   std::vector<FilterStart> starts;   ///< of every record
   /// That effects add: "flexible_mode@X", and which of those, from 0.
   std::vector<std::pair<std::string, int>> bodies;
-  std::vector<PlantState> states;    ///< after the readings of a tick, of every tick
-  Eigen::MatrixXd forces;            ///< w there, nf x samples
-  Eigen::MatrixXd innovations;       ///< ny x samples, 0 where nothing was measured
-  Eigen::MatrixXd speeds;            ///< of readings, ny x samples [unit / s]
-  Eigen::VectorXd clock;             ///< t there [s]
+  std::vector<PlantState> states;  ///< after the readings of a tick, of every tick
+  Eigen::MatrixXd forces;          ///< w there, nf x samples
+  Eigen::MatrixXd innovations;     ///< ny x samples, 0 where nothing was measured
+  Eigen::MatrixXd speeds;          ///< of readings, ny x samples [unit / s]
+  Eigen::VectorXd clock;           ///< t there [s]
   /// [x; w; t] was pulled by, in the tick: by readings at its start, and then by those of
   /// its end. (ns + nf + 1) x samples
   Eigen::MatrixXd pulled, pulled_late;

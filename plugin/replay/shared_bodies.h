@@ -21,8 +21,8 @@ class SharedBodies {
   PlantState Placed(PlantState state, const Eigen::VectorXd& before) const;
 
  private:
-  Eigen::Index own_;     // 2 nv + na
-  Eigen::Index states_;  // of the map
+  Eigen::Index own_;                  // 2 nv + na
+  Eigen::Index states_;               // of the map
   std::vector<Eigen::Index> places_;  // of each in the path, -1: none
 };
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <string>
+
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "support/any_machine.h"
 #include "support/bonder.h"
@@ -184,6 +187,44 @@ TEST(TickMap, ProbesFromWhatEffectsRememberedBefore) {
   // It is what the sixth tick does, and not the first.
   TickMap fresh(machine);
   EXPECT_NE(fresh.Run(from, none, 5, control).state.velocity[0], to.velocity[0]);
+}
+
+// A mass on a spring on a mass: by the effect, and as two bodies of the model.
+TEST(TickDifferences, HaveTheBodyOfAnEffectAsAState) {
+  const std::string rest =
+      "</body></worldbody><actuator><motor name=\"u\" joint=\"q\"/></actuator>"
+      "<sensor><jointpos name=\"y\" joint=\"q\"/></sensor>";
+  const std::string first =
+      "<option timestep=\"0.001\" gravity=\"0 0 0\"/><worldbody><body>"
+      "<joint name=\"q\" type=\"slide\" axis=\"1 0 0\"/>"
+      "<inertial pos=\"0 0 0\" mass=\"2\" diaginertia=\"1 1 1\"/>";
+  const std::string second =
+      "<body><joint name=\"x\" type=\"slide\" axis=\"1 0 0\" stiffness=\"8000\"/>"
+      "<inertial pos=\"0 0 0\" mass=\"0.8\" diaginertia=\"1 1 1\"/></body>";
+  const double frequency = 100.0 / (2.0 * std::numbers::pi);  // sqrt(8000 / 0.8) = 100
+  const std::string one = first + rest;
+  const std::string two = first + second + rest;
+  const Machine carries =
+      test::MachineOf({"one", one.c_str()})
+          .With({{},
+                 {ParseEffect("flexible_mode@q:mass=0.8,frequency=" +
+                              std::to_string(frequency) + ",damping_ratio=0")}});
+  const Machine native = test::MachineOf({"two", two.c_str()});
+  const Eigen::Vector2d q(0.01, 0.013);
+  const Eigen::Vector2d v(0.2, -0.1);
+  const PlantState state{q.head<1>(), v.head<1>(), VectorXd(0),
+                         Eigen::Vector2d(q[1], v[1])};
+  const PlantState of_two{Eigen::Vector2d(q[0], q[1] - q[0]),
+                          Eigen::Vector2d(v[0], v[1] - v[0]), VectorXd(0)};
+  // [q, q', x, x'] of [q, x - q, q', x' - q'].
+  Eigen::Matrix4d T;
+  T << 1, 0, 0, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 1;
+  const TickTangent a = TangentAt(carries, state, 0.4);
+  const TickTangent b = TangentAt(native, of_two, 0.4);
+  // The frequency is written with six decimals.
+  EXPECT_LT(Relative(a.A, T * b.A * T.inverse()), 1e-6);
+  EXPECT_LT(Relative(a.B, T * b.B.col(0)), 1e-6);
+  EXPECT_LT(Relative(a.C, b.C * T.inverse()), 1e-6);
 }
 
 // Where a joint sticks its tangent says that no force moves it; over forces of up to ten times

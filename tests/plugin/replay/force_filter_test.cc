@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
 #include "mjdiag/plugin/effects/placed_effect.h"
@@ -99,6 +100,35 @@ TEST(ForceFilter, ComesBackFromWhatItWasLeftBehindBy) {
   // 1000 values: four standard deviations of a root mean square are 9 %.
   const double rms = path.innovations.rightCols(1000).norm() / std::sqrt(1000.0);
   EXPECT_NEAR(rms, kNoise, 0.15 * kNoise);
+}
+
+// Half of the mass hangs on a spring: a filter that took it for a force from outside would be
+// pulled away by it.
+TEST(ForceFilter, CorrectsTheBodyThatAnEffectAdds) {
+  const Slide slide;
+  const double omega = 2.0 * std::numbers::pi * 13.0;
+  MeasuredRun run = slide.Measure(None);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  double q = 0.0, v = 0.0, x = 0.0, w = 0.0;
+  for (Index k = 0; k < run.samples(); ++k) {
+    run.outputs(0, k) = q + kNoise * normal(random);
+    const double spring = 2.0 * omega * omega * (x - q);
+    v += 1e-3 * (run.inputs(0, k) + spring - 4.0 * v) / (2.0 + 1e-3 * 4.0);
+    w -= 1e-3 * spring / 2.0;
+    q += 1e-3 * v;
+    x += 1e-3 * w;
+  }
+  const Machine carries = slide.machine.With(
+      {{}, {ParseEffect("flexible_mode@j:mass=2,frequency=13,damping_ratio=0")}});
+  FilterNoise noise = SomeNoise();
+  noise.size[0] = 0.1;
+  noise.white[0] = 1e-4;
+  const FilterPath path = RunForceFilter(
+      carries, run, {0}, FilterStarts(carries, run, noise.reading), noise);
+  // 2000 values: four standard deviations of a root mean square are 6 %.
+  const double rms = path.innovations.rightCols(2000).norm() / std::sqrt(2000.0);
+  EXPECT_NEAR(rms, kNoise, 0.1 * kNoise);
 }
 
 // How fast the machine usually is, and not how well its first speed is known, says how large

@@ -1,0 +1,156 @@
+// Machines that are no tree of slides and hinges that motors push: what they lack is found by
+// the same path.
+
+#include "support/any_machine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "mjdiag/discovery/discovery.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
+#include "mjdiag/plugin/machine/tick_map.h"
+#include "mjdiag/plugin/plant/plant_number.h"
+
+namespace mjdiag {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+Machine MachineOf(const std::string& model, const std::string& sensor) {
+  return test::MachineOf("<mujoco><compiler angle=\"radian\"/>" + model + "</mujoco>",
+                         "[rates]\ncontrol = 500.0\nsubsteps = 2\n[sensors.y]\n" +
+                             sensor +
+                             "\n[actuators.u]\nelement = \"u\"\nunit = \"1\"\n");
+}
+
+class Commands final : public TickControl {
+ public:
+  void Tick(std::span<const double>, std::span<double> inputs) noexcept override {
+    inputs[0] = now;
+  }
+  double now = 0.0;
+};
+
+/// What the sensor of a machine reads from rest on, in steps a tenth as long.
+Record Measure(const Machine& machine, const std::function<double(double)>& command,
+               double noise, Index samples = 4000) {
+  const Machine truth = machine.WithSubsteps(20);
+  TickMap map(truth);
+  Commands commands;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const mjModel& model = map.model();
+  PlantState state =
+      map.Begun({truth.rest(), VectorXd::Zero(model.nv), VectorXd::Zero(model.na)});
+  const VectorXd none = VectorXd::Zero(model.nv);
+  VectorXd y(samples), u(samples);
+  for (Index k = 0; k < samples; ++k) {
+    commands.now = u[k] = command(2e-3 * static_cast<double>(k));
+    y[k] = map.Read(state, k)[0] + noise * normal(random);
+    state = map.Run(state, none, k, commands).state;
+  }
+  Record record(2e-3, 0.0);
+  record.Add({"y", machine.channels().sensors[0].unit, y});
+  record.Add({"u", "1", u});
+  return record;
+}
+
+Discovery Asked(const Machine& machine, const Record& record) {
+  DiscoverOptions options;
+  options.doubt = true;
+  options.figures = false;
+  return Discover(machine, record, nullptr, options);
+}
+
+std::vector<std::string> NamesOf(const Discovery& answer) {
+  std::vector<std::string> names;
+  for (const FoundCause& one : answer.causes) {
+    names.push_back(one.cause.name() + "@" + one.cause.site);
+  }
+  for (const CalibratedNumber& one : answer.calibration) names.push_back(one.name);
+  return names;
+}
+
+double TwoSines(double t) { return 0.4 * std::sin(2.1 * t) + 0.3 * std::sin(7.7 * t); }
+
+constexpr char kValve[] =
+    R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body>
+       <joint name="j" axis="0 1 0" damping="0.4" stiffness="3"/>
+       <inertial pos="0 0 -0.15" mass="1.2" diaginertia="0.01 0.01 0.001"/></body></worldbody>
+       <actuator><general name="u" joint="j" dyntype="filter" dynprm="0.05" gainprm="6"/>
+       </actuator><sensor><jointpos name="y" joint="j"/></sensor>)";
+
+TEST(DiscoverAnyMachine, FindsFrictionBehindAValveThatLags) {
+  const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
+  const Machine rubs = valve.With({{}, {ParseEffect("coulomb_friction@j:force=0.15")}});
+  const Discovery answer = Asked(valve, Measure(rubs, TwoSines, 1e-5));
+  ASSERT_THAT(NamesOf(answer), ElementsAre("coulomb_friction@j"));
+  EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.15, 0.003);
+}
+
+constexpr char kHovers[] =
+    R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body name="craft">
+       <freejoint name="free"/>
+       <inertial pos="0 0 0" mass="1.3" diaginertia="0.04 0.03 0.06"/><site name="s"/></body>
+       </worldbody><actuator><motor name="u" site="s" gear="0 0 5 0 0 0"/></actuator>
+       <sensor><framepos name="y" objtype="site" objname="s"/></sensor>)";
+
+TEST(DiscoverAnyMachine, FindsAWeakMotorOfWhatFlies) {
+  const Machine craft =
+      MachineOf(kHovers, "element = \"y\"\ncomponent = 2\nunit = \"m\"");
+  const PlantNumber gear = FindPlantNumber(craft.plant(), "gear@u");
+  const Discovery answer =
+      Asked(craft, Measure(craft.WithNumbers({{gear, 0.9}}), TwoSines, 1e-5));
+  ASSERT_THAT(NamesOf(answer), ElementsAre(::testing::_));
+  // A body that is heavier moves the same.
+  const CalibratedNumber& number = answer.calibration.at(0);
+  EXPECT_NEAR(number.name == "gear@u" ? number.factor : 1.0 / number.factor, 0.9,
+              0.005);
+}
+
+constexpr char kRigid[] =
+    R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body>
+       <joint name="j" axis="0 0 1" damping="0.05" armature="0.01"/>
+       <inertial pos="0.1 0 0" mass="0.6" diaginertia="1e-3 3e-3 3e-3"/></body></worldbody>
+       <actuator><motor name="u" joint="j"/></actuator>
+       <sensor><jointvel name="y" joint="j"/></sensor>)";
+
+// Half of the inertia is behind a spring, and nothing but a speed is read.
+TEST(DiscoverAnyMachine, FindsTheSecondMassOfADriveByItsSpeed) {
+  const Machine rigid = MachineOf(kRigid, "element = \"y\"\nunit = \"rad/s\"");
+  const Machine drive = rigid.With(
+      {{},
+       {ParseEffect("added_mass@j:mass=-0.009"),
+        ParseEffect("flexible_mode@j:mass=0.009,frequency=13,damping_ratio=0.02")}});
+  const auto chirp = [](double t) { return std::sin(3.0 * t + 6.0 * t * t); };
+  const Discovery answer = Asked(rigid, Measure(drive, chirp, 1e-3));
+  EXPECT_THAT(NamesOf(answer),
+              ::testing::UnorderedElementsAre("added_mass@j", "flexible_mode@j"));
+  for (const FoundCause& one : answer.causes) {
+    if (one.cause.name() != "flexible_mode") continue;
+    EXPECT_NEAR(one.parameters[0].value, 0.009, 2e-4);
+    EXPECT_NEAR(one.parameters[1].value, 13.0, 0.1);
+  }
+}
+
+// A ripple of a two hundredth of the friction is there, and nobody would miss it.
+TEST(DiscoverAnyMachine, LeavesOutWhatTakesAwayAHundredthOfTheForce) {
+  const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
+  const Machine rubs = valve.With(
+      {{},
+       {ParseEffect("coulomb_friction@j:force=0.15"),
+        ParseEffect("force_ripple@j:amplitude=0.0007,period=0.3,phase=0.5")}});
+  EXPECT_THAT(NamesOf(Asked(valve, Measure(rubs, TwoSines, 1e-6))),
+              ElementsAre("coulomb_friction@j"));
+}
+
+}  // namespace
+}  // namespace mjdiag
