@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mjdiag/discovery/answer/member_forces.h"
+#include "mjdiag/discovery/answer/simpler_blocks.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
@@ -156,24 +157,6 @@ bool IsRefuted(const MemberLoss& loss) {
   return loss.unseen < -kLeastGain || loss.Total() < 0.0;
 }
 
-/// What a member could be instead.
-struct Instead {
-  std::size_t block = 0;
-  VectorXd values;
-};
-
-/// Mean of the values of a law that have a role; 0 if it has none of it.
-double SizeOf(const VectorXd& values, const Block& block, Role role) {
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t i = 0; i < block.candidate->parameters.size(); ++i) {
-    if (block.candidate->parameters[i].role != role) continue;
-    sum += values[static_cast<Eigen::Index>(i)];
-    ++count;
-  }
-  return count > 0 ? sum / count : 0.0;
-}
-
 class UnseenJudge {
  public:
   UnseenJudge(const AnswerData& data, const Explained& explained,
@@ -295,12 +278,11 @@ bool UnseenJudge::IsFree(std::size_t block, std::size_t place) const {
   return true;
 }
 
-/// The likeliest that first order knows, and the simplest laws of the same kind there; the
-/// one that an exchange has put out.
+/// The likeliest that first order knows, and what is simpler; the one that an exchange has
+/// put out.
 std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
   constexpr std::size_t kMost = 3;
   constexpr double kNearBy = 10.0;  // e^-5 as likely
-  const Block& own = data_.blocks[judged_.answer.fit.model[place].block];
   const Member& first = explained_.fit.model[judged_.places[place]];
   std::vector<Instead> instead;
   const auto add = [&](std::size_t block, VectorXd values) {
@@ -319,27 +301,9 @@ std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
       add(added.variation.block, *values);
     }
   }
-  if (!own.candidate || own.candidate->parameters.size() < 2) return instead;
-  const VectorXd& values = judged_.answer.fit.model[place].values;
-  for (std::size_t b = 0; b < data_.blocks.size(); ++b) {
-    const auto& simple = data_.blocks[b].candidate;
-    if (!simple || simple->parameters.size() >= own.candidate->parameters.size() ||
-        simple->site != own.candidate->site) {
-      continue;
-    }
-    // What it becomes at an end of its parameters.
-    for (auto law = own.candidate->effect->Simpler(
-             {own.candidate->effect, own.candidate->site, values});
-         law; law = law->effect->Simpler(*law)) {
-      if (law->effect->name() == simple->effect->name()) add(b, law->values);
-    }
-    if (simple->effect->kind() != own.candidate->effect->kind()) continue;
-    const double size = SizeOf(values, own, simple->parameters.front().role);
-    if (size == 0.0) continue;
-    if (simple->parameters.size() == 1) add(b, VectorXd::Constant(1, size));
-    if (!data_.blocks[b].IsSmoothFriction()) continue;
-    const FitParameter& speed = simple->parameters.back();
-    add(b, Eigen::Vector2d(size, std::sqrt(speed.lower * speed.upper)));
+  const Member& member = judged_.answer.fit.model[place];
+  for (Instead& one : SimplerThan(member, data_.blocks, data_.machine.plant())) {
+    add(one.block, std::move(one.values));
   }
   return instead;
 }

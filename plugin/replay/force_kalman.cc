@@ -123,7 +123,7 @@ void ForceKalman::Correct(Index sensor) {
 double ForceKalman::Take(Index sensor, bool late, double innovation, double speed) {
   Expect(sensor, late, innovation, speed);
   const double square = last_innovation * last_innovation / S_;
-  inflation = std::max(1.0, std::sqrt(square) / kCorner);
+  inflation = std::max(1.0, square / (kCorner * kCorner));
   Correct(sensor);
   const double cost =
       inflation > 1.0 ? 2.0 * kCorner * std::sqrt(square) - kCorner * kCorner : square;

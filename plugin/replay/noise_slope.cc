@@ -94,7 +94,8 @@ double Backwards::Take(Index place) {
   const auto u = u_.col(place);
   const auto c = c_.col(place);
   const double root = std::sqrt(one.S);
-  const double V = one.cut ? std::abs(one.e) * root / ForceKalman::kCorner : one.S;
+  const double V =
+      one.cut ? one.e * one.e / (ForceKalman::kCorner * ForceKalman::kCorner) : one.S;
   const double Zu = Z_.dot(u);
   du_.noalias() = Q_ * u;
   const double uQu = u.dot(du_);
@@ -102,9 +103,9 @@ double Backwards::Take(Index place) {
   double by_S = 1.0 / one.S;
   double by_e = Zu / V;
   if (one.cut) {
-    by_S += by_V * 0.5 * V / one.S -
-            ForceKalman::kCorner * std::abs(one.e) / (one.S * root);
-    by_e += std::copysign(2.0 * ForceKalman::kCorner, one.e) / root + by_V * V / one.e;
+    by_S -= ForceKalman::kCorner * std::abs(one.e) / (one.S * root);
+    by_e += std::copysign(2.0 * ForceKalman::kCorner, one.e) / root +
+            by_V * 2.0 * one.e / (ForceKalman::kCorner * ForceKalman::kCorner);
   } else {
     by_S += by_V - one.e * one.e / (one.S * one.S);
     by_e += 2.0 * one.e / one.S;

@@ -1,0 +1,84 @@
+#include "mjdiag/discovery/answer/simpler_blocks.h"
+
+#include <cmath>
+#include <optional>
+
+#include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/placed_effect.h"
+
+namespace mjdiag {
+
+using Eigen::VectorXd;
+
+namespace {
+
+/// A law with all that it becomes.
+std::vector<PlacedEffect> ChainOf(const PlacedEffect& law) {
+  std::vector<PlacedEffect> chain{law};
+  while (const auto next = chain.back().effect->Simpler(chain.back())) {
+    chain.push_back(*next);
+  }
+  return chain;
+}
+
+/// Mean of the values of a law that have a role; 0 if it has none of it.
+double SizeOf(const VectorXd& values, const Candidate& candidate, Role role) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {
+    if (candidate.parameters[i].role != role) continue;
+    sum += values[static_cast<Eigen::Index>(i)];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// Of one of the same kind there, of a size and at most a speed within which it comes.
+std::optional<VectorXd> SimpleValues(const Block& simple, const Candidate& own,
+                                     const VectorXd& values) {
+  if (simple.candidate->effect->kind() != own.effect->kind()) return std::nullopt;
+  const std::vector<FitParameter>& parameters = simple.candidate->parameters;
+  const double size = SizeOf(values, own, parameters.front().role);
+  if (size == 0.0) return std::nullopt;
+  if (parameters.size() == 1) return VectorXd::Constant(1, size);
+  if (!simple.IsSmoothFriction()) return std::nullopt;
+  const FitParameter& speed = parameters.back();
+  return Eigen::Vector2d(size, std::sqrt(speed.lower * speed.upper));
+}
+
+}  // namespace
+
+std::vector<Instead> SimplerThan(const Member& member, const std::vector<Block>& blocks,
+                                 const mjModel& plant) {
+  std::vector<Instead> instead;
+  const std::optional<Candidate>& own = blocks[member.block].candidate;
+  if (!own || own->parameters.size() < 2) return instead;
+  const std::vector<PlacedEffect> chain =
+      ChainOf({own->effect, own->site, member.values});
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::optional<Candidate>& simple = blocks[b].candidate;
+    if (blocks[b].number) {
+      for (const PlacedEffect& law : chain) {
+        if (law.effect->Number(plant, CheckEffect(plant, law)) == blocks[b].number) {
+          instead.push_back({b, VectorXd::Ones(1)});
+          break;
+        }
+      }
+    }
+    if (!simple || simple->site != own->site ||
+        simple->parameters.size() >= own->parameters.size()) {
+      continue;
+    }
+    for (const PlacedEffect& law : chain) {
+      if (law.effect->name() == simple->effect->name()) {
+        instead.push_back({b, law.values});
+      }
+    }
+    if (const auto values = SimpleValues(blocks[b], *own, member.values)) {
+      instead.push_back({b, *values});
+    }
+  }
+  return instead;
+}
+
+}  // namespace mjdiag
