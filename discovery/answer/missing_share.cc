@@ -82,6 +82,21 @@ std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun
       changed, RunForceFilter(changed, run, path.dofs, path.starts, path.noise));
 }
 
+namespace {
+
+/// Unseen data beside the machine as given, behind the noise of what fits saw: what is
+/// likeliest along other data may take the noise of a reading for a force.
+FilterPath BesideUnseen(const AnswerData& data, const ModelOnRuns& nothing) {
+  try {
+    return RunForceFilter(data.With({}), data.run.unseen, nothing.unseen.dofs,
+                          nothing.unseen.starts, nothing.seen.noise);
+  } catch (const NumericalError&) {
+    return nothing.unseen;
+  }
+}
+
+}  // namespace
+
 MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Machine given = data.With({});
   const Model& model = judged.answer.fit.model;
@@ -108,7 +123,8 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
     return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual, counts) / before);
   };
   try {
-    share.left = share_along(data.run.unseen, judged.nothing.unseen, data.run.New());
+    share.left = share_along(data.run.unseen, BesideUnseen(data, judged.nothing),
+                             data.run.New());
     // A machine that rests in what no fit saw lacks nothing there.
     if (!std::isfinite(share.left)) {
       share.left = share_along(data.run.seen, judged.nothing.seen, all_seen);

@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 
@@ -52,14 +53,15 @@ std::vector<Instead> SimplerThan(const Member& member, const std::vector<Block>&
                                  const mjModel& plant) {
   std::vector<Instead> instead;
   const std::optional<Candidate>& own = blocks[member.block].candidate;
-  if (!own || own->parameters.size() < 2) return instead;
+  if (!own || own->effect->IsFault() || own->parameters.size() < 2) return instead;
   const std::vector<PlacedEffect> chain =
       ChainOf({own->effect, own->site, member.values});
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const std::optional<Candidate>& simple = blocks[b].candidate;
     if (blocks[b].number) {
       for (const PlacedEffect& law : chain) {
-        if (law.effect->Number(plant, CheckEffect(plant, law)) == blocks[b].number) {
+        const int element = FindElement(plant, law.effect->element(), law.site);
+        if (law.effect->Number(plant, element) == blocks[b].number) {
           instead.push_back({b, VectorXd::Ones(1)});
           break;
         }

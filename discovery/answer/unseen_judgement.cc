@@ -257,8 +257,7 @@ bool UnseenJudge::DropWorst() {
   Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
          IsRefuted(judged_.losses[worst])
              ? "left out: data that no fit saw are predicted as well without it"
-             : "left out: it takes away less than a hundredth of the force that is "
-               "missing");
+             : "left out: its force is less than a hundredth of what is missing");
   judged_.answer = std::move(*best);
   judged_.places.erase(judged_.places.begin() + static_cast<std::ptrdiff_t>(worst));
   judged_.losses.clear();

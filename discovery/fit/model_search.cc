@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -77,45 +78,63 @@ std::optional<SettledModel> ModelSearch::Resettled(const Whitenings& whitenings,
   return settled;
 }
 
-std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
-    const Whitenings& whitenings, const ExactColumns& exact) {
-  const std::vector<Moves> rounds =
-      ForceMovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
-                   exact.terms, at_every_shape_);
-  // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
-  // values are those of the regression until the filter has been run with them. What does
-  // not run so leaves the next one; how long a rest lasts, the filter says.
-  constexpr std::size_t kMost = 3;
-  // What has just been settled is behind the noise that suits it.
-  bool beside_itself = found_.fit.model.empty();
-  std::optional<Proposal> best;
-  std::vector<Model> tried;
-  for (const Moves& moves : rounds) {
-    Say(std::to_string(moves.variations) + " shapes of forces, " +
-        std::to_string(moves.best.size()) + " moves");
-    for (const ModelMove* move :
-         ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
-      const Model model = After(*move, found_.fit.model);
-      if (std::ranges::any_of(
-              tried, [&](const Model& one) { return SameBlocks(one, model); })) {
-        break;
-      }
-      tried.push_back(model);
-      Moves one;
-      one.score = moves.score;
-      one.best = {*move};
-      std::optional<Proposal> next = BestOf(one, 1, 0, whitenings, {}, beside_itself);
-      beside_itself = false;  // what it is worth is known by now
-      if (next) {
-        if (!best || next->settled.score() < best->settled.score()) {
-          best = std::move(next);
-        }
-        break;
-      }
-      if (IsOver()) return best;
+double ModelSearch::BehindBestGains(const Model& model,
+                                    const Whitenings& whitenings) const {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < whitenings.behind.size(); ++r) {
+    try {
+      best = std::min(best, Fitted(model, whitenings, {r, false}, 0).score());
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
     }
   }
   return best;
+}
+
+std::vector<ModelMove> ModelSearch::ForceMoves(const Whitenings& whitenings,
+                                               const ExactColumns& exact) {
+  // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
+  // values are those of the regression until the filter has been run with them. What does
+  // not run so leaves the next one.
+  constexpr std::size_t kMost = 3;
+  std::vector<std::vector<ModelMove>> rounds;
+  for (const Moves& moves : ForceMovesOf(With(found_.fit.model), run_, found_.path,
+                                         found_.blocks, exact.terms, at_every_shape_)) {
+    Say(std::to_string(moves.variations) + " shapes of forces, " +
+        std::to_string(moves.best.size()) + " moves");
+    std::vector<ModelMove>& chosen = rounds.emplace_back();
+    for (const ModelMove* move :
+         ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
+      chosen.push_back(*move);
+      chosen.back().score -= moves.score;
+    }
+  }
+  std::erase_if(rounds, &std::vector<ModelMove>::empty);
+  if (rounds.empty()) return {};
+  // How long a rest lasts, gains that are kept say.
+  if (rounds.size() > 1) {
+    const Model here = After(rounds[0].front(), found_.fit.model);
+    const Model there = After(rounds[1].front(), found_.fit.model);
+    if (!SameBlocks(here, there) &&
+        BehindBestGains(there, whitenings) < BehindBestGains(here, whitenings)) {
+      rounds[0].insert(rounds[0].begin(), std::move(rounds[1].front()));
+    }
+  }
+  return std::move(rounds.front());
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
+    const Whitenings& whitenings, const ExactColumns& exact) {
+  // What has just been settled is behind the noise that suits it.
+  bool beside_itself = found_.fit.model.empty();
+  for (const ModelMove& move : ForceMoves(whitenings, exact)) {
+    Moves one;
+    one.best = {move};
+    if (auto best = BestOf(one, 1, 0, whitenings, {}, beside_itself)) return best;
+    if (IsOver()) break;
+    beside_itself = false;  // what it is worth is known by now
+  }
+  return std::nullopt;
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whitenings,

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/replay/tracking.h"
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
 
