@@ -1,11 +1,10 @@
 #include "mjdiag/discovery/answer/member_forces.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "mjdiag/discovery/answer/missing_share.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 
@@ -15,19 +14,17 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of a column, rms at every joint with a latent force.
-VectorXd SizesOf(const Column& column, const FilterPath& path,
-                 const std::vector<MatrixXd>& force_of_change) {
-  MatrixXd forces = MatrixXd::Zero(path.dof_count(), path.samples());
+/// Of a column, rms at every joint with a latent force: what makes its changes of the
+/// velocities in a tick where nothing holds the machine.
+VectorXd SizesOf(const Column& column, const FilterPath& path, const MatrixXd& mass) {
+  const Index nv = mass.rows();
+  MatrixXd changes = MatrixXd::Zero(nv, path.samples());
   for (const auto& [state, signal] : column.states) {
-    for (Index k = 0; k < path.samples(); ++k) {
-      if (signal[k] == 0.0) continue;
-      forces.col(k) +=
-          signal[k] *
-          force_of_change[path.of_tick[static_cast<std::size_t>(k)]].col(state);
-    }
+    if (state >= nv && state < 2 * nv) changes.row(state - nv) = signal.transpose();
   }
-  return forces.rowwise().norm() / std::sqrt(static_cast<double>(path.samples()));
+  const VectorXd rms = (mass * changes).rowwise().norm() /
+                       std::sqrt(static_cast<double>(path.samples()));
+  return rms(path.dofs) / path.sample_time;
 }
 
 bool ActsOnReadings(const Block& block) {
@@ -47,18 +44,14 @@ std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& ans
   }
   others.push_back({data.With({})});
   const std::vector<Column> columns = TickColumns(machine, data.run.seen, path, others);
-  std::vector<MatrixXd> force_of_change;
-  for (const TickTangent& tangent : path.tangents) {
-    force_of_change.push_back(
-        PseudoInverse(tangent.B(Eigen::indexing::all, path.dofs)));
-  }
+  const MatrixXd& mass = machine.mechanics().M;
   const VectorXd least =
-      (kHundredth * SizesOf(columns.back(), path, force_of_change))
+      (kHundredth * SizesOf(columns.back(), path, mass))
           .cwiseMax(kNegligible * UsualForces(machine, data.run.seen, path));
   std::vector<bool> idle(model.size(), false);
   for (std::size_t m = 0; m < model.size(); ++m) {
     if (ActsOnReadings(data.blocks[model[m].block])) continue;
-    const VectorXd size = SizesOf(columns[m], path, force_of_change);
+    const VectorXd size = SizesOf(columns[m], path, mass);
     idle[m] = (size.array() <= least.array()).all();
   }
   return idle;

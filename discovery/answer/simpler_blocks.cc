@@ -71,9 +71,9 @@ std::vector<Instead> SimplerThan(const Member& member, const std::vector<Block>&
         simple->parameters.size() >= own->parameters.size()) {
       continue;
     }
-    for (const PlacedEffect& law : chain) {
-      if (law.effect->name() == simple->effect->name()) {
-        instead.push_back({b, law.values});
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      if (chain[i].effect->name() == simple->effect->name()) {
+        instead.push_back({b, chain[i].values});
       }
     }
     if (const auto values = SimpleValues(blocks[b], *own, member.values)) {

@@ -31,9 +31,10 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
   RecordedInputs inputs(machine, run);
   const VectorXd none = VectorXd::Zero(machine.plant().nv);
   inputs.StayAt(run.records.front().sample);
-  map.Run(starts.front().state, none, 0, inputs);
-  const TickTangent tangent = TickDifferences(map, run.sample_time, dofs)
-                                  .Of(starts.front().state, none, 0, inputs);
+  const PlantState start = map.Begun(starts.front().state);
+  map.Run(start, none, 0, inputs);
+  const TickTangent tangent =
+      TickDifferences(map, run.sample_time, dofs).Of(start, none, 0, inputs);
   const VectorXd unit = ShownBy(tangent, dofs, reading_sd).unit;
   FilterNoise noise;
   noise.reading = reading_sd;
