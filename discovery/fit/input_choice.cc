@@ -27,14 +27,6 @@ std::vector<double> WidthsOf(const MeasuredRun& run) {
   return widths;
 }
 
-/// Whether what was taken off an input is noise, each sample another one: what lasts is part
-/// of the input, and a machine that does not feel it has a law that says so.
-bool IsNoise(const VectorXd& removed) {
-  constexpr double kLasts = 0.5;  // correlation of neighbours
-  const Eigen::Index n = removed.size() - 1;
-  return removed.head(n).dot(removed.tail(n)) <= kLasts * removed.squaredNorm();
-}
-
 /// The likeliest of some widths.
 InputChoice BestOf(const std::vector<double>& widths, const Machine& machine,
                    const MeasuredRun& run, const VectorXd& reading_sd,
@@ -63,15 +55,7 @@ InputChoice BestOf(const std::vector<double>& widths, const Machine& machine,
 }  // namespace
 
 MeasuredRun WithInputsOver(const MeasuredRun& run, double width) {
-  VectorXd widths = VectorXd::Constant(run.inputs.rows(), width);
-  MeasuredRun smoothed = WithSmoothedInputs(run, widths);
-  bool all_noise = true;
-  for (Eigen::Index i = 0; i < widths.size(); ++i) {
-    if (IsNoise((run.inputs.row(i) - smoothed.inputs.row(i)).transpose())) continue;
-    widths[i] = 0.0;
-    all_noise = false;
-  }
-  return all_noise ? smoothed : WithSmoothedInputs(run, widths);
+  return WithSmoothedInputs(run, VectorXd::Constant(run.inputs.rows(), width));
 }
 
 double PriceOfWidth(double width) {

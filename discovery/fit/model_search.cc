@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -78,58 +77,23 @@ std::optional<SettledModel> ModelSearch::Resettled(const Whitenings& whitenings,
   return settled;
 }
 
-double ModelSearch::BehindBestGains(const Model& model,
-                                    const Whitenings& whitenings) const {
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t r = 0; r < whitenings.behind.size(); ++r) {
-    try {
-      best = std::min(best, Fitted(model, whitenings, {r, false}, 0).score());
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {
-    }
-  }
-  return best;
-}
-
-std::vector<ModelMove> ModelSearch::ForceMoves(const Whitenings& whitenings,
-                                               const ExactColumns& exact) {
+std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
+    const Whitenings& whitenings, const ExactColumns& exact) {
+  const Moves moves = ForceMovesOf(With(found_.fit.model), run_, found_.path,
+                                   found_.blocks, exact.terms, at_every_shape_);
+  Say(std::to_string(moves.variations) + " shapes of forces, " +
+      std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them. What does
   // not run so leaves the next one.
   constexpr std::size_t kMost = 3;
-  std::vector<std::vector<ModelMove>> rounds;
-  for (const Moves& moves : ForceMovesOf(With(found_.fit.model), run_, found_.path,
-                                         found_.blocks, exact.terms, at_every_shape_)) {
-    Say(std::to_string(moves.variations) + " shapes of forces, " +
-        std::to_string(moves.best.size()) + " moves");
-    std::vector<ModelMove>& chosen = rounds.emplace_back();
-    for (const ModelMove* move :
-         ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
-      chosen.push_back(*move);
-      chosen.back().score -= moves.score;
-    }
-  }
-  std::erase_if(rounds, &std::vector<ModelMove>::empty);
-  if (rounds.empty()) return {};
-  // How long a rest lasts, gains that are kept say.
-  if (rounds.size() > 1) {
-    const Model here = After(rounds[0].front(), found_.fit.model);
-    const Model there = After(rounds[1].front(), found_.fit.model);
-    if (!SameBlocks(here, there) &&
-        BehindBestGains(there, whitenings) < BehindBestGains(here, whitenings)) {
-      rounds[0].insert(rounds[0].begin(), std::move(rounds[1].front()));
-    }
-  }
-  return std::move(rounds.front());
-}
-
-std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
-    const Whitenings& whitenings, const ExactColumns& exact) {
   // What has just been settled is behind the noise that suits it.
   bool beside_itself = found_.fit.model.empty();
-  for (const ModelMove& move : ForceMoves(whitenings, exact)) {
+  for (const ModelMove* move :
+       ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
     Moves one;
-    one.best = {move};
+    one.score = moves.score;
+    one.best = {*move};
     if (auto best = BestOf(one, 1, 0, whitenings, {}, beside_itself)) return best;
     if (IsOver()) break;
     beside_itself = false;  // what it is worth is known by now
@@ -339,27 +303,27 @@ void ModelSearch::AddCurves() {
 bool ModelSearch::Step() {
   const Whitenings whitenings = WhiteningsOf(found_.path);
   std::optional<Proposal> move;
-  // What noise of the inputs explains is looked for beside the first law, and again where
-  // what is large, and where everything has been found.
+  // What noise of the inputs explains is found before anything else, and looked for again
+  // where what is large, and where everything has been found.
   bool asks_inputs = found_.fit.model.empty() && found_.input_width == 0.0;
   if (asks_inputs) move = SmoothedInputs();
-  const ExactColumns exact = ExactColumnsOf(
-      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
-      run_, found_.path, found_.blocks, found_.fit.model);
-  if (looks_at_forces_) {
-    std::optional<Proposal> law = BestForces(whitenings, exact);
-    if (law && (!move || law->settled.score() < move->settled.score())) {
-      move = std::move(law);
-    }
-    looks_at_forces_ = move.has_value();
-    if (!move && !asks_inputs) {
-      asks_inputs = true;
-      move = SmoothedInputs();
+  if (!move) {
+    const ExactColumns exact =
+        ExactColumnsOf([&](const Model& model) { return With(model); },
+                       With(found_.fit.model, !steps_), run_, found_.path,
+                       found_.blocks, found_.fit.model);
+    if (looks_at_forces_) {
+      move = BestForces(whitenings, exact);
       looks_at_forces_ = move.has_value();
+      if (!move && !asks_inputs) {
+        asks_inputs = true;
+        move = SmoothedInputs();
+        looks_at_forces_ = move.has_value();
+      }
     }
+    if (!move) move = BestMove(whitenings, exact);
+    if (!move && !asks_inputs) move = SmoothedInputs();
   }
-  if (!move) move = BestMove(whitenings, exact);
-  if (!move && !asks_inputs) move = SmoothedInputs();
   if (move) Adopt(std::move(*move));
   return move.has_value();
 }
@@ -404,10 +368,9 @@ Explained ModelSearch::Run() {
       looks_at_forces_ = true;
       StepOn();
     }
-  } catch (const NumericalError& error) {
+  } catch (const NumericalError&) {
     // A machine that diverges beside what is measured, or the wish to end: what was found
     // until then stays.
-    Say(error.what());
   }
   found_.steps = steps_;
   found_.is_cut_short = IsOver();

@@ -72,11 +72,6 @@ class ModelSearch {
   std::optional<Proposal> BestOf(const Moves& moves, std::size_t most, int iterations,
                                  const Whitenings& whitenings, AsFitted as_it_is,
                                  bool beside_itself);
-  /// The least score of a model at its values behind any of the gains that are kept.
-  double BehindBestGains(const Model& model, const Whitenings& whitenings) const;
-  /// Those that missing forces ask for, the first to be tried first; scores are gains.
-  std::vector<ModelMove> ForceMoves(const Whitenings& whitenings,
-                                    const ExactColumns& exact);
   std::optional<Proposal> BestForces(const Whitenings& whitenings,
                                      const ExactColumns& exact);
   std::optional<Proposal> BestMove(const Whitenings& whitenings,

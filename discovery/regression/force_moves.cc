@@ -26,14 +26,15 @@ VectorXd LeftBehind(const ModelMove& move, const std::vector<Term>& terms,
 
 }  // namespace
 
-std::vector<Moves> ForceMovesOf(const Machine& machine, const MeasuredRun& run,
-                                const FilterPath& path, std::vector<Block>& blocks,
-                                const std::vector<Term>& terms, bool at_every_shape) {
+Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
+                   const FilterPath& path, std::vector<Block>& blocks,
+                   const std::vector<Term>& terms, bool at_every_shape) {
   const MissingForceRows missing(path, SmoothForces(path).value);
   MissingForceMap::Rest rest = MissingForceMap::RestOf(missing);
+  // How lasting the rest is nobody knows before something is explained.
   rest.repeats.setOnes();
   constexpr int kRounds = 2;
-  std::vector<Moves> rounds;
+  Moves moves;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<MissingForceMap> maps;
     // A set that is right deserves a smaller rest.
@@ -44,14 +45,12 @@ std::vector<Moves> ForceMovesOf(const Machine& machine, const MeasuredRun& run,
     std::vector<const RowMap*> all;
     for (const MissingForceMap& one : maps) all.push_back(&one);
     // What physics steps make is no force that lasts.
-    rounds.insert(rounds.begin(),
-                  MovesOf(machine, run, path, all, blocks, terms, {},
-                          {.at_forces = true, .at_every_shape = at_every_shape}));
-    const Moves& moves = rounds.front();
+    moves = MovesOf(machine, run, path, all, blocks, terms, {},
+                    {.at_forces = true, .at_every_shape = at_every_shape});
     if (moves.best.empty()) break;
     rest = maps.front().RestOf(LeftBehind(moves.best.front(), terms, maps.front()));
   }
-  return rounds;
+  return moves;
 }
 
 }  // namespace mjdiag

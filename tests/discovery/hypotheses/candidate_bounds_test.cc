@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "discovery/stage_motion.h"
+#include "mjdiag/plugin/effects/effect.h"
 
 namespace mjdiag {
 namespace {
