@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "mjdiag/discovery/answer/missing_share.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/plugin/effects/effect.h"
 
@@ -45,9 +44,7 @@ std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& ans
   others.push_back({data.With({})});
   const std::vector<Column> columns = TickColumns(machine, data.run.seen, path, others);
   const MatrixXd& mass = machine.mechanics().M;
-  const VectorXd least =
-      (kHundredth * SizesOf(columns.back(), path, mass))
-          .cwiseMax(kNegligible * UsualForces(machine, data.run.seen, path));
+  const VectorXd least = kHundredth * SizesOf(columns.back(), path, mass);
   std::vector<bool> idle(model.size(), false);
   for (std::size_t m = 0; m < model.size(); ++m) {
     if (ActsOnReadings(data.blocks[model[m].block])) continue;

@@ -19,6 +19,10 @@ namespace {
 /// right model leaves 5 to 10 % of the force.
 constexpr double kSmall = 0.1;
 
+/// Of what accelerates the joints: so much is what physics steps are off by, and no discrepancy
+/// that anybody means.
+constexpr double kNegligible = 1e-3;
+
 /// What latent forces of a joint cost, 2 ln 20 for the claim and for each of their three
 /// numbers what a parameter of a model costs that is told to a tenth.
 constexpr double kForcePrice = 6.0 + 3.0 * 4.6;
@@ -40,8 +44,7 @@ bool AsksForForces(const Machine& machine, const MeasuredRun& run,
   }
 }
 
-}  // namespace
-
+/// What accelerates every joint with a latent force along the run, rms.
 VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
                      const FilterPath& path) {
   const mjModel& plant = machine.plant();
@@ -55,8 +58,6 @@ VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
   }
   return usual;
 }
-
-namespace {
 
 /// Mean square in units of what accelerates the joints, less that of errors.
 /// @param counts  which samples do
@@ -74,16 +75,6 @@ double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual,
   return sum;
 }
 
-}  // namespace
-
-std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
-                                       const FilterPath& path) {
-  return MissingForces(
-      changed, RunForceFilter(changed, run, path.dofs, path.starts, path.noise));
-}
-
-namespace {
-
 /// Unseen data beside the machine as given, behind the noise of what fits saw: what is
 /// likeliest along other data may take the noise of a reading for a force.
 FilterPath BesideUnseen(const AnswerData& data, const ModelOnRuns& nothing) {
@@ -96,6 +87,12 @@ FilterPath BesideUnseen(const AnswerData& data, const ModelOnRuns& nothing) {
 }
 
 }  // namespace
+
+std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
+                                       const FilterPath& path) {
+  return MissingForces(
+      changed, RunForceFilter(changed, run, path.dofs, path.starts, path.noise));
+}
 
 MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const Machine given = data.With({});

@@ -30,14 +30,6 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged);
 
 DiscoveryVerdict VerdictOf(const MissingShare& share, bool has_model);
 
-/// Of what accelerates the joints: so much is what physics steps are off by, and no
-/// discrepancy that anybody means.
-inline constexpr double kNegligible = 1e-3;
-
-/// What accelerates every joint with a latent force along the run, rms, nf.
-Eigen::VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
-                            const FilterPath& path);
-
 /// The forces that a model lacks along what fits saw, or did not, behind the noise of the
 /// machine as given.
 /// @param changed  the machine with the model
