@@ -84,8 +84,10 @@ std::string BestOf(const Explained& found) {
     names += (names.empty() ? "" : ", ") + found.blocks[member.block].name;
   }
   if (names.empty()) return "";
-  const double left =
-      found.path.forces.norm() / std::max(found.nothing.forces.norm(), 1e-300);
+  const auto rms = [](const FilterPath& path) {
+    return path.forces.norm() / std::sqrt(static_cast<double>(path.samples()));
+  };
+  const double left = rms(found.path) / std::max(rms(found.nothing), 1e-300);
   return names + " (mismatch 100 % to " + FormatNumber(100.0 * left, 2) + " %)";
 }
 

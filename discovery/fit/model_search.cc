@@ -34,7 +34,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kIterations = 6;
+// Of fits behind the gains of another model, which the best are fitted anew behind their own.
+constexpr int kIterations = 3;
 
 bool SameBlocks(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
@@ -42,12 +43,20 @@ bool SameBlocks(const Model& a, const Model& b) {
 
 }  // namespace
 
-SettledModel ModelSearch::Settled(ModelFit fit, const FilterNoise& near, bool steps,
-                                  double hoped) const {
-  return Settle([&](const Model& model) { return With(model, steps); }, run_,
-                reading_sd_, found_.path.dofs, found_.blocks, std::move(fit),
-                {near, found_.path.noise}, found_.score, hoped,
-                [this] { return IsOver(); });
+SettledBeside ModelSearch::Beside(bool steps) const {
+  return {[this, steps](const Model& model) { return With(model, steps); },
+          run_,
+          reading_sd_,
+          found_.path.dofs,
+          found_.blocks,
+          IsOfPieces(),
+          [this] { return IsOver(); }};
+}
+
+std::vector<FilterNoise> ModelSearch::NoisesBeside(const FilterNoise& near) const {
+  std::vector<FilterNoise> noises{near};
+  if (found_.path.noise.size != near.size) noises.push_back(found_.path.noise);
+  return noises;
 }
 
 void ModelSearch::Adopt(Proposal proposal) {
@@ -71,7 +80,8 @@ std::optional<SettledModel> ModelSearch::Resettled(const Whitenings& whitenings,
                         found_.fit.prior + found_.fit.occam;
   if (as_it_is.score() > before - kLeastGain) return std::nullopt;
   SettledModel settled =
-      Settled(as_it_is, whitenings.noises[noise], steps_, before - as_it_is.score());
+      Settle(Beside(steps_), as_it_is, NoisesBeside(whitenings.noises[noise]),
+             found_.score, before - as_it_is.score());
   if (settled.score() > found_.score - kLeastGain) return std::nullopt;
   Say("settled: " + Difference(settled.score()));
   return settled;
@@ -84,21 +94,10 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
-  // values are those of the regression until the filter has been run with them. What does
-  // not run so leaves the next one.
+  // values are those of the regression until the filter has been run with them.
   constexpr std::size_t kMost = 3;
   // What has just been settled is behind the noise that suits it.
-  bool beside_itself = found_.fit.model.empty();
-  for (const ModelMove* move :
-       ToBeFitted(moves, kMost, [&](const ModelMove& one) { return MayBe(one); })) {
-    Moves one;
-    one.score = moves.score;
-    one.best = {*move};
-    if (auto best = BestOf(one, 1, 0, whitenings, {}, beside_itself)) return best;
-    if (IsOver()) break;
-    beside_itself = false;  // what it is worth is known by now
-  }
-  return std::nullopt;
+  return BestOf(moves, kMost, 0, whitenings, {}, found_.fit.model.empty());
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whitenings,
@@ -209,17 +208,29 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
     return true;
   });
+  constexpr std::size_t kFiltered = 3;
+  while (tried.size() > kFiltered) {
+    Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
+    tried.pop_back();
+  }
   std::vector<std::optional<SettledModel>> settled(tried.size());
-  ParallelForAll(static_cast<int>(tried.size()), [&](int number) {
-    const auto place = static_cast<std::size_t>(number);
-    const Tried& one = tried[place];
-    try {
-      settled[place] = Settled(one.fit, whitenings.noises[one.judged.first],
-                               steps_ != one.judged.second, one.gain);
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {
+  for (const bool other_steps : {false, true}) {
+    std::vector<ModelFit> fits;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      if (tried[i].judged.second != other_steps) continue;
+      fits.push_back(tried[i].fit);
+      places.push_back(i);
     }
-  });
+    if (fits.empty()) continue;
+    const Tried& first = tried[places.front()];
+    auto rivals = SettleRivals(Beside(steps_ != other_steps), std::move(fits),
+                               NoisesBeside(whitenings.noises[first.judged.first]),
+                               found_.score, first.gain);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      settled[places[i]] = std::move(rivals[i]);
+    }
+  }
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < settled.size(); ++i) {
     if (!settled[i]) continue;
@@ -329,8 +340,14 @@ bool ModelSearch::Step() {
 }
 
 void ModelSearch::Prepare() {
+  // What is large shows in a part of a run, and takes a part of the time there.
+  constexpr double kPart = 0.25;
+  const std::vector<Index> dofs = LatentDofs(machine_, whole_);
+  MeasuredRun pieces = PiecesOfRun(machine_, whole_, dofs, kPart);
+  if (2 * pieces.samples() <= whole_.samples()) as_measured_ = std::move(pieces);
+  run_ = as_measured_;
   found_.path = FilterLikeliest(machine_, run_, reading_sd_);
-  found_.nothing = found_.path;
+  const FilterPath nothing = found_.path;
   found_.score = found_.path.deviance;
   if (ChooseSteps()) {
     found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
@@ -338,10 +355,15 @@ void ModelSearch::Prepare() {
     found_.score = found_.path.deviance;
   }
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
-  const ObservedMotion motion = MotionAlong(machine_, run_, found_.path);
+  found_.nothing =
+      IsOfPieces()
+          ? RunForceFilter(machine_, whole_, nothing.dofs,
+                           FilterStarts(machine_, whole_, reading_sd_), nothing.noise)
+          : nothing;
+  const ObservedMotion motion = MotionAlong(machine_, whole_, found_.nothing);
   BoundByRecord(candidates_, machine_, motion);
   BoundDriveLimits(candidates_, machine_, motion);
-  BoundByReadings(candidates_, machine_, run_);
+  BoundByReadings(candidates_, machine_, whole_);
   const std::vector<PlantNumber> in_doubt = IsExact(machine_.plant())
                                                 ? std::vector<PlantNumber>{}
                                                 : NumbersOf(machine_.plant());
@@ -357,9 +379,45 @@ void ModelSearch::StepOn() {
   }
 }
 
+void ModelSearch::GoOnWithAll() {
+  if (!IsOfPieces()) return;
+  as_measured_ = whole_;
+  run_ = WithInputsOver(whole_, found_.input_width);
+  found_.rivals.clear();
+  hopeless_.clear();
+  looks_at_forces_ = false;
+  try {
+    // Also of what has been asked to end.
+    const Machine machine = Made(found_.fit.model, steps_);
+    found_.path =
+        RunForceFilter(machine, run_, found_.path.dofs,
+                       FilterStarts(machine, run_, reading_sd_), found_.path.noise);
+  } catch (const NumericalError&) {
+    found_.fit = {};
+    found_.path = found_.nothing;
+    found_.input_width = 0.0;
+    run_ = whole_;
+    steps_ = true;
+  }
+  // What was found by pieces is where the search begins, whatever it is worth by all.
+  found_.score = SettledModel{found_.fit, found_.path}.score();
+  if (IsOver()) return;
+  SettledModel settled = SettleNear(Beside(steps_), found_.fit, found_.path);
+  found_.score = settled.score();
+  found_.fit = std::move(settled.fit);
+  found_.path = std::move(settled.path);
+  Say("with all of the run: " + std::to_string(found_.score) + "  " +
+      mjdiag::Describe(found_.blocks, found_.fit.model));
+}
+
 Explained ModelSearch::Run() {
   Prepare();
   try {
+    if (IsOfPieces()) StepOn();
+  } catch (const NumericalError&) {
+  }
+  try {
+    GoOnWithAll();
     StepOn();
     // What is left may have a shape that shows beside nothing simple, or no name.
     if (!IsOver()) {

@@ -27,6 +27,7 @@ class ModelSearch {
   ModelSearch(const Machine& machine, const MeasuredRun& run,
               const Eigen::VectorXd& reading_sd, const ExplainOptions& options)
       : machine_(machine),
+        whole_(run),
         as_measured_(run),
         run_(run),
         reading_sd_(reading_sd),
@@ -37,8 +38,11 @@ class ModelSearch {
  private:
   using Clock = std::chrono::steady_clock;
 
-  SettledModel Settled(ModelFit fit, const FilterNoise& near, bool steps,
-                       double hoped) const;
+  /// What models are settled beside.
+  /// @param steps  with the physics steps of the model
+  SettledBeside Beside(bool steps) const;
+  /// Those to begin with: one that a move was judged behind, and that of the model so far.
+  std::vector<FilterNoise> NoisesBeside(const FilterNoise& near) const;
   /// What the search may go on from.
   struct Proposal {
     SettledModel settled;
@@ -87,6 +91,8 @@ class ModelSearch {
   void AddCurves();
   void Prepare();
   void StepOn();
+  /// From pieces to the whole run.
+  void GoOnWithAll();
   void Decide(const Model& tried, double score, const std::string& why) {
     found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
   }
@@ -99,10 +105,12 @@ class ModelSearch {
   bool MayBe(const ModelMove& move) const {
     return !HasTooManyCauses(After(move, found_.fit.model));
   }
+  bool IsOfPieces() const { return as_measured_.samples() < whole_.samples(); }
   bool IsStopped() const { return options_.stop && options_.stop(); }
+  /// The whole run decides, and gets at least as long as pieces of it.
+  double Allowed() const { return (IsOfPieces() ? 0.5 : 1.0) * options_.seconds; }
   bool IsOver() const {
-    return std::chrono::duration<double>(Clock::now() - begin_).count() >
-               options_.seconds ||
+    return std::chrono::duration<double>(Clock::now() - begin_).count() > Allowed() ||
            IsStopped();
   }
   void Say(const std::string& text) const {
@@ -112,6 +120,9 @@ class ModelSearch {
   Machine With(const Model& model) const { return With(model, steps_); }
   Machine With(const Model& model, bool steps) const {
     if (IsStopped()) throw NumericalError("fit: asked to end");
+    return Made(model, steps);
+  }
+  Machine Made(const Model& model, bool steps) const {
     const Machine machine = machine_.With(ChangesOf(found_.blocks, model));
     return steps ? machine : machine.WithoutSteps();
   }
@@ -121,8 +132,9 @@ class ModelSearch {
 
   const Machine& machine_;
   bool steps_ = true;
-  const MeasuredRun& as_measured_;
-  MeasuredRun run_;  // with its inputs smoothed
+  const MeasuredRun& whole_;
+  MeasuredRun as_measured_;  // all of it, or pieces
+  MeasuredRun run_;          // with its inputs smoothed
   const Eigen::VectorXd& reading_sd_;
   const ExplainOptions& options_;
   Clock::time_point begin_ = Clock::now();

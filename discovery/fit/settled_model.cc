@@ -1,75 +1,225 @@
 #include "mjdiag/discovery/fit/settled_model.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 
-SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
-                    const Eigen::VectorXd& reading_sd,
-                    const std::vector<Eigen::Index>& dofs,
-                    const std::vector<Block>& blocks, ModelFit fit,
-                    const std::vector<FilterNoise>& near, double beat, double hoped,
-                    const std::function<bool()>& is_over) {
-  SettledModel settled{std::move(fit), {}};
+namespace {
+
+class Settling {
+ public:
+  Settling(const SettledBeside& beside, ModelFit fit, std::vector<FilterNoise> near)
+      : beside_(beside), near_(std::move(near)), settled_{std::move(fit), {}} {
+    settled_.path.deviance = std::numeric_limits<double>::infinity();
+  }
+
+  const SettledModel& settled() const { return settled_; }
+  bool is_likeliest() const { return is_likeliest_; }
+  bool IsNowhere() const { return !std::isfinite(settled_.path.deviance); }
+
+  /// Behind the noise of the model so far, whose likelihood everything is compared with.
+  /// @param hopeless  above that it is none
+  void Begin(double hopeless) {
+    try {
+      Follow(settled_.fit, near_.back());
+    } catch (const NumericalError&) {
+      Relax();
+    }
+    if (settled_.score() > hopeless) {
+      is_likeliest_ = true;  // what is so far off is not worth it
+      return;
+    }
+    RefitAsLongAsItGains();
+  }
+  void BeginWith(FilterPath path) {
+    settled_.path = std::move(path);
+    RefitAsLongAsItGains();
+  }
+
+  /// Behind a noise that suits another model better: with the values that suit it there.
+  void Try(const FilterNoise& noise) {
+    SettledModel before = settled_;
+    try {
+      settled_ = Followed(before.fit, noise);
+      Gains(noise);
+    } catch (const NumericalError&) {
+    }
+    if (settled_.score() < before.score() - kLeastGain) {
+      is_likeliest_ = false;
+    } else {
+      settled_ = std::move(before);
+    }
+  }
+
+  /// Fits and noises in turn, as long as either gains.
+  void Alternate() {
+    is_likeliest_ = true;
+    // Values that are off make latent forces large, behind which values are hardly seen:
+    // where fits behind the noise of the last filter gain no more, one behind a smaller may.
+    constexpr std::size_t kSmaller = 2;  // of NoisesFrom
+    Relax();
+    for (int round = 0; round < kRounds && !IsDone(); ++round) {
+      const std::vector<FilterNoise> noises = NoisesFrom(settled_.path.noise);
+      if (!Gains(noises.front()) && !Gains(noises[kSmaller])) return;
+      if (!beside_.is_over()) Relax();
+    }
+  }
+
+  /// The noise that suits the model by now.
+  void Relax() {
+    const Machine machine = beside_.machine_with(settled_.fit.model);
+    const bool is_near = near_.empty() || (!beside_.is_far && !IsNowhere());
+    FilterPath path =
+        is_near
+            ? FilterLikelier(machine, beside_.run, beside_.reading_sd, settled_.path)
+            : FilterLikeliestFrom(machine, beside_.run, beside_.reading_sd,
+                                  beside_.dofs, near_);
+    near_.clear();
+    Take({settled_.fit, std::move(path)});
+  }
+
+ private:
+  static constexpr int kRounds = 6;
+
+  bool IsDone() const { return settled_.fit.model.empty() || beside_.is_over(); }
+
+  void RefitAsLongAsItGains() {
+    for (int round = 0; round < kRounds && !IsDone(); ++round) {
+      if (!Gains(settled_.path.noise)) return;
+    }
+  }
+
+  /// Refit, and whether that gains.
+  bool Gains(const FilterNoise& noise) {
+    try {
+      return Refit(noise);
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+    return false;
+  }
+
+  SettledModel Followed(ModelFit fit, const FilterNoise& noise) const {
+    const Machine machine = beside_.machine_with(fit.model);
+    return {
+        std::move(fit),
+        RunForceFilter(machine, beside_.run, beside_.dofs,
+                       FilterStarts(machine, beside_.run, beside_.reading_sd), noise)};
+  }
+
+  /// Takes what is better behind a noise.
+  void Follow(ModelFit fit, const FilterNoise& noise) {
+    Take(Followed(std::move(fit), noise));
+  }
+
+  void Take(SettledModel other) {
+    if (other.score() < settled_.score()) settled_ = std::move(other);
+  }
+
+  /// Fits the model behind a noise, with the gains of its path.
+  bool Refit(const FilterNoise& noise) {
+    constexpr int kFitIterations = 4;
+    const FilterNoise of_path = settled_.path.noise;
+    const KeptGains gains =
+        KeepGains(settled_.path, noise, InflationAlong(settled_.path));
+    const MachineWith in_time = InTime(beside_.machine_with, beside_.is_over);
+    const FitOf fitted = [&](const Model& start) {
+      return FitModel(in_time, beside_.run, settled_.path, gains, beside_.blocks, start,
+                      kFitIterations);
+    };
+    ModelFit next = Pruned(beside_.blocks, fitted(settled_.fit.model), fitted);
+    const bool is_same = next.model.size() == settled_.fit.model.size();
+    // How well values are known, which costs, is told behind the noise of the path.
+    const bool is_own = noise.size == of_path.size;
+    if (is_same) {
+      ModelFit& from = is_own ? next : settled_.fit;
+      ModelFit& to = is_own ? settled_.fit : next;
+      to.sd = from.sd;
+      to.occam = from.occam;
+    }
+    // Where a fit gains nothing behind the gains that it was made behind, a filter, which
+    // takes longer, need not be asked.
+    const double before =
+        gains.left.squaredNorm() + gains.log_determinant + settled_.fit.prior;
+    if (is_same && before - next.deviance - next.prior < kLeastGain) return false;
+    const double score = settled_.score();
+    Follow(next, of_path);
+    if (!is_own) Follow(next, noise);
+    return settled_.score() < score - kLeastGain;
+  }
+
+  const SettledBeside& beside_;
+  std::vector<FilterNoise> near_;  // until they have been asked
+  SettledModel settled_;
+  bool is_likeliest_ = false;  // no noise is known that suits it better
+};
+
+}  // namespace
+
+std::vector<std::optional<SettledModel>> SettleRivals(
+    const SettledBeside& beside, std::vector<ModelFit> fits,
+    const std::vector<FilterNoise>& near, double beat, double hoped) {
   // Values of first order are off, and what sticks by them a fit may free; what is so much
   // further off than it was to gain is nonsense.
   constexpr double kNonsense = 300.0;
-  const auto is_nonsense = [&] {
-    return settled.score() - beat > kNonsense * std::max(hoped, kLeastGain);
-  };
-  const Machine first = machine_with(settled.fit.model);
-  try {
-    settled.path = RunForceFilter(first, run, dofs,
-                                  FilterStarts(first, run, reading_sd), near.back());
-    if (is_nonsense()) return settled;
-  } catch (const NumericalError&) {
-  }
-  settled.path = FilterLikeliestFrom(first, run, reading_sd, dofs, near);
-  // Values that are off make latent forces large, behind which values are hardly seen:
-  // where fits behind the noise of the last filter gain no more, one behind a smaller may.
-  constexpr int kRounds = 6;
-  constexpr std::size_t kSmaller = 2;  // of NoisesFrom
-  std::size_t smaller = 0;
-  if (is_nonsense()) return settled;
-  for (int round = 0; round < kRounds && !is_over(); ++round) {
-    if (settled.fit.model.empty()) break;
-    const FilterPath& path = settled.path;
-    const std::vector<FilterNoise> noises = NoisesFrom(path.noise);
-    const KeptGains gains = KeepGains(path, noises[smaller], InflationAlong(path));
-    double gain = 0.0;
-    try {
-      const MachineWith in_time = InTime(machine_with, is_over);
-      const FitOf fitted = [&](const Model& start) {
-        return FitModel(in_time, run, path, gains, blocks, start, 4);
-      };
-      SettledModel next{Pruned(blocks, fitted(settled.fit.model), fitted), {}};
-      // Where a fit gains nothing behind the gains that it was made behind, a filter, which
-      // takes longer, need not be asked.
-      const double before =
-          gains.left.squaredNorm() + gains.log_determinant + settled.fit.prior;
-      if (next.fit.model.size() != settled.fit.model.size() ||
-          before - next.fit.deviance - next.fit.prior > kLeastGain) {
-        const Machine machine = machine_with(next.fit.model);
-        next.path = smaller > 0 ? FilterLikeliestFrom(machine, run, reading_sd, dofs,
-                                                      {path.noise, noises[smaller]})
-                                : FilterLikeliestNear(machine, run, reading_sd, dofs,
-                                                      path.noise);
-        gain = settled.score() - next.score();
-        if (gain > 0.0) settled = std::move(next);
+  const double hopeless = beat + kNonsense * std::max(hoped, kLeastGain);
+  std::vector<Settling> rivals;
+  for (ModelFit& fit : fits) rivals.emplace_back(beside, std::move(fit), near);
+  const auto each = [&](const auto& work) {
+    ParallelForAll(static_cast<int>(rivals.size()), [&](int number) {
+      try {
+        work(rivals[static_cast<std::size_t>(number)]);
+      } catch (const NumericalError&) {
+      } catch (const InputError&) {
       }
+    });
+  };
+  each([&](Settling& one) { one.Begin(hopeless); });
+  while (!rivals.empty() && !beside.is_over()) {
+    const auto best = std::ranges::min_element(
+        rivals, {}, [](const Settling& one) { return one.settled().score(); });
+    if (best->is_likeliest() || best->IsNowhere()) break;
+    try {
+      best->Alternate();
     } catch (const NumericalError&) {
     }
-    if (gain < kLeastGain && smaller == kSmaller) break;
-    smaller = gain < kLeastGain ? kSmaller : 0;
+    const FilterNoise& noise = best->settled().path.noise;
+    each([&](Settling& one) {
+      if (&one != &*best && !one.IsNowhere()) one.Try(noise);
+    });
+  }
+  std::vector<std::optional<SettledModel>> settled;
+  for (const Settling& one : rivals) {
+    settled.emplace_back();
+    if (!one.IsNowhere()) settled.back() = one.settled();
   }
   return settled;
+}
+
+SettledModel SettleNear(const SettledBeside& beside, ModelFit fit, FilterPath path) {
+  Settling one(beside, std::move(fit), {});
+  one.BeginWith(std::move(path));
+  one.Relax();
+  return one.settled();
+}
+
+SettledModel Settle(const SettledBeside& beside, ModelFit fit,
+                    const std::vector<FilterNoise>& near, double beat, double hoped) {
+  std::vector<ModelFit> fits;
+  fits.push_back(std::move(fit));
+  auto settled = SettleRivals(beside, std::move(fits), near, beat, hoped);
+  if (!settled.front()) throw NumericalError("fit: the run diverges");
+  return std::move(*settled.front());
 }
 
 }  // namespace mjdiag

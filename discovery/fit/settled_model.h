@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "mjdiag/discovery/fit/model_fit.h"
@@ -15,17 +16,33 @@ struct SettledModel {
   double score() const { return path.deviance + fit.prior + fit.occam; }
 };
 
-/// @param dofs     with a latent force
-/// @param near     noises to begin with, that of the model so far the last
-/// @param beat     a score: of what is nowhere near it nothing is fitted
-/// @param hoped    what it is to gain by first order
-/// @param is_over  ends it with what it has
-/// NumericalError where no run with the first values stays with what was measured.
-SettledModel Settle(const MachineWith& machine_with, const MeasuredRun& run,
-                    const Eigen::VectorXd& reading_sd,
-                    const std::vector<Eigen::Index>& dofs,
-                    const std::vector<Block>& blocks, ModelFit fit,
-                    const std::vector<FilterNoise>& near, double beat, double hoped,
-                    const std::function<bool()>& is_over);
+/// What models are settled beside.
+struct SettledBeside {
+  MachineWith machine_with;
+  const MeasuredRun& run;
+  const Eigen::VectorXd& reading_sd;
+  const std::vector<Eigen::Index>& dofs;  ///< with a latent force
+  const std::vector<Block>& blocks;
+  bool is_far = false;            ///< whether noises may be far from what suits
+  std::function<bool()> is_over;  ///< ends it with what it has
+};
+
+/// Models that may be in each other's place. Behind noises of their own each would be as
+/// likely as the luck of its search for a noise: the best of them is given the noise that
+/// suits it, the others are tried behind that, and the best then, until it stays the best.
+/// @param near   noises to begin with, that of the model so far the last
+/// @param beat   a score: of what is nowhere near it nothing is fitted
+/// @param hoped  what they are to gain by first order
+/// Without those whose run with the first values does not stay with what was measured.
+std::vector<std::optional<SettledModel>> SettleRivals(
+    const SettledBeside& beside, std::vector<ModelFit> fits,
+    const std::vector<FilterNoise>& near, double beat, double hoped);
+
+/// From a path along the run that is near to what suits: fitted, and its noise anew, once.
+SettledModel SettleNear(const SettledBeside& beside, ModelFit fit, FilterPath path);
+
+/// Of one; NumericalError where it does not stay with what was measured.
+SettledModel Settle(const SettledBeside& beside, ModelFit fit,
+                    const std::vector<FilterNoise>& near, double beat, double hoped);
 
 }  // namespace mjdiag

@@ -42,6 +42,41 @@ MissingForceMap::Rest RestOfRows(const VectorXd& rows, Index nf) {
   return rest;
 }
 
+/// Forces at joints that do a change of their velocities in a tick, by its tangent: with
+/// S = G^-1/2 B_v G^-1/2, G what each joint gains where nothing holds it, they are
+/// G^-1/2 S^+ G^-1/2 of the change. S is the identity where joints are free and next to
+/// nothing along what sticks or is held: there no change says anything of a force.
+std::vector<MatrixXd> ForcesOfChanges(const FilterPath& path) {
+  constexpr double kHeld = 0.1;  // of what is free
+  const Index nv = path.tangents.front().B.cols();
+  const std::vector<Index>& dofs = path.dofs;
+  const Index nf = path.dof_count();
+  std::vector<Index> velocities = dofs;
+  for (Index& one : velocities) one += nv;
+  const auto gains = [&](const TickTangent& tangent) -> MatrixXd {
+    return tangent.B(velocities, dofs);
+  };
+  VectorXd free = VectorXd::Constant(nf, 1e-300);
+  for (const TickTangent& one : path.tangents) {
+    free = free.cwiseMax(gains(one).diagonal());
+  }
+  const VectorXd scale = free.cwiseSqrt().cwiseInverse();
+  std::vector<MatrixXd> forces;
+  for (const TickTangent& one : path.tangents) {
+    const MatrixXd S = scale.asDiagonal() * gains(one) * scale.asDiagonal();
+    const SymmetricEigenPairs pairs =
+        SymmetricEigenDecomposition(0.5 * (S + S.transpose()));
+    const VectorXd inverse =
+        (pairs.values.array() > kHeld)
+            .select(pairs.values.cwiseInverse(), VectorXd::Zero(nf));
+    forces.push_back(MatrixXd::Zero(nf, one.B.rows()));
+    forces.back()(Eigen::indexing::all, velocities) =
+        scale.asDiagonal() * pairs.vectors * inverse.asDiagonal() *
+        pairs.vectors.transpose() * scale.asDiagonal();
+  }
+  return forces;
+}
+
 }  // namespace
 
 MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
@@ -55,10 +90,7 @@ MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
     }
   }
   missing = Means(forces);
-  for (const TickTangent& tangent : path.tangents) {
-    force_of_change.push_back(
-        PseudoInverse(tangent.B(Eigen::indexing::all, path.dofs)));
-  }
+  force_of_change = ForcesOfChanges(path);
 }
 
 VectorXd MissingForceRows::Means(const MatrixXd& forces) const {

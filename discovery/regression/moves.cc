@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -64,6 +63,10 @@ class MoveSearch {
                : first_of_term_.back() + std::ssize(terms_.back().columns) + 1;
   }
   SetOfColumns ColumnsOf(const Change& change) const;
+  /// Errors of readings do no force: where forces are looked at, nothing is known of them.
+  bool MayLeave(std::size_t term) const {
+    return !looked_.at_forces || !terms_[term].removed.states.empty();
+  }
   /// Terms that may leave for one that comes in.
   std::vector<std::vector<std::size_t>> LeavingTogether() const;
   std::vector<Variation> Promising(const Scored& here) const;
@@ -150,13 +153,6 @@ bool MoveSearch::MayCome(const Block& block) const {
   if (looked_.at_forces) {
     if (block.IsOfDrive()) return false;
     if (block.IsSmoothFriction()) return true;
-    // At once where it is known to creep, or must not.
-    if (block.IsDryFriction() && block.IsSimplest()) {
-      return any([&](const Block& in) { return in.group == block.group; }) ||
-             std::ranges::none_of(blocks_, [&](const Block& other) {
-               return other.IsSmoothFriction() && other.group == block.group;
-             });
-    }
   }
   return looked_.at_every_shape || !block.IsResistance() || block.IsSimplest() ||
          any([&](const Block& in) { return in.group == block.group; });
@@ -318,13 +314,20 @@ std::vector<std::vector<std::size_t>> MoveSearch::LeavingTogether() const {
   constexpr std::size_t kMostInPairs = 6;
   std::vector<std::vector<std::size_t>> sets;
   const std::size_t count = terms_.size();
-  for (std::size_t t = 0; t < count; ++t) sets.push_back({t});
+  for (std::size_t t = 0; t < count; ++t) {
+    if (MayLeave(t)) sets.push_back({t});
+  }
   for (std::size_t t = 0; t < count && count <= kMostInPairs; ++t) {
-    for (std::size_t s = t + 1; s < count; ++s) sets.push_back({t, s});
+    for (std::size_t s = t + 1; s < count; ++s) {
+      if (MayLeave(t) && MayLeave(s)) sets.push_back({t, s});
+    }
   }
   if (count > 2) {
-    sets.emplace_back(count);
-    std::iota(sets.back().begin(), sets.back().end(), std::size_t{0});
+    std::vector<std::size_t> all;
+    for (std::size_t t = 0; t < count; ++t) {
+      if (MayLeave(t)) all.push_back(t);
+    }
+    if (all.size() > 2) sets.push_back(std::move(all));
   }
   return sets;
 }

@@ -23,6 +23,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+MeasuredRun PiecesOfRun(const Machine& machine, const MeasuredRun& run,
+                        const std::vector<Index>& dofs, double least) {
+  const Index states = TangentSize(machine.plant()) + std::ssize(dofs) + 1;
+  const auto share = static_cast<Index>(least * static_cast<double>(run.samples()));
+  const Index enough = std::max(share, EnoughOf(run.outputs.rows(), states));
+  std::vector<MeasuredRun> pieces;
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    const Index first = run.records[r].sample;
+    for (const Stretch& piece :
+         PiecesOf(first, run.SamplesOf(r), run.samples(), enough)) {
+      pieces.push_back(Excerpt(run, piece.first, piece.count));
+    }
+  }
+  return Joined(pieces);
+}
+
 FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
                            const std::vector<Index>& dofs,
                            const std::vector<FilterStart>& starts,
@@ -94,22 +110,84 @@ FilterNoise Between(const FilterNoise& from, const FilterNoise& to, double part)
           mean(from.white, to.white)};
 }
 
-/// Of a filter: those of the machine, its latent forces and the clock.
-Index StatesOf(const Machine& machine, const std::vector<Index>& dofs) {
-  return TangentSize(machine.plant()) + std::ssize(dofs) + 1;
-}
+/// Follows a machine along a run behind one noise after the other, and keeps the likeliest.
+class LikeliestOf {
+ public:
+  LikeliestOf(const Machine& machine, const MeasuredRun& run,
+              const VectorXd& reading_sd, const std::vector<Index>& dofs,
+              double longest)
+      : machine_(machine),
+        run_(run),
+        reading_sd_(reading_sd),
+        dofs_(dofs),
+        longest_(longest),
+        starts_(FilterStarts(machine, run, reading_sd)) {}
 
-/// Pieces of every record, each a record of its own.
-MeasuredRun ExcerptOf(const MeasuredRun& run, Index states) {
-  std::vector<MeasuredRun> pieces;
-  for (std::size_t r = 0; r < run.records.size(); ++r) {
-    const Index first = run.records[r].sample;
-    for (const Stretch& piece :
-         PiecesOf(first, run.SamplesOf(r), run.samples(), run.outputs.rows(), states)) {
-      pieces.push_back(Excerpt(run, piece.first, piece.count));
+  const std::vector<FilterStart>& starts() const { return starts_; }
+  const FilterPath& best() const {
+    if (!best_) throw NumericalError("replay: diverged");
+    return *best_;
+  }
+
+  void Keep(FilterPath path) {
+    if (!best_ || path.deviance < best_->deviance) best_ = std::move(path);
+  }
+
+  /// Where one does not stay with the run another one may.
+  std::optional<FilterPath> Follow(const FilterNoise& noise) {
+    try {
+      FilterPath path = RunForceFilter(machine_, run_, dofs_, starts_, noise);
+      Keep(path);
+      return path;
+    } catch (const NumericalError&) {
+      return std::nullopt;
     }
   }
-  return Joined(pieces);
+
+  /// Along its path a linear filter does not stick; the machine may, behind a noise that is
+  /// so likely, and its path is another one then: on the way there it goes as far as it
+  /// gains, and asks the path that it has then, until nothing is gained.
+  /// @param is_far  whether to begin by coarse steps
+  void Improve(bool is_far) {
+    constexpr int kRounds = 4;
+    constexpr double kGain = 2.0;  // less is noise of the search
+    for (int round = 0; round < kRounds; ++round) {
+      const FilterNoise from = best().noise;
+      const double before = best().deviance;
+      const NoiseSearch search(best(), reading_sd_, longest_);
+      const bool is_of_all = search.LooksAtAll();
+      const LikelyNoise to = search.Descend(from, is_far);
+      for (double part = 1.0; part > 0.2; part *= 0.5) {
+        Follow(Between(from, to.noise, part));
+        if (best().deviance < before) break;
+      }
+      // The path is the one along which the noise is likeliest.
+      if (is_of_all && std::abs(before - to.gain - best().deviance) < kGain) break;
+      if (best().deviance < before - kGain) continue;
+      if (!is_far) break;
+      is_far = false;
+    }
+  }
+
+ private:
+  const Machine& machine_;
+  const MeasuredRun& run_;
+  const VectorXd& reading_sd_;
+  const std::vector<Index>& dofs_;
+  double longest_;
+  std::vector<FilterStart> starts_;
+  std::optional<FilterPath> best_;
+};
+
+/// Of all of a run, from the noise that is likeliest by pieces of it on.
+FilterPath OfAll(const Machine& machine, const MeasuredRun& run,
+                 const VectorXd& reading_sd, const std::vector<Index>& dofs,
+                 const LikeliestOf& by_pieces, const FilterNoise& otherwise) {
+  if (by_pieces.best().samples() == run.samples()) return by_pieces.best();
+  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run));
+  if (!all.Follow(by_pieces.best().noise)) all.Follow(otherwise);
+  all.Improve(false);
+  return all.best();
 }
 
 }  // namespace
@@ -118,98 +196,60 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const VectorXd& reading_sd) {
   const std::vector<Index> dofs = LatentDofs(machine, run);
   // Pieces tell the noise as well as all of a run.
-  const MeasuredRun pieces = ExcerptOf(run, StatesOf(machine, dofs));
+  const MeasuredRun pieces = PiecesOfRun(machine, run, dofs);
   const double longest = LongestMemory(run);
-  std::vector<FilterStart> starts = FilterStarts(machine, pieces, reading_sd);
-  const FilterNoise fast = FollowingNoise(machine, pieces, dofs, starts, reading_sd);
+  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, longest);
+  const FilterNoise fast =
+      FollowingNoise(machine, pieces, dofs, of_pieces.starts(), reading_sd);
+  of_pieces.Follow(fast);
+  const FilterPath first = of_pieces.best();
   // A path that was followed fast sticks and slips with its noise: behind a slow filter it
   // says little, so that both are followed by the machine itself.
-  // Where one does not stay with the run another one may.
-  std::optional<FilterPath> best;
-  const auto follow = [&](const FilterNoise& noise) {
-    FilterPath path = RunForceFilter(machine, pieces, dofs, starts, noise);
-    if (!best || path.deviance < best->deviance) best = path;
-    return path;
-  };
-  const FilterPath first = follow(fast);
-  const auto refine = [&](const std::function<FilterNoise()>& begin) {
-    try {
-      follow(Refined(follow(begin()), reading_sd, longest, false));
-    } catch (const NumericalError&) {
+  of_pieces.Follow(RefinedFromBoth(first, reading_sd, longest));
+  const FilterNoise slow = NoiseSearch(first, reading_sd, longest).Slow(fast);
+  // What is missing may also be white and slow: blows, and what lasts.
+  FilterNoise rough = slow;
+  rough.white = fast.white;
+  for (const FilterNoise& start : {slow, rough}) {
+    if (const auto path = of_pieces.Follow(start)) {
+      of_pieces.Follow(Refined(*path, reading_sd, longest, true));
     }
-  };
-  refine([&] { return RefinedFromBoth(first, reading_sd, longest); });
-  refine([&] {
-    const FilterPath slow = follow(NoiseSearch(first, reading_sd, longest).Slow(fast));
-    return Refined(slow, reading_sd, longest, true);
-  });
-  starts = FilterStarts(machine, run, reading_sd);
-  const FilterPath path = [&] {
-    try {
-      return RunForceFilter(machine, run, dofs, starts, best->noise);
-    } catch (const NumericalError&) {
-      return RunForceFilter(machine, run, dofs, starts, fast);
-    }
-  }();
-  try {
-    FilterPath refined = RunForceFilter(machine, run, dofs, starts,
-                                        Refined(path, reading_sd, longest, false));
-    if (refined.deviance < path.deviance) return refined;
-  } catch (const NumericalError&) {
   }
-  return path;
+  of_pieces.Improve(true);
+  return OfAll(machine, run, reading_sd, dofs, of_pieces, fast);
 }
 
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
                                const std::vector<Index>& dofs,
                                const std::vector<FilterNoise>& near) {
-  const MeasuredRun pieces = ExcerptOf(run, StatesOf(machine, dofs));
-  const double longest = LongestMemory(run);
-  const std::vector<FilterStart> of_pieces = FilterStarts(machine, pieces, reading_sd);
-  std::optional<FilterPath> best;
-  const auto follow = [&](const FilterNoise& noise) {
-    try {
-      FilterPath path = RunForceFilter(machine, pieces, dofs, of_pieces, noise);
-      if (!best || path.deviance < best->deviance) best = std::move(path);
-    } catch (const NumericalError&) {
-    }
-  };
-  for (const FilterNoise& noise : near) follow(noise);
+  const MeasuredRun pieces = PiecesOfRun(machine, run, dofs);
+  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, LongestMemory(run));
+  for (const FilterNoise& noise : near) of_pieces.Follow(noise);
   // What was near to a machine may be far from another: one that rubs sticks behind the small
   // forces of one that does not.
-  follow(FollowingNoise(machine, pieces, dofs, of_pieces, reading_sd));
-  if (!best) throw NumericalError("replay: diverged");
-  // Along its path a linear filter does not stick; the machine may, behind a noise that is so
-  // likely: on the way there it goes as far as it gains.
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
-    const FilterNoise from = best->noise;
-    const double before = best->deviance;
-    const FilterNoise to = Refined(*best, reading_sd, longest, true);
-    double part = 1.0;
-    for (; part > 0.2; part *= 0.5) {
-      follow(Between(from, to, part));
-      if (best->deviance < before) break;
-    }
-    if (part == 1.0 || part < 0.2) break;
-  }
-  const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
-  FilterPath path = RunForceFilter(machine, run, dofs, starts, best->noise);
-  FilterPath refined = RunForceFilter(machine, run, dofs, starts,
-                                      Refined(path, reading_sd, longest, false));
-  return refined.deviance < path.deviance ? refined : path;
+  of_pieces.Follow(
+      FollowingNoise(machine, pieces, dofs, of_pieces.starts(), reading_sd));
+  of_pieces.Improve(true);
+  return OfAll(machine, run, reading_sd, dofs, of_pieces, near.back());
+}
+
+FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
+                          const VectorXd& reading_sd, FilterPath path) {
+  const std::vector<Index> dofs = path.dofs;
+  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run));
+  all.Keep(std::move(path));
+  all.Improve(false);
+  return all.best();
 }
 
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
                                const std::vector<Index>& dofs,
                                const FilterNoise& near) {
-  const MeasuredRun pieces = ExcerptOf(run, StatesOf(machine, dofs));
-  const FilterPath path = RunForceFilter(
-      machine, pieces, dofs, FilterStarts(machine, pieces, reading_sd), near);
-  return RunForceFilter(machine, run, dofs, FilterStarts(machine, run, reading_sd),
-                        Refined(path, reading_sd, LongestMemory(run), false));
+  const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
+  return FilterLikelier(machine, run, reading_sd,
+                        RunForceFilter(machine, run, dofs, starts, near));
 }
 
 }  // namespace mjdiag

@@ -5,8 +5,8 @@
 // [Kristensen 2004]. Slow laws and a slow latent force explain each other, so that the search
 // starts twice, from all slow and from all fast.
 //
-// Searched are logarithms (noise_search.h), on 3600 readings in pieces of every record, and up
-// to four times as many of a small machine.
+// Where it may be far off it is looked for along pieces of every record, of 3600 readings and
+// up to four times as many of a small machine; then along all of the run (noise_search.h).
 
 #include <Eigen/Core>
 #include <vector>
@@ -14,6 +14,13 @@
 #include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
+
+/// Pieces of every record, each a record of its own: what is large shows there as in all of
+/// the run.
+/// @param dofs   with a latent force
+/// @param least  share of the run
+MeasuredRun PiecesOfRun(const Machine& machine, const MeasuredRun& run,
+                        const std::vector<Eigen::Index>& dofs, double least = 0.0);
 
 /// Noise behind which the filter follows a run whatever the machine lacks: forces as large
 /// as what drives the joints.
@@ -24,7 +31,7 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
                            const Eigen::VectorXd& reading_sd);
 
 /// The path of a run with its most likely noise: followed, fitted, followed behind what was
-/// found, twice. What a fit finds of a sensor is between a half of its own noise and a
+/// found, until nothing is gained. What a fit finds of a sensor is between a half of its own noise and a
 /// hundred times that.
 /// @param reading_sd  of every sensor, by itself
 /// NumericalError as RunForceFilter.
@@ -38,7 +45,11 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const std::vector<Eigen::Index>& dofs,
                                const std::vector<FilterNoise>& near);
 
-/// The same of a machine that is all but the one whose noise it begins with: one descent.
+/// The path of a machine along a run with a noise that is likelier, from its own on.
+FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
+                          const Eigen::VectorXd& reading_sd, FilterPath path);
+
+/// The same of a machine that is all but the one whose noise it begins with.
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
                                const std::vector<Eigen::Index>& dofs,

@@ -22,19 +22,8 @@ namespace {
 // Less is noise of the search.
 constexpr double kGain = 0.2;
 
-// Of so many readings, in some pieces of every record, the noise is known to 2 %: its
-// logarithm to sqrt(2 / 3600) = 0.024. What that leaves in -2 ln L of all readings grows with
-// how many more these are, so that small machines, of which more takes no longer, have more.
-constexpr Index kEnough = 3600;
 constexpr Index kPieces = 4;
 constexpr Index kShortest = 100;
-
-/// As many as take no longer than those of a machine with that many states.
-Index EnoughOf(Index states) {
-  constexpr double kLarge = 24.0;
-  const double times = std::pow(kLarge / static_cast<double>(states), 2);
-  return static_cast<Index>(kEnough * std::clamp(times, 1.0, 4.0));
-}
 
 /// A quarter of each, which coarse steps are judged by.
 std::vector<Stretch> QuarterOf(std::vector<Stretch> pieces) {
@@ -43,6 +32,18 @@ std::vector<Stretch> QuarterOf(std::vector<Stretch> pieces) {
     piece.count = std::min(piece.count, std::max(kShortest, piece.count / kParts));
   }
   return pieces;
+}
+
+/// Parts that can be looked at side by side: where one begins the path is known, and how well
+/// matters for some ticks.
+std::vector<Stretch> Halved(const Stretch& piece) {
+  constexpr Index kShort = 1000;
+  if (piece.count < 2 * kShort) return {piece};
+  const Index half = piece.count / 2;
+  std::vector<Stretch> parts = Halved({piece.first, half});
+  std::ranges::copy(Halved({piece.first + half, piece.count - half}),
+                    std::back_inserter(parts));
+  return parts;
 }
 
 /// -2 ln L of some pieces, of every sensor.
@@ -79,11 +80,18 @@ VectorXd LogarithmsOf(const FilterNoise& noise) {
 
 }  // namespace
 
-std::vector<Stretch> PiecesOf(Index first, Index count, Index of_all, Index sensors,
-                              Index states) {
-  const Index enough = EnoughOf(states) / sensors;
+// Of so many readings the noise is known to 2 %: its logarithm to sqrt(2 / 3600) = 0.024.
+// Small machines, of which more takes no longer, have more.
+Index EnoughOf(Index sensors, Index states) {
+  constexpr double kReadings = 3600.0;
+  constexpr double kLarge = 24.0;
+  const double times = std::pow(kLarge / static_cast<double>(states), 2);
+  return static_cast<Index>(kReadings * std::clamp(times, 1.0, 4.0)) / sensors;
+}
+
+std::vector<Stretch> PiecesOf(Index first, Index count, Index of_all, Index enough) {
   const Index piece = std::max(kShortest, enough * count / of_all / kPieces);
-  if (of_all <= enough || piece * kPieces >= count) return {{first, count}};
+  if (of_all <= 2 * enough || piece * kPieces >= count) return {{first, count}};
   std::vector<Stretch> pieces;
   for (Index i = 0; i < kPieces; ++i) {
     pieces.push_back({first + (count - piece) * i / (kPieces - 1), piece});
@@ -108,12 +116,19 @@ Shown ShownBy(const TickTangent& tangent, const std::vector<Index>& dofs,
 NoiseSearch::NoiseSearch(const FilterPath& path, const VectorXd& reading_sd,
                          double longest)
     : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
+  // What takes seconds.
+  constexpr Index kMostReadings = 40000;
+  const Index enough = EnoughOf(ny_, path.pulled.rows());
   for (std::size_t r = 0; r < path.first.size(); ++r) {
-    std::ranges::copy(PiecesOf(path.first[r], path.EndOf(r) - path.first[r],
-                               path.samples(), ny_, path.pulled.rows()),
-                      std::back_inserter(pieces_));
+    const auto pieces = [&](Index samples) {
+      return PiecesOf(path.first[r], path.EndOf(r) - path.first[r], path.samples(),
+                      samples);
+    };
+    for (const Stretch& piece : pieces(kMostReadings / ny_)) {
+      std::ranges::copy(Halved(piece), std::back_inserter(pieces_));
+    }
+    std::ranges::copy(QuarterOf(pieces(enough)), std::back_inserter(quarter_));
   }
-  quarter_ = QuarterOf(pieces_);
   const double tick = path.sample_time;
   const Shown shown = ShownBy(path.tangents.front(), path.dofs, reading_sd);
   unit_ = shown.unit;
@@ -242,7 +257,7 @@ LikelyNoise NoiseSearch::Downhill(const VectorXd& x, bool with_clock) const {
         return all;
       },
       x, lower_, upper_, kEnd);
-  return {NoiseOf(least.x), least.value};
+  return {NoiseOf(least.x), least.value, 0.0};
 }
 
 LikelyNoise NoiseSearch::Descend(const FilterNoise& noise, bool is_far) const {
@@ -253,6 +268,7 @@ LikelyNoise NoiseSearch::Descend(const FilterNoise& noise, bool is_far) const {
     const Point with = Evaluate(WithClock(LogarithmsOf(best.noise), size), pieces_);
     if (with.deviance() < best.deviance - kGain) best = Downhill(with.x, true);
   }
+  best.gain = Evaluate(x, pieces_).deviance() - best.deviance;
   return best;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 // The most likely noise along one path of a machine (noise_fit.h): -2 ln L of linear passes
-// over pieces of it, by logarithms of the noises. Coarse steps of 64 of one kind of noise after
-// the other (sizes, memories, both along the same random walk, white forces, readings), on a
-// quarter of the pieces, in which every joint goes to where the parabola through -2 ln L of the
-// sensor that shows it best is least; then downhill by the slope (noise_slope.h).
+// along it, by logarithms of the noises. Coarse steps of 64 of one kind of noise after the
+// other (sizes, memories, both along the same random walk, white forces, readings), on some
+// pieces, in which every joint goes to where the parabola through -2 ln L of the sensor that
+// shows it best is least; then downhill by the slope (noise_slope.h), along all of it: what is
+// missing is not the same at all times, and a noise that is likeliest by a part is off by
+// hundreds of -2 ln L by the whole.
 
 #include <Eigen/Core>
 #include <utility>
@@ -19,12 +21,14 @@ struct Stretch {
   Eigen::Index count = 0;
 };
 
-/// Four pieces of a record, of `of_all` samples of `sensors` of a run; of a short one all of
-/// it.
+/// Of a run, samples that tell a noise well enough to begin with.
 /// @param states  of a filter: of few, more samples take no longer
+Eigen::Index EnoughOf(Eigen::Index sensors, Eigen::Index states);
+
+/// Four pieces of a record, together its part of `enough` of the samples of a run; of a short
+/// run all of it.
 std::vector<Stretch> PiecesOf(Eigen::Index first, Eigen::Index count,
-                              Eigen::Index of_all, Eigen::Index sensors,
-                              Eigen::Index states);
+                              Eigen::Index of_all, Eigen::Index enough);
 
 /// The sensor that shows each latent force best, and the force that moves its reading by
 /// its noise in a tick.
@@ -40,6 +44,7 @@ Shown ShownBy(const TickTangent& tangent, const std::vector<Eigen::Index>& dofs,
 struct LikelyNoise {
   FilterNoise noise;
   double deviance = 0.0;
+  double gain = 0.0;  ///< beside that which it began with
 };
 
 class NoiseSearch {
@@ -53,6 +58,12 @@ class NoiseSearch {
   /// From a noise on: by coarse steps where it may be far off, then downhill. A clock that
   /// shows is different at every reading, so that no gain is kept: it is asked for last.
   LikelyNoise Descend(const FilterNoise& noise, bool is_far) const;
+  /// Whether it looks at all of the path.
+  bool LooksAtAll() const {
+    Eigen::Index samples = 0;
+    for (const Stretch& piece : pieces_) samples += piece.count;
+    return samples == path_.samples();
+  }
 
  private:
   /// A point of the search, and -2 ln L there of every sensor.
