@@ -42,37 +42,30 @@ MissingForceMap::Rest RestOfRows(const VectorXd& rows, Index nf) {
   return rest;
 }
 
-/// Forces at joints that do a change of their velocities in a tick, by its tangent: with
-/// S = G^-1/2 B_v G^-1/2, G what each joint gains where nothing holds it, they are
-/// G^-1/2 S^+ G^-1/2 of the change. S is the identity where joints are free and next to
-/// nothing along what sticks or is held: there no change says anything of a force.
+/// Forces at joints that do a change of the state in a tick, by its tangent, at those that
+/// nothing holds: what sticks moves by next to nothing, and a change of it divided by that says
+/// nothing of a force.
 std::vector<MatrixXd> ForcesOfChanges(const FilterPath& path) {
-  constexpr double kHeld = 0.1;  // of what is free
+  constexpr double kHeld = 0.1;  // of what the joint moves where it is free
   const Index nv = path.tangents.front().B.cols();
-  const std::vector<Index>& dofs = path.dofs;
-  const Index nf = path.dof_count();
-  std::vector<Index> velocities = dofs;
-  for (Index& one : velocities) one += nv;
-  const auto gains = [&](const TickTangent& tangent) -> MatrixXd {
-    return tangent.B(velocities, dofs);
+  const auto gains = [&](const TickTangent& tangent) -> VectorXd {
+    return tangent.B.middleRows(nv, nv).diagonal()(path.dofs);
   };
-  VectorXd free = VectorXd::Constant(nf, 1e-300);
-  for (const TickTangent& one : path.tangents) {
-    free = free.cwiseMax(gains(one).diagonal());
-  }
-  const VectorXd scale = free.cwiseSqrt().cwiseInverse();
+  VectorXd free = VectorXd::Zero(path.dof_count());
+  for (const TickTangent& one : path.tangents) free = free.cwiseMax(gains(one));
   std::vector<MatrixXd> forces;
   for (const TickTangent& one : path.tangents) {
-    const MatrixXd S = scale.asDiagonal() * gains(one) * scale.asDiagonal();
-    const SymmetricEigenPairs pairs =
-        SymmetricEigenDecomposition(0.5 * (S + S.transpose()));
-    const VectorXd inverse =
-        (pairs.values.array() > kHeld)
-            .select(pairs.values.cwiseInverse(), VectorXd::Zero(nf));
-    forces.push_back(MatrixXd::Zero(nf, one.B.rows()));
-    forces.back()(Eigen::indexing::all, velocities) =
-        scale.asDiagonal() * pairs.vectors * inverse.asDiagonal() *
-        pairs.vectors.transpose() * scale.asDiagonal();
+    const VectorXd gain = gains(one);
+    std::vector<Index> places, dofs;
+    for (Index j = 0; j < gain.size(); ++j) {
+      if (gain[j] < kHeld * free[j]) continue;
+      places.push_back(j);
+      dofs.push_back(path.dofs[static_cast<std::size_t>(j)]);
+    }
+    forces.push_back(MatrixXd::Zero(gain.size(), one.B.rows()));
+    if (places.empty()) continue;
+    forces.back()(places, Eigen::indexing::all) =
+        PseudoInverse(one.B(Eigen::indexing::all, dofs));
   }
   return forces;
 }

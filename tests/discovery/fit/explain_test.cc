@@ -62,6 +62,72 @@ TEST(Explain, NamesADamperAndItsSize) {
   EXPECT_LT(found.score, found.nothing.deviance - 100.0);
 }
 
+// What it says of a value is what the run tells behind the noise of the answer, which is a
+// hundredth of what the machine as given needs. A tenth: the Jacobian is of where it was taken.
+TEST(Explain, SaysHowWellValuesAreKnownBehindTheNoiseOfItsAnswer) {
+  const test::Arm arm;
+  const MeasuredRun run = ToMeasuredRun(
+      arm.setup(),
+      test::Arm::Measure({"viscous_friction@elbow:coefficient=0.05"}, 1.0));
+  const Explained found =
+      Explain(arm.machine, run, Eigen::VectorXd::Constant(2, test::Arm::kNoise),
+              {.seconds = 300.0});
+  const auto machine_with = [&](const Model& model) {
+    const Machine machine = arm.machine.With(ChangesOf(found.blocks, model));
+    return found.steps ? machine : machine.WithoutSteps();
+  };
+  const ModelFit anew = FitModel(machine_with, run, found.path, KeepGains(found.path),
+                                 found.blocks, found.fit.model, 0);
+  ASSERT_EQ(anew.sd.size(), found.fit.sd.size());
+  ASSERT_GT(anew.sd.size(), 0);
+  for (Eigen::Index i = 0; i < anew.sd.size(); ++i) {
+    EXPECT_NEAR(found.fit.sd[i], anew.sd[i], 0.1 * anew.sd[i]);
+  }
+}
+
+/// Six records, of which a quarter is looked at first; of a simulation with the physics steps of
+/// the model, of which six records would tell more than of a damper.
+MeasuredRun LongRun(const test::Arm& arm, const std::string& lacking) {
+  std::vector<MeasuredRun> runs;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    runs.push_back(
+        ToMeasuredRun(arm.setup(), test::Arm::Measure({lacking}, 1.0, 2, seed)));
+  }
+  return Joined(runs);
+}
+
+TEST(Explain, IsOfAllOfALongRun) {
+  const test::Arm arm;
+  const MeasuredRun run = LongRun(arm, "viscous_friction@elbow:coefficient=0.05");
+  bool is_of_pieces = false;
+  ExplainOptions options{.seconds = 300.0};
+  options.better = [&](const Explained& found) {
+    is_of_pieces = is_of_pieces || found.path.samples() < run.samples();
+  };
+  const Explained found = Explain(
+      arm.machine, run, Eigen::VectorXd::Constant(2, test::Arm::kNoise), options);
+  EXPECT_TRUE(is_of_pieces) << "nothing was found by a quarter";
+  EXPECT_EQ(found.path.samples(), run.samples());
+  EXPECT_THAT(NamesOf(found), ElementsAre("viscous_friction@elbow"));
+  ExpectValue(found, "viscous_friction@elbow", 0.05, 1e-3);
+}
+
+TEST(Explain, KeepsWhatAQuarterOfALongRunSaidWhereItIsStopped) {
+  const test::Arm arm;
+  const MeasuredRun run = LongRun(arm, "viscous_friction@elbow:coefficient=0.05");
+  bool has_some = false;
+  ExplainOptions options{.seconds = 300.0};
+  options.better = [&](const Explained&) { has_some = true; };
+  options.stop = [&] { return has_some; };
+  const Explained found = Explain(
+      arm.machine, run, Eigen::VectorXd::Constant(2, test::Arm::kNoise), options);
+  EXPECT_TRUE(found.is_cut_short);
+  EXPECT_EQ(found.path.samples(), run.samples());
+  EXPECT_EQ(found.nothing.samples(), run.samples());
+  EXPECT_THAT(NamesOf(found), ::testing::Contains("viscous_friction@elbow"));
+  EXPECT_LT(found.path.deviance, found.nothing.deviance);
+}
+
 TEST(Explain, NamesAMotorThatIsWeak) {
   const Explained found = ExplainedFor({"motor_constant@motor1:factor=0.97"});
   // Its gear is a number in doubt, and it is said as that.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "mjdiag/plugin/replay/force_smoother.h"
@@ -72,6 +73,33 @@ TEST(MissingForceMap, TakesAChangeOfTheStateForTheForceThatMakesIt) {
   const VectorXd one = map.Of({&force}).col(0);
   const VectorXd other = map.Of({&change}).col(0);
   EXPECT_LT((one - other).norm(), 1e-9 * one.norm());
+}
+
+// A force moves what sticks by a fiftieth of what it moves elsewhere: what little such a joint
+// does is no force fifty times as large.
+TEST(MissingForceMap, HasNoForceOfWhatSticks) {
+  FilterPath path;
+  path.sample_time = 1e-3;
+  path.dofs = {0};
+  path.first = {0};
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(2, 2);
+  const Eigen::MatrixXd C = Eigen::MatrixXd::Zero(1, 2);
+  const Eigen::MatrixXd D = Eigen::MatrixXd::Zero(1, 1);
+  path.tangents = {{A, Eigen::Vector2d(1e-6, 1e-3), C, D},
+                   {A, Eigen::Vector2d(2e-8, 2e-5), C, D}};
+  constexpr Index kSamples = 40;
+  path.of_tick.assign(kSamples, 0);
+  std::fill(path.of_tick.begin() + kSamples / 2, path.of_tick.end(), 1);
+  path.innovations = Eigen::MatrixXd::Zero(1, kSamples);
+  const MissingForceRows rows(path, Eigen::MatrixXd::Ones(1, kSamples));
+  const MissingForceMap map(rows, {VectorXd::Ones(1), VectorXd::Ones(1)});
+  Column change;
+  change.states = {{1, VectorXd::Constant(kSamples, 2e-3)}};
+  const VectorXd force = map.Of({&change}).col(0);
+  ASSERT_EQ(force.size(), 2);
+  // Along the velocity alone: what is missing of the position is a millionth.
+  EXPECT_NEAR(force[0], 2.0, 1e-5);
+  EXPECT_EQ(force[1], 0.0);
 }
 
 }  // namespace

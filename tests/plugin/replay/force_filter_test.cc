@@ -286,6 +286,34 @@ TEST(NoiseFit, TellsAClockFromTheNoiseOfSensors) {
 }
 
 // -2 ln L orders nothing, half a truth and the truth, and a wrong law does not pass for it.
+// A blow of a force in a fifth of a long record, which pieces of it miss: no noise that is a
+// quarter larger or smaller is likelier by all of it than what is found, by more than the search
+// leaves (2).
+TEST(NoiseFit, IsLikeliestByAllOfARecord) {
+  const Slide slide;
+  constexpr Index kSamples = 40000;
+  const MeasuredRun run = slide.Measure(
+      [](double t) { return t > 14.0 && t < 22.0 ? std::sin(40.0 * t) : 0.0; },
+      kSamples);
+  const VectorXd sd = VectorXd::Constant(1, kNoise);
+  const FilterPath path = FilterLikeliest(slide.machine, run, sd);
+  const auto deviance = [&](const FilterNoise& noise) {
+    return RunForceFilter(slide.machine, run, path.dofs, path.starts, noise).deviance;
+  };
+  for (const double factor : {0.8, 1.25}) {
+    for (VectorXd FilterNoise::*part : {&FilterNoise::size, &FilterNoise::memory,
+                                        &FilterNoise::white, &FilterNoise::reading}) {
+      FilterNoise other = path.noise;
+      other.*part *= factor;
+      // Bounds: a memory of two ticks to a fifth of the run.
+      if (part == &FilterNoise::memory &&
+          (other.memory[0] < 2e-3 || other.memory[0] > 8.0))
+        continue;
+      EXPECT_GT(deviance(other), path.deviance - 2.0) << factor;
+    }
+  }
+}
+
 TEST(NoiseFit, OrdersHalfTruthsAndTruths) {
   const test::Arm arm;
   const MeasuredRun run = ToMeasuredRun(
