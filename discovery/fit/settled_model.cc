@@ -30,11 +30,13 @@ class Settling {
   /// Behind the noise of the model so far, whose likelihood everything is compared with.
   /// @param hopeless  above that it is none
   void Begin(double hopeless) {
-    try {
-      Follow(settled_.fit, near_.back());
-    } catch (const NumericalError&) {
-      Relax();
+    for (const FilterNoise& noise : near_) {
+      try {
+        Follow(settled_.fit, noise);
+      } catch (const NumericalError&) {
+      }
     }
+    if (IsNowhere()) Relax();
     if (settled_.score() > hopeless) {
       is_likeliest_ = true;  // what is so far off is not worth it
       return;
@@ -51,7 +53,7 @@ class Settling {
     SettledModel before = settled_;
     try {
       settled_ = Followed(before.fit, noise);
-      Gains(noise);
+      Gains(noise, false);
     } catch (const NumericalError&) {
     }
     if (settled_.score() < before.score() - kLeastGain) {
@@ -70,7 +72,7 @@ class Settling {
     Relax();
     for (int round = 0; round < kRounds && !IsDone(); ++round) {
       const std::vector<FilterNoise> noises = NoisesFrom(settled_.path.noise);
-      if (!Gains(noises.front()) && !Gains(noises[kSmaller])) return;
+      if (!Gains(noises.front(), true) && !Gains(noises[kSmaller], true)) return;
       if (!beside_.is_over()) Relax();
     }
   }
@@ -95,14 +97,14 @@ class Settling {
 
   void RefitAsLongAsItGains() {
     for (int round = 0; round < kRounds && !IsDone(); ++round) {
-      if (!Gains(settled_.path.noise)) return;
+      if (!Gains(settled_.path.noise, false)) return;
     }
   }
 
   /// Refit, and whether that gains.
-  bool Gains(const FilterNoise& noise) {
+  bool Gains(const FilterNoise& noise, bool prunes) {
     try {
-      return Refit(noise);
+      return Refit(noise, prunes);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
@@ -127,7 +129,10 @@ class Settling {
   }
 
   /// Fits the model behind a noise, with the gains of its path.
-  bool Refit(const FilterNoise& noise) {
+  /// @param prunes  whether members that are worth less than they cost leave: not before the
+  ///                noise is that of the model, for a latent force that is as large as what a
+  ///                member does, and lasts, does it as well
+  bool Refit(const FilterNoise& noise, bool prunes) {
     constexpr int kFitIterations = 4;
     const FilterNoise of_path = settled_.path.noise;
     const KeptGains gains =
@@ -137,7 +142,8 @@ class Settling {
       return FitModel(in_time, beside_.run, settled_.path, gains, beside_.blocks, start,
                       kFitIterations);
     };
-    ModelFit next = Pruned(beside_.blocks, fitted(settled_.fit.model), fitted);
+    ModelFit next = fitted(settled_.fit.model);
+    if (prunes) next = Pruned(beside_.blocks, std::move(next), fitted);
     const bool is_same = next.model.size() == settled_.fit.model.size();
     // How well values are known, which costs, is told behind the noise of the path.
     const bool is_own = noise.size == of_path.size;

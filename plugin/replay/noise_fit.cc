@@ -74,10 +74,10 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
 
 namespace {
 
-/// A latent force that lasts longer than a fifth of a run is a number that costs
-/// nothing: what is constant all the time is for a law to say.
+/// A latent force that lasts longer than a twentieth of a run, a fold of the regression, is a
+/// number that costs nothing: what is constant all the time is for a law to say.
 double LongestMemory(const MeasuredRun& run) {
-  constexpr double kParts = 5.0;
+  constexpr double kParts = 20.0;
   return run.sample_time * static_cast<double>(run.samples()) / kParts;
 }
 
