@@ -23,7 +23,6 @@
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
