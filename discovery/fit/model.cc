@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 #include "mjdiag/plugin/effects/wave.h"
@@ -59,6 +60,33 @@ Coordinate OfParameter(const FitParameter& parameter, double theta) {
   return one;
 }
 
+/// Where a member is on its axis of waves or resonances, and how far it reaches there.
+struct Line {
+  double at = 0.0;
+  double half_width = 0.0;
+};
+
+/// Of waves in turns along all that was seen, of resonances in Hz; none of anything else.
+std::optional<Line> LineOf(const Block& block, const VectorXd& values) {
+  if (!block.candidate) return std::nullopt;
+  const Candidate& candidate = *block.candidate;
+  const Index period = PeriodPlace(candidate);
+  if (period >= std::ssize(candidate.parameters)) return std::nullopt;
+  const double value = values[period];
+  const FitParameter& parameter =
+      candidate.parameters[static_cast<std::size_t>(period)];
+  if (block.IsWave()) {
+    if (!(parameter.extent > 0.0)) return std::nullopt;
+    constexpr double kHalfTurn = 0.5;
+    return Line{parameter.role == Role::kPeriod ? parameter.extent / value
+                                                : parameter.extent * value,
+                kHalfTurn};
+  }
+  const Index ratio = PlaceOf(candidate, Role::kRatio);
+  if (parameter.role != Role::kFrequency || ratio >= values.size()) return std::nullopt;
+  return Line{value, values[ratio] * value};
+}
+
 }  // namespace
 
 double Coordinate::ToX(double theta) const {
@@ -89,6 +117,21 @@ Changes ChangesOf(const std::vector<Block>& blocks, const Model& model) {
 Model Without(Model model, std::size_t place) {
   model.erase(model.begin() + static_cast<std::ptrdiff_t>(place));
   return model;
+}
+
+bool IsResolved(const std::vector<Block>& blocks, const Model& model) {
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    const auto one = LineOf(blocks[model[m].block], model[m].values);
+    if (!one) continue;
+    for (std::size_t n = 0; n < m; ++n) {
+      if (model[n].block != model[m].block) continue;
+      const auto other = LineOf(blocks[model[n].block], model[n].values);
+      if (std::abs(one->at - other->at) < one->half_width + other->half_width) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 std::string Describe(const std::vector<Block>& blocks, const Model& model) {

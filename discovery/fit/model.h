@@ -29,6 +29,10 @@ using Model = std::vector<Member>;
 Changes ChangesOf(const std::vector<Block>& blocks, const Model& model);
 /// Without the member at a place.
 Model Without(Model model, std::size_t place);
+/// Whether members of one block can be told apart along what was seen: waves that differ by
+/// a turn of their phase (Rayleigh's criterion), resonances that do by both their half
+/// widths, zeta f. Two that are closer are one, of another shape.
+bool IsResolved(const std::vector<Block>& blocks, const Model& model);
 /// "coulomb_friction@load(20.4), mass@stage(1.02)".
 std::string Describe(const std::vector<Block>& blocks, const Model& model);
 

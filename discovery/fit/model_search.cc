@@ -167,6 +167,10 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
           })) {
         return;
       }
+      if (!IsResolved(found_.blocks, fit.model)) {
+        Decide(fit.model, -gain, "two of its members cannot be told apart");
+        return;
+      }
       char text[80];
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
@@ -235,6 +239,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (!settled[i]) continue;
     Say("  filtered: " + Difference(settled[i]->score()) + "  " +
         Describe(found_.blocks, settled[i]->fit.model));
+    if (!IsResolved(found_.blocks, settled[i]->fit.model)) continue;
     const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
     if (settled[i]->score() < least) best = i;
   }
@@ -286,8 +291,11 @@ bool ModelSearch::ChooseSteps() {
   steps_ = !steps_;
   Say((steps_ ? "with physics steps: " : "without physics steps: ") +
       std::to_string(-gain));
-  found_.score -= gain;
-  found_.path = std::move(path);
+  // Values made up for the steps as far as they could.
+  SettledModel settled = SettleNear(Beside(steps_), found_.fit, std::move(path));
+  found_.score = settled.score();
+  found_.fit = std::move(settled.fit);
+  found_.path = std::move(settled.path);
   return true;
 }
 

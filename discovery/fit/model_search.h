@@ -103,7 +103,8 @@ class ModelSearch {
     return static_cast<std::size_t>(causes) > options_.most_causes;
   }
   bool MayBe(const ModelMove& move) const {
-    return !HasTooManyCauses(After(move, found_.fit.model));
+    const Model after = After(move, found_.fit.model);
+    return !HasTooManyCauses(after) && IsResolved(found_.blocks, after);
   }
   bool IsOfPieces() const { return as_measured_.samples() < whole_.samples(); }
   bool IsStopped() const { return options_.stop && options_.stop(); }
