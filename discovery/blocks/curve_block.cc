@@ -17,8 +17,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Coarse and fine; of the velocity, half on either side of 0.
-constexpr std::array kKnotsOverPosition{9, 17};
+// Every knot costs, and a curve has as many as it needs; of the velocity, half on either side
+// of 0.
+constexpr std::array kKnotsOverPosition{9, 13, 17};
 constexpr int kKnotsOverVelocity = 10;
 // Of the largest speed: below, a joint has no direction.
 constexpr double kStill = 1.0 / 200.0;

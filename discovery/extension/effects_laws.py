@@ -142,11 +142,15 @@ def _piece(x, low, high, periodic, knots):
         t * (0.5 + t * (2.0 - 1.5 * t)),
         t * t * (-0.5 + 0.5 * t),
     ]
-    # Before its first knot and behind its last the curve goes on as a line.
+    # Before its first knot and behind its last the curve goes on as a parabola, of two
+    # knots as a line.
+    near, after, far = (3.0, -3.0, 1.0) if len(knots) > 2 else (2.0, -1.0, 0.0)
     if not periodic and cell == 0:
-        weight = [0.0, weight[1] + 2.0 * weight[0], weight[2] - weight[0], weight[3]]
+        a, b, c, d = weight
+        weight = [0.0, b + near * a, c + after * a, d + far * a]
     if not periodic and cell == cells - 1:
-        weight = [weight[0], weight[1] - weight[3], weight[2] + 2.0 * weight[3], 0.0]
+        a, b, c, d = weight
+        weight = [a + far * d, b + after * d, c + near * d, 0.0]
     return sum(w * knots[(cell - 1 + i) % len(knots)] for i, w in enumerate(weight))
 
 

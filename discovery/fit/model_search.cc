@@ -189,8 +189,13 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (IsOver()) break;
     const Model model = After(*move, found_.fit.model);
     try_one(model, *move);
+    // Behind what sticks a filter may be lost, or without it: both are tried.
+    for (const Model& twin :
+         {Creeping(found_.blocks, model), Abrupt(found_.blocks, model)}) {
+      if (!SameBlocks(twin, model)) try_one(twin, *move);
+      if (iterations > 0) break;
+    }
     if (iterations > 0) continue;
-    try_one(Abrupt(found_.blocks, model), *move);
     // A noise that is less likely than another one is no reason for a law.
     if (beside_itself) try_one(found_.fit.model, *move);
   }
@@ -203,16 +208,15 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
       Decide(one.fit.model, -one.gain, "another one is worth more than twice as much");
       return true;
     }
-    if (std::ranges::all_of(one.fit.model, [&](const Member& member) {
-          return IsAllowed(found_.blocks[member.block], member.values);
-        })) {
-      return false;
-    }
+    if (MayHave(one.fit.model)) return false;
     Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
     return true;
   });
-  constexpr std::size_t kFiltered = 3;
-  while (tried.size() > kFiltered) {
+  const bool has_itself = std::ranges::any_of(tried, [&](const Tried& one) {
+    return SameBlocks(one.fit.model, found_.fit.model);
+  });
+  const std::size_t most_filtered = has_itself ? 4 : 3;
+  while (tried.size() > most_filtered) {
     Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
     tried.pop_back();
   }
@@ -239,7 +243,8 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (!settled[i]) continue;
     Say("  filtered: " + Difference(settled[i]->score()) + "  " +
         Describe(found_.blocks, settled[i]->fit.model));
-    if (!IsResolved(found_.blocks, settled[i]->fit.model)) continue;
+    const Model& model = settled[i]->fit.model;
+    if (!IsResolved(found_.blocks, model) || !MayHave(model)) continue;
     const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
     if (settled[i]->score() < least) best = i;
   }
@@ -321,27 +326,22 @@ void ModelSearch::AddCurves() {
 bool ModelSearch::Step() {
   const Whitenings whitenings = WhiteningsOf(found_.path);
   std::optional<Proposal> move;
-  // What noise of the inputs explains is found before anything else, and looked for again
-  // where what is large, and where everything has been found.
-  bool asks_inputs = found_.fit.model.empty() && found_.input_width == 0.0;
-  if (asks_inputs) move = SmoothedInputs();
-  if (!move) {
-    const ExactColumns exact =
-        ExactColumnsOf([&](const Model& model) { return With(model); },
-                       With(found_.fit.model, !steps_), run_, found_.path,
-                       found_.blocks, found_.fit.model);
-    if (looks_at_forces_) {
-      move = BestForces(whitenings, exact);
-      looks_at_forces_ = move.has_value();
-      if (!move && !asks_inputs) {
-        asks_inputs = true;
-        move = SmoothedInputs();
-        looks_at_forces_ = move.has_value();
-      }
+  const ExactColumns exact = ExactColumnsOf(
+      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
+      run_, found_.path, found_.blocks, found_.fit.model);
+  // Inputs that are noise are smoothed where forces say nothing more: before, what a machine
+  // lacks passes for noise of its inputs, which takes away what would have told it.
+  bool asks_inputs = true;
+  if (looks_at_forces_) {
+    move = BestForces(whitenings, exact);
+    if (!move) {
+      asks_inputs = false;
+      move = SmoothedInputs();
     }
-    if (!move) move = BestMove(whitenings, exact);
-    if (!move && !asks_inputs) move = SmoothedInputs();
+    looks_at_forces_ = move.has_value();
   }
+  if (!move) move = BestMove(whitenings, exact);
+  if (!move && asks_inputs) move = SmoothedInputs();
   if (move) Adopt(std::move(*move));
   return move.has_value();
 }

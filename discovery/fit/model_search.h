@@ -102,6 +102,12 @@ class ModelSearch {
     });
     return static_cast<std::size_t>(causes) > options_.most_causes;
   }
+  /// Whether its values are such as its laws and numbers can have.
+  bool MayHave(const Model& model) const {
+    return std::ranges::all_of(model, [&](const Member& member) {
+      return IsAllowed(found_.blocks[member.block], member.values);
+    });
+  }
   bool MayBe(const ModelMove& move) const {
     const Model after = After(move, found_.fit.model);
     return !HasTooManyCauses(after) && IsResolved(found_.blocks, after);

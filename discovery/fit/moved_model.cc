@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace mjdiag {
 
@@ -18,16 +19,47 @@ Model After(const ModelMove& move, const Model& model) {
   return after;
 }
 
+namespace {
+
+/// The block of the same joint's friction that is so; none if it has none.
+std::optional<std::size_t> InPlaceOf(const std::vector<Block>& blocks,
+                                     const Block& block,
+                                     const std::function<bool(const Block&)>& is_so) {
+  const auto found = std::ranges::find_if(blocks, [&](const Block& other) {
+    return !block.group.empty() && other.group == block.group && is_so(other);
+  });
+  if (found == blocks.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - blocks.begin());
+}
+
+bool IsAbrupt(const Block& block) {
+  return block.IsDryFriction() && block.IsSimplest();
+}
+
+}  // namespace
+
 Model Abrupt(const std::vector<Block>& blocks, Model model) {
   for (Member& member : model) {
     const Block& block = blocks[member.block];
     if (!block.IsSmoothFriction()) continue;
-    const auto simplest = std::ranges::find_if(blocks, [&](const Block& other) {
-      return other.group == block.group && other.IsDryFriction() && other.IsSimplest();
-    });
-    if (simplest == blocks.end()) continue;
-    member = {static_cast<std::size_t>(simplest - blocks.begin()),
-              member.values.head(1)};
+    const auto other = InPlaceOf(blocks, block, IsAbrupt);
+    if (other) member = {*other, member.values.head(1)};
+  }
+  return model;
+}
+
+Model Creeping(const std::vector<Block>& blocks, Model model) {
+  for (Member& member : model) {
+    const Block& block = blocks[member.block];
+    if (!block.candidate || !IsAbrupt(block)) continue;
+    const auto other = InPlaceOf(
+        blocks, block, [](const Block& one) { return one.IsSmoothFriction(); });
+    if (!other) continue;
+    // Its bounds are a thousandth of the fastest speed and twice that (candidate_bounds.h).
+    constexpr double kHundredth = 10.0;
+    const double slowest = blocks[*other].candidate->parameters[1].lower;
+    if (!(slowest > 0.0)) continue;
+    member = {*other, Eigen::Vector2d(member.values[0], kHundredth * slowest)};
   }
   return model;
 }

@@ -104,15 +104,22 @@ void AddPiece(const CurveAxis& piece, double x, int first, double share,
   std::array<double, 4> weight = {
       t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (-2.5 + 1.5 * t),
       t * (0.5 + t * (2.0 - 1.5 * t)), t * t * (-0.5 + 0.5 * t)};
-  // Before its first knot and behind its last the curve goes on as a line.
+  // Before its first knot and behind its last the curve goes on as the parabola through
+  // three, so that it is as exact in its first cell and its last as between them; of two
+  // knots as a line.
+  const double near = piece.knots > 2 ? 3.0 : 2.0;
+  const double next = piece.knots > 2 ? -3.0 : -1.0;
+  const double far = piece.knots > 2 ? 1.0 : 0.0;
   if (!periodic && cell == 0) {
-    weight[1] += 2.0 * weight[0];
-    weight[2] -= weight[0];
+    weight[1] += near * weight[0];
+    weight[2] += next * weight[0];
+    weight[3] += far * weight[0];
     weight[0] = 0.0;
   }
   if (!periodic && cell == cells - 1) {
-    weight[2] += 2.0 * weight[3];
-    weight[1] -= weight[3];
+    weight[2] += near * weight[3];
+    weight[1] += next * weight[3];
+    weight[0] += far * weight[3];
     weight[3] = 0.0;
   }
   const std::size_t slot = first == 0 ? 0 : weight.size();

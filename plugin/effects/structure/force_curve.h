@@ -6,7 +6,8 @@
 //   x  a position or velocity of any joint, the command of an actuator, or time
 //   m  1, the direction of the joint, tanh(v / still), or its velocity v
 //   g  cubic between `knots` values at equal distances over low .. low + width, with the slopes
-//      of Catmull and Rom (1974), held at its ends beyond. A periodic one is the same
+//      of Catmull and Rom (1974), those at its ends of the parabola through three, held at
+//      its ends beyond. A periodic one is the same
 //      again after its width; one that is split at 0 is two, half of the knots over
 //      low .. 0 and half over 0 .. low + width, and goes from one to the other within `still`,
 //      as friction does

@@ -40,6 +40,30 @@ TEST(ForceCurve, GoesThroughItsKnotsAndIsALineWhereTheyAreOnOne) {
   EXPECT_NEAR(CurveAt(axis, -5.0, cube, -1.0, 0.5), cube(-1.0), 1e-12);
 }
 
+TEST(ForceCurve, IsAParabolaUpToItsEndsWhereItsKnotsAreOnOne) {
+  const auto parabola = [](double x) { return 3.0 - 2.0 * x + 5.0 * x * x; };
+  for (const int knots : {4, 7}) {
+    const CurveAxis axis{-1.0, 2.0, CurveShapes::kPlain, knots};
+    for (double x = -1.0; x <= 2.0; x += 0.01) {
+      EXPECT_NEAR(CurveAt(axis, x, parabola, -1.0, 3.0 / (knots - 1)), parabola(x),
+                  1e-12);
+    }
+  }
+}
+
+TEST(ForceCurve, IsALineThroughTwoKnotsOfASplitOne) {
+  const CurveAxis axis{-1.0, 2.0, CurveShapes::kSplit, 4, 1e-6};
+  const CurveAxis::Weights weights = axis.At(0.5);
+  double of_zero = 0.0;
+  double of_end = 0.0;
+  for (std::size_t i = 0; i < weights.place.size(); ++i) {
+    if (weights.place[i] == 2) of_zero += weights.weight[i];
+    if (weights.place[i] == 3) of_end += weights.weight[i];
+  }
+  EXPECT_NEAR(of_zero, 0.75, 1e-12);
+  EXPECT_NEAR(of_end, 0.25, 1e-12);
+}
+
 // The error of a cubic through samples of a sine, a sixteenth of a turn apart, is below
 // (pi / 8)^3 / 6 = 1 %.
 TEST(ForceCurve, ComesBackAfterItsPeriod) {
