@@ -1,0 +1,58 @@
+// Models that moves make of one.
+
+#include "mjdiag/discovery/fit/moved_model.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "mjdiag/plugin/effects/registry.h"
+
+namespace mjdiag {
+namespace {
+
+Block FrictionBlock(const std::string& name) {
+  Candidate candidate{
+      .effect = Lasting(FindEffect(name)), .site = "j", .parameters = {}};
+  for (const EffectParameter& one : candidate.effect->parameters()) {
+    FitParameter parameter{one.name, one.role, one.minimum, one.maximum};
+    if (one.role == Role::kVelocity) parameter.lower = 2e-3;
+    candidate.parameters.push_back(parameter);
+  }
+  Block block;
+  block.name = name + "@j";
+  block.candidate = candidate;
+  block.group = "friction@j";
+  return block;
+}
+
+const std::vector<Block> kFriction{FrictionBlock("viscous_friction"),
+                                   FrictionBlock("coulomb_friction"),
+                                   FrictionBlock("smooth_coulomb_friction")};
+
+// A hundredth of the fastest speed, 2 m/s.
+TEST(MovedModel, LetsDryFrictionCreepWithinAHundredthOfTheFastestSpeed) {
+  const Model creeps = Creeping(kFriction, {{1, Eigen::VectorXd::Constant(1, 0.7)}});
+  ASSERT_EQ(creeps.size(), 1u);
+  EXPECT_EQ(creeps[0].block, 2u);
+  EXPECT_EQ(creeps[0].values, Eigen::Vector2d(0.7, 0.02));
+}
+
+TEST(MovedModel, LetsDryFrictionThatCreepsBeThereAtOnce) {
+  const Model abrupt = Abrupt(kFriction, {{2, Eigen::Vector2d(0.7, 0.02)}});
+  ASSERT_EQ(abrupt.size(), 1u);
+  EXPECT_EQ(abrupt[0].block, 1u);
+  EXPECT_EQ(abrupt[0].values, Eigen::VectorXd::Constant(1, 0.7));
+}
+
+TEST(MovedModel, LeavesWhatIsNoDryFriction) {
+  const Model damps{{0, Eigen::VectorXd::Constant(1, 0.7)}};
+  for (const Model& other : {Creeping(kFriction, damps), Abrupt(kFriction, damps)}) {
+    ASSERT_EQ(other.size(), 1u);
+    EXPECT_EQ(other[0].block, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace mjdiag
