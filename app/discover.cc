@@ -140,7 +140,7 @@ void AddDiscover(CLI::App& app) {
       ->check(CLI::Range(1, kMostCauses));
   // Bound to the variable itself, a flag that is not given would count as 0: no doubt.
   command->add_flag_function(
-      "--doubt,!--no-doubt",
+      "--doubt,--estimate-parameters,!--no-doubt",
       [options](std::int64_t count) { options->doubt = count > 0; },
       "Numbers of the plant may be what is wrong, as far as they are not known "
       "beforehand, or they are true; without either they may where the plant does not "

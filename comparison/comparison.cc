@@ -246,7 +246,7 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
   return result;
 }
 
-bool Falls(const Machine& machine, const Record& measured) {
+bool DivergesOpenLoop(const Machine& machine, const Record& measured) {
   if (!machine.setup().control.axes.empty() ||
       !CanBeFollowed(machine.setup(), measured)) {
     return false;

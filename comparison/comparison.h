@@ -68,7 +68,7 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
 
 /// Whether a machine falls that is driven with the inputs of the record alone, where that has
 /// all that the filter needs. InputError as above.
-bool Falls(const Machine& machine, const Record& measured);
+bool DivergesOpenLoop(const Machine& machine, const Record& measured);
 
 /// What is predicted over one tick, of a machine and of the same with changes, behind the
 /// noise that is most likely beside the first: the two stand beside one another. Without

@@ -217,8 +217,8 @@ VectorXd LowPassed(const FilteredRun& filtered, const VectorXd& signal) {
   return Filtered(filtered.run, filtered.bandwidth, signal);
 }
 
-ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
-                           const FilteredRun& filtered) {
+ForceBalance InverseDynamicsResidual(const Machine& machine, const Changes& changes,
+                                     const FilteredRun& filtered) {
   const Machine changed = machine.With(changes);
   const MeasuredRun& run = filtered.run;
   const Index nv = changed.plant().nv;
@@ -279,7 +279,7 @@ MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filte
     }
   }
   if (frictionless.numbers.empty()) return balance.missing;
-  return BalanceForces(machine, frictionless, filtered).missing;
+  return InverseDynamicsResidual(machine, frictionless, filtered).missing;
 }
 
 VectorXd MissingRms(const FilteredRun& filtered, const MatrixXd& missing) {

@@ -65,8 +65,8 @@ struct ForceBalance {
 };
 
 /// NumericalError if the plant diverges in a tick.
-ForceBalance BalanceForces(const Machine& machine, const Changes& changes,
-                           const FilteredRun& filtered);
+ForceBalance InverseDynamicsResidual(const Machine& machine, const Changes& changes,
+                                     const FilteredRun& filtered);
 
 /// F without the dry friction of the plant, which MuJoCo has as `frictionloss`.
 Eigen::MatrixXd MissingWithoutFriction(const Machine& machine,

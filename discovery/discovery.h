@@ -19,7 +19,7 @@
 #include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/discovery/record_replay.h"
-#include "mjdiag/discovery/signature/signature.h"
+#include "mjdiag/discovery/residual_dependence/residual_dependence.h"
 #include "mjdiag/discovery/verdict.h"
 #include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/machine/machine.h"
@@ -164,7 +164,7 @@ struct Discovery {
   std::vector<CalibratedNumber> calibration;
   /// Of machines with hinges, what the record tells of masses and their places together.
   std::vector<CalibratedMoment> moments;
-  std::optional<Signature> unexplained;  ///< of what is left, if anything is
+  std::optional<ResidualDependence> unexplained;  ///< of what is left, if anything is
   std::string unexplained_site;
   /// What cannot be judged, what cannot be told apart and which experiment would,
   /// what looks odd in the record.

@@ -45,9 +45,9 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
   return replays;
 }
 
-bool AnyFalls(const Measurements& measurements) {
+bool AnyDivergesOpenLoop(const Measurements& measurements) {
   const auto falls = [](const MeasuredRecord& one) {
-    return Falls(one.machine, one.record);
+    return DivergesOpenLoop(one.machine, one.record);
   };
   return std::ranges::any_of(measurements.fit, falls) ||
          std::ranges::any_of(measurements.unseen, falls);

@@ -28,7 +28,7 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     bool falls);
 
 /// Whether the machine falls on any of the records.
-bool AnyFalls(const Measurements& measurements);
+bool AnyDivergesOpenLoop(const Measurements& measurements);
 
 /// Channel or derived signal -> relative error (ReplayErrors), mean over records [%].
 std::map<std::string, double> MeanReplayErrors(

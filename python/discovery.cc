@@ -38,7 +38,7 @@ py::list AlternativesOf(const FoundCause& found) {
   return alternatives;
 }
 
-py::dict DoubtedNumbers(const Discovery& discovery) {
+py::dict UncertainParameters(const Discovery& discovery) {
   const py::object make = py::module_::import("mjdiag").attr("PlantNumber");
   py::dict numbers;
   for (const CalibratedNumber& number : discovery.calibration) {
@@ -166,7 +166,7 @@ void BindDiscovery(py::module_& module) {
       .def_property_readonly(
           "numbers",
           [](const DiscoveryObject& object) {
-            return DoubtedNumbers(object.discovery);
+            return UncertainParameters(object.discovery);
           },
           R"(
           Name -> (factor, ci95, is_off) of the numbers of the plant that were in doubt,

@@ -188,7 +188,7 @@ Eigen::Index SamplesOf(const Discovery& discovery) {
 
 json UnexplainedOf(const Discovery& discovery) {
   if (!discovery.unexplained) return {{"signature", nullptr}};
-  const Signature& signature = *discovery.unexplained;
+  const ResidualDependence& signature = *discovery.unexplained;
   return {{"signature", TextOrNull(signature.text)},
           {"site", TextOrNull(discovery.unexplained_site)},
           {"variable", TextOrNull(signature.variable)},
@@ -214,7 +214,7 @@ json LadderOf(const Discovery& discovery) {
   return ladder;
 }
 
-json FaultLimitsOf(const Discovery& discovery) {
+json MinimumDetectableFaultsOf(const Discovery& discovery) {
   json limits = json::array();
   for (const FaultLimit& limit : discovery.fault_limits) {
     limits.push_back({{"fault", limit.fault},
@@ -259,7 +259,7 @@ json ToJson(const Discovery& discovery, const std::string& extended_plant) {
             {"after", DerivedOf(discovery, &RecordReplay::after)}}},
           {"records", RecordsOf(discovery)},
           {"ladder", LadderOf(discovery)},
-          {"fault_limits", FaultLimitsOf(discovery)},
+          {"fault_limits", MinimumDetectableFaultsOf(discovery)},
           {"budget",
            {{"used", Finite(discovery.budget.used)},
             {"limit", Finite(discovery.budget.limit)},

@@ -220,9 +220,9 @@ std::string UnitOfRest(const Discovery& discovery) {
   return "";
 }
 
-void AddSignature(Page& page, const Discovery& discovery) {
+void AddResidualDependence(Page& page, const Discovery& discovery) {
   if (!discovery.unexplained) return;
-  const Signature& signature = *discovery.unexplained;
+  const ResidualDependence& signature = *discovery.unexplained;
   page.AddHeading("What is left");
   page.AddParagraph(signature.text);
   if (!signature.significant) return;
@@ -238,7 +238,7 @@ void AddSignature(Page& page, const Discovery& discovery) {
   }
   page.AddFacts(facts);
   if (signature.x.size() > 1)
-    page.AddPlot(SignaturePlot(signature, UnitOfRest(discovery)));
+    page.AddPlot(ResidualDependencePlot(signature, UnitOfRest(discovery)));
 }
 
 void AddDecisions(Page& page, const Discovery& discovery) {
@@ -254,7 +254,7 @@ void AddDecisions(Page& page, const Discovery& discovery) {
       "is better.");
 }
 
-void AddFaultLimits(Page& page, const Discovery& discovery) {
+void AddMinimumDetectableFaults(Page& page, const Discovery& discovery) {
   if (discovery.fault_limits.empty()) return;
   page.AddHeading("What it is for: how small a fault is seen");
   page.AddTable(FaultLimitTable(discovery));
@@ -276,9 +276,9 @@ Page DiscoveryPage(const Discovery& discovery, const DiscoveryRun& run) {
   AddLadder(page, discovery);
   AddMismatch(page, discovery);
   AddLaws(page, discovery);
-  AddSignature(page, discovery);
+  AddResidualDependence(page, discovery);
   AddUnexplained(page, discovery);
-  AddFaultLimits(page, discovery);
+  AddMinimumDetectableFaults(page, discovery);
   AddDecisions(page, discovery);
   page.SetRun(run.run);
   return page;

@@ -149,7 +149,8 @@ XyPlot PlotOf(const LawPlot& law) {
   return plot;
 }
 
-XyPlot SignaturePlot(const Signature& signature, const std::string& unit) {
+XyPlot ResidualDependencePlot(const ResidualDependence& signature,
+                              const std::string& unit) {
   XyPlot plot;
   plot.caption = "What is left at " + signature.site + ", over " + signature.variable;
   plot.x_quantity = signature.variable;

@@ -27,6 +27,7 @@ XyPlot PlotOf(const LawPlot& law);
 
 /// How what is left depends on its variable, between +-2 sd.
 /// @param unit  of what is left; empty: not known
-XyPlot SignaturePlot(const Signature& signature, const std::string& unit);
+XyPlot ResidualDependencePlot(const ResidualDependence& signature,
+                              const std::string& unit);
 
 }  // namespace mjdiag

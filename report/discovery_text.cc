@@ -95,7 +95,7 @@ std::string RestText(const Discovery& discovery) {
   return left.empty() ? " Noise explains the rest." : " Little is left" + left + ".";
 }
 
-std::string SignatureText(const Discovery& discovery) {
+std::string ResidualDependenceText(const Discovery& discovery) {
   if (!discovery.unexplained || discovery.unexplained->text.empty()) return "";
   return " " + discovery.unexplained->text;
 }
@@ -213,10 +213,10 @@ std::string DiscoveryAnswer(const Discovery& discovery) {
              (discovery.unexplained || discovery.force_left
                   ? " Something is left" + ForceLeftText(discovery) + "."
                   : " Noise is left.") +
-             SignatureText(discovery);
+             ResidualDependenceText(discovery);
     case DiscoveryVerdict::kUnexplained:
       return "Something is there that no known cause explains." +
-             SignatureText(discovery);
+             ResidualDependenceText(discovery);
   }
   return "";
 }

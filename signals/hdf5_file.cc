@@ -241,11 +241,11 @@ class Hdf5Source : public RecordSource {
 }  // namespace
 
 bool IsHdf5(const std::filesystem::path& file) {
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  constexpr std::string_view kResidualDependence = "\x89HDF\r\n\x1a\n";
   std::ifstream stream(file, std::ios::binary);
-  std::string head(kSignature.size(), '\0');
+  std::string head(kResidualDependence.size(), '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return stream && head == kSignature;
+  return stream && head == kResidualDependence;
 }
 
 std::unique_ptr<RecordSource> OpenHdf5(const std::filesystem::path& file) {

@@ -42,7 +42,7 @@ bool Covers(const CauseParameter& parameter, Role role, double truth, double shi
 std::optional<double> TwinValue(const mjModel& plant, Cause cause, double value,
                                 const Cause& kind) {
   cause.values[0] = value;
-  for (const Cause& twin : Twins(plant, cause)) {
+  for (const Cause& twin : EquivalentCauses(plant, cause)) {
     if (SameKind(twin, kind)) return twin.values[0];
   }
   return std::nullopt;

@@ -54,7 +54,7 @@ ObservedRuns::ObservedRuns(const Machine& machine, const Excitation& motion)
       settling_(SettlingOf(quiet_, observer_)),
       dynamics_(observer_, 1) {
   motion_ = ObserveMotion(machine_, quiet_,
-                          FollowRun(machine_, {}, quiet_, observer_, dynamics_));
+                          RunPredictor(machine_, {}, quiet_, observer_, dynamics_));
 }
 
 MeasuredRun ObservedRuns::RunOf(const Machine& measured) const {
@@ -63,7 +63,8 @@ MeasuredRun ObservedRuns::RunOf(const Machine& measured) const {
 
 VectorXd ObservedRuns::Innovations(const MeasuredRun& run,
                                    const Changes& beside) const {
-  const Track track = FollowRun(machine_, beside, run, observer_, false);
+  const InnovationSequence track =
+      RunPredictor(machine_, beside, run, observer_, false);
   VectorXd scaled =
       (observer_.innovation_sd.cwiseInverse().asDiagonal() * track.innovations)
           .reshaped();
@@ -75,7 +76,7 @@ VectorXd ObservedRuns::InnovationsOf(const Changes& changes) const {
   return Innovations(RunOf(machine_.With(changes)));
 }
 
-MatrixXd ObservedRuns::Response(const Trial& trial, Index channel) const {
+MatrixXd ObservedRuns::Response(const CandidateRegressor& trial, Index channel) const {
   MatrixXd all = trial.entry.size() > 0 ? dynamics_.OfForces(trial.entry, trial.signals)
                                         : dynamics_.OfReadings(channel, trial.signals);
   all.topRows(settling_).setZero();
@@ -89,13 +90,13 @@ VectorXd ObservedRuns::ResponseTo(const MatrixXd& forces) const {
   return all;
 }
 
-Trial ObservedRuns::BestOf(const Sweep& sweep, Index channel,
-                           const VectorXd& innovations) const {
+CandidateRegressor ObservedRuns::BestOf(const ParameterScan& sweep, Index channel,
+                                        const VectorXd& innovations) const {
   const ErrorDynamics::Adjoint adjoint = dynamics_.AdjointOf(innovations);
-  Trial best;
+  CandidateRegressor best;
   double most = -1.0;
   for (const double value : sweep.values) {
-    Trial trial = sweep.make(value);
+    CandidateRegressor trial = sweep.make(value);
     VectorXd common(trial.signals.cols());
     for (Index i = 0; i < common.size(); ++i) {
       const auto signal = trial.signals.col(i).head(adjoint.forces.rows());

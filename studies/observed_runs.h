@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
-#include "mjdiag/plugin/effects/trial.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/error_dynamics.h"
 #include "mjdiag/plugin/replay/observer.h"
@@ -38,12 +38,12 @@ class ObservedRuns {
 
   /// What a trial of an effect shows to first order, a column for every amplitude.
   /// @param channel  of a trial in the readings
-  Eigen::MatrixXd Response(const Trial& trial, Eigen::Index channel) const;
+  Eigen::MatrixXd Response(const CandidateRegressor& trial, Eigen::Index channel) const;
   /// The same of forces at the degrees of freedom. @param forces  samples x nv
   Eigen::VectorXd ResponseTo(const Eigen::MatrixXd& forces) const;
   /// The trial of a sweep that has most in common with innovations.
-  Trial BestOf(const Sweep& sweep, Eigen::Index channel,
-               const Eigen::VectorXd& innovations) const;
+  CandidateRegressor BestOf(const ParameterScan& sweep, Eigen::Index channel,
+                            const Eigen::VectorXd& innovations) const;
 
  private:
   Machine machine_;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mjdiag/comparison/noise_floor.h"
-#include "mjdiag/discovery/blocks/candidate_trials.h"
+#include "mjdiag/discovery/blocks/candidate_regressors.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/runtime/parallel.h"
@@ -46,7 +46,7 @@ MatrixXd NumbersShown(const ObservedRuns& runs,
                        NumberForce(plant, machine.actuator_addresses(), numbers[i],
                                    runs.motion(), still))
             : MatrixXd(0.5 * plant.opt.timestep *
-                       LatenessForce(plant, machine.linear().Gamma, runs.motion()));
+                       DelayForce(plant, machine.linear().Gamma, runs.motion()));
     // A force that the model has more is one that it lacks less.
     columns[i] = -runs.ResponseTo(forces);
   });
@@ -73,7 +73,7 @@ std::optional<std::size_t> PlaceOf(const std::vector<Candidate>& candidates,
 }
 
 /// How a rest that is no white noise makes gains by chance larger.
-double InflationBy(const VectorXd& left, Index channels, double sample_time) {
+double OverdispersionBy(const VectorXd& left, Index channels, double sample_time) {
   const double square = left.squaredNorm() / static_cast<double>(left.size());
   if (square < 1.0) return 1.0;
   const Eigen::Map<const MatrixXd> rows(left.data(), channels, left.size() / channels);
@@ -238,7 +238,7 @@ VisibleSize::VisibleSize(const Machine& machine, int substeps, const Excitation&
   const MatrixXd none = NoOthers();
   LeastLeft least(runs_, doubted_, numbers_, none, finer);
   least.Square(nullptr, VectorXd());
-  inflation_ = InflationBy(least.Left(), finer.outputs.rows(), finer.sample_time);
+  inflation_ = OverdispersionBy(least.Left(), finer.outputs.rows(), finer.sample_time);
 }
 
 Scales VisibleSize::ScalesAt(const Site& site) const {
@@ -278,19 +278,19 @@ double VisibleSize::ShownBesideSimplerLaw(const Cause& cause) const {
   return LeftBeside(run, candidates[*place], simpler->values, NoOthers());
 }
 
-std::vector<Trial> VisibleSize::TrialsOf(const Candidate& law,
-                                         const VectorXd& innovations) const {
+std::vector<CandidateRegressor> VisibleSize::RegressorsOf(
+    const Candidate& law, const VectorXd& innovations) const {
   const ObservedMotion& motion = runs_.motion();
-  if (const auto sweep =
-          MakeSweep(runs_.machine(), law, motion, motion.time[motion.samples() - 1])) {
+  if (const auto sweep = MakeParameterScan(runs_.machine(), law, motion,
+                                           motion.time[motion.samples() - 1])) {
     return {runs_.BestOf(*sweep, law.channel, innovations)};
   }
-  return MakeTrials(runs_.machine(), law, motion);
+  return MakeCandidateRegressors(runs_.machine(), law, motion);
 }
 
 std::optional<std::pair<VectorXd, double>> VisibleSize::Regressed(
-    const Trial& trial, const MatrixXd& response, const MatrixXd& explained,
-    const VectorXd& left) const {
+    const CandidateRegressor& trial, const MatrixXd& response,
+    const MatrixXd& explained, const VectorXd& left) const {
   constexpr double kIndependent = 1e-8;
   const VectorXd before = response.colwise().squaredNorm();
   const MatrixXd phi = response - explained * (explained.transpose() * response);
@@ -318,7 +318,7 @@ std::optional<std::pair<VectorXd, double>> VisibleSize::Regressed(
     free = std::move(inside);
   }
   const double gain = left.squaredNorm() - (left - phi * amplitude).squaredNorm();
-  const TrialValues values = trial.values(amplitude);
+  const RegressorValues values = trial.values(amplitude);
   if (!values || !(gain > 0.0)) return std::nullopt;
   return std::pair{*values, gain};
 }
@@ -337,7 +337,8 @@ std::optional<VisibleSize::OtherLaw> VisibleSize::BestLaw(const VectorXd& innova
   std::vector<std::pair<VectorXd, double>> best(candidates.size());
   ParallelFor(static_cast<int>(candidates.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    for (const Trial& trial : TrialsOf(candidates[i], left.head(innovations.size()))) {
+    for (const CandidateRegressor& trial :
+         RegressorsOf(candidates[i], left.head(innovations.size()))) {
       const MatrixXd response =
           OverNothing(runs_.Response(trial, candidates[i].channel), p);
       const auto found = Regressed(trial, response, explained, left);

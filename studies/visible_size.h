@@ -68,10 +68,10 @@ class VisibleSize {
                                   const Cause& but_for) const;
   /// Its amplitudes in innovations, as far as they may be, and the squares that it takes.
   std::optional<std::pair<Eigen::VectorXd, double>> Regressed(
-      const Trial& trial, const Eigen::MatrixXd& response,
+      const CandidateRegressor& trial, const Eigen::MatrixXd& response,
       const Eigen::MatrixXd& explained, const Eigen::VectorXd& left) const;
-  std::vector<Trial> TrialsOf(const Candidate& law,
-                              const Eigen::VectorXd& innovations) const;
+  std::vector<CandidateRegressor> RegressorsOf(
+      const Candidate& law, const Eigen::VectorXd& innovations) const;
 
   ObservedRuns runs_;
   std::vector<PlantNumber> doubted_;

@@ -62,7 +62,8 @@ void Information::Solve() noexcept {
   change_.head(active_) = scale_.head(active_).cwiseProduct(solution);
 }
 
-double Information::Surprise(const MatrixXd& psi, const VectorXd& e) noexcept {
+double Information::NormalizedInnovation(const MatrixXd& psi,
+                                         const VectorXd& e) noexcept {
   const auto seen = psi.leftCols(active_);
   corrected_ = e;
   corrected_.noalias() -= seen * change_.head(active_);

@@ -38,7 +38,8 @@ class Information {
   /// explains, in units of what noise and the uncertainty of the estimate let expect. 1 on
   /// average where the model is true.
   /// @param psi, e  whitened, ny rows
-  double Surprise(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e) noexcept;
+  double NormalizedInnovation(const Eigen::MatrixXd& psi,
+                              const Eigen::VectorXd& e) noexcept;
   /// @param psi, e  whitened, any number of rows
   void Add(const Eigen::MatrixXd& psi, const Eigen::VectorXd& e) noexcept;
 

@@ -68,7 +68,7 @@ void PredictionErrorEstimator::StartOver(std::size_t gain,
 void PredictionErrorEstimator::GoBack() noexcept { Begin(gain(), NextTheta()); }
 
 void PredictionErrorEstimator::Reconsider() noexcept {
-  if (Surprised()) return Unexplained();
+  if (RejectsItsInnovations()) return Unexplained();
   if (segment_.windowed) return Approach();
   const Index horizon = pass_.seen() - now().origin;
   if (gain() == 0 && pass_.ticks() % kGrowthEvery == 0) {

@@ -145,7 +145,7 @@ void PredictionErrorEstimator::ProcessKept() noexcept {
     pass_.twin().ReadState(at->state);
   }
   if (!added) return;
-  if (exhausted_ || !Surprised()) Say();
+  if (exhausted_ || !RejectsItsInnovations()) Say();
   if (following()) {
     Follow();
   } else if (!exhausted_) {
@@ -183,7 +183,7 @@ void PredictionErrorEstimator::Retract() noexcept {
 }
 
 void PredictionErrorEstimator::Follow() noexcept {
-  if (Surprised()) {
+  if (RejectsItsInnovations()) {
     // The readings that it keeps begin after the origin, so only a change remains.
     exhausted_ = false;
     if (TryChange()) return;
@@ -236,7 +236,7 @@ double PredictionErrorEstimator::Bias() const noexcept {
   return pass_.twin().curvature() * std::sqrt(moved) * Farthest(change);
 }
 
-bool PredictionErrorEstimator::Surprised() const noexcept {
+bool PredictionErrorEstimator::RejectsItsInnovations() const noexcept {
   return (gain() == 0 || following()) && pass_.surprise().NoChance();
 }
 

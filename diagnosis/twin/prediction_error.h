@@ -216,7 +216,7 @@ class PredictionErrorEstimator {
   /// of where it fails.
   void TryFarNumbers() noexcept;
 
-  bool Surprised() const noexcept;
+  bool RejectsItsInnovations() const noexcept;
   double Farthest(const Eigen::VectorXd& change) const noexcept;
   /// What the first order does not tell of the change since theta0, in standard
   /// deviations.

@@ -151,7 +151,8 @@ void TwinPass::Settle() noexcept {
 void TwinPass::Count(const MatrixXd& psi) noexcept {
   block_.Whiten(psi, information_.active(), drifts_ ? &twin_->drift() : nullptr,
                 twin_->gains()[pull_].covariance);
-  const double squares = information_.Surprise(block_.slow_psi(), block_.slow_e());
+  const double squares =
+      information_.NormalizedInnovation(block_.slow_psi(), block_.slow_e());
   ++blocks_;
   squares_ += squares;
   surprise_.Add(squares);

@@ -16,7 +16,7 @@
 #include "mjdiag/diagnosis/twin/drift.h"
 #include "mjdiag/diagnosis/twin/information.h"
 #include "mjdiag/diagnosis/twin/kept_readings.h"
-#include "mjdiag/diagnosis/twin/surprise.h"
+#include "mjdiag/diagnosis/twin/normalized_innovation.h"
 #include "mjdiag/diagnosis/twin/twin.h"
 #include "mjdiag/diagnosis/twin/whitened_block.h"
 
@@ -103,14 +103,14 @@ class TwinPass {
   bool drifts() const { return drifts_; }
   const Drift& drift() const { return drift_; }
   double drift_time() const { return twin_->drift_time(); }
-  const Surprise& surprise() const { return surprise_; }
+  const NormalizedInnovation& surprise() const { return surprise_; }
   /// Of the tick before.
   const Eigen::VectorXd& innovation() const { return innovation_; }
   /// Mean square of the innovations so far over what was expected of them.
   double misfit() const {
     return blocks_ > 0 ? squares_ / static_cast<double>(blocks_) : 1.0;
   }
-  /// The largest of a block (Surprise::Excess).
+  /// The largest of a block (NormalizedInnovation::Excess).
   double excess() const { return excess_; }
 
  private:
@@ -132,7 +132,7 @@ class TwinPass {
   Information information_;
   Drift drift_;
   bool drifts_ = false;
-  Surprise surprise_;
+  NormalizedInnovation surprise_;
   Eigen::VectorXd theta0_, theta_, away_;
   WhitenedBlock block_;
 

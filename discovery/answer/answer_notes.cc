@@ -134,7 +134,7 @@ std::string NoteOfQuietAxis(const std::string& channel, const std::string& joint
          joint + "' cannot be judged; record a motion of it";
 }
 
-std::string NoteOfLateness(double delay, double step) {
+std::string NoteOfInputDelay(double delay, double step) {
   return "all inputs act " + FormatQuantity(delay, "s") +
          " later than in the simulation; it has physics steps of " +
          FormatQuantity(step, "s") + ", which are off by up to half of that";
@@ -166,7 +166,7 @@ void AddNotes(const AnswerData& data, const UnseenJudgement& judged,
   }
   if (!data.steps) {
     const double step = data.machine.plant().opt.timestep;
-    discovery.notes.push_back(NoteOfLateness(0.5 * step, step));
+    discovery.notes.push_back(NoteOfInputDelay(0.5 * step, step));
   }
   const VectorXd& noise = judged.answer.seen.noise.reading;
   NoteQuiet(data, noise, discovery.notes);

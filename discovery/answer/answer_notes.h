@@ -21,7 +21,7 @@ std::vector<std::string> NotesOfChecks(const mjModel& plant, const Measurements&
 /// @param rest  what it left out, listed
 std::string NoteOfBudget(const Budget& budget, const std::string& rest);
 std::string NoteOfQuietAxis(const std::string& channel, const std::string& joint);
-std::string NoteOfLateness(double delay, double step);
+std::string NoteOfInputDelay(double delay, double step);
 /// "; trajectory 'multi' would, by 9 standard deviations": which of the setup tells two causes
 /// apart.
 std::string NoteOfExperiment(const Machine& machine, const Cause& one,

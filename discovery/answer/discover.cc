@@ -65,8 +65,8 @@ class RunningTime {
   Clock::time_point begin_ = Clock::now();
 };
 
-std::vector<PlantNumber> DoubtedNumbers(const Machine& machine,
-                                        const DiscoverOptions& options) {
+std::vector<PlantNumber> UncertainParameters(const Machine& machine,
+                                             const DiscoverOptions& options) {
   if (!options.doubt) return {};
   std::vector<PlantNumber> numbers = NumbersOf(machine.plant());
   for (const std::string& text : options.known) {
@@ -96,7 +96,7 @@ ExplainOptions OptionsOfSearch(const Machine& machine, const DiscoverOptions& op
   ExplainOptions search;
   search.seconds = time.SecondsOfSearch();
   search.choice = options.choice;
-  search.numbers = DoubtedNumbers(machine, options);
+  search.numbers = UncertainParameters(machine, options);
   search.most_causes = static_cast<std::size_t>(std::max(0, options.most_causes));
   search.stop = options.stop;
   search.progress = [&time](const std::string& text) {
@@ -194,7 +194,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     time.Say("unexplained forces", 0.8);
     const ObservedMotion motion = MotionOfAnswer(data, judged);
     AddForces(data, judged, discovery);
-    if (is_left) AddSignature(data, judged, motion, discovery);
+    if (is_left) AddResidualDependence(data, judged, motion, discovery);
     if (options.figures) AddLawPlots(data, judged, motion, discovery);
   }
   if (options.figures) {
@@ -205,7 +205,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
                    options.seed, discovery);
     if (follows) AddPredictions(data, judged, discovery);
     AddLadderOf(data, judged, measurements, follows, discovery);
-    AddFaultLimits(data, judged, discovery);
+    AddMinimumDetectableFaults(data, judged, discovery);
   }
   NoteTime(time, options, explained, judged, discovery);
   return discovery;

@@ -76,8 +76,8 @@ double LimitBeside(const AnswerData& data, const Beside& beside,
 
 }  // namespace
 
-void AddFaultLimits(const AnswerData& data, const UnseenJudgement& judged,
-                    Discovery& discovery) {
+void AddMinimumDetectableFaults(const AnswerData& data, const UnseenJudgement& judged,
+                                Discovery& discovery) {
   const std::vector<FaultParameter> faults = FaultParameters(data.machine.plant());
   if (faults.empty()) return;
   std::vector<FaultLimit> limits(faults.size());

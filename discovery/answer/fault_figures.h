@@ -16,7 +16,7 @@
 namespace mjdiag {
 
 /// Of all fault parameters that the plant declares.
-void AddFaultLimits(const AnswerData& data, const UnseenJudgement& judged,
-                    Discovery& discovery);
+void AddMinimumDetectableFaults(const AnswerData& data, const UnseenJudgement& judged,
+                                Discovery& discovery);
 
 }  // namespace mjdiag

@@ -11,7 +11,7 @@
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/law.h"
-#include "mjdiag/discovery/signature/motion_variables.h"
+#include "mjdiag/discovery/residual_dependence/motion_variables.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr Index kPointsOfLaw = 3000;
-constexpr Index kLeastSamples = 400;  // FindSignature
+constexpr Index kLeastSamples = 400;  // FindResidualDependence
 
 const MissingForce* ForceAt(const std::vector<MissingForce>& forces,
                             const std::string& joint) {
@@ -121,8 +121,8 @@ void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
   }
 }
 
-void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
-                  const ObservedMotion& motion, Discovery& discovery) {
+void AddResidualDependence(const AnswerData& data, const UnseenJudgement& judged,
+                           const ObservedMotion& motion, Discovery& discovery) {
   const std::vector<MissingForce>& forces = discovery.forces_after;
   if (forces.empty() || forces.front().value.size() < kLeastSamples) return;
   const MissingForce& force =
@@ -142,8 +142,8 @@ void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
   const auto all = MotionVariables(data.machine, motion, joints, joint, still[joint],
                                    data.run.seen.records.size());
   const std::vector<Variable> variables(all.begin(), all.end());
-  discovery.unexplained = FindSignature(force.joint, force.value, force.unit,
-                                        std::max(force.sd, 1e-300), variables);
+  discovery.unexplained = FindResidualDependence(force.joint, force.value, force.unit,
+                                                 std::max(force.sd, 1e-300), variables);
   discovery.unexplained_site = discovery.unexplained->site;
 }
 

@@ -30,7 +30,7 @@ void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
                  const ObservedMotion& motion, Discovery& discovery);
 
 /// What the largest of the forces that are left depends on (signature.h). Behind AddForces.
-void AddSignature(const AnswerData& data, const UnseenJudgement& judged,
-                  const ObservedMotion& motion, Discovery& discovery);
+void AddResidualDependence(const AnswerData& data, const UnseenJudgement& judged,
+                           const ObservedMotion& motion, Discovery& discovery);
 
 }  // namespace mjdiag

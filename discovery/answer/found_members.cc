@@ -211,7 +211,7 @@ void AddMembers(const AnswerData& data, const UnseenJudgement& judged,
         found.numbers.push_back({other.name, rival.probability});
       }
     }
-    for (const Cause& twin : Twins(plant, found.cause)) {
+    for (const Cause& twin : EquivalentCauses(plant, found.cause)) {
       found.alternatives.insert(found.alternatives.begin(),
                                 {twin, found.probability, true});
     }

@@ -28,7 +28,7 @@ std::vector<Rival> RivalsOf(const Explained& explained, const UnseenJudgement& j
     if (move.added.size() != 1 || move.removed != std::vector{place}) continue;
     const Variation& one = move.added.front().variation;
     if (one.block == block) continue;
-    const TrialValues values = one.values(move.added.front().amplitudes);
+    const RegressorValues values = one.values(move.added.front().amplitudes);
     if (!values) continue;
     const double weight = WeightOf(move.score);
     const auto known = std::ranges::find(rivals, one.block, &Rival::block);

@@ -97,7 +97,7 @@ bool AddReplays(const Measurements& measurements, const Changes& changes, Index 
   const auto is_better = [&] {
     return discovery.gain_validation > 0.0 && discovery.gain_train > 0.0;
   };
-  if (!AnyFalls(measurements)) {
+  if (!AnyDivergesOpenLoop(measurements)) {
     try {
       add(false);
       if (changes == Changes{} || is_better()) return false;

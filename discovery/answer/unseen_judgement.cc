@@ -296,7 +296,7 @@ std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
       continue;
     }
     const Added& added = move.added.front();
-    if (const TrialValues values = added.variation.values(added.amplitudes)) {
+    if (const RegressorValues values = added.variation.values(added.amplitudes)) {
       add(added.variation.block, *values);
     }
   }

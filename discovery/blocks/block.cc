@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "mjdiag/discovery/blocks/candidate_trials.h"
+#include "mjdiag/discovery/blocks/candidate_regressors.h"
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
@@ -24,7 +24,7 @@ SiteMotion At(const Machine& machine, const ObservedMotion& motion, const Site& 
 }
 
 /// The columns of a trial, each amplitude its own, or all of one.
-std::vector<Column> ColumnsOf(const Trial& trial, Index sensor) {
+std::vector<Column> ColumnsOf(const CandidateRegressor& trial, Index sensor) {
   const bool of_reading = trial.entry.size() == 0;
   std::vector<Column> columns;
   for (Index a = 0; a < trial.signals.cols(); ++a) {
@@ -53,9 +53,9 @@ double Rms(const VectorXd& signal) {
 /// How large amplitudes are expected to be: so large that the size of the law is what it
 /// usually is; where any is as good, as large as what drives the joint or as the reading's
 /// own span.
-VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& scales,
-                  Index amplitudes, const std::vector<Column>& columns,
-                  const VectorXd& span) {
+VectorXd SpreadOf(const Candidate& candidate, const CandidateRegressor& trial,
+                  const Scales& scales, Index amplitudes,
+                  const std::vector<Column>& columns, const VectorXd& span) {
   VectorXd sd(amplitudes);
   const auto sized = std::ranges::find_if(candidate.parameters, [](const auto& one) {
     return one.role == Role::kAmplitude || one.role == Role::kFactor ||
@@ -77,7 +77,7 @@ VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& 
     const auto place = sized - candidate.parameters.begin();
     if (!(sized->spread > 0.0) || !std::isfinite(sized->spread)) continue;
     const double small = 1e-3 * sd[a];
-    TrialValues values = trial.values(small * VectorXd::Unit(amplitudes, a));
+    RegressorValues values = trial.values(small * VectorXd::Unit(amplitudes, a));
     if (!values) values = trial.values(-small * VectorXd::Unit(amplitudes, a));
     if (!values) continue;
     const double rate = std::abs((*values)[place] - sized->nothing) / small;
@@ -86,11 +86,12 @@ VectorXd SpreadOf(const Candidate& candidate, const Trial& trial, const Scales& 
   return sd;
 }
 
-std::vector<Trial> TrialsOf(const Machine& machine, const Candidate& candidate,
-                            const ObservedMotion& motion) {
-  if (!IsCurve(candidate)) return MakeTrials(machine, candidate, motion);
+std::vector<CandidateRegressor> RegressorsOf(const Machine& machine,
+                                             const Candidate& candidate,
+                                             const ObservedMotion& motion) {
+  if (!IsCurve(candidate)) return MakeCandidateRegressors(machine, candidate, motion);
   const Site site{candidate.site, candidate.joint, candidate.channel};
-  return {TrialOfCurve(At(machine, motion, site), candidate)};
+  return {RegressorOfCurve(At(machine, motion, site), candidate)};
 }
 
 void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t place,
@@ -98,7 +99,8 @@ void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t p
   const BlockScales scales = ScalesOf(machine, along, block);
   std::size_t shape = 0;
   Index count = 0;
-  for (const Trial& trial : TrialsOf(machine, *block.candidate, along.motion)) {
+  for (const CandidateRegressor& trial :
+       RegressorsOf(machine, *block.candidate, along.motion)) {
     Variation variation = VariationOf(place, block, scales, trial, shape++);
     if (variation.columns.empty()) continue;
     ++count;
@@ -121,7 +123,7 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
   block.price = PriceOf(block, 1);
   if (variation.columns.front().forces.empty()) return;
   variation.sd = VectorXd::Constant(1, kWide * block.doubt);
-  variation.values = [](const Amplitudes& a) -> TrialValues {
+  variation.values = [](const Amplitudes& a) -> RegressorValues {
     return VectorXd(a.array().exp());
   };
   take(std::move(variation));
@@ -236,10 +238,12 @@ bool Block::IsSimplest() const {
          candidate->effect->kind() != Kind::kLoadFriction;
 }
 
-bool IsAllowed(const Block& block, const TrialValues& values) {
+bool IsAllowed(const Block& block, const RegressorValues& values) {
   if (!values || !values->allFinite()) return false;
   if (!block.candidate) {
-    return std::abs(std::log((*values)[0])) <= kFarthest * block.doubt;
+    // At its end it would be further off still, if it might.
+    constexpr double kEnd = 1.0 - 1e-6;
+    return std::abs(std::log((*values)[0])) < kEnd * kFarthest * block.doubt;
   }
   for (Index i = 0; i < values->size(); ++i) {
     const FitParameter& parameter =
@@ -277,10 +281,11 @@ double PriceOf(const Block& block, Index shapes) {
          2.0 * std::log(std::max(1.0, static_cast<double>(shapes)));
 }
 
-std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
-                             const Block& block) {
+std::optional<ParameterScan> ParameterScanOf(const Machine& machine,
+                                             const BlockMotion& along,
+                                             const Block& block) {
   if (!block.candidate) return std::nullopt;
-  return MakeSweep(machine, *block.candidate, along.motion, along.duration);
+  return MakeParameterScan(machine, *block.candidate, along.motion, along.duration);
 }
 
 BlockScales ScalesOf(const Machine& machine, const BlockMotion& along,
@@ -293,7 +298,7 @@ BlockScales ScalesOf(const Machine& machine, const BlockMotion& along,
 }
 
 Variation VariationOf(std::size_t place, const Block& block, const BlockScales& scales,
-                      const Trial& trial, std::size_t shape) {
+                      const CandidateRegressor& trial, std::size_t shape) {
   const Candidate& candidate = *block.candidate;
   Variation variation{place, shape,       ColumnsOf(trial, candidate.channel),
                       {},    trial.least, trial.values};

@@ -17,9 +17,9 @@
 
 #include "mjdiag/discovery/blocks/column.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
 #include "mjdiag/plugin/effects/scales.h"
-#include "mjdiag/plugin/effects/trial.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/replay/tracking.h"
@@ -33,8 +33,8 @@ struct Variation {
   std::vector<Column> columns;
   Eigen::VectorXd sd;     ///< of every amplitude, as known beforehand
   Eigen::VectorXd least;  ///< of every amplitude; empty: anything
-  /// Of the law's parameters, or of the number's factor; see Trial::values.
-  std::function<TrialValues(const Amplitudes&)> values;
+  /// Of the law's parameters, or of the number's factor; see CandidateRegressor::values.
+  std::function<RegressorValues(const Amplitudes&)> values;
 };
 
 struct Block {
@@ -69,7 +69,7 @@ struct BlockMotion {
 };
 
 /// Whether values are such as its law, or the number, can have.
-bool IsAllowed(const Block& block, const TrialValues& values);
+bool IsAllowed(const Block& block, const RegressorValues& values);
 
 /// How probable it is that a model lacks an effect of odds 1 at a site where the machine
 /// has it: models are made by people who know their machine.
@@ -100,8 +100,9 @@ std::vector<Block> BlocksOf(const Machine& machine,
 std::vector<PlantNumber> NumbersOf(const mjModel& plant);
 
 /// The sweep of a block that repeats itself over a period or a frequency, if it does.
-std::optional<Sweep> SweepOf(const Machine& machine, const BlockMotion& along,
-                             const Block& block);
+std::optional<ParameterScan> ParameterScanOf(const Machine& machine,
+                                             const BlockMotion& along,
+                                             const Block& block);
 /// How large what acts at the site of a block is.
 struct BlockScales {
   Scales site;
@@ -111,7 +112,7 @@ BlockScales ScalesOf(const Machine& machine, const BlockMotion& along,
                      const Block& block);
 /// One shape of a block; of no columns if it does nothing.
 Variation VariationOf(std::size_t place, const Block& block, const BlockScales& scales,
-                      const Trial& trial, std::size_t shape);
+                      const CandidateRegressor& trial, std::size_t shape);
 /// What it costs that a block is what is missing, in as many shapes.
 double PriceOf(const Block& block, Eigen::Index shapes);
 

@@ -118,7 +118,7 @@ bool IsCurve(const Candidate& candidate) {
   return candidate.effect.get() == &ForceCurve();
 }
 
-Trial TrialOfCurve(const SiteMotion& at, const Candidate& candidate) {
+CandidateRegressor RegressorOfCurve(const SiteMotion& at, const Candidate& candidate) {
   const CurveAxis axis = CurveAxisOf(candidate.chosen);
   const VectorXd x = CourseOf(candidate, at.motion);
   MatrixXd design = MatrixXd::Zero(x.size(), axis.knots);
@@ -129,7 +129,7 @@ Trial TrialOfCurve(const SiteMotion& at, const Candidate& candidate) {
     }
   }
   return {std::move(design), at.JointEntry(axis.knots),
-          [](const Amplitudes& a) -> TrialValues { return a; }};
+          [](const Amplitudes& a) -> RegressorValues { return a; }};
 }
 
 std::string CurveVariableName(const mjModel& plant, const Candidate& candidate) {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
-#include "mjdiag/plugin/effects/trial.h"
 #include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
@@ -22,7 +22,7 @@ std::vector<Candidate> CurveCandidates(const Machine& machine,
 bool IsCurve(const Candidate& candidate);
 
 /// The force of every knot along the motion.
-Trial TrialOfCurve(const SiteMotion& at, const Candidate& candidate);
+CandidateRegressor RegressorOfCurve(const SiteMotion& at, const Candidate& candidate);
 
 /// What a curve depends on: "load position".
 std::string CurveVariableName(const mjModel& plant, const Candidate& candidate);

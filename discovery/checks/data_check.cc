@@ -11,7 +11,7 @@
 #include "mjdiag/discovery/checks/clock_drift.h"
 #include "mjdiag/discovery/checks/nominal_run.h"
 #include "mjdiag/discovery/checks/unit_check.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/replay/tracking.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/noise_level.h"

@@ -12,11 +12,11 @@
 
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/fit/converged_model.h"
 #include "mjdiag/discovery/fit/exact_columns.h"
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/fit/moved_model.h"
 #include "mjdiag/discovery/fit/pruned_fit.h"
-#include "mjdiag/discovery/fit/settled_model.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
@@ -42,7 +42,7 @@ bool SameBlocks(const Model& a, const Model& b) {
 
 }  // namespace
 
-SettledBeside ModelSearch::Beside(bool steps) const {
+ConvergedBeside ModelSearch::Beside(bool steps) const {
   return {[this, steps](const Model& model) { return With(model, steps); },
           run_,
           reading_sd_,
@@ -71,14 +71,14 @@ void ModelSearch::Adopt(Proposal proposal) {
 }
 
 /// The model as it is behind the noise that suits it by now; none if nothing is gained.
-std::optional<SettledModel> ModelSearch::Resettled(const Whitenings& whitenings,
-                                                   std::size_t noise,
-                                                   const ModelFit& as_it_is) const {
+std::optional<ConvergedModel> ModelSearch::Resettled(const Whitenings& whitenings,
+                                                     std::size_t noise,
+                                                     const ModelFit& as_it_is) const {
   const KeptGains& own = whitenings.behind.front().gains();
   const double before = own.left.squaredNorm() + own.log_determinant +
                         found_.fit.prior + found_.fit.occam;
   if (as_it_is.score() > before - kLeastGain) return std::nullopt;
-  SettledModel settled =
+  ConvergedModel settled =
       Settle(Beside(steps_), as_it_is, NoisesBeside(whitenings.noises[noise]),
              found_.score, before - as_it_is.score());
   if (settled.score() > found_.score - kLeastGain) return std::nullopt;
@@ -105,10 +105,10 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whi
       MovesOf(With(found_.fit.model), run_, found_.path, whitenings.maps(),
               found_.blocks, exact.terms, exact.other_steps,
               {.at_forces = false, .at_every_shape = at_every_shape_});
-  if (moves.other_steps && ChooseSteps()) return AsItIs();
+  if (moves.other_steps && ChooseSteps()) return Incumbent();
   KeepRivals(moves);
   AsFitted as_it_is;
-  const ModelFit& own = AsItIsBehind({moves.noise, false}, whitenings, as_it_is);
+  const ModelFit& own = IncumbentBehind({moves.noise, false}, whitenings, as_it_is);
   if (auto settled = Resettled(whitenings, moves.noise, own)) {
     return Proposal{std::move(*settled), steps_, found_.input_width, run_};
   }
@@ -126,9 +126,9 @@ ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
                   found_.blocks, model, iterations);
 }
 
-const ModelFit& ModelSearch::AsItIsBehind(const Judged& judged,
-                                          const Whitenings& whitenings,
-                                          AsFitted& known) const {
+const ModelFit& ModelSearch::IncumbentBehind(const Judged& judged,
+                                             const Whitenings& whitenings,
+                                             AsFitted& known) const {
   const auto found = known.find(judged);
   if (found != known.end()) return found->second;
   ModelFit fit = Fitted(found_.fit.model, whitenings, judged, kIterations);
@@ -156,7 +156,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
       if (iterations > 0) {
         fit = Pruned(found_.blocks, std::move(fit),
                      [&](const Model& other) { return fitted(other, judged); });
-        gain = AsItIsBehind(judged, whitenings, as_it_is).score() - fit.score();
+        gain = IncumbentBehind(judged, whitenings, as_it_is).score() - fit.score();
       }
       const auto is_this = [&](const Model& other) {
         return SameBlocks(other, fit.model);
@@ -220,7 +220,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
     tried.pop_back();
   }
-  std::vector<std::optional<SettledModel>> settled(tried.size());
+  std::vector<std::optional<ConvergedModel>> settled(tried.size());
   for (const bool other_steps : {false, true}) {
     std::vector<ModelFit> fits;
     std::vector<std::size_t> places;
@@ -243,8 +243,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (!settled[i]) continue;
     Say("  filtered: " + Difference(settled[i]->score()) + "  " +
         Describe(found_.blocks, settled[i]->fit.model));
-    const Model& model = settled[i]->fit.model;
-    if (!IsResolved(found_.blocks, model) || !MayHave(model)) continue;
+    if (!IsOne(settled[i]->fit.model)) continue;
     const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
     if (settled[i]->score() < least) best = i;
   }
@@ -259,6 +258,8 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Rate(settled[i]->fit.model, score);
     Decide(settled[i]->fit.model, score,
            best == i ? "taken"
+           : !IsOne(settled[i]->fit.model)
+               ? "its values are at the end of what is known, or two of it are one"
            : score < -kLeastGain
                ? "another one is better"
                : "behind the noise that suits it, it is worth less than it costs");
@@ -297,7 +298,7 @@ bool ModelSearch::ChooseSteps() {
   Say((steps_ ? "with physics steps: " : "without physics steps: ") +
       std::to_string(-gain));
   // Values made up for the steps as far as they could.
-  SettledModel settled = SettleNear(Beside(steps_), found_.fit, std::move(path));
+  ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, std::move(path));
   found_.score = settled.score();
   found_.fit = std::move(settled.fit);
   found_.path = std::move(settled.path);
@@ -309,7 +310,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
   std::optional<InputChoice> choice = ChooseInputs(With(found_.fit.model), as_measured_,
                                                    reading_sd_, found_.path, width);
   if (!choice) return std::nullopt;
-  SettledModel settled{found_.fit, std::move(choice->path)};
+  ConvergedModel settled{found_.fit, std::move(choice->path)};
   Say("inputs over " + std::to_string(choice->width) + " ticks: " +
       Difference(settled.score() + PriceOfWidth(choice->width) - PriceOfWidth(width)));
   return Proposal{std::move(settled), steps_, choice->width,
@@ -407,9 +408,9 @@ void ModelSearch::GoOnWithAll() {
     steps_ = true;
   }
   // What was found by pieces is where the search begins, whatever it is worth by all.
-  found_.score = SettledModel{found_.fit, found_.path}.score();
+  found_.score = ConvergedModel{found_.fit, found_.path}.score();
   if (IsOver()) return;
-  SettledModel settled = SettleNear(Beside(steps_), found_.fit, found_.path);
+  ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, found_.path);
   found_.score = settled.score();
   found_.fit = std::move(settled.fit);
   found_.path = std::move(settled.path);

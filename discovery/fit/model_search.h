@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "mjdiag/discovery/fit/converged_model.h"
 #include "mjdiag/discovery/fit/exact_columns.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/moved_model.h"
-#include "mjdiag/discovery/fit/settled_model.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/signals/error.h"
 
@@ -40,12 +40,12 @@ class ModelSearch {
 
   /// What models are settled beside.
   /// @param steps  with the physics steps of the model
-  SettledBeside Beside(bool steps) const;
+  ConvergedBeside Beside(bool steps) const;
   /// Those to begin with: one that a move was judged behind, and that of the model so far.
   std::vector<FilterNoise> NoisesBeside(const FilterNoise& near) const;
   /// What the search may go on from.
   struct Proposal {
-    SettledModel settled;
+    ConvergedModel settled;
     bool steps = true;
     double input_width = 0.0;  ///< [ticks]
     MeasuredRun run;
@@ -54,8 +54,9 @@ class ModelSearch {
   void KeepRivals(const Moves& moves);
   /// What a rival is worth once it has been fitted. @param score  less that of the model
   void Rate(const Model& rival, double score);
-  std::optional<SettledModel> Resettled(const Whitenings& whitenings, std::size_t noise,
-                                        const ModelFit& as_it_is) const;
+  std::optional<ConvergedModel> Resettled(const Whitenings& whitenings,
+                                          std::size_t noise,
+                                          const ModelFit& as_it_is) const;
   std::string Difference(double score) const {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);
@@ -67,8 +68,8 @@ class ModelSearch {
                   const Judged& judged, int iterations) const;
   /// The model as it is, fitted behind gains that moves are compared behind.
   using AsFitted = std::map<Judged, ModelFit>;
-  const ModelFit& AsItIsBehind(const Judged& judged, const Whitenings& whitenings,
-                               AsFitted& known) const;
+  const ModelFit& IncumbentBehind(const Judged& judged, const Whitenings& whitenings,
+                                  AsFitted& known) const;
   /// The best of some moves, fitted; none if none pays.
   /// @param iterations     of a fit; 0: at the values of the regression
   /// @param beside_itself  where there are none: beside the model as it is, behind its noise
@@ -82,7 +83,7 @@ class ModelSearch {
                                    const ExactColumns& exact);
   /// How much of its inputs did the machine not feel?
   std::optional<Proposal> SmoothedInputs() const;
-  Proposal AsItIs() const {
+  Proposal Incumbent() const {
     return {{found_.fit, found_.path}, steps_, found_.input_width, run_};
   }
   /// Takes what is better; false if nothing pays.
@@ -107,6 +108,9 @@ class ModelSearch {
     return std::ranges::all_of(model, [&](const Member& member) {
       return IsAllowed(found_.blocks[member.block], member.values);
     });
+  }
+  bool IsOne(const Model& model) const {
+    return MayHave(model) && IsResolved(found_.blocks, model);
   }
   bool MayBe(const ModelMove& move) const {
     const Model after = After(move, found_.fit.model);

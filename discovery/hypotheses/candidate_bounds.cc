@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {

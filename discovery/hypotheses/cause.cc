@@ -50,7 +50,7 @@ bool Indistinguishable(const Cause& a, const Cause& b) {
   return SameKind(a, b) || IsTwin(a, b) || IsTwin(b, a);
 }
 
-std::vector<Cause> Twins(const mjModel& model, const Cause& cause) {
+std::vector<Cause> EquivalentCauses(const mjModel& model, const Cause& cause) {
   std::vector<Cause> twins;
   for (Cause& fault : FaultEffects(model)) {
     const Effect* twin = fault.effect->Twin();

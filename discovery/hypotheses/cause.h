@@ -28,6 +28,6 @@ bool Indistinguishable(const Cause& a, const Cause& b);
 
 /// The causes that are indistinguishable from this one: of a fault parameter of one
 /// element the effect, of the effect the fault parameters.
-std::vector<Cause> Twins(const mjModel& model, const Cause& cause);
+std::vector<Cause> EquivalentCauses(const mjModel& model, const Cause& cause);
 
 }  // namespace mjdiag

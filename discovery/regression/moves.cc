@@ -241,7 +241,7 @@ double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
                            const VectorXd& amplitudes) const {
   double sum = 0.0;
   for (const auto& [one, a] : AddedOf(change, amplitudes)) {
-    const TrialValues values = one.values(a);
+    const RegressorValues values = one.values(a);
     if (values) sum += SizePrice(blocks_[one.block], *values);
   }
   for (std::size_t i = 0; i < set.known.size(); ++i) {

@@ -129,9 +129,9 @@ std::pair<double, double> BoundsOf(const Block& block) {
 }
 
 /// Where the waves of a sweep act, with an amplitude of 1.
-Column WavesOf(const Sweep& sweep, const Block& block) {
+Column WavesOf(const ParameterScan& sweep, const Block& block) {
   Column column;
-  const Trial trial = sweep.make(sweep.value(0));
+  const CandidateRegressor trial = sweep.make(sweep.value(0));
   const VectorXd one = VectorXd::Ones(trial.signals.rows());
   if (trial.entry.size() == 0) {
     column.readings.emplace_back(block.candidate->channel, one);
@@ -177,7 +177,7 @@ std::vector<Variation> PromisingVariations(
     std::vector<BestOfBlock>& best = promises[place];
     Block& block = blocks[place];
     if (!may_come(block)) return;
-    const std::optional<Sweep> sweep = SweepOf(machine, along, block);
+    const std::optional<ParameterScan> sweep = ParameterScanOf(machine, along, block);
     if (!sweep) {
       ForEachVariation(machine, along, place, block, [&](Variation&& one) {
         const MatrixXd of_one = products.Of(one);

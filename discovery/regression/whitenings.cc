@@ -18,7 +18,7 @@ std::vector<FilterNoise> NoisesFrom(const FilterNoise& found) {
 }
 
 Whitenings WhiteningsOf(const FilterPath& path) {
-  const Eigen::MatrixXd inflation = InflationAlong(path);
+  const Eigen::MatrixXd inflation = OverdispersionAlong(path);
   Whitenings all{NoisesFrom(path.noise), {}};
   std::vector<std::optional<KeptGains>> gains(all.noises.size());
   ParallelFor(static_cast<int>(gains.size()), [&](int number) {

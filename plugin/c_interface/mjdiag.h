@@ -89,7 +89,7 @@ MJDIAG_API const char* mjdiag_last_error(void);
 
 /* Makes the model the machine of the setup: gravity, static friction, the effects that
  * the plant carries, and room in mjData.userdata for the mark of an instance. Call
- * once, before mj_makeData. */
+ * once, before mj_makeData; a second call is refused. */
 MJDIAG_API int mjdiag_prepare(mjModel* model, const char* setup);
 
 /* Sets a fault parameter of the plant (1: healthy). Call before stepping. */

@@ -132,7 +132,8 @@ double Effect::Least(const mjModel&, Index, std::size_t parameter) const {
   return parameters()[parameter].minimum;
 }
 
-std::optional<Sweep> Effect::MakeSweep(const SiteMotion&, double) const {
+std::optional<ParameterScan> Effect::MakeParameterScan(const SiteMotion&,
+                                                       double) const {
   return std::nullopt;
 }
 

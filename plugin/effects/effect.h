@@ -20,12 +20,12 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/active_effect.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/draw.h"
 #include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/effects/role.h"
 #include "mjdiag/plugin/effects/site.h"
-#include "mjdiag/plugin/effects/trial.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/setup/setup.h"
 
@@ -141,10 +141,13 @@ class Effect {
   /// put in at a joint (nq index).
   virtual double Least(const mjModel& plant, Eigen::Index joint,
                        std::size_t parameter) const;
-  /// Trials on a small grid along a motion; none of an effect with a sweep.
-  virtual std::vector<Trial> Trials(const SiteMotion&) const { return {}; }
+  /// CandidateRegressors on a small grid along a motion; none of an effect with a sweep.
+  virtual std::vector<CandidateRegressor> CandidateRegressors(const SiteMotion&) const {
+    return {};
+  }
   /// @param duration  of what is fitted [s], for the resolution of frequencies
-  virtual std::optional<Sweep> MakeSweep(const SiteMotion&, double /*duration*/) const;
+  virtual std::optional<ParameterScan> MakeParameterScan(const SiteMotion&,
+                                                         double /*duration*/) const;
 
   // How likely it is.
 

@@ -58,7 +58,8 @@ class FaultParameterEffect final : public Effect {
 
   bool IsFault() const override { return true; }
   std::vector<Site> CandidateSites(const SiteMap& map) const override;
-  std::vector<Trial> Trials(const SiteMotion& at) const override;
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override;
   const Effect* Twin() const override;
   EffectValues ToTwin(const mjModel& plant, const EffectValues& values) const override;
   std::optional<EffectValues> FromTwin(const mjModel& plant,
@@ -77,7 +78,7 @@ class FaultParameterEffect final : public Effect {
   }
 
  private:
-  Trial TrialOfNumbers(const SiteMotion& at) const;
+  CandidateRegressor RegressorOfNumbers(const SiteMotion& at) const;
   double Damping(const mjModel& plant) const {
     return plant.dof_damping[plant.jnt_dofadr[declared_.elements.front()]];
   }
@@ -112,7 +113,8 @@ std::vector<Site> FaultParameterEffect::CandidateSites(const SiteMap& map) const
 }
 
 /// Along the motion, whatever the numbers do.
-Trial FaultParameterEffect::TrialOfNumbers(const SiteMotion& at) const {
+CandidateRegressor FaultParameterEffect::RegressorOfNumbers(
+    const SiteMotion& at) const {
   std::vector<int> actuators(static_cast<std::size_t>(at.motion.inputs.rows()), -1);
   if (at.site.channel >= 0) {
     actuators[static_cast<std::size_t>(at.site.channel)] = declared_.elements.front();
@@ -128,22 +130,23 @@ Trial FaultParameterEffect::TrialOfNumbers(const SiteMotion& at) const {
     if (!force.col(dof).isZero(0.0)) pushed.push_back(dof);
   }
   if (pushed.empty()) pushed.push_back(0);
-  return LinearTrial(force(Eigen::all, pushed), all(Eigen::all, pushed), 1.0, true);
+  return LinearRegressor(force(Eigen::all, pushed), all(Eigen::all, pushed), 1.0, true);
 }
 
-std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
+std::vector<CandidateRegressor> FaultParameterEffect::CandidateRegressors(
+    const SiteMotion& at) const {
   if (declared_.kind == PlantNumberKind::kGear) {
-    return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
+    return {LinearRegressor(at.u(), at.MotorEntry(), 1.0, true)};
   }
-  const auto as_one = [](Trial trial) {
+  const auto as_one = [](CandidateRegressor trial) {
     // One amplitude, whatever the number of joints.
     trial.summed = true;
     trial.least.conservativeResize(1);
-    return std::vector<Trial>{std::move(trial)};
+    return std::vector<CandidateRegressor>{std::move(trial)};
   };
   if (declared_.kind != PlantNumberKind::kDamping &&
       declared_.kind != PlantNumberKind::kStiffness) {
-    return as_one(TrialOfNumbers(at));
+    return as_one(RegressorOfNumbers(at));
   }
   const auto joints = static_cast<Index>(declared_.elements.size());
   Eigen::MatrixXd signals(at.motion.samples(), joints);
@@ -161,7 +164,7 @@ std::vector<Trial> FaultParameterEffect::Trials(const SiteMotion& at) const {
                        (at.motion.position.row(dof).array() - rest).matrix();
     }
   }
-  return as_one(LinearTrial(std::move(signals), std::move(entry), 1.0, true));
+  return as_one(LinearRegressor(std::move(signals), std::move(entry), 1.0, true));
 }
 
 const Effect* FaultParameterEffect::Twin() const {

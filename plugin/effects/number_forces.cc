@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/scale_number.h"
 #include "mjdiag/plugin/plant/tendon_moment.h"
@@ -210,8 +210,8 @@ MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators,
   return force;
 }
 
-MatrixXd LatenessForce(const mjModel& plant, const MatrixXd& Gamma,
-                       const ObservedMotion& motion) {
+MatrixXd DelayForce(const mjModel& plant, const MatrixXd& Gamma,
+                    const ObservedMotion& motion) {
   MatrixXd change = MatrixXd::Zero(motion.inputs.rows(), motion.samples());
   const Index n = motion.samples();
   change.rightCols(n - 1) =

@@ -36,7 +36,7 @@ Eigen::MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators
 /// The same of all inputs and dampers a second later: - Gamma du/dt, of inputs that are
 /// held, and D q''.
 /// @param Gamma  nv x inputs
-Eigen::MatrixXd LatenessForce(const mjModel& plant, const Eigen::MatrixXd& Gamma,
-                              const ObservedMotion& motion);
+Eigen::MatrixXd DelayForce(const mjModel& plant, const Eigen::MatrixXd& Gamma,
+                           const ObservedMotion& motion);
 
 }  // namespace mjdiag

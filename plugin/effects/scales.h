@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 
 namespace mjdiag {
 

@@ -5,19 +5,20 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
-Trial WaveTrial(const VectorXd& entry, const VectorXd& angle, double value) {
-  Trial trial;
+CandidateRegressor WaveRegressor(const VectorXd& entry, const VectorXd& angle,
+                                 double value) {
+  CandidateRegressor trial;
   trial.signals.resize(angle.size(), 2);
   trial.signals << angle.array().sin(), angle.array().cos();
   if (entry.size() > 0) trial.entry = entry.replicate(1, 2);
-  trial.values = [value](const Amplitudes& a) -> TrialValues {
+  trial.values = [value](const Amplitudes& a) -> RegressorValues {
     const auto [amplitude, phase] = AmplitudeAndPhase(a[0], a[1]);
     return ValuesOf({amplitude, value, phase});
   };
@@ -46,9 +47,10 @@ Index FinestOf(const VectorXd& x) {
 
 }  // namespace
 
-Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step) {
+ParameterScan PeriodScan(const VectorXd& entry, const VectorXd& x, int finest,
+                         int step) {
   const double range = Range(x);
-  Sweep sweep;
+  ParameterScan sweep;
   for (Index m = kCoarsest; m <= finest; m += step) {
     sweep.values.push_back(4.0 * range / static_cast<double>(m));
   }
@@ -59,17 +61,17 @@ Sweep PeriodSweep(const VectorXd& entry, const VectorXd& x, int finest, int step
   sweep.angle = kCoarsest * kTurn / (4.0 * range) * x;
   sweep.increment = step * kTurn / (4.0 * range) * x;
   sweep.make = [entry, x](double period) {
-    return WaveTrial(entry, kTurn / period * x, period);
+    return WaveRegressor(entry, kTurn / period * x, period);
   };
   return sweep;
 }
 
-Sweep FrequencySweep(const VectorXd& entry, const ObservedMotion& motion,
-                     double duration) {
+ParameterScan FrequencyScan(const VectorXd& entry, const ObservedMotion& motion,
+                            double duration) {
   // A quarter of the sampling rate: what acts between samples is the same but for a tenth.
   const double highest = std::min(0.25 / motion.sample_time, 250.0);
   const double spacing = 0.7 / duration;
-  Sweep sweep;
+  ParameterScan sweep;
   for (double f = 2.0 * spacing; f < highest; f += spacing) sweep.values.push_back(f);
   sweep.count = std::ssize(sweep.values);
   sweep.value = [spacing](Index i) { return static_cast<double>(2 + i) * spacing; };
@@ -77,7 +79,7 @@ Sweep FrequencySweep(const VectorXd& entry, const ObservedMotion& motion,
   sweep.angle = kTurn * 2.0 * spacing * time;
   sweep.increment = kTurn * spacing * time;
   sweep.make = [entry, time](double frequency) {
-    return WaveTrial(entry, kTurn * frequency * time, frequency);
+    return WaveRegressor(entry, kTurn * frequency * time, frequency);
   };
   return sweep;
 }

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 
 namespace mjdiag {
 
@@ -14,18 +14,18 @@ inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< [rad]
 
 /// Sine and cosine of an angle, with `value` the period or frequency.
 /// @param entry  of the force, nq; empty: an error of a reading
-Trial WaveTrial(const Eigen::VectorXd& entry, const Eigen::VectorXd& angle,
-                double value);
+CandidateRegressor WaveRegressor(const Eigen::VectorXd& entry,
+                                 const Eigen::VectorXd& angle, double value);
 
 /// Periods of a wave over x, from one period over the stroke on.
 /// @param finest  quarters of a period over the stroke, at most
 /// @param step    quarters from one to the next: 1 or 2 miss no maximum
-Sweep PeriodSweep(const Eigen::VectorXd& entry, const Eigen::VectorXd& x, int finest,
-                  int step);
+ParameterScan PeriodScan(const Eigen::VectorXd& entry, const Eigen::VectorXd& x,
+                         int finest, int step);
 
 /// Frequencies of a wave over time, as close as a record of `duration` [s] tells apart.
-Sweep FrequencySweep(const Eigen::VectorXd& entry, const ObservedMotion& motion,
-                     double duration);
+ParameterScan FrequencyScan(const Eigen::VectorXd& entry, const ObservedMotion& motion,
+                            double duration);
 
 /// Phase and amplitude >= 0 of a sin(x) + b cos(x).
 std::pair<double, double> AmplitudeAndPhase(double a, double b);

@@ -213,7 +213,19 @@ Machine Machine::WithSensorNoise(const Eigen::VectorXd& sd) const {
   return WithSetup(WithNoiseOf(std::move(setup), effects()));
 }
 
+namespace {
+
+/// A bit of opt.disableflags that is none of MuJoCo's, and which copies of a model keep.
+constexpr int kPrepared = 1 << 30;
+
+}  // namespace
+
 void PreparePlant(const Physics& physics, mjModel& model) {
+  if ((model.opt.disableflags & kPrepared) != 0) {
+    throw InputError("model", "is prepared already",
+                     "one as it was loaded: friction that it carries would come twice");
+  }
+  model.opt.disableflags |= kPrepared;
   if (!physics.gravity) model.opt.disableflags |= mjDSBL_GRAVITY;
   if (!physics.static_friction) {
     // The plant's own; friction that an effect adds stays.

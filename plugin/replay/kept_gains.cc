@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd InflationAlong(const FilterPath& path) {
+MatrixXd OverdispersionAlong(const FilterPath& path) {
   MatrixXd inflation = MatrixXd::Ones(path.sensors(), path.samples());
   for (std::size_t record = 0; record < path.first.size(); ++record) {
     LinearPass pass(path, path.noise);
@@ -29,7 +29,7 @@ MatrixXd InflationAlong(const FilterPath& path) {
 }
 
 KeptGains KeepGains(const FilterPath& path) {
-  return KeepGains(path, path.noise, InflationAlong(path));
+  return KeepGains(path, path.noise, OverdispersionAlong(path));
 }
 
 KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,

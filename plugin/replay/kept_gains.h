@@ -13,7 +13,7 @@
 namespace mjdiag {
 
 /// How many times its variance every reading has behind the path's own noise, ny x samples.
-Eigen::MatrixXd InflationAlong(const FilterPath& path);
+Eigen::MatrixXd OverdispersionAlong(const FilterPath& path);
 
 struct KeptGains {
   struct Reading {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/motor_force.h"
 #include "mjdiag/plugin/plant/tangent.h"
@@ -73,7 +73,7 @@ class RecordFollower {
   }
 
   /// Into its columns of the track.
-  void Follow(const Watch& watch, Track& track);
+  void Follow(const Watch& watch, InnovationSequence& track);
 
  private:
   const MeasuredRun& record_;
@@ -84,7 +84,7 @@ class RecordFollower {
   RecordedInputs control_;
 };
 
-void RecordFollower::Follow(const Watch& watch, Track& track) {
+void RecordFollower::Follow(const Watch& watch, InnovationSequence& track) {
   const Index first = first_;
   mjModel& model = *plant_.model;
   mjData& data = *plant_.data;
@@ -128,10 +128,11 @@ void RecordFollower::Follow(const Watch& watch, Track& track) {
   }
 }
 
-Track Follow(const Machine& nominal, const Changes& changes, const MeasuredRun& run,
-             const Observer& observer, bool states, const Watch& watch) {
+InnovationSequence Follow(const Machine& nominal, const Changes& changes,
+                          const MeasuredRun& run, const Observer& observer, bool states,
+                          const Watch& watch) {
   const Machine machine = nominal.With(changes);
-  Track track;
+  InnovationSequence track;
   track.innovations.resize(run.outputs.rows(), run.samples());
   if (states) {
     track.position.resize(machine.plant().nv, run.samples());
@@ -325,13 +326,15 @@ MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured) {
   return run;
 }
 
-Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
-                const Observer& observer, bool states) {
+InnovationSequence RunPredictor(const Machine& machine, const Changes& changes,
+                                const MeasuredRun& run, const Observer& observer,
+                                bool states) {
   return Follow(machine, changes, run, observer, states, {});
 }
 
-Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
-                const Observer& observer, ErrorDynamics& dynamics) {
+InnovationSequence RunPredictor(const Machine& machine, const Changes& changes,
+                                const MeasuredRun& run, const Observer& observer,
+                                ErrorDynamics& dynamics) {
   TangentRecorder recorder(machine.plant(), machine.linear());
   const Watch watch{
       [&] { dynamics.Begin(); },
@@ -365,7 +368,7 @@ Eigen::MatrixXd InputsThatAct(const Machine& machine, const MeasuredRun& run,
 }
 
 ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
-                             const Track& track) {
+                             const InnovationSequence& track) {
   ObservedMotion motion;
   motion.sample_time = run.sample_time;
   const Eigen::Map<const VectorXd> rest(machine.plant().qpos0, machine.plant().nv);

@@ -91,7 +91,7 @@ MeasuredRun Joined(const std::vector<MeasuredRun>& runs);
 /// or a sample time that is not the control tick.
 MeasuredRun ToMeasuredRun(const Setup& setup, const Record& measured);
 
-struct Track {
+struct InnovationSequence {
   Eigen::MatrixXd innovations;  ///< sensors x samples [unit of the sensor]
   Eigen::MatrixXd position;     ///< nv x samples, empty unless asked for
   Eigen::MatrixXd velocity;     ///< nv x samples, the same
@@ -104,13 +104,15 @@ struct Track {
 /// @param machine  the nominal one
 /// @param states   whether to keep the trajectory of the joints
 /// NumericalError if the run diverges.
-Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
-                const Observer& observer, bool states);
+InnovationSequence RunPredictor(const Machine& machine, const Changes& changes,
+                                const MeasuredRun& run, const Observer& observer,
+                                bool states);
 
 /// The same, and the first order of it.
 /// @param dynamics  every tick is added to it
-Track FollowRun(const Machine& machine, const Changes& changes, const MeasuredRun& run,
-                const Observer& observer, ErrorDynamics& dynamics);
+InnovationSequence RunPredictor(const Machine& machine, const Changes& changes,
+                                const MeasuredRun& run, const Observer& observer,
+                                ErrorDynamics& dynamics);
 
 /// The inputs of a run; that of an actuator that is off is that of an open circuit, so that
 /// the force of every motor is the same function of input and motion at all times.
@@ -122,6 +124,6 @@ Eigen::MatrixXd InputsThatAct(const Machine& machine, const MeasuredRun& run,
 
 /// The motion that the joints of a track made, with what was measured beside it.
 ObservedMotion ObserveMotion(const Machine& machine, const MeasuredRun& run,
-                             const Track& track);
+                             const InnovationSequence& track);
 
 }  // namespace mjdiag

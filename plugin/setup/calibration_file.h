@@ -22,7 +22,7 @@ struct Calibration {
   /// is pulled along [Hz] (observer.h); 0: nothing.
   double force_noise = 0.0;
   /// How many times more surprising than by noise blocks of a healthy run may be
-  /// (Surprise), 1 or more.
+  /// (NormalizedInnovation), 1 or more.
   double tolerated = 1.0;
   ModelUncertainty model;  ///< of faults
   int records = 0;         ///< that it was learned from

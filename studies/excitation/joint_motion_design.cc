@@ -93,8 +93,8 @@ class JointMotionDesigner {
       design_.units.push_back(regressor.units()[at]);
     }
     design_.untold = regressor.numbers() - std::ssize(columns_);
-    const MatrixXd missing =
-        MissingWithoutFriction(machine, filtered, BalanceForces(machine, {}, filtered));
+    const MatrixXd missing = MissingWithoutFriction(
+        machine, filtered, InverseDynamicsResidual(machine, {}, filtered));
     design_.noise =
         NoiseBeside(regressor, measured_, columns_, missing(Eigen::all, samples_));
     SetSeries();

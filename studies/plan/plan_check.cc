@@ -16,7 +16,7 @@ constexpr std::int64_t kTrials = 4;  // of every case
 
 /// Numbers of runs of that case on the first machine: the first, the last and some
 /// between.
-std::set<std::int64_t> Trials(const StudyPlan& plan, std::size_t in_case) {
+std::set<std::int64_t> CandidateRegressors(const StudyPlan& plan, std::size_t in_case) {
   const auto of_a_point =
       static_cast<std::int64_t>(plan.motions.size()) * plan.replications;
   std::int64_t first = 0;
@@ -57,7 +57,7 @@ void CheckPlan(const LoadedPlan& loaded, const std::string& where) {
     const std::string place = where + ": case '" + one.name + "'";
     CheckTimes(one, shortest, place);
     try {
-      for (const std::int64_t trial : Trials(brief.plan, i)) {
+      for (const std::int64_t trial : CandidateRegressors(brief.plan, i)) {
         maker.Simulate(planner.Run(trial));
       }
     } catch (const InputError& error) {

@@ -116,6 +116,7 @@ const std::map<std::string, Rows>& Table() {
                             {"--train-share", Same("--train-share 0.7")},
                             {"--causes", Same("--causes 8")},
                             {"--doubt", Same("--doubt")},
+                            {"--estimate-parameters", Same("--estimate-parameters")},
                             {"--no-doubt", kNothing},
                             {"--known", kNothing},
                             {"--without", kNothing},
@@ -305,6 +306,7 @@ TEST_F(OptionTable, DoubtIsWhatThePlantSays) {
   EXPECT_TRUE(numbers(stage, " --no-doubt").empty());
   EXPECT_TRUE(numbers(exact, "").empty());
   EXPECT_FALSE(numbers(exact, " --doubt").empty());
+  EXPECT_FALSE(numbers(exact, " --estimate-parameters").empty());
 }
 
 }  // namespace

@@ -95,6 +95,13 @@ TEST_F(CRefusals, RefusesToOpenWhatIsNotThere) {
       nullptr);
 }
 
+// Friction that the plant carries would come twice.
+TEST_F(CRefusals, RefusesToPrepareAModelTwice) {
+  const Plant plant;
+  EXPECT_NE(mjdiag_prepare(plant.model, kSetup), 0);
+  EXPECT_THAT(mjdiag_last_error(), HasSubstr("prepared already"));
+}
+
 TEST_F(CRefusals, RefusesNullPointers) {
   mjdiag_monitor* monitor = Linear();
   const Plant plant;

@@ -21,7 +21,8 @@ struct Balanced {
                            ToMeasuredRun(arm.setup(), test::Arm::Measure(effects, 1.0)),
                            kBand)) {}
   Eigen::VectorXd Rms(const Changes& changes) const {
-    return MissingRms(filtered, BalanceForces(arm.machine, changes, filtered).missing);
+    return MissingRms(filtered,
+                      InverseDynamicsResidual(arm.machine, changes, filtered).missing);
   }
 };
 
@@ -60,8 +61,9 @@ TEST(ForceBalance, DryFrictionOfThePlantIsAsSmoothAsTheReadings) {
   const std::vector<std::string> friction = {"coulomb_friction@elbow:force=0.6"};
   const Balanced balanced(friction);
   const Machine machine = balanced.arm.machine.With(test::With(friction));
-  const Eigen::VectorXd with = MissingRms(
-      balanced.filtered, BalanceForces(machine, {}, balanced.filtered).missing);
+  const Eigen::VectorXd with =
+      MissingRms(balanced.filtered,
+                 InverseDynamicsResidual(machine, {}, balanced.filtered).missing);
   // What is left stands where the joint turns round: readings are smooth there.
   EXPECT_LT(with[1], 0.3 * balanced.Rms({})[1]);
 }

@@ -104,7 +104,7 @@ TEST_F(Emps, ForcesThatAreMissingAreTheAuthorsFrictionAndOffset) {
   ASSERT_FALSE(moves.best.empty());
   std::map<std::string, double> sizes;
   for (const Added& added : moves.best.front().added) {
-    const TrialValues values = added.variation.values(added.amplitudes);
+    const RegressorValues values = added.variation.values(added.amplitudes);
     ASSERT_TRUE(values);
     sizes[blocks[added.variation.block].name] = (*values)[0];
   }

@@ -55,7 +55,7 @@ TEST(DiscoveryPage, SaysHowToDoItAgain) {
   EXPECT_THAT(html, Not(HasSubstr("slide <1>")));
 }
 
-TEST(DiscoveryPage, ShowsTheSignatureOfWhatNoCauseExplains) {
+TEST(DiscoveryPage, ShowsWhatTheRestDependsOnThatNoCauseExplains) {
   const std::string html = ReportHtml(DiscoveryPage(SampleUnexplained(), kRun));
   EXPECT_THAT(html, HasSubstr("class=\"verdict bad\""));
   EXPECT_THAT(html, HasSubstr(Caption("What is left at load, over position of load")));
@@ -125,8 +125,8 @@ TEST(LawPlots, KeepAPageLight) {
   EXPECT_GE(plot.points.at(0).x.tail<1>()[0], 19990.0);
 }
 
-TEST(SignaturePlot, ShowsTheCurveBetweenTwoStandardDeviations) {
-  const XyPlot plot = SignaturePlot(*SampleUnexplained().unexplained, "N");
+TEST(ResidualDependencePlot, ShowsTheCurveBetweenTwoStandardDeviations) {
+  const XyPlot plot = ResidualDependencePlot(*SampleUnexplained().unexplained, "N");
   EXPECT_EQ(plot.y_unit, "N");
   ASSERT_EQ(plot.curves.size(), 3u);
   EXPECT_NEAR(plot.curves[1].y[0] - plot.curves[0].y[0], 1.0, 1e-12);

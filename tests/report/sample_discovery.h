@@ -112,7 +112,7 @@ inline Discovery SampleUnexplained() {
   discovery.causes.clear();
   discovery.laws.clear();
   discovery.records.front().after = discovery.records.front().before;
-  Signature signature;
+  ResidualDependence signature;
   signature.site = "load";
   signature.variable = "position of load";
   signature.unit = "m";

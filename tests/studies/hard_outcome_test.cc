@@ -93,7 +93,7 @@ TEST(HardVerdict, FollowsFromWhatIsNamedWhateverTheTruth) {
 TEST(HardVerdict, CountsWhatNoMeasurementTellsApartAsOne) {
   const Machine bonder(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
   const Cause motor = ParseEffect("motor_constant@x_motor:factor=0.7");
-  const std::vector<Cause> twins = Twins(bonder.plant(), motor);
+  const std::vector<Cause> twins = EquivalentCauses(bonder.plant(), motor);
   ASSERT_EQ(twins.size(), 1u);
   EXPECT_EQ(VerdictOf({motor}, {Named(twins[0])}), HardVerdict::kRight);
 }

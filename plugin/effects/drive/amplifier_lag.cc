@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -51,16 +51,17 @@ class AmplifierLagEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<LowPass>(model, actuator, values[0]);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd u = at.u();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double ticks : {0.5, 4.0, 30.0}) {
-      trials.push_back(
-          {Lagged(u, ticks) - u, at.MotorEntry(),
-           [ticks, tick = at.motion.sample_time](const Amplitudes& a) -> TrialValues {
-             if (a[0] <= 0.0) return std::nullopt;
-             return ValuesOf({ticks * tick * a[0]});
-           }});
+      trials.push_back({Lagged(u, ticks) - u, at.MotorEntry(),
+                        [ticks, tick = at.motion.sample_time](
+                            const Amplitudes& a) -> RegressorValues {
+                          if (a[0] <= 0.0) return std::nullopt;
+                          return ValuesOf({ticks * tick * a[0]});
+                        }});
     }
     return trials;
   }

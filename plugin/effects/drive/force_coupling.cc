@@ -62,14 +62,15 @@ class ForceCouplingEffect final : public Effect {
     return map.Joints(joints);
   }
   // Gamma has a motor's force on the joints that it drives, one of which has all of it.
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(at.motion.samples());
     for (Eigen::Index u = 0; u < at.model.Gamma.cols(); ++u) {
       if (!IsOther(at.model, at.site.joint, u)) continue;
       const double force = at.model.Gamma.col(u).cwiseAbs().maxCoeff();
       sum += force * at.motion.inputs.row(u).transpose();
     }
-    return {LinearTrial(sum, at.JointEntry())};
+    return {LinearRegressor(sum, at.JointEntry())};
   }
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.3}); }
   Sized Draw(const Scales&, Random& r) const override {

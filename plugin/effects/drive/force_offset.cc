@@ -23,8 +23,10 @@ class ForceOffsetEffect final : public JointForceEffect {
   std::optional<double> Law(double, const EffectValues& values) const override {
     return values[0];
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(Eigen::VectorXd::Ones(at.motion.samples()), at.JointEntry())};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {
+        LinearRegressor(Eigen::VectorXd::Ones(at.motion.samples()), at.JointEntry())};
   }
   Sized Draw(const Scales& k, Random& r) const override {
     return Proportional(r.Sign() * 0.3 * k.FrictionForce());

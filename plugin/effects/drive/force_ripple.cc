@@ -5,7 +5,7 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/effects/wave.h"
 
 namespace mjdiag {
@@ -28,11 +28,12 @@ class ForceRippleEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return values[0] * std::sin(kTurn / values[1] * q + values[2]);
   }
-  std::optional<Sweep> MakeSweep(const SiteMotion& at, double) const override {
+  std::optional<ParameterScan> MakeParameterScan(const SiteMotion& at,
+                                                 double) const override {
     constexpr int kFinest = 240;  // more than a motor has poles
     const Eigen::VectorXd q = at.q();
     if (Range(q) == 0.0) return std::nullopt;
-    return PeriodSweep(at.JointEntry(), q, kFinest, 1);
+    return PeriodScan(at.JointEntry(), q, kFinest, 1);
   }
   EffectValues Spread(const Scales& k) const override {
     return ValuesOf({0.1 * k.force, kAnySize, kAnySize});

@@ -29,19 +29,20 @@ class ForceSaturationEffect final : public Effect {
     range[1] = limited ? std::min(range[1], limit) : limit;
     model.actuator_forcelimited[actuator] = 1;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd f = at.before_gear();
     const double top = f.cwiseAbs().maxCoeff();
     const double gain =
         MotorGain(at.plant, FindElement(at.plant, mjOBJ_ACTUATOR, at.site.name));
     if (gain == 0.0) return {};
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     // The last of them cut off the very peaks.
     for (const double cut : {0.7, 0.5, 0.35, 0.2, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3,
                              1e-3, 5e-4, 2e-4, 1e-4}) {
       const double limit = (1.0 - cut) * top;
       trials.push_back({f.cwiseMax(-limit).cwiseMin(limit) - f, at.MotorEntry() / gain,
-                        [limit](const Amplitudes& a) -> TrialValues {
+                        [limit](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({limit});
                         }});

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -60,9 +60,10 @@ class InputDelayEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<DelayLine>(model, actuator, values[0]);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     return {{Delayed(at.u()) - at.u(), at.MotorEntry(),
-             [tick = at.motion.sample_time](const Amplitudes& a) -> TrialValues {
+             [tick = at.motion.sample_time](const Amplitudes& a) -> RegressorValues {
                if (a[0] <= 0.0) return std::nullopt;
                return ValuesOf({std::min(a[0] * tick, kLongest)});
              }}};

@@ -24,8 +24,9 @@ class MotorConstantEffect final : public Effect {
     mjtNum* gear = RowOf(model.actuator_gear, 6, actuator);
     std::for_each(gear, gear + 6, [&](mjtNum& g) { g *= values[0]; });
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(at.u(), at.MotorEntry(), 1.0, true)};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(at.u(), at.MotorEntry(), 1.0, true)};
   }
   std::optional<PlantNumber> Number(const mjModel&, int actuator) const override {
     return PlantNumber{PlantNumberKind::kGear, actuator};

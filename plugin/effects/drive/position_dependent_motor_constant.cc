@@ -54,11 +54,12 @@ class PositionDependentMotorConstantEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<VaryingMotor>(model, actuator, values);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     Eigen::MatrixXd parts(q.size(), 2);
     parts << q.cwiseProduct(at.u()), q.cwiseAbs2().cwiseProduct(at.u());
-    return {LinearTrial(parts, at.MotorEntry(2))};
+    return {LinearRegressor(parts, at.MotorEntry(2))};
   }
   // A tenth over the stroke, thrice that at the most.
   EffectValues Spread(const Scales& k) const override {

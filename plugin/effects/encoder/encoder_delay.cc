@@ -7,7 +7,7 @@
 
 #include "mjdiag/plugin/effects/encoder/reading_error.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/reading_rate.h"
 
@@ -69,10 +69,11 @@ class EncoderDelayEffect final : public Effect {
     }
     return second;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd rate =
         CentralDifferences(at.y().transpose(), at.motion.sample_time).transpose();
-    return {LinearTrial(-rate, {}, 0.0, true)};
+    return {LinearRegressor(-rate, {}, 0.0, true)};
   }
   Sized Draw(const Scales&, Random&) const override { return Proportional(2e-4); }
 };

@@ -22,8 +22,9 @@ class EncoderDriftEffect final : public ReadingErrorEffect {
               const EffectValues& values) const noexcept override {
     return y + values[0] * time;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(at.motion.time, {})};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(at.motion.time, {})};
   }
   // What heat moves in the time of a record.
   EffectValues Spread(const Scales& k) const override {

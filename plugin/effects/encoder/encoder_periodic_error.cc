@@ -5,7 +5,7 @@
 
 #include "mjdiag/plugin/effects/encoder/reading_error.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/effects/wave.h"
 
 namespace mjdiag {
@@ -39,11 +39,12 @@ class EncoderPeriodicErrorEffect final : public ReadingErrorEffect {
   double Read(double y, double, const EffectValues& values) const noexcept override {
     return y + values[0] * std::sin(2.0 * std::numbers::pi / values[1] * y + values[2]);
   }
-  std::optional<Sweep> MakeSweep(const SiteMotion& at, double) const override {
+  std::optional<ParameterScan> MakeParameterScan(const SiteMotion& at,
+                                                 double) const override {
     constexpr int kFinest = 1600;  // far more than a motor has poles
     const Eigen::VectorXd y = WithoutOwnNoise(at.y());
     if (Range(y) == 0.0) return std::nullopt;
-    return PeriodSweep({}, y, kFinest, 2);
+    return PeriodScan({}, y, kFinest, 2);
   }
   EffectValues Spread(const Scales& k) const override {
     return ValuesOf({2e-3 * k.stroke, kAnySize, kAnySize});

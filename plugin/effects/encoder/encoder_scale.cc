@@ -24,8 +24,9 @@ class EncoderScaleEffect final : public ReadingErrorEffect {
   double ReadingScale(const EffectValues& values) const override { return values[0]; }
   // One that reads backwards is wired wrongly, which the check of the data says.
   double Least(const mjModel&, Eigen::Index, std::size_t) const override { return 0.0; }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(at.y(), {}, 1.0)};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(at.y(), {}, 1.0)};
   }
   // Rulers and gratings are right to a few parts in a thousand.
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.003}); }

@@ -78,13 +78,14 @@ class ZeroOffsetEffect final : public Effect {
     return map.Joints(joints);
   }
   // F(q - offset) = F(q) - offset dF/dq
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     StaticForce force(at.plant);
     VectorXd slope(at.motion.samples());
     for (Index k = 0; k < slope.size(); ++k) {
       slope[k] = force.Slope(at.motion.position.col(k), at.site.joint);
     }
-    return {LinearTrial(-slope, at.JointEntry())};
+    return {LinearRegressor(-slope, at.JointEntry())};
   }
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.1}); }
   // Teeth of a horn or a coupling are some degrees apart; what is left is a part of that.

@@ -36,11 +36,12 @@ class AsymmetricViscousFrictionEffect final : public JointDampingEffect {
   double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
     return -std::max(0.0, plant.dof_damping[joint]);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd v = at.v();
     Eigen::MatrixXd sides(v.size(), 2);
     sides << -v.cwiseMax(0.0), -v.cwiseMin(0.0);
-    Trial trial = LinearTrial(sides, at.JointEntry(2));
+    CandidateRegressor trial = LinearRegressor(sides, at.JointEntry(2));
     trial.least =
         Amplitudes::Constant(2, -std::max(0.0, at.plant.dof_damping[at.site.joint]));
     return {std::move(trial)};

@@ -17,7 +17,7 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
 
@@ -109,13 +109,14 @@ class BoucWenEffect final : public Effect {
     return std::make_unique<BoucWenForce>(model.jnt_dofadr[joint], values);
   }
   // As Dahl friction, with a little that hardens, by which the fit sees what more does.
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double length : LogGrid(1e-2 * Range(q), 0.5 * Range(q), 4)) {
       trials.push_back(
           {-Follow(q, length), at.JointEntry(),
-           [length](const Amplitudes& a) -> TrialValues {
+           [length](const Amplitudes& a) -> RegressorValues {
              if (a[0] <= 0.0) return std::nullopt;
              constexpr double kHardens = 0.1;
              return ValuesOf({a[0], (1.0 - kHardens) / length, kHardens / length, 1.0});

@@ -2,7 +2,7 @@
 
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -21,8 +21,9 @@ class CoulombFrictionEffect final : public Effect {
   void Apply(mjModel& model, int joint, const EffectValues& values) const override {
     AddDryFriction(model, joint, values[0]);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-Direction(at.v()), at.JointEntry(), 0.0, true)};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-Direction(at.v()), at.JointEntry(), 0.0, true)};
   }
   std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
     return PlantNumber{PlantNumberKind::kFriction, joint};

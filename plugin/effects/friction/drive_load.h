@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 
 namespace mjdiag {
 

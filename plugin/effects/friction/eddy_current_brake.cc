@@ -4,7 +4,7 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -27,13 +27,14 @@ class EddyCurrentBrakeEffect final : public JointForceEffect {
     const double ratio = v / values[1];
     return -values[0] * v / (1.0 + ratio * ratio);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::ArrayXd v = at.v();
     const double top = v.abs().maxCoeff();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double velocity : LogGrid(0.05 * top, top, 4)) {
       trials.push_back({-v / (1.0 + (v / velocity).square()), at.JointEntry(),
-                        [velocity](const Amplitudes& a) -> TrialValues {
+                        [velocity](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({a[0], velocity});
                         }});

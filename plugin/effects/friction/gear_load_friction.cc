@@ -9,7 +9,7 @@
 #include "mjdiag/plugin/effects/friction/drive_load.h"
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -52,14 +52,15 @@ class GearLoadFrictionEffect final : public VaryingFrictionEffect<GearBound> {
 
   // Motor and rest work against each other nearly all the time, and what is taken of
   // both is the sum of two parts then.
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const ObservedLoad load(at);
     const Eigen::VectorXd s = -Direction(at.v());
     Eigen::MatrixXd parts(s.size(), 3);
     parts.col(0) = load.motor.cwiseAbs().cwiseProduct(s);
     parts.col(1) = load.rest.cwiseAbs().cwiseProduct(s);
     parts.col(2) = (load.motor - load.rest).cwiseAbs2().cwiseProduct(s);
-    return {LinearTrial(parts, at.JointEntry(3), 0.0, true)};
+    return {LinearRegressor(parts, at.JointEntry(3), 0.0, true)};
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(DirectionalLoadFriction()), self.site,

@@ -5,7 +5,7 @@
 #include "mjdiag/plugin/effects/follower.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -55,14 +55,15 @@ class HystereticStiffnessEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<SpringWithMemory>(JointOf(model, joint), values);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double length : LogGrid(3e-3 * Range(q), 2.0 * Range(q), 8)) {
       Eigen::MatrixXd parts(q.size(), 2);
       parts << -q, -Follow(q, length);
       trials.push_back(
-          {parts, at.JointEntry(2), [length](const Amplitudes& a) -> TrialValues {
+          {parts, at.JointEntry(2), [length](const Amplitudes& a) -> RegressorValues {
              if (a[0] <= 0.0 || a[1] <= 0.0) return std::nullopt;
              if (a[1] > kMostLoss * a[0]) return std::nullopt;
              return ValuesOf({a[0], a[1] / a[0], length});

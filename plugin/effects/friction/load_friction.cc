@@ -10,7 +10,7 @@
 #include "mjdiag/plugin/effects/friction/drive_load.h"
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -41,11 +41,12 @@ class LoadFrictionEffect final : public VaryingFrictionEffect<BoundByLoad> {
              .meaning = "dry friction of coefficient |what the drive transmits|: "
                         "motor less the rest of the force on the joint"}) {}
 
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const ObservedLoad load(at);
     const Eigen::VectorXd bound = (load.motor - load.rest).cwiseAbs();
-    return {LinearTrial(-bound.cwiseProduct(Direction(at.v())), at.JointEntry(), 0.0,
-                        true)};
+    return {LinearRegressor(-bound.cwiseProduct(Direction(at.v())), at.JointEntry(),
+                            0.0, true)};
   }
   Sized Draw(const Scales&, Random&) const override { return Proportional(0.2); }
 };

@@ -20,7 +20,7 @@
 #include "mjdiag/plugin/effects/friction/stribeck_curve.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -102,11 +102,12 @@ class LugreFrictionEffect final : public Effect {
   }
   // The force is proportional to what it slides at, for bristles of the same length and
   // damped as much for their stiffness.
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd v = at.v();
     const double top = v.cwiseAbs().maxCoeff();
     const double mass = at.model.M(at.site.joint, at.site.joint);
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double length : LogGrid(1e-4 * Range(at.q()), 0.1 * Range(at.q()), 4)) {
       for (const double velocity : LogGrid(0.01 * top, 0.3 * top, 3)) {
         for (const double share : {0.3, 0.6}) {
@@ -114,7 +115,7 @@ class LugreFrictionEffect final : public Effect {
           const EffectValues unit =
               ValuesOf({1.0 - share, share, velocity, 1.0 / length, 0.0});
           trials.push_back({Along(v, at.motion.sample_time, unit), at.JointEntry(),
-                            [unit, damping](const Amplitudes& a) -> TrialValues {
+                            [unit, damping](const Amplitudes& a) -> RegressorValues {
                               if (a[0] <= 0.0) return std::nullopt;
                               EffectValues values = unit * a[0];
                               values[2] = unit[2];

@@ -24,12 +24,13 @@ class PositionDependentDampingEffect final : public JointDampingEffect {
   double Damping(double q, double, const EffectValues& values) const noexcept override {
     return (values[0] + values[1] * q) * q;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     Eigen::MatrixXd parts(q.size(), 2);
     parts.col(0) = -q.cwiseProduct(at.v());
     parts.col(1) = parts.col(0).cwiseProduct(q);
-    return {LinearTrial(parts, at.JointEntry(2))};
+    return {LinearRegressor(parts, at.JointEntry(2))};
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double damping = k.FrictionForce() / k.speed;

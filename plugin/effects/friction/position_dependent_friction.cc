@@ -7,7 +7,7 @@
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -45,12 +45,13 @@ class PositionDependentFrictionEffect final
              .meaning = "dry friction that changes by slope q + curvature q^2",
              .odds = kRare}) {}
 
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     Eigen::MatrixXd parts(q.size(), 2);
     parts.col(0) = -q.cwiseProduct(Direction(at.v()));
     parts.col(1) = parts.col(0).cwiseProduct(q);
-    return {LinearTrial(parts, at.JointEntry(2))};
+    return {LinearRegressor(parts, at.JointEntry(2))};
   }
   // A machine rubs by a few per cent of what its motor does, here or there; by itself the
   // law has to be positive at one end of the stroke at least.

@@ -22,7 +22,7 @@
 #include "mjdiag/plugin/effects/friction/drive_load.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -85,17 +85,18 @@ class PreslidingGearFrictionEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<Teeth>(model, model.jnt_dofadr[joint], values);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     const Eigen::ArrayXd tau = at.motor();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double length : LogGrid(1e-4 * Range(q), 0.5 * Range(q), 8)) {
       const Eigen::ArrayXd z = Follow(q, length).array() / length;
       Eigen::MatrixXd parts(q.size(), 2);
       parts.col(0) = -0.5 * (tau.abs() * z + tau * z.square());
       parts.col(1) = -0.5 * (tau.abs() * z - tau * z.square());
       trials.push_back({parts, at.JointEntry(2),
-                        [length](const Amplitudes& a) -> TrialValues {
+                        [length](const Amplitudes& a) -> RegressorValues {
                           if (a.minCoeff() < 0.0 || a.maxCoeff() <= 0.0) {
                             return std::nullopt;
                           }

@@ -5,7 +5,7 @@
 #include "mjdiag/plugin/effects/follower.h"
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -48,12 +48,13 @@ class PreslidingHysteresisEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<Presliding>(model.jnt_dofadr[joint], values);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double length : LogGrid(1e-4 * Range(q), 0.5 * Range(q), 8)) {
       trials.push_back({-Follow(q, length) / length, at.JointEntry(),
-                        [length](const Amplitudes& a) -> TrialValues {
+                        [length](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({a[0], a[0] / length});
                         }});

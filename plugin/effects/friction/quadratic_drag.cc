@@ -26,9 +26,10 @@ class QuadraticDragEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return -values[0] * v * std::abs(v);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.v().cwiseProduct(at.v().cwiseAbs()), at.JointEntry(), 0.0,
-                        true)};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-at.v().cwiseProduct(at.v().cwiseAbs()), at.JointEntry(),
+                            0.0, true)};
   }
   Sized Draw(const Scales& k, Random&) const override {
     return Proportional(k.FrictionForce() / (k.speed * k.speed));

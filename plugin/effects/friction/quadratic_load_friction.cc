@@ -7,7 +7,7 @@
 #include "mjdiag/plugin/effects/friction/drive_load.h"
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -40,11 +40,12 @@ class QuadraticLoadFrictionEffect final
              .meaning = "dry friction of coefficient (what the drive transmits)^2",
              .odds = kSome}) {}
 
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const ObservedLoad load(at);
     const Eigen::VectorXd bound = (load.motor - load.rest).cwiseAbs2();
-    return {LinearTrial(-bound.cwiseProduct(Direction(at.v())), at.JointEntry(), 0.0,
-                        true)};
+    return {LinearRegressor(-bound.cwiseProduct(Direction(at.v())), at.JointEntry(),
+                            0.0, true)};
   }
   // A fifth of the motor's force where that is largest, as load_friction; a drive that
   // carries a load transmits twice the motor's.

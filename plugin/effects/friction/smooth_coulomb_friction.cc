@@ -5,7 +5,7 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -27,14 +27,15 @@ class SmoothCoulombFrictionEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return -values[0] * std::tanh(v / values[1]);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::ArrayXd v = at.v();
     const double top = v.abs().maxCoeff();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     // Above half of the largest speed it is viscous.
     for (const double velocity : LogGrid(0.01 * top, 0.5 * top, 6)) {
       trials.push_back({-(v / velocity).tanh(), at.JointEntry(),
-                        [velocity](const Amplitudes& a) -> TrialValues {
+                        [velocity](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({a[0], velocity});
                         }});

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 
@@ -12,16 +12,17 @@ double StribeckShare(double v, double velocity) noexcept {
   return std::exp(-ratio * ratio);
 }
 
-std::vector<Trial> StribeckTrials(const SiteMotion& at, const Eigen::VectorXd& slide) {
+std::vector<CandidateRegressor> StribeckRegressors(const SiteMotion& at,
+                                                   const Eigen::VectorXd& slide) {
   const Eigen::VectorXd v = at.v();
   const double top = v.cwiseAbs().maxCoeff();
-  std::vector<Trial> trials;
+  std::vector<CandidateRegressor> trials;
   for (const double velocity : LogGrid(0.003 * top, 0.6 * top, 7)) {
     Eigen::MatrixXd parts(v.size(), 2);
     parts.col(0) = slide;
     parts.col(1) = slide.array() * (-(v.array() / velocity).square()).exp();
     trials.push_back({parts, at.JointEntry(2),
-                      [velocity](const Amplitudes& a) -> TrialValues {
+                      [velocity](const Amplitudes& a) -> RegressorValues {
                         if (a[1] <= 0.0) return std::nullopt;
                         return ValuesOf({a[0], a[1], velocity});
                       },

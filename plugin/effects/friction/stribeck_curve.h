@@ -5,14 +5,15 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 
 namespace mjdiag {
 
 double StribeckShare(double v, double velocity) noexcept;
 
-/// Trials of friction with a constant part and one that goes away with speed.
+/// CandidateRegressors of friction with a constant part and one that goes away with speed.
 /// @param slide  what the constant part makes of a bound of 1, samples
-std::vector<Trial> StribeckTrials(const SiteMotion& at, const Eigen::VectorXd& slide);
+std::vector<CandidateRegressor> StribeckRegressors(const SiteMotion& at,
+                                                   const Eigen::VectorXd& slide);
 
 }  // namespace mjdiag

@@ -6,7 +6,7 @@
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/friction/stribeck_curve.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -39,8 +39,9 @@ class StribeckFrictionEffect final : public VaryingFrictionEffect<FallingBound> 
              .meaning = "dry friction of coulomb + breakaway exp(-(v / velocity)^2)"}) {
   }
 
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return StribeckTrials(at, -Direction(at.v()));
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return StribeckRegressors(at, -Direction(at.v()));
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(CoulombFriction()), self.site, self.values.head(1)};

@@ -9,7 +9,7 @@
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/friction/stribeck_curve.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -50,10 +50,11 @@ class StribeckLoadFrictionEffect final
                         "velocity)^2)) |what the drive transmits|",
              .odds = kSome}) {}
 
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const ObservedLoad load(at);
     const Eigen::VectorXd bound = (load.motor - load.rest).cwiseAbs();
-    return StribeckTrials(at, -bound.cwiseProduct(Direction(at.v())));
+    return StribeckRegressors(at, -bound.cwiseProduct(Direction(at.v())));
   }
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(LoadFriction()), self.site, self.values.head(1)};

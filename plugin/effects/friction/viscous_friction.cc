@@ -24,8 +24,9 @@ class ViscousFrictionEffect final : public Effect {
   double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
     return -plant.dof_damping[joint];
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.v(), at.JointEntry())};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-at.v(), at.JointEntry())};
   }
   std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
     return PlantNumber{PlantNumberKind::kDamping, joint};

@@ -7,7 +7,7 @@
 
 #include "mjdiag/plugin/effects/friction/dry_friction.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -39,14 +39,15 @@ class WarmingFrictionEffect final : public VaryingFrictionEffect<BoundByTime> {
              .meaning = "dry friction that goes away: force exp(-t / time_constant)",
              .odds = kRare}) {}
 
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd s = Direction(at.v());
     const double last = at.motion.time.maxCoeff();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double constant : LogGrid(0.05 * last, 2.0 * last, 4)) {
       trials.push_back({-s.array() * (-at.motion.time.array() / constant).exp(),
                         at.JointEntry(),
-                        [constant](const Amplitudes& a) -> TrialValues {
+                        [constant](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({a[0], constant});
                         }});

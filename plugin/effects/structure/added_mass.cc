@@ -41,8 +41,9 @@ class AddedMassEffect final : public Effect {
                             : plant.body_mass[plant.jnt_bodyid[joint]];
     return -0.9 * mass;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.own_a(), at.JointEntry())};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-at.own_a(), at.JointEntry())};
   }
   std::optional<double> Law(double a, const EffectValues& values) const override {
     return -values[0] * a;

@@ -6,8 +6,8 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/effects/structure/joint_spring.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -49,14 +49,16 @@ class BacklashEffect final : public Effect {
                                          const EffectValues& values) const override {
     return std::make_unique<Play>(model, joint, values[0]);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const auto [stiffness, strain] = JointSpring(at);
     const double most = strain.cwiseAbs().maxCoeff();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     // The force within a gap is proportional to it as long as it is small.
     for (const double half : LogGrid(0.01 * most, most, 8)) {
       trials.push_back({stiffness * strain.cwiseMax(-half).cwiseMin(half),
-                        at.JointEntry(), [half](const Amplitudes& a) -> TrialValues {
+                        at.JointEntry(),
+                        [half](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;
                           return ValuesOf({2.0 * half * std::min(a[0], 3.0)});
                         }});

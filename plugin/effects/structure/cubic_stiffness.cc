@@ -28,8 +28,9 @@ class CubicStiffnessEffect final : public JointForceEffect {
   double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
     return plant.jnt_stiffness[plant.dof_jntid[joint]] > 0.0 ? -kAnySize : 0.0;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.q().array().cube().matrix(), at.JointEntry())};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-at.q().array().cube().matrix(), at.JointEntry())};
   }
   Sized Draw(const Scales& k, Random&) const override {
     return Proportional(k.FrictionForce() / std::pow(k.stroke, 3));

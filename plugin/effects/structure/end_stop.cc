@@ -4,7 +4,7 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 namespace {
@@ -29,9 +29,10 @@ class EndStopEffect final : public JointForceEffect {
     const bool touches = position >= 0.0 ? beyond > 0.0 : beyond < 0.0;
     return touches ? -values[1] * beyond : 0.0;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double share : {0.3, 0.6, 0.8, 0.9, 0.95, 0.99}) {
       for (const double side : {q.maxCoeff(), q.minCoeff()}) {
         const double position = share * side;
@@ -42,11 +43,11 @@ class EndStopEffect final : public JointForceEffect {
         } else {
           beyond = beyond.cwiseMin(0.0).eval();
         }
-        trials.push_back(
-            {-beyond, at.JointEntry(), [position](const Amplitudes& a) -> TrialValues {
-               if (a[0] <= 0.0) return std::nullopt;
-               return ValuesOf({position, a[0]});
-             }});
+        trials.push_back({-beyond, at.JointEntry(),
+                          [position](const Amplitudes& a) -> RegressorValues {
+                            if (a[0] <= 0.0) return std::nullopt;
+                            return ValuesOf({position, a[0]});
+                          }});
       }
     }
     return trials;

@@ -8,7 +8,7 @@
 
 #include "mjdiag/plugin/effects/joint_force.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/effects/wave.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
@@ -79,15 +79,16 @@ class FlexibleModeEffect final : public Effect {
     }
     return std::make_unique<Appendage>(JointOf(model, joint), values);
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const double tick = at.motion.sample_time;
     const double highest = 0.2 / tick;
-    std::vector<Trial> trials;
+    std::vector<CandidateRegressor> trials;
     for (const double frequency : LogGrid(2e-3 * highest, highest, 40)) {
       for (const double ratio : {0.01, 0.05, 0.2}) {
         trials.push_back({AppendagePull(at.q(), frequency, ratio, tick),
                           at.JointEntry(),
-                          [frequency, ratio](const Amplitudes& a) -> TrialValues {
+                          [frequency, ratio](const Amplitudes& a) -> RegressorValues {
                             if (a[0] <= 0.0) return std::nullopt;
                             return ValuesOf({a[0], frequency, ratio});
                           }});

@@ -34,8 +34,9 @@ class FloorVibrationEffect final : public JointForceEffect {
     const std::vector<Eigen::Index> passive = Without(ground, map.driven());
     return map.Joints(passive.empty() ? ground : passive);
   }
-  std::optional<Sweep> MakeSweep(const SiteMotion& at, double duration) const override {
-    return FrequencySweep(at.JointEntry(), at.motion, duration);
+  std::optional<ParameterScan> MakeParameterScan(const SiteMotion& at,
+                                                 double duration) const override {
+    return FrequencyScan(at.JointEntry(), at.motion, duration);
   }
   // A tenth of gravity shakes everything.
   EffectValues Spread(const Scales& k) const override {

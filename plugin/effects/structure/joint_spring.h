@@ -1,7 +1,7 @@
 #pragma once
 // The spring of a joint that has one, as the plant has it.
 
-#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 
 namespace mjdiag {
 

@@ -35,8 +35,9 @@ class LinearStiffnessEffect final : public Effect {
   double Least(const mjModel& plant, Eigen::Index joint, std::size_t) const override {
     return -plant.jnt_stiffness[plant.dof_jntid[joint]];
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.q(), at.JointEntry())};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-at.q(), at.JointEntry())};
   }
   std::optional<double> Law(double q, const EffectValues& values) const override {
     return -values[0] * q;

@@ -24,8 +24,9 @@ class QuadraticStiffnessEffect final : public JointForceEffect {
                const EffectValues& values) const noexcept override {
     return -values[0] * q * q;
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
-    return {LinearTrial(-at.q().array().square().matrix(), at.JointEntry())};
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
+    return {LinearRegressor(-at.q().array().square().matrix(), at.JointEntry())};
   }
   Sized Draw(const Scales& k, Random& r) const override {
     return Proportional(r.Sign() * k.FrictionForce() / (k.stroke * k.stroke));

@@ -1,8 +1,8 @@
 // The stiffness of a joint that has one, times factor; its springref stays.
 
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/effects/structure/joint_spring.h"
-#include "mjdiag/plugin/effects/trial_signals.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -23,10 +23,11 @@ class StructuralStiffnessEffect final : public Effect {
   void Apply(mjModel& model, int joint, const EffectValues& values) const override {
     model.jnt_stiffness[joint] *= values[0];
   }
-  std::vector<Trial> Trials(const SiteMotion& at) const override {
+  std::vector<CandidateRegressor> CandidateRegressors(
+      const SiteMotion& at) const override {
     const auto [stiffness, strain] = JointSpring(at);
-    std::vector<Trial> trials = {
-        LinearTrial(-stiffness * strain, at.JointEntry(), 1.0, true)};
+    std::vector<CandidateRegressor> trials = {
+        LinearRegressor(-stiffness * strain, at.JointEntry(), 1.0, true)};
     // A spring that is much softer or stiffer moves a resonance away from where the
     // motion of the present plant has it: that is no first order.
     for (const double factor : LogGrid(0.4, 2.5, 16)) {
@@ -38,7 +39,7 @@ class StructuralStiffnessEffect final : public Effect {
         continue;
       }
       trials.push_back({-stiffness * moved, at.JointEntry(),
-                        [factor](const Amplitudes& a) -> TrialValues {
+                        [factor](const Amplitudes& a) -> RegressorValues {
                           if (a[0] * (factor - 1.0) <= 0.0) return std::nullopt;
                           return ValuesOf({factor});
                         }});

@@ -11,7 +11,7 @@ ModelMove ExchangeFor(std::size_t block, double worse) {
   ModelMove move{{0}, {}, worse, 0, false};
   Variation variation;
   variation.block = block;
-  variation.values = [](const Amplitudes& a) -> TrialValues {
+  variation.values = [](const Amplitudes& a) -> RegressorValues {
     return Eigen::VectorXd(a);
   };
   move.added.push_back({variation, Eigen::VectorXd::Ones(1)});

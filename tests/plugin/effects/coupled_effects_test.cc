@@ -95,7 +95,7 @@ TEST(ZeroOffset, ShowsAlongAMotionAsTheChangeOfGravity) {
   motion.position = Eigen::RowVector3d(0.0, 1.0, -2.0);
   const Site site{"shaft", 0, -1};
   const auto trials =
-      ZeroOffset().Trials({servo.plant(), servo.linear(), motion, site});
+      ZeroOffset().CandidateRegressors({servo.plant(), servo.linear(), motion, site});
   ASSERT_EQ(trials.size(), 1u);
   for (Eigen::Index k = 0; k < 3; ++k) {
     EXPECT_NEAR(trials[0].signals(k, 0),

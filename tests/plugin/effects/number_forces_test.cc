@@ -115,8 +115,9 @@ TEST(ForceOfANumber, IsWhatIsTriedOfAFaultParameter) {
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const std::vector<Site> sites = faults[i].effect->CandidateSites(map);
     ASSERT_EQ(sites.size(), 1U) << faults[i].name();
-    const std::vector<Trial> trials =
-        faults[i].effect->Trials({plant, machine.linear(), motion, sites.front()});
+    const std::vector<CandidateRegressor> trials =
+        faults[i].effect->CandidateRegressors(
+            {plant, machine.linear(), motion, sites.front()});
     ASSERT_EQ(trials.size(), 1U);
     MatrixXd together = MatrixXd::Zero(kSamples, plant.nv);
     for (const int id : declared[i].elements) {

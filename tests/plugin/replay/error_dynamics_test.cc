@@ -30,8 +30,8 @@ Record RunOf(const Machine& machine, const std::string& trajectory) {
 /// First order of the first samples of a run.
 ErrorDynamics DynamicsOf(const test::Replay& replay, Index samples, Index block) {
   ErrorDynamics dynamics(replay.observer, block);
-  FollowRun(replay.machine, {}, replay.Beginning(samples).run, replay.observer,
-            dynamics);
+  RunPredictor(replay.machine, {}, replay.Beginning(samples).run, replay.observer,
+               dynamics);
   return dynamics;
 }
 
@@ -45,8 +45,8 @@ TEST(ErrorDynamics, PredictsWhatAMissingForceDoesToTheReplay) {
       stage.machine.With(test::With({"viscous_friction@load:coefficient=0.5"}));
   const test::Replay replay(stage.machine, Simulate(damped, stage.Motion(), quiet));
   ErrorDynamics dynamics(replay.observer, 1);
-  const Track track =
-      FollowRun(replay.machine, {}, replay.run, replay.observer, dynamics);
+  const InnovationSequence track =
+      RunPredictor(replay.machine, {}, replay.run, replay.observer, dynamics);
   const ObservedMotion observed = ObserveMotion(replay.machine, replay.run, track);
   const MatrixXd force = -0.5 * observed.velocity.transpose();
   const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
@@ -69,8 +69,8 @@ TEST(ErrorDynamics, PredictsItWhereTheSensorIsReadNowAndThen) {
   }
   for (const Index block : {1, 4}) {
     ErrorDynamics dynamics(replay.observer, block);
-    const Track track =
-        FollowRun(replay.machine, {}, replay.run, replay.observer, dynamics);
+    const InnovationSequence track =
+        RunPredictor(replay.machine, {}, replay.run, replay.observer, dynamics);
     const ObservedMotion observed = ObserveMotion(replay.machine, replay.run, track);
     const MatrixXd force = -0.5 * observed.velocity.transpose();
     const VectorXd predicted = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
@@ -103,7 +103,7 @@ TEST(ErrorDynamics, BeginsAnewWithEveryRecord) {
     test::Replay both = replay;
     both.run = Joined({Part(replay.run, 0, n), Part(replay.run, 0, 1000)});
     ErrorDynamics dynamics(replay.observer, kBlock);
-    FollowRun(both.machine, {}, both.run, both.observer, dynamics);
+    RunPredictor(both.machine, {}, both.run, both.observer, dynamics);
     VectorXd force = VectorXd::Zero(n + 1000);
     force.head(n - 4).setOnes();
     const VectorXd response = dynamics.OfForces(MatrixXd::Ones(1, 1), force);
@@ -150,7 +150,8 @@ TEST(ErrorDynamics, PredictsASmallForceBesideDryFriction) {
       test::Replay(machine, RunOf(machine, "multi")).Beginning(6000);
   for (const Index block : {1, 3}) {
     ErrorDynamics dynamics(replay.observer, block);
-    const Track track = FollowRun(machine, {}, replay.run, replay.observer, dynamics);
+    const InnovationSequence track =
+        RunPredictor(machine, {}, replay.run, replay.observer, dynamics);
     const ObservedMotion motion = ObserveMotion(machine, replay.run, track);
     for (const char* name : {"X", "Y", "Z"}) {
       const int joint = mj_name2id(&plant, mjOBJ_JOINT, name);

@@ -21,7 +21,7 @@ struct Followed {
     FilterNoise noise = path.noise;
     noise.size.setConstant(0.05);
     noise.white.setConstant(1e-3);
-    gains = KeepGains(path, noise, InflationAlong(path));
+    gains = KeepGains(path, noise, OverdispersionAlong(path));
   }
 
   test::Arm arm;

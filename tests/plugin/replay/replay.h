@@ -27,11 +27,11 @@ struct Replay {
     cut.run.inputs = run.inputs.leftCols(samples);
     return cut;
   }
-  Track Follow(const Changes& changes, bool states = false) const {
-    return FollowRun(machine, changes, run, observer, states);
+  InnovationSequence Follow(const Changes& changes, bool states = false) const {
+    return RunPredictor(machine, changes, run, observer, states);
   }
   /// Innovations over their standard deviation, stacked sample by sample.
-  Eigen::VectorXd Scaled(const Track& track) const {
+  Eigen::VectorXd Scaled(const InnovationSequence& track) const {
     const Eigen::MatrixXd scaled =
         observer.innovation_sd.cwiseInverse().asDiagonal() * track.innovations;
     return Eigen::Map<const Eigen::VectorXd>(scaled.data(), scaled.size());

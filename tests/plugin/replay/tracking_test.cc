@@ -33,19 +33,19 @@ test::Replay Measured(const Changes& changes) {
                                   FollowTrajectory(stage.setup(), motion), quiet)};
 }
 
-TEST(FollowRun, HasNoInnovationsBesideTheMachineThatWasMeasured) {
+TEST(RunPredictor, HasNoInnovationsBesideTheMachineThatWasMeasured) {
   const test::Replay replay = Measured({});
   EXPECT_LT(replay.Follow({}).innovations.cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(FollowRun, HasNoneBesideTheNominalMachineWithTheChangesThatWereInIt) {
+TEST(RunPredictor, HasNoneBesideTheNominalMachineWithTheChangesThatWereInIt) {
   const test::Replay replay = Measured(Worn());
   EXPECT_LT(replay.Follow(Worn()).innovations.cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_GT(replay.Follow({}).innovations.cwiseAbs().maxCoeff(), 1e-7);
 }
 
 // The stage does not hold itself: left alone an error of its start stays.
-TEST(FollowRun, IsPulledFromAWrongStartTowardsTheRecord) {
+TEST(RunPredictor, IsPulledFromAWrongStartTowardsTheRecord) {
   constexpr double kWrong = 1e-5;
   test::Replay replay = Measured({});
   replay.run.records.front().readings["q"] += kWrong;
@@ -58,7 +58,7 @@ TEST(FollowRun, IsPulledFromAWrongStartTowardsTheRecord) {
 }
 
 // Else a wrong scale would seem to explain something by the stiffer observer it makes.
-TEST(FollowRun, IsPulledLessByASensorThatReadsMore) {
+TEST(RunPredictor, IsPulledLessByASensorThatReadsMore) {
   const test::Replay replay = Measured(Worn());
   const MatrixXd plain = replay.Follow({}).innovations;
   test::Replay scaled = replay;
@@ -78,7 +78,7 @@ MeasuredRun Without(MeasuredRun run, Index first, Index count) {
   return run;
 }
 
-TEST(FollowRun, RunsOnWhereNothingWasMeasured) {
+TEST(RunPredictor, RunsOnWhereNothingWasMeasured) {
   test::Replay replay = Measured({});
   replay.run = Without(replay.run, 1000, 300);
   const MatrixXd innovations = replay.Follow({}).innovations;
@@ -86,7 +86,7 @@ TEST(FollowRun, RunsOnWhereNothingWasMeasured) {
   EXPECT_EQ(innovations.middleCols(1000, 300).cwiseAbs().maxCoeff(), 0.0);
 }
 
-TEST(FollowRun, IsBitwiseTheSameWhereAllOfItWasMeasured) {
+TEST(RunPredictor, IsBitwiseTheSameWhereAllOfItWasMeasured) {
   test::Replay replay = Measured(Worn());
   const MatrixXd innovations = replay.Follow({}).innovations;
   replay.run.measured.setConstant(1, replay.run.samples(), true);
@@ -94,7 +94,7 @@ TEST(FollowRun, IsBitwiseTheSameWhereAllOfItWasMeasured) {
 }
 
 // Behind inputs that are a guess it is pulled back, and nothing counts before it is.
-TEST(FollowRun, CountsNothingBehindInputsThatAreAGuess) {
+TEST(RunPredictor, CountsNothingBehindInputsThatAreAGuess) {
   test::Replay replay = Measured({});
   const Index n = replay.run.samples();
   replay.run = Without(replay.run, 1000, 50);
@@ -124,12 +124,12 @@ TEST(MeasuredRun, KnowsWhatOfSeveralRecordsWasMeasured) {
   EXPECT_EQ(slow.PeriodOf(0), 4);
 }
 
-TEST(FollowRun, KeepsTheStatesWhereTheyAreAskedFor) {
+TEST(RunPredictor, KeepsTheStatesWhereTheyAreAskedFor) {
   const test::Replay replay = Measured(Worn());
-  const Track without = replay.Follow(Worn());
+  const InnovationSequence without = replay.Follow(Worn());
   EXPECT_EQ(without.position.size(), 0);
   EXPECT_EQ(without.velocity.size(), 0);
-  const Track with = replay.Follow(Worn(), true);
+  const InnovationSequence with = replay.Follow(Worn(), true);
   EXPECT_EQ(with.innovations, without.innovations);
   ASSERT_EQ(with.position.cols(), replay.run.samples());
   // The encoder reads the one joint that there is.
@@ -140,18 +140,18 @@ TEST(FollowRun, KeepsTheStatesWhereTheyAreAskedFor) {
             1e-3 * with.position.maxCoeff());
 }
 
-TEST(FollowRun, IsTheSameRunWithItsFirstOrderRecorded) {
+TEST(RunPredictor, IsTheSameRunWithItsFirstOrderRecorded) {
   const test::Replay replay = Measured(Worn());
   ErrorDynamics dynamics(replay.observer, 10);
-  const Track track =
-      FollowRun(replay.machine, {}, replay.run, replay.observer, dynamics);
-  const Track plain = replay.Follow({}, true);
+  const InnovationSequence track =
+      RunPredictor(replay.machine, {}, replay.run, replay.observer, dynamics);
+  const InnovationSequence plain = replay.Follow({}, true);
   EXPECT_EQ(track.innovations, plain.innovations);
   EXPECT_EQ(track.position, plain.position);
   EXPECT_EQ(dynamics.blocks(), replay.run.samples() / 10);
 }
 
-TEST(FollowRun, SaysThatItDiverges) {
+TEST(RunPredictor, SaysThatItDiverges) {
   test::Replay replay = Measured({});
   replay.run.inputs(0, 100) = 1e300;
   EXPECT_THAT(test::MessageOf<NumericalError>([&] { replay.Follow({}); }),
@@ -160,7 +160,7 @@ TEST(FollowRun, SaysThatItDiverges) {
 
 TEST(ObserveMotion, IsOffQpos0WithAccelerationsByDifferences) {
   const test::Replay replay = Measured({});
-  const Track track = replay.Follow({}, true);
+  const InnovationSequence track = replay.Follow({}, true);
   const ModelPtr moved = CopyModel(replay.machine.plant());
   moved->qpos0[0] = 0.5;
   const ObservedMotion motion =
@@ -183,10 +183,10 @@ struct SwitchedServo {
   Machine machine{WithoutControllers(
       ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/servo", {"sensors.q.resolution=0"}))};
   MeasuredRun run = ToMeasuredRun(machine.setup(), Recorded());
-  Track Follow(const MeasuredRun& of) const {
+  InnovationSequence Follow(const MeasuredRun& of) const {
     Observer idle;
     idle.L = MatrixXd::Zero(2, 1);
-    return FollowRun(machine, {}, of, idle, true);
+    return RunPredictor(machine, {}, of, idle, true);
   }
 
  private:
@@ -201,7 +201,7 @@ struct SwitchedServo {
   }
 };
 
-TEST(FollowRun, SwitchesActuatorsAsTheRecordSays) {
+TEST(RunPredictor, SwitchesActuatorsAsTheRecordSays) {
   const SwitchedServo servo;
   EXPECT_EQ(servo.run.on.row(0).sum(), 100.0);
   EXPECT_LT(servo.Follow(servo.run).innovations.cwiseAbs().maxCoeff(), 1e-12);
@@ -228,7 +228,7 @@ Record Sampled(const std::string& input_unit, double sample_time) {
   return record;
 }
 
-TEST(FollowRun, FollowsEveryRecordOfARunFromItsOwnStart) {
+TEST(RunPredictor, FollowsEveryRecordOfARunFromItsOwnStart) {
   const test::Stage stage;
   const test::Replay first(stage.machine, stage.Measure({}));
   test::Replay second(stage.machine, stage.Measure({"coulomb_friction@load:force=18"}));
@@ -239,10 +239,11 @@ TEST(FollowRun, FollowsEveryRecordOfARunFromItsOwnStart) {
   ASSERT_EQ(both.run.SamplesOf(0), n);
   ASSERT_EQ(both.run.SamplesOf(1), 1500);
   EXPECT_EQ(both.run.Time()[n + 1], both.run.sample_time);
-  const Track track = both.Follow({}, true);
+  const InnovationSequence track = both.Follow({}, true);
   EXPECT_EQ(track.innovations.leftCols(n), first.Follow({}).innovations);
   // The observer is that of the first record.
-  const Track alone = FollowRun(second.machine, {}, second.run, first.observer, true);
+  const InnovationSequence alone =
+      RunPredictor(second.machine, {}, second.run, first.observer, true);
   EXPECT_EQ(track.innovations.rightCols(1500), alone.innovations);
   const ObservedMotion motion = ObserveMotion(both.machine, both.run, track);
   EXPECT_EQ(motion.acceleration.rightCols(1500),

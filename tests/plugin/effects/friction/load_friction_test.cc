@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial.h"
 #include "plugin/effects/effect_bench.h"
 
 namespace mjdiag {
@@ -69,7 +69,8 @@ TEST(LoadFriction, ShowsAlongAMotionAsItsBoundWithTheSignOfTheVelocity) {
   motion.inputs = Eigen::MatrixXd(1, 3);
   motion.inputs << 2.0, 2.0, 2.0;
   const Site site{"q", 0, -1};
-  const auto trials = LoadFriction().Trials({bench.model(), model, motion, site});
+  const auto trials =
+      LoadFriction().CandidateRegressors({bench.model(), model, motion, site});
   ASSERT_EQ(trials.size(), 1u);
   // -|2 u - m a| sign(v)
   const Eigen::Vector3d expected(-2.0, 0.0, -6.0);

@@ -20,27 +20,27 @@ namespace mjdiag {
 using Amplitudes = Eigen::VectorXd;
 /// Values of an effect's parameters, in their order, for amplitudes; none: not
 /// physical.
-using TrialValues = std::optional<Eigen::VectorXd>;
+using RegressorValues = std::optional<Eigen::VectorXd>;
 
-struct Trial {
+struct CandidateRegressor {
   Eigen::MatrixXd signals;  ///< samples x amplitudes: force or error of the reading
   Eigen::MatrixXd entry;    ///< nq x amplitudes, of forces; empty: errors of a reading
-  std::function<TrialValues(const Amplitudes&)> values;
+  std::function<RegressorValues(const Amplitudes&)> values;
   /// What each amplitude is at least, at most 0; of no size: anything.
   Amplitudes least = {};
   bool summed = false;  ///< all signals have one amplitude: one fault, several joints
 };
 
-/// Trials over one parameter that has to be met closely: a period or a frequency. Each
+/// CandidateRegressors over one parameter that has to be met closely: a period or a frequency. Each
 /// is the sine and the cosine of an angle, which grows evenly from one to the next.
-struct Sweep {
+struct ParameterScan {
   std::vector<double> values;  ///< slowest first, close enough to miss no maximum
   /// How many there are as far as the motion tells them apart, and which they are.
   Eigen::Index count = 0;
   std::function<double(Eigen::Index)> value;
   Eigen::VectorXd angle;      ///< of the first value, samples [rad]
   Eigen::VectorXd increment;  ///< from one value to the next, samples [rad]
-  std::function<Trial(double)> make;
+  std::function<CandidateRegressor(double)> make;
 };
 
 /// The observed motion at a site. Does not own what it refers to.
@@ -68,7 +68,7 @@ struct SiteMotion {
 
 /// One amplitude for each parameter, in their order, and no shape: value = offset +
 /// amplitude, which may be asked to be at least 0.
-Trial LinearTrial(Eigen::MatrixXd signals, Eigen::MatrixXd entry, double offset = 0.0,
-                  bool not_negative = false);
+CandidateRegressor LinearRegressor(Eigen::MatrixXd signals, Eigen::MatrixXd entry,
+                                   double offset = 0.0, bool not_negative = false);
 
 }  // namespace mjdiag

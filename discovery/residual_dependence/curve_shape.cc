@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/signature/curve_shape.h"
+#include "mjdiag/discovery/residual_dependence/curve_shape.h"
 
 #include <algorithm>
 #include <cmath>

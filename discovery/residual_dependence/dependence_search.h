@@ -1,11 +1,11 @@
 #pragma once
-// The functions of one variable that FindSignature (signature.h) tries: what each of
+// The functions of one variable that FindResidualDependence (signature.h) tries: what each of
 // them explains of a signal on parts of the record that it was not made from, and
 // whether that is more than chance.
 
 #include <Eigen/Core>
 
-#include "mjdiag/discovery/signature/signature.h"
+#include "mjdiag/discovery/residual_dependence/residual_dependence.h"
 
 namespace mjdiag {
 
@@ -22,12 +22,13 @@ struct Explanation {
   Eigen::VectorXd y_sd = {};
 };
 
-class SignatureSearch {
+class ResidualDependenceSearch {
  public:
   /// @param signal     kept by reference
   /// @param signal_sd  of its noise
   /// @param tests      number of explanations tried: the level of each is 1 % over that
-  SignatureSearch(const Eigen::VectorXd& signal, double signal_sd, double tests);
+  ResidualDependenceSearch(const Eigen::VectorXd& signal, double signal_sd,
+                           double tests);
 
   /// A constant in each of up to 40 bins, fewer if few samples are independent.
   Explanation Binned(const Variable& variable, const Variable* factor) const;

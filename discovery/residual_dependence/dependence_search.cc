@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/signature/signature_search.h"
+#include "mjdiag/discovery/residual_dependence/dependence_search.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -100,14 +100,15 @@ double SineGain(const VectorXd& sum, const VectorXd& count, double cycles) {
 
 }  // namespace
 
-SignatureSearch::SignatureSearch(const VectorXd& signal, double signal_sd, double tests)
+ResidualDependenceSearch::ResidualDependenceSearch(const VectorXd& signal,
+                                                   double signal_sd, double tests)
     : f_(signal),
       sd_(signal_sd),
       level_(kLevel / tests),
       total_((f_.array() - f_.mean()).square().sum()),
       per_independent_(SamplesPerIndependent(f_)) {}
 
-double SignatureSearch::Independent(const VectorXd& rest) const {
+double ResidualDependenceSearch::Independent(const VectorXd& rest) const {
   const auto n = static_cast<double>(f_.size());
   double per_independent = SamplesPerIndependent(rest);
   if (total_ < 4.0 * n * sd_ * sd_) {
@@ -116,8 +117,8 @@ double SignatureSearch::Independent(const VectorXd& rest) const {
   return n / per_independent;
 }
 
-Explanation SignatureSearch::Binned(const Variable& variable,
-                                    const Variable* factor) const {
+Explanation ResidualDependenceSearch::Binned(const Variable& variable,
+                                             const Variable* factor) const {
   Explanation found;
   for (std::size_t bins = kMostBins; bins >= 5; bins /= 2) {
     double independent = 0.0;
@@ -127,7 +128,7 @@ Explanation SignatureSearch::Binned(const Variable& variable,
   return found;
 }
 
-bool SignatureSearch::HasMean() const {
+bool ResidualDependenceSearch::HasMean() const {
   const auto n = static_cast<double>(f_.size());
   const double independent = n / per_independent_;
   if (independent < 3.0) return std::abs(f_.mean()) > 4.0 * sd_;
@@ -137,17 +138,18 @@ bool SignatureSearch::HasMean() const {
              FQuantile(level_, 1.0, independent - 1.0) * total_ / n;
 }
 
-bool SignatureSearch::Exceeds(double rest, double parameters, double independent,
-                              double level) const {
+bool ResidualDependenceSearch::Exceeds(double rest, double parameters,
+                                       double independent, double level) const {
   const double freedom = independent - parameters - 1.0;
   if (freedom < 3.0) return false;
   return (total_ - rest) / parameters * freedom >
          FQuantile(level, parameters, freedom) * rest;
 }
 
-Explanation SignatureSearch::BinnedInto(std::size_t bins, const Variable& variable,
-                                        const Variable* factor,
-                                        double& independent) const {
+Explanation ResidualDependenceSearch::BinnedInto(std::size_t bins,
+                                                 const Variable& variable,
+                                                 const Variable* factor,
+                                                 double& independent) const {
   const std::vector<double> edges = BinEdges(variable.value, bins);
   const auto count = static_cast<Index>(edges.size());
   const Index n = f_.size();
@@ -200,7 +202,7 @@ Explanation SignatureSearch::BinnedInto(std::size_t bins, const Variable& variab
   return found;
 }
 
-double SignatureSearch::FindPeriod(const VectorXd& x) const {
+double ResidualDependenceSearch::FindPeriod(const VectorXd& x) const {
   Index cells = 1;
   while (2 * cells <= std::min(kMostCells, x.size())) cells *= 2;
   const double low = x.minCoeff();
@@ -235,7 +237,7 @@ double SignatureSearch::FindPeriod(const VectorXd& x) const {
   return best < kFewestCycles ? 0.0 : range / best;
 }
 
-Explanation SignatureSearch::Sine(const Variable& variable) const {
+Explanation ResidualDependenceSearch::Sine(const Variable& variable) const {
   Explanation found{&variable};
   const VectorXd& x = variable.value;
   const Index n = x.size();
@@ -289,7 +291,7 @@ Explanation SignatureSearch::Sine(const Variable& variable) const {
   return found;
 }
 
-Explanation SignatureSearch::OverTime(const Variable& time) const {
+Explanation ResidualDependenceSearch::OverTime(const Variable& time) const {
   Explanation found{&time};
   const Index n = f_.size();
   const auto bins = static_cast<Index>(kMostBins);

@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/signature/motion_variables.h"
+#include "mjdiag/discovery/residual_dependence/motion_variables.h"
 
 #include <algorithm>
 #include <cmath>

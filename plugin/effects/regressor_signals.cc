@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,14 +10,14 @@
 
 namespace mjdiag {
 
-struct SettledModel {
+struct ConvergedModel {
   ModelFit fit;
   FilterPath path;
   double score() const { return path.deviance + fit.prior + fit.occam; }
 };
 
 /// What models are settled beside.
-struct SettledBeside {
+struct ConvergedBeside {
   MachineWith machine_with;
   const MeasuredRun& run;
   const Eigen::VectorXd& reading_sd;
@@ -34,15 +34,15 @@ struct SettledBeside {
 /// @param beat   a score: of what is nowhere near it nothing is fitted
 /// @param hoped  what they are to gain by first order
 /// Without those whose run with the first values does not stay with what was measured.
-std::vector<std::optional<SettledModel>> SettleRivals(
-    const SettledBeside& beside, std::vector<ModelFit> fits,
+std::vector<std::optional<ConvergedModel>> SettleRivals(
+    const ConvergedBeside& beside, std::vector<ModelFit> fits,
     const std::vector<FilterNoise>& near, double beat, double hoped);
 
 /// From a path along the run that is near to what suits: fitted, and its noise anew, once.
-SettledModel SettleNear(const SettledBeside& beside, ModelFit fit, FilterPath path);
+ConvergedModel SettleNear(const ConvergedBeside& beside, ModelFit fit, FilterPath path);
 
 /// Of one; NumericalError where it does not stay with what was measured.
-SettledModel Settle(const SettledBeside& beside, ModelFit fit,
-                    const std::vector<FilterNoise>& near, double beat, double hoped);
+ConvergedModel Settle(const ConvergedBeside& beside, ModelFit fit,
+                      const std::vector<FilterNoise>& near, double beat, double hoped);
 
 }  // namespace mjdiag

@@ -40,7 +40,7 @@ struct Variable {
   bool is_factor = false;  ///< may multiply a function of another variable
 };
 
-struct Signature {
+struct ResidualDependence {
   std::string site;
   std::string variable;  ///< empty if nothing is significant
   std::string unit;      ///< of x
@@ -64,8 +64,10 @@ struct Signature {
 /// @param signal_sd  of the noise on it, > 0; its spectrum does not matter
 /// @param variables  as long as f; constant ones are passed over
 /// InputError on lengths that differ and values that are not finite.
-Signature FindSignature(const std::string& site, const Eigen::VectorXd& signal,
-                        const std::string& signal_unit, double signal_sd,
-                        const std::vector<Variable>& variables);
+ResidualDependence FindResidualDependence(const std::string& site,
+                                          const Eigen::VectorXd& signal,
+                                          const std::string& signal_unit,
+                                          double signal_sd,
+                                          const std::vector<Variable>& variables);
 
 }  // namespace mjdiag

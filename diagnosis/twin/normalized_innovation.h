@@ -1,6 +1,6 @@
 #pragma once
 // How well a twin explains its machine: squares of innovations, block by block, in
-// units of what is expected of them (Information::Surprise).
+// units of what is expected of them (Information::NormalizedInnovation).
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,12 +8,13 @@
 
 namespace mjdiag {
 
-class Surprise {
+class NormalizedInnovation {
  public:
   /// @param block      ticks of one
   /// @param tolerated  how many times larger than noise alone would have them the limits
   ///                   are, 1 or more
-  explicit Surprise(Eigen::Index readings, Eigen::Index block, double tolerated = 1.0)
+  explicit NormalizedInnovation(Eigen::Index readings, Eigen::Index block,
+                                double tolerated = 1.0)
       : readings_(readings),
         blocks_(std::max(kRecent / static_cast<double>(block), 1.0)),
         tolerated_(tolerated) {}

@@ -4,9 +4,9 @@
 
 #include <string>
 
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/fault_effect.h"
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/plugin/effects/trial.h"
 #include "mjdiag/plugin/machine/machine.h"
 
 namespace mjdiag {
@@ -34,9 +34,9 @@ ObservedMotion AnyMotion(const Machine& machine) {
 }
 
 // A fault parameter of several joints has a signal of each and one amplitude.
-TEST(Trials, HaveABoundForEachOfTheirAmplitudesOrNone) {
+TEST(CandidateRegressors, HaveABoundForEachOfTheirAmplitudesOrNone) {
   int bounded = 0, summed = 0;
-  const auto check = [&](const Trial& trial, const std::string& name) {
+  const auto check = [&](const CandidateRegressor& trial, const std::string& name) {
     summed += trial.summed;
     if (trial.least.size() == 0) return;
     ++bounded;
@@ -54,8 +54,10 @@ TEST(Trials, HaveABoundForEachOfTheirAmplitudesOrNone) {
       for (const Site& site : effect->CandidateSites(map)) {
         const SiteMotion at{machine.plant(), machine.linear(), motion, site};
         const std::string where = name + ": " + effect->name() + "@" + site.name;
-        for (const Trial& trial : effect->Trials(at)) check(trial, where);
-        const auto sweep = effect->MakeSweep(at, motion.time[motion.samples() - 1]);
+        for (const CandidateRegressor& trial : effect->CandidateRegressors(at))
+          check(trial, where);
+        const auto sweep =
+            effect->MakeParameterScan(at, motion.time[motion.samples() - 1]);
         if (sweep) check(sweep->make(sweep->values.front()), where);
       }
     }

@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/effects/trial_signals.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ Eigen::VectorXd Motion(MechanicalModel model, const Eigen::VectorXd& force,
 }
 
 // The spring is halved: the resonance of 22 Hz falls to 16 Hz, far beyond its width.
-TEST(TrialSignals, MotionWithASpringIsThatOfThePlantThatHasIt) {
+TEST(RegressorSignals, MotionWithASpringIsThatOfThePlantThatHasIt) {
   MechanicalModel model;
   model.M = Eigen::Vector2d(2.0, 1.0).asDiagonal();
   model.D = Eigen::Vector2d(4.0, 20.0).asDiagonal();

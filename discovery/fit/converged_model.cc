@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/fit/settled_model.h"
+#include "mjdiag/discovery/fit/converged_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ namespace {
 
 class Settling {
  public:
-  Settling(const SettledBeside& beside, ModelFit fit, std::vector<FilterNoise> near)
+  Settling(const ConvergedBeside& beside, ModelFit fit, std::vector<FilterNoise> near)
       : beside_(beside), near_(std::move(near)), settled_{std::move(fit), {}} {
     settled_.path.deviance = std::numeric_limits<double>::infinity();
   }
 
-  const SettledModel& settled() const { return settled_; }
+  const ConvergedModel& settled() const { return settled_; }
   bool is_likeliest() const { return is_likeliest_; }
   bool IsNowhere() const { return !std::isfinite(settled_.path.deviance); }
 
@@ -50,7 +50,7 @@ class Settling {
 
   /// Behind a noise that suits another model better: with the values that suit it there.
   void Try(const FilterNoise& noise) {
-    SettledModel before = settled_;
+    ConvergedModel before = settled_;
     try {
       settled_ = Followed(before.fit, noise);
       Gains(noise, false);
@@ -111,7 +111,7 @@ class Settling {
     return false;
   }
 
-  SettledModel Followed(ModelFit fit, const FilterNoise& noise) const {
+  ConvergedModel Followed(ModelFit fit, const FilterNoise& noise) const {
     const Machine machine = beside_.machine_with(fit.model);
     return {
         std::move(fit),
@@ -124,7 +124,7 @@ class Settling {
     Take(Followed(std::move(fit), noise));
   }
 
-  void Take(SettledModel other) {
+  void Take(ConvergedModel other) {
     if (other.score() < settled_.score()) settled_ = std::move(other);
   }
 
@@ -136,7 +136,7 @@ class Settling {
     constexpr int kFitIterations = 4;
     const FilterNoise of_path = settled_.path.noise;
     const KeptGains gains =
-        KeepGains(settled_.path, noise, InflationAlong(settled_.path));
+        KeepGains(settled_.path, noise, OverdispersionAlong(settled_.path));
     const MachineWith in_time = InTime(beside_.machine_with, beside_.is_over);
     const FitOf fitted = [&](const Model& start) {
       return FitModel(in_time, beside_.run, settled_.path, gains, beside_.blocks, start,
@@ -164,16 +164,16 @@ class Settling {
     return settled_.score() < score - kLeastGain;
   }
 
-  const SettledBeside& beside_;
+  const ConvergedBeside& beside_;
   std::vector<FilterNoise> near_;  // until they have been asked
-  SettledModel settled_;
+  ConvergedModel settled_;
   bool is_likeliest_ = false;  // no noise is known that suits it better
 };
 
 }  // namespace
 
-std::vector<std::optional<SettledModel>> SettleRivals(
-    const SettledBeside& beside, std::vector<ModelFit> fits,
+std::vector<std::optional<ConvergedModel>> SettleRivals(
+    const ConvergedBeside& beside, std::vector<ModelFit> fits,
     const std::vector<FilterNoise>& near, double beat, double hoped) {
   // Values of first order are off, and what sticks by them a fit may free; what is so much
   // further off than it was to gain is nonsense.
@@ -204,7 +204,7 @@ std::vector<std::optional<SettledModel>> SettleRivals(
       if (&one != &*best && !one.IsNowhere()) one.Try(noise);
     });
   }
-  std::vector<std::optional<SettledModel>> settled;
+  std::vector<std::optional<ConvergedModel>> settled;
   for (const Settling& one : rivals) {
     settled.emplace_back();
     if (!one.IsNowhere()) settled.back() = one.settled();
@@ -212,15 +212,16 @@ std::vector<std::optional<SettledModel>> SettleRivals(
   return settled;
 }
 
-SettledModel SettleNear(const SettledBeside& beside, ModelFit fit, FilterPath path) {
+ConvergedModel SettleNear(const ConvergedBeside& beside, ModelFit fit,
+                          FilterPath path) {
   Settling one(beside, std::move(fit), {});
   one.BeginWith(std::move(path));
   one.Relax();
   return one.settled();
 }
 
-SettledModel Settle(const SettledBeside& beside, ModelFit fit,
-                    const std::vector<FilterNoise>& near, double beat, double hoped) {
+ConvergedModel Settle(const ConvergedBeside& beside, ModelFit fit,
+                      const std::vector<FilterNoise>& near, double beat, double hoped) {
   std::vector<ModelFit> fits;
   fits.push_back(std::move(fit));
   auto settled = SettleRivals(beside, std::move(fits), near, beat, hoped);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/signature/signature.h"
+#include "mjdiag/discovery/residual_dependence/residual_dependence.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
 #include "mjdiag/plugin/effects/structure/force_curve.h"
 #include "mjdiag/plugin/machine/machine.h"

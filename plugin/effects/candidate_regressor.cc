@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/effects/trial.h"
+#include "mjdiag/plugin/effects/candidate_regressor.h"
 
 #include <utility>
 
@@ -43,12 +43,14 @@ MatrixXd SiteMotion::MotorEntry(Index columns) const {
   return model.Gamma.col(site.channel).replicate(1, columns);
 }
 
-Trial LinearTrial(MatrixXd signals, MatrixXd entry, double offset, bool not_negative) {
+CandidateRegressor LinearRegressor(MatrixXd signals, MatrixXd entry, double offset,
+                                   bool not_negative) {
   Amplitudes least;
   if (not_negative) least = Amplitudes::Constant(signals.cols(), -offset);
-  return {std::move(signals), std::move(entry),
-          [offset](const Amplitudes& a) -> TrialValues { return offset + a.array(); },
-          std::move(least)};
+  return {
+      std::move(signals), std::move(entry),
+      [offset](const Amplitudes& a) -> RegressorValues { return offset + a.array(); },
+      std::move(least)};
 }
 
 }  // namespace mjdiag

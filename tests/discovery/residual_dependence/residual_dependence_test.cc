@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/signature/signature.h"
+#include "mjdiag/discovery/residual_dependence/residual_dependence.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,26 +47,26 @@ struct Motion {
 };
 
 /// The signature of a law of rms 1 with white noise of sd 0.3.
-Signature Of(const ArrayXd& law) {
+ResidualDependence Of(const ArrayXd& law) {
   const double rms = std::sqrt(law.square().mean());
   const VectorXd noise = GaussianNoise(kSamples, 0.3, 7);
-  return FindSignature("X", (law / rms).matrix() + noise, "N", 0.3,
-                       Motion().Variables());
+  return FindResidualDependence("X", (law / rms).matrix() + noise, "N", 0.3,
+                                Motion().Variables());
 }
 
 /// Of a signal with mean square 1 plus 0.3^2, 1 / 1.09 can be explained.
 constexpr double kAll = 1.0 / 1.09;
 
-TEST(Signature, NamesCoulombFriction) {
-  const Signature s = Of(Motion().v.sign());
+TEST(ResidualDependence, NamesCoulombFriction) {
+  const ResidualDependence s = Of(Motion().v.sign());
   EXPECT_EQ(s.variable, "X direction") << s.text;
   EXPECT_EQ(s.shape, "step at zero");
   EXPECT_NEAR(s.explained_share, kAll, 0.02);
 }
 
-TEST(Signature, NamesAnOddPowerOfTheVelocity) {
+TEST(ResidualDependence, NamesAnOddPowerOfTheVelocity) {
   const Motion m;
-  const Signature s = Of(m.v.sign() * m.v.abs().pow(1.5));
+  const ResidualDependence s = Of(m.v.sign() * m.v.abs().pow(1.5));
   EXPECT_EQ(s.variable, "X velocity") << s.text;
   EXPECT_EQ(s.factor, "");
   EXPECT_THAT(s.shape, HasSubstr("odd, power")) << s.text;
@@ -74,9 +74,9 @@ TEST(Signature, NamesAnOddPowerOfTheVelocity) {
   EXPECT_NEAR(s.explained_share, kAll, 0.02);
 }
 
-TEST(Signature, NamesDampingThatDependsOnThePosition) {
+TEST(ResidualDependence, NamesDampingThatDependsOnThePosition) {
   const Motion m;
-  const Signature s = Of((m.x * 2.0 * std::numbers::pi / 0.025).sin() * m.v);
+  const ResidualDependence s = Of((m.x * 2.0 * std::numbers::pi / 0.025).sin() * m.v);
   EXPECT_EQ(s.variable, "X position") << s.text;
   EXPECT_EQ(s.factor, "X velocity") << s.text;
   EXPECT_THAT(s.shape, HasSubstr("periodic")) << s.text;
@@ -84,58 +84,58 @@ TEST(Signature, NamesDampingThatDependsOnThePosition) {
   EXPECT_GT(s.explained_share, 0.9 * kAll);
 }
 
-TEST(Signature, NamesFrictionThatDependsOnAnotherAxis) {
+TEST(ResidualDependence, NamesFrictionThatDependsOnAnotherAxis) {
   const Motion m;
-  const Signature s = Of((1.0 + 25.0 * m.y) * m.v.sign());
+  const ResidualDependence s = Of((1.0 + 25.0 * m.y) * m.v.sign());
   EXPECT_EQ(s.variable, "Y position") << s.text;
   EXPECT_EQ(s.factor, "X direction") << s.text;
   EXPECT_EQ(s.shape, "linear") << s.text;
 }
 
-TEST(Signature, NamesABurstInTime) {
+TEST(ResidualDependence, NamesABurstInTime) {
   const Motion m;
-  const Signature s = Of((m.time > 1.0 && m.time < 1.25).cast<double>());
+  const ResidualDependence s = Of((m.time > 1.0 && m.time < 1.25).cast<double>());
   EXPECT_EQ(s.variable, "time") << s.text;
   EXPECT_THAT(s.shape, HasSubstr("different between")) << s.text;
 }
 
-TEST(Signature, NamesTheFrequencyOfAVibration) {
+TEST(ResidualDependence, NamesTheFrequencyOfAVibration) {
   const Motion m;
-  const Signature s = Of((m.time * 2.0 * std::numbers::pi * 143.7).sin());
+  const ResidualDependence s = Of((m.time * 2.0 * std::numbers::pi * 143.7).sin());
   EXPECT_EQ(s.variable, "time") << s.text;
   EXPECT_NEAR(1.0 / s.period, 143.7, 0.1) << s.text;
   EXPECT_GT(s.explained_share, 0.95 * kAll);
 }
 
-TEST(Signature, NamesThePeriodOfARippleFinerThanTheBins) {
+TEST(ResidualDependence, NamesThePeriodOfARippleFinerThanTheBins) {
   const Motion m;
-  const Signature s = Of((m.x * 2.0 * std::numbers::pi / 2e-4).sin());
+  const ResidualDependence s = Of((m.x * 2.0 * std::numbers::pi / 2e-4).sin());
   EXPECT_EQ(s.variable, "X position") << s.text;
   EXPECT_NEAR(s.period, 2e-4, 1e-6) << s.text;
 }
 
-TEST(Signature, NamesAnEndStop) {
+TEST(ResidualDependence, NamesAnEndStop) {
   const Motion m;
-  const Signature s = Of((m.x - 0.02).max(0.0));
+  const ResidualDependence s = Of((m.x - 0.02).max(0.0));
   EXPECT_EQ(s.variable, "X position") << s.text;
   EXPECT_THAT(s.shape, HasSubstr("one-sided, rising above")) << s.text;
 }
 
-TEST(Signature, NamesAMissingMass) {
-  const Signature s = Of(Motion().a);
+TEST(ResidualDependence, NamesAMissingMass) {
+  const ResidualDependence s = Of(Motion().a);
   EXPECT_EQ(s.variable, "X acceleration") << s.text;
   EXPECT_EQ(s.shape, "linear") << s.text;
 }
 
-TEST(Signature, NamesAConstant) {
-  const Signature s = Of(ArrayXd::Ones(kSamples));
+TEST(ResidualDependence, NamesAConstant) {
+  const ResidualDependence s = Of(ArrayXd::Ones(kSamples));
   EXPECT_EQ(s.variable, "") << s.text;
   EXPECT_TRUE(s.significant);
   EXPECT_EQ(s.shape, "constant");
 }
 
 // Level 1 %, 100 draws: more than 5 false alarms have a chance of 5e-4.
-TEST(Signature, RarelyNamesAnythingForNoise) {
+TEST(ResidualDependence, RarelyNamesAnythingForNoise) {
   constexpr Index kShort = 4000;
   std::vector<Variable> variables = Motion().Variables();
   for (Variable& variable : variables) variable.value.conservativeResize(kShort);
@@ -143,34 +143,34 @@ TEST(Signature, RarelyNamesAnythingForNoise) {
     int alarms = 0;
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
       const VectorXd noise = GaussianNoise(kShort, 1.0, 100 + seed, memory);
-      alarms += FindSignature("X", noise, "N", 1.0, variables).significant;
+      alarms += FindResidualDependence("X", noise, "N", 1.0, variables).significant;
     }
     EXPECT_LE(alarms, 5) << "memory " << memory;
   }
 }
 
 // A sine takes three numbers, a curve over its period forty.
-TEST(Signature, OfAWeakWaveInAFewSamplesHasACurveOrNone) {
+TEST(ResidualDependence, OfAWeakWaveInAFewSamplesHasACurveOrNone) {
   constexpr Index kFew = 400;
   const ArrayXd x = ArrayXd::LinSpaced(kFew, 0.0, 1.0);
   const ArrayXd wave = 0.45 * (2.0 * std::numbers::pi * 7.3 * x).sin();
   int waves = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const VectorXd noise = GaussianNoise(kFew, 1.0, seed);
-    const Signature found =
-        FindSignature("X", wave.matrix() + noise, "N", 1.0, {{"X position", "m", x}});
+    const ResidualDependence found = FindResidualDependence(
+        "X", wave.matrix() + noise, "N", 1.0, {{"X position", "m", x}});
     EXPECT_EQ(found.x.size(), found.y_sd.size());
     waves += found.period > 0.0 ? 1 : 0;
   }
   EXPECT_GT(waves, 0);
 }
 
-TEST(Signature, RefusesSeriesThatDoNotFit) {
+TEST(ResidualDependence, RefusesSeriesThatDoNotFit) {
   const VectorXd signal = GaussianNoise(kSamples, 1.0, 1);
   const Variable brief{"x", "m", VectorXd::Zero(10)};
-  EXPECT_THROW(FindSignature("X", signal, "N", 1.0, {brief}), InputError);
-  EXPECT_THROW(FindSignature("X", signal, "N", 0.0, {}), InputError);
-  EXPECT_THROW(FindSignature("X", signal.head(10), "N", 1.0, {}), InputError);
+  EXPECT_THROW(FindResidualDependence("X", signal, "N", 1.0, {brief}), InputError);
+  EXPECT_THROW(FindResidualDependence("X", signal, "N", 0.0, {}), InputError);
+  EXPECT_THROW(FindResidualDependence("X", signal.head(10), "N", 1.0, {}), InputError);
 }
 
 }  // namespace

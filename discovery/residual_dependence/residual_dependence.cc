@@ -1,11 +1,11 @@
-#include "mjdiag/discovery/signature/signature.h"
+#include "mjdiag/discovery/residual_dependence/residual_dependence.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "mjdiag/discovery/signature/curve_shape.h"
-#include "mjdiag/discovery/signature/signature_search.h"
+#include "mjdiag/discovery/residual_dependence/curve_shape.h"
+#include "mjdiag/discovery/residual_dependence/dependence_search.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -43,7 +43,7 @@ void Require(const VectorXd& signal, double signal_sd,
 }
 
 /// The best explanation first, then the best of other variables without a factor.
-std::vector<Explanation> Rank(const SignatureSearch& search,
+std::vector<Explanation> Rank(const ResidualDependenceSearch& search,
                               const std::vector<Variable>& variables) {
   std::vector<Explanation> plain{{}};
   std::vector<Explanation> special;
@@ -91,15 +91,17 @@ std::string Percent(double share) {
 
 }  // namespace
 
-Signature FindSignature(const std::string& site, const VectorXd& signal,
-                        const std::string& signal_unit, double signal_sd,
-                        const std::vector<Variable>& variables) {
+ResidualDependence FindResidualDependence(const std::string& site,
+                                          const VectorXd& signal,
+                                          const std::string& signal_unit,
+                                          double signal_sd,
+                                          const std::vector<Variable>& variables) {
   Require(signal, signal_sd, variables);
   const auto factors =
       static_cast<double>(std::count_if(variables.begin(), variables.end(),
                                         [](const Variable& v) { return v.is_factor; }));
   const double tests = (2.0 + factors) * static_cast<double>(variables.size()) + 1.0;
-  Signature result;
+  ResidualDependence result;
   result.site = site;
   result.shape = "none";
   if (IsConstant(signal) && signal[0] == 0.0) {
@@ -111,7 +113,7 @@ Signature FindSignature(const std::string& site, const VectorXd& signal,
   std::ostringstream text;
   text.precision(3);
   text << site << ": of " << rms << ' ' << signal_unit << " rms ";
-  const SignatureSearch search(signal, signal_sd, tests);
+  const ResidualDependenceSearch search(signal, signal_sd, tests);
   std::vector<Explanation> ranked{{}};
   if (!IsConstant(signal)) ranked = Rank(search, variables);
   const Explanation& best = ranked[0];
