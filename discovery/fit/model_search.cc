@@ -189,10 +189,13 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (IsOver()) break;
     const Model model = After(*move, found_.fit.model);
     try_one(model, *move);
-    // Behind what sticks a filter may be lost, or without it: both are tried.
+    // Behind what sticks a filter may be lost, or without it: both are tried of what comes in.
+    const bool rubs = std::ranges::any_of(move->added, [&](const Added& added) {
+      return found_.blocks[added.variation.block].IsDryFriction();
+    });
     for (const Model& twin :
          {Creeping(found_.blocks, model), Abrupt(found_.blocks, model)}) {
-      if (!SameBlocks(twin, model)) try_one(twin, *move);
+      if ((rubs || iterations == 0) && !SameBlocks(twin, model)) try_one(twin, *move);
       if (iterations > 0) break;
     }
     if (iterations > 0) continue;
