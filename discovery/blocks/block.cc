@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Of a bound: what is nearer is on it.
+constexpr double kEnd = 1e-6;
+
 SiteMotion At(const Machine& machine, const ObservedMotion& motion, const Site& site) {
   return {machine.plant(), machine.mechanics(), motion, site};
 }
@@ -238,12 +241,15 @@ bool Block::IsSimplest() const {
          candidate->effect->kind() != Kind::kLoadFriction;
 }
 
+bool IsAtItsEnd(const Block& block, const Eigen::VectorXd& values) {
+  return !block.candidate &&
+         std::abs(std::log(values[0])) >= (1.0 - kEnd) * kFarthest * block.doubt;
+}
+
 bool IsAllowed(const Block& block, const RegressorValues& values) {
   if (!values || !values->allFinite()) return false;
   if (!block.candidate) {
-    // At its end it would be further off still, if it might.
-    constexpr double kEnd = 1.0 - 1e-6;
-    return std::abs(std::log((*values)[0])) < kEnd * kFarthest * block.doubt;
+    return std::abs(std::log((*values)[0])) <= (1.0 + kEnd) * kFarthest * block.doubt;
   }
   for (Index i = 0; i < values->size(); ++i) {
     const FitParameter& parameter =

@@ -351,10 +351,13 @@ bool ModelSearch::Step() {
 }
 
 void ModelSearch::Prepare() {
-  // What is large shows in a part of a run, and takes a part of the time there.
+  // What is large shows in a part of a run, and takes a part of the time there; how much of it
+  // that is does not grow with the run.
   constexpr double kPart = 0.25;
+  constexpr double kSamples = 2500.0;
   const std::vector<Index> dofs = LatentDofs(machine_, whole_);
-  MeasuredRun pieces = PiecesOfRun(machine_, whole_, dofs, kPart);
+  const double part = std::min(kPart, kSamples / static_cast<double>(whole_.samples()));
+  MeasuredRun pieces = PiecesOfRun(machine_, whole_, dofs, part);
   if (2 * pieces.samples() <= whole_.samples()) as_measured_ = std::move(pieces);
   run_ = as_measured_;
   found_.path = FilterLikeliest(machine_, run_, reading_sd_);
@@ -430,6 +433,12 @@ Explained ModelSearch::Run() {
   try {
     GoOnWithAll();
     StepOn();
+    if (!IsOver()) {
+      may_be_at_ends_ = true;
+      looks_at_forces_ = true;
+      hopeless_.clear();
+      StepOn();
+    }
     // What is left may have a shape that shows beside nothing simple, or no name.
     if (!IsOver()) {
       if (options_.choice.only.empty()) AddCurves();

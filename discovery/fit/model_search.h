@@ -106,7 +106,9 @@ class ModelSearch {
   /// Whether its values are such as its laws and numbers can have.
   bool MayHave(const Model& model) const {
     return std::ranges::all_of(model, [&](const Member& member) {
-      return IsAllowed(found_.blocks[member.block], member.values);
+      const Block& block = found_.blocks[member.block];
+      return IsAllowed(block, member.values) &&
+             (may_be_at_ends_ || !IsAtItsEnd(block, member.values));
     });
   }
   bool IsOne(const Model& model) const {
@@ -154,6 +156,8 @@ class ModelSearch {
   bool looks_at_forces_ = true;
   /// What is simple comes first, too.
   bool at_every_shape_ = false;
+  /// And what makes up for another thing comes last.
+  bool may_be_at_ends_ = false;
   /// Models that were tried in the place of this one and are far from it.
   std::vector<Model> hopeless_;
   Explained found_;

@@ -9,19 +9,20 @@
 namespace mjdiag {
 namespace {
 
-// What is known to a tenth may be off by nine of them; at the end of that it would be further
-// off still, if it might.
-TEST(Block, HasNoNumberAtTheEndOfWhatIsKnown) {
+// What is known to a tenth may be off by nine of them.
+TEST(Block, KnowsANumberAtTheEndOfWhatIsKnown) {
   Block mass;
   mass.name = "mass@arm";
   mass.doubt = 0.1;
-  const auto is_allowed = [&](double logarithm) {
-    return IsAllowed(mass, Eigen::VectorXd::Constant(1, std::exp(logarithm)));
-  };
-  EXPECT_TRUE(is_allowed(0.89));
-  EXPECT_TRUE(is_allowed(-0.89));
-  EXPECT_FALSE(is_allowed(kFarthest * 0.1));
-  EXPECT_FALSE(is_allowed(-kFarthest * 0.1));
+  for (const double sign : {-1.0, 1.0}) {
+    const auto at = [&](double logarithm) {
+      return Eigen::VectorXd::Constant(1, std::exp(sign * logarithm)).eval();
+    };
+    EXPECT_FALSE(IsAtItsEnd(mass, at(0.89)));
+    EXPECT_TRUE(IsAtItsEnd(mass, at(kFarthest * 0.1)));
+    EXPECT_TRUE(IsAllowed(mass, at(kFarthest * 0.1)));
+    EXPECT_FALSE(IsAllowed(mass, at(0.91)));
+  }
 }
 
 }  // namespace
