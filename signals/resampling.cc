@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/median.h"
@@ -40,6 +42,21 @@ std::string Irregularity(const VectorXd& intervals, double usual) {
   if (sd < kRounded && missing > 0.0) return fewer;
   return "time stamps are irregular (their intervals vary by " +
          FormatNumber(100.0 * sd, 2) + " %" + (missing > 0.0 ? ", " + fewer : "") + ")";
+}
+
+/// Of a tick after the first sample, where most samples are: a logger's first interval may be
+/// one of its own. 0 where they are all over the tick, or next to it.
+double PhaseOf(const VectorXd& times, double tick) {
+  constexpr double kMost = 0.5;  // resultant length: within a sixth of a tick of each other
+  constexpr double kNear = 0.1;  // is jitter
+  std::complex<double> sum = 0.0;
+  for (const double time : times) {
+    sum += std::polar(1.0, 2.0 * std::numbers::pi * (time - times[0]) / tick);
+  }
+  if (std::abs(sum) < kMost * static_cast<double>(times.size())) return 0.0;
+  const double phase = std::arg(sum) / (2.0 * std::numbers::pi);
+  if (std::abs(phase) < kNear) return 0.0;
+  return phase < 0.0 ? 1.0 + phase : phase;
 }
 
 /// The last sample that is not after the time; the first before all of them.
@@ -112,8 +129,9 @@ SampleGrid ChooseGrid(const VectorXd& times, double sample_time,
             : "the sample time is " + FormatNumber(100.0 * std::abs(ratio - 1.0), 2) +
                   " % off the control tick";
   }
-  const double ticks = (times[last] - times[0]) / sample_time;
-  return {{times[0], sample_time},
+  const double start = times[0] + sample_time * PhaseOf(times, sample_time);
+  const double ticks = (times[last] - start) / sample_time;
+  return {{start, sample_time},
           static_cast<Index>(std::floor(ticks + kSameRate)) + 1,
           why + ": resampled to " + FormatQuantity(sample_time, "s")};
 }

@@ -39,7 +39,8 @@ struct SampleGrid {
 };
 
 /// The times themselves where they are uniform (FitUniformTime) and at the wanted rate;
-/// else a grid of the wanted sample time from the first to the last of them.
+/// else a grid of the wanted sample time from the first to the last of them, there in a tick
+/// where most of them are.
 /// @param times  [s], one a sample
 /// @param place  where sample k stands, for messages
 /// InputError: fewer than two samples, a time that is not after the one before it, and a

@@ -24,6 +24,7 @@
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/input_choice.h"
+#include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/sensor_noise.h"
 #include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
@@ -39,6 +40,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Of the budget, what the search may use; the rest is for the judgement.
 constexpr double kShareOfSearch = 0.7;
+/// And both together, the rest is for figures.
+constexpr double kShareOfJudgement = 0.9;
 
 /// Seconds since a discovery began, against its budget.
 class RunningTime {
@@ -49,7 +52,9 @@ class RunningTime {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
   bool IsStopped() const { return options_.stop && options_.stop(); }
-  bool IsOver() const { return IsStopped() || Used() > options_.budget; }
+  bool IsOver(double share = 1.0) const {
+    return IsStopped() || Used() > share * options_.budget;
+  }
   double SecondsOfSearch() const { return kShareOfSearch * options_.budget; }
   void Say(const std::string& what, double fraction) const {
     if (options_.progress) options_.progress({what, fraction, best_, options_.budget});
@@ -139,6 +144,9 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
   if (judged.is_cut_short) {
     budget.left_out.push_back("whether unseen data ask for every member of the answer");
   }
+  if (options.figures && discovery.ladder.empty()) {
+    budget.left_out.push_back("figures of every member by itself");
+  }
   if (budget.left_out.empty()) return;
   discovery.notes.push_back(NoteOfBudget(budget, Listed(budget.left_out, " and ")));
 }
@@ -160,12 +168,14 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   time.Say("the machine as given", 0.0);
   const Explained explained =
       Explain(machine, run.seen, reading_sd, OptionsOfSearch(machine, options, time));
-  const SplitRun felt = WithInputsFelt(run, explained.input_width);
-  const AnswerData data{machine, felt, reading_sd, explained.blocks, explained.steps};
-  NoteInputNoise(machine, run, felt, discovery.notes);
+  const Machine looked_at = InTicksOf(machine, explained.ticks);
+  const SplitRun looked = Coarser(run, explained.ticks);
+  const SplitRun felt = WithInputsFelt(looked, explained.input_width);
+  const AnswerData data{looked_at, felt, reading_sd, explained.blocks, explained.steps};
+  NoteInputNoise(machine, looked, felt, discovery.notes);
   time.Say("what unseen data say", kShareOfSearch);
   const UnseenJudgement judged =
-      JudgeUnseen(data, explained, [&] { return time.IsOver(); });
+      JudgeUnseen(data, explained, [&] { return time.IsOver(kShareOfJudgement); });
   discovery.decisions = explained.decisions;
   std::ranges::copy(judged.decisions, std::back_inserter(discovery.decisions));
 
@@ -204,8 +214,8 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
         AddReplays(measurements, changes, machine.setup().compare.skip_samples,
                    options.seed, discovery);
     if (follows) AddPredictions(data, judged, discovery);
-    AddLadderOf(data, judged, measurements, follows, discovery);
-    AddMinimumDetectableFaults(data, judged, discovery);
+    if (!time.IsOver()) AddLadderOf(data, judged, measurements, follows, discovery);
+    if (!time.IsOver()) AddMinimumDetectableFaults(data, judged, discovery);
   }
   NoteTime(time, options, explained, judged, discovery);
   return discovery;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mjdiag/plugin/replay/coarser_run.h"
+
 namespace mjdiag {
 
 using Eigen::Index;
@@ -14,6 +16,13 @@ SampleMask SplitRun::New() const {
     all.segment(unseen.records[r].sample, seen_of[r]).setConstant(false);
   }
   return all;
+}
+
+SplitRun Coarser(const SplitRun& run, int ticks) {
+  SplitRun coarse{Coarser(run.seen, ticks), Coarser(run.unseen, ticks), run.seen_of,
+                  run.share};
+  for (Index& seen : coarse.seen_of) seen /= ticks;
+  return coarse;
 }
 
 SplitRun Split(const Measurements& measurements, double train_share) {

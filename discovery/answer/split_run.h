@@ -26,6 +26,9 @@ struct SplitRun {
   SampleMask New() const;
 };
 
+/// The same looked at once in some ticks (coarser_run.h).
+SplitRun Coarser(const SplitRun& run, int ticks);
+
 /// @param train_share  of every record, where there are none that nothing is fitted to
 SplitRun Split(const Measurements& measurements, double train_share);
 

@@ -56,12 +56,12 @@ void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& follo
 
 /// The same behind the likeliest noise, from one and from one that follows anything.
 void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
-                      ModelOnRuns& one) {
+                      const IsTimeOver& is_over, ModelOnRuns& one) {
   TakeUnseen(
       data,
       [&] {
         return FilterLikeliestFrom(data.With(one.fit.model), data.run.unseen,
-                                   data.reading_sd, one.seen.dofs, {near});
+                                   data.reading_sd, one.seen.dofs, {near}, is_over);
       },
       one);
 }
@@ -89,7 +89,7 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given,
         one);
   }
   if (std::isfinite(one.unseen_deviance) && !is_over()) {
-    FollowUnseenFrom(data, one.unseen.noise, one);
+    FollowUnseenFrom(data, one.unseen.noise, is_over, one);
   }
   if (!std::isfinite(one.unseen_deviance)) {
     throw NumericalError("replay: diverges on unseen data");
@@ -104,7 +104,8 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
   constexpr int kIterations = 4;
   ModelOnRuns one;
   const FilterPath path =
-      FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near);
+      FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near,
+                          is_over);
   one.fit =
       FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
                data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
@@ -123,13 +124,14 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
                  : as_given                  ? explained.nothing
                                              : FilterLikeliestFrom(
                                                    data.With({}), data.run.seen, data.reading_sd,
-                                                   explained.nothing.dofs, {explained.nothing.noise});
+                                                   explained.nothing.dofs, {explained.nothing.noise},
+                                                   is_over);
   try {
     FollowUnseen(data, nothing.seen.noise, is_over, nothing);
   } catch (const NumericalError&) {
     // Behind the noise of what fits saw it does not stay with the rest.
     nothing.seen.noise =
-        FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd).noise;
+        FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd, is_over).noise;
     nothing.seen = RunForceFilter(data.With({}), data.run.seen, nothing.seen.dofs,
                                   nothing.seen.starts, nothing.seen.noise);
     FollowUnseen(data, nothing.seen.noise, is_over, nothing);
@@ -140,12 +142,12 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
 /// Where the search for the noise of one model ended is not where that of another did: what
 /// suits the other may suit it as well.
 void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
-                       ModelOnRuns& one) {
-  FollowUnseenFrom(data, other.unseen.noise, one);
+                       const IsTimeOver& is_over, ModelOnRuns& one) {
+  FollowUnseenFrom(data, other.unseen.noise, is_over, one);
   try {
     FilterPath path =
         FilterLikeliestNear(data.With(one.fit.model), data.run.seen, data.reading_sd,
-                            one.seen.dofs, other.seen.noise);
+                            one.seen.dofs, other.seen.noise, is_over);
     if (path.deviance < one.seen.deviance) one.seen = std::move(path);
   } catch (const NumericalError&) {
   }
@@ -241,7 +243,7 @@ bool UnseenJudge::DropWorst() {
         judged_.losses[m] = {kNeeded, kNeeded};
         continue;
       }
-      LookBehindNoiseOf(*without[m], data_, judged_.answer);
+      LookBehindNoiseOf(*without[m], data_, is_over_, judged_.answer);
       judged_.losses[m] = LossOf(*without[m]);
     }
     const bool is_worst =
@@ -327,7 +329,7 @@ bool UnseenJudge::ExchangeOne() {
     MemberLoss loss = LossOf(*fitted[i]);
     if (loss.Total() < -kLeastGain) {
       if (is_over_()) continue;  // it was not looked at in the same way
-      LookBehindNoiseOf(*fitted[i], data_, judged_.answer);
+      LookBehindNoiseOf(*fitted[i], data_, is_over_, judged_.answer);
       loss = LossOf(*fitted[i]);
     }
     const VectorXd& values = fitted[i]->fit.model[m].values;

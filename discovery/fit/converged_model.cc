@@ -83,9 +83,10 @@ class Settling {
     const bool is_near = near_.empty() || (!beside_.is_far && !IsNowhere());
     FilterPath path =
         is_near
-            ? FilterLikelier(machine, beside_.run, beside_.reading_sd, settled_.path)
+            ? FilterLikelier(machine, beside_.run, beside_.reading_sd, settled_.path,
+                             beside_.is_over)
             : FilterLikeliestFrom(machine, beside_.run, beside_.reading_sd,
-                                  beside_.dofs, near_);
+                                  beside_.dofs, near_, beside_.is_over);
     near_.clear();
     Take({settled_.fit, std::move(path)});
   }

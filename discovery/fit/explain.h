@@ -45,7 +45,8 @@ struct Explained {
   FilterPath path;                  ///< of that with the model
   double score = 0.0;               ///< -2 ln L and what the model costs
   bool steps = true;                ///< the physics steps of the model are part of it
-  double input_width = 0.0;         ///< over which inputs are smoothed [ticks]
+  int ticks = 1;             ///< of a sample of the paths (coarser_run.h)
+  double input_width = 0.0;  ///< over which inputs are smoothed [samples of the paths]
   std::vector<Decision> decisions;  ///< what was tried, in that order
   /// What could be in the place of members (Moves::near), where the search came to its end:
   /// by how much worse each is stands in ModelMove::score.

@@ -7,7 +7,6 @@
 #include "mjdiag/discovery/blocks/block.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/replay/input_noise.h"
-#include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -30,13 +29,14 @@ std::vector<double> WidthsOf(const MeasuredRun& run) {
 /// The likeliest of some widths.
 InputChoice BestOf(const std::vector<double>& widths, const Machine& machine,
                    const MeasuredRun& run, const VectorXd& reading_sd,
-                   const FilterPath& path, InputChoice best) {
+                   const FilterPath& path, InputChoice best,
+                   const IsTimeOver& is_over) {
   std::vector<std::optional<FilterPath>> paths(widths.size());
   ParallelForAll(static_cast<int>(widths.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     try {
       paths[i] = FilterLikeliestNear(machine, WithInputsOver(run, widths[i]),
-                                     reading_sd, path.dofs, path.noise);
+                                     reading_sd, path.dofs, path.noise, is_over);
     } catch (const NumericalError&) {
     }
   });
@@ -55,7 +55,12 @@ InputChoice BestOf(const std::vector<double>& widths, const Machine& machine,
 }  // namespace
 
 MeasuredRun WithInputsOver(const MeasuredRun& run, double width) {
-  return WithSmoothedInputs(run, VectorXd::Constant(run.inputs.rows(), width));
+  VectorXd widths = VectorXd::Zero(run.inputs.rows());
+  const Eigen::MatrixXd& all = run.ticks() > 1 ? run.finer_inputs : run.inputs;
+  for (Eigen::Index i = 0; i < widths.size(); ++i) {
+    if (IsNoiseWithin(all.row(i).transpose(), run, width)) widths[i] = width;
+  }
+  return WithSmoothedInputs(run, widths);
 }
 
 double PriceOfWidth(double width) {
@@ -65,7 +70,8 @@ double PriceOfWidth(double width) {
 
 std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRun& run,
                                         const VectorXd& reading_sd,
-                                        const FilterPath& path, double width) {
+                                        const FilterPath& path, double width,
+                                        const IsTimeOver& is_over) {
   const InputChoice as_it_is{width, path};
   const auto is_better = [&](const InputChoice& other) {
     return other.path.deviance + PriceOfWidth(other.width) <
@@ -75,8 +81,10 @@ std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRu
   // noise first.
   constexpr double kLittle = 2.0;
   if (width == 0.0) {
-    const FilterPath little = RunForceFilter(machine, WithInputsOver(run, kLittle),
-                                             path.dofs, path.starts, path.noise);
+    const MeasuredRun smoother = WithInputsOver(run, kLittle);
+    if (smoother.inputs == run.inputs) return std::nullopt;  // without noise
+    const FilterPath little =
+        RunForceFilter(machine, smoother, path.dofs, path.starts, path.noise);
     if (little.deviance > path.deviance) return std::nullopt;
   }
   const std::vector<double> all = WidthsOf(run);
@@ -84,12 +92,12 @@ std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRu
   for (const double one : all) {
     if (one == 0.5 * width || one == 2.0 * width) few.push_back(one);
   }
-  InputChoice best = BestOf(few, machine, run, reading_sd, path, as_it_is);
+  InputChoice best = BestOf(few, machine, run, reading_sd, path, as_it_is, is_over);
   if (!is_better(best)) return std::nullopt;
-  if (width > 0.0) return best;
+  if (width > 0.0 || is_over()) return best;
   std::vector<double> others = all;
   std::erase(others, kLittle);
-  return BestOf(others, machine, run, reading_sd, path, std::move(best));
+  return BestOf(others, machine, run, reading_sd, path, std::move(best), is_over);
 }
 
 }  // namespace mjdiag

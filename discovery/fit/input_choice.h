@@ -8,6 +8,7 @@
 
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/force_filter.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"
 
 namespace mjdiag {
@@ -22,7 +23,8 @@ struct InputChoice {
 /// @param path   of the machine with them smoothed over `width`
 std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRun& run,
                                         const Eigen::VectorXd& reading_sd,
-                                        const FilterPath& path, double width);
+                                        const FilterPath& path, double width,
+                                        const IsTimeOver& is_over);
 
 /// The run with its inputs smoothed over so many ticks.
 MeasuredRun WithInputsOver(const MeasuredRun& run, double width);

@@ -22,7 +22,9 @@
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/plugin/replay/noise_search.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -48,7 +50,7 @@ ConvergedBeside ModelSearch::Beside(bool steps) const {
           reading_sd_,
           found_.path.dofs,
           found_.blocks,
-          IsOfPieces(),
+          IsCoarse(),
           [this] { return IsOver(); }};
 }
 
@@ -311,7 +313,8 @@ bool ModelSearch::ChooseSteps() {
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
   const double width = found_.input_width;
   std::optional<InputChoice> choice = ChooseInputs(With(found_.fit.model), as_measured_,
-                                                   reading_sd_, found_.path, width);
+                                                   reading_sd_, found_.path, width,
+                                                   [this] { return IsOver(); });
   if (!choice) return std::nullopt;
   ConvergedModel settled{found_.fit, std::move(choice->path)};
   Say("inputs over " + std::to_string(choice->width) + " ticks: " +
@@ -350,31 +353,41 @@ bool ModelSearch::Step() {
   return move.has_value();
 }
 
-void ModelSearch::Prepare() {
-  // What is large shows in a part of a run, and takes a part of the time there; how much of it
-  // that is does not grow with the run.
+void ModelSearch::LookEvery(int ticks) {
+  machine_ = InTicksOf(given_, ticks);
+  as_measured_ = Coarser(whole_, ticks);
+  run_ = WithInputsOver(as_measured_, found_.input_width);
+  found_.ticks = ticks;
+}
+
+// What is large and slow shows in a part of the readings, and takes a part of the time there;
+// how many that are does not grow with the run.
+Index ModelSearch::SamplesToBeginWith() const {
   constexpr double kPart = 0.25;
-  constexpr double kSamples = 2500.0;
-  const std::vector<Index> dofs = LatentDofs(machine_, whole_);
-  const double part = std::min(kPart, kSamples / static_cast<double>(whole_.samples()));
-  MeasuredRun pieces = PiecesOfRun(machine_, whole_, dofs, part);
-  if (2 * pieces.samples() <= whole_.samples()) as_measured_ = std::move(pieces);
-  run_ = as_measured_;
-  found_.path = FilterLikeliest(machine_, run_, reading_sd_);
+  constexpr Index kSamples = 2500;
+  const auto part =
+      static_cast<Index>(kPart * static_cast<double>(whole_.samples()));
+  const Index states =
+      TangentSize(given_.plant()) + std::ssize(LatentDofs(given_, whole_)) + 1;
+  return std::min(kSamples, std::max(part, EnoughOf(whole_.outputs.rows(), states)));
+}
+
+void ModelSearch::Prepare() {
+  LookEvery(TicksThatShowMotion(whole_, reading_sd_, SamplesToBeginWith()));
+  // All of them get at least as long, if they are asked.
+  if (IsCoarse()) seconds_ = 0.5 * options_.seconds;
+  const IsTimeOver is_over = [this] { return IsOver(); };
+  found_.path = FilterLikeliest(machine_, run_, reading_sd_, is_over);
   const FilterPath nothing = found_.path;
   found_.score = found_.path.deviance;
   if (ChooseSteps()) {
     found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
-                                      {found_.path.noise});
+                                      {found_.path.noise}, is_over);
     found_.score = found_.path.deviance;
   }
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
-  found_.nothing =
-      IsOfPieces()
-          ? RunForceFilter(machine_, whole_, nothing.dofs,
-                           FilterStarts(machine_, whole_, reading_sd_), nothing.noise)
-          : nothing;
-  const ObservedMotion motion = MotionAlong(machine_, whole_, found_.nothing);
+  found_.nothing = nothing;
+  const ObservedMotion motion = MotionAlong(machine_, run_, found_.nothing);
   BoundByRecord(candidates_, machine_, motion);
   BoundDriveLimits(candidates_, machine_, motion);
   BoundByReadings(candidates_, machine_, whole_);
@@ -393,19 +406,46 @@ void ModelSearch::StepOn() {
   }
 }
 
-void ModelSearch::GoOnWithAll() {
-  if (!IsOfPieces()) return;
-  as_measured_ = whole_;
-  run_ = WithInputsOver(whole_, found_.input_width);
+bool ModelSearch::TellsMoreInBetween() const {
+  constexpr double kMost = 2.0;  // times what its noise is
+  const FilterPath& path = found_.path;
+  for (Index i = 0; i < path.sensors(); ++i) {
+    const auto counted = static_cast<double>(path.counts.row(i).count());
+    if (path.innovations.row(i).squaredNorm() <
+        kMost * counted * std::pow(path.noise.reading[i], 2)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void ModelSearch::LookAtAll() {
+  seconds_ = options_.seconds;
+  if (!IsCoarse() || IsOver() || !TellsMoreInBetween()) return;
+  const int ticks = found_.ticks;
+  found_.input_width *= ticks;
+  LookEvery(1);
   found_.rivals.clear();
   hopeless_.clear();
   looks_at_forces_ = false;
+  for (Block& block : found_.blocks) {
+    if (block.candidate) WidenFrequencies(*block.candidate, whole_.sample_time);
+  }
+  // White forces are held over a tick.
+  const auto in_a_tick = [&](FilterNoise noise) {
+    noise.white *= std::sqrt(static_cast<double>(ticks));
+    return noise;
+  };
+  const auto along = [&](const Machine& machine, const MeasuredRun& run,
+                         const FilterPath& path) {
+    return RunForceFilter(machine, run, path.dofs,
+                          FilterStarts(machine, run, reading_sd_),
+                          in_a_tick(path.noise));
+  };
+  found_.nothing = along(machine_, whole_, found_.nothing);
   try {
     // Also of what has been asked to end.
-    const Machine machine = Made(found_.fit.model, steps_);
-    found_.path =
-        RunForceFilter(machine, run_, found_.path.dofs,
-                       FilterStarts(machine, run_, reading_sd_), found_.path.noise);
+    found_.path = along(Made(found_.fit.model, steps_), run_, found_.path);
   } catch (const NumericalError&) {
     found_.fit = {};
     found_.path = found_.nothing;
@@ -413,9 +453,8 @@ void ModelSearch::GoOnWithAll() {
     run_ = whole_;
     steps_ = true;
   }
-  // What was found by pieces is where the search begins, whatever it is worth by all.
+  // What was found so far is where the search begins, whatever it is worth by all.
   found_.score = ConvergedModel{found_.fit, found_.path}.score();
-  if (IsOver()) return;
   ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, found_.path);
   found_.score = settled.score();
   found_.fit = std::move(settled.fit);
@@ -427,11 +466,11 @@ void ModelSearch::GoOnWithAll() {
 Explained ModelSearch::Run() {
   Prepare();
   try {
-    if (IsOfPieces()) StepOn();
+    if (IsCoarse()) StepOn();
   } catch (const NumericalError&) {
   }
   try {
-    GoOnWithAll();
+    LookAtAll();
     StepOn();
     if (!IsOver()) {
       may_be_at_ends_ = true;

@@ -26,7 +26,8 @@ class ModelSearch {
  public:
   ModelSearch(const Machine& machine, const MeasuredRun& run,
               const Eigen::VectorXd& reading_sd, const ExplainOptions& options)
-      : machine_(machine),
+      : given_(machine),
+        machine_(machine),
         whole_(run),
         as_measured_(run),
         run_(run),
@@ -90,10 +91,16 @@ class ModelSearch {
   bool Step();
   /// What no law explains may be a force without a name.
   void AddCurves();
+  Eigen::Index SamplesToBeginWith() const;
   void Prepare();
   void StepOn();
-  /// From pieces to the whole run.
-  void GoOnWithAll();
+  /// The machine and the run looked at once in so many ticks.
+  void LookEvery(int ticks);
+  /// Whether readings in between tell more than those that are looked at: where most of what
+  /// is left is their noise. What a model lacks is finer there, and no more.
+  bool TellsMoreInBetween() const;
+  /// From every so many ticks to every tick.
+  void LookAtAll();
   void Decide(const Model& tried, double score, const std::string& why) {
     found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
   }
@@ -118,12 +125,10 @@ class ModelSearch {
     const Model after = After(move, found_.fit.model);
     return !HasTooManyCauses(after) && IsResolved(found_.blocks, after);
   }
-  bool IsOfPieces() const { return as_measured_.samples() < whole_.samples(); }
+  bool IsCoarse() const { return found_.ticks > 1; }
   bool IsStopped() const { return options_.stop && options_.stop(); }
-  /// The whole run decides, and gets at least as long as pieces of it.
-  double Allowed() const { return (IsOfPieces() ? 0.5 : 1.0) * options_.seconds; }
   bool IsOver() const {
-    return std::chrono::duration<double>(Clock::now() - begin_).count() > Allowed() ||
+    return std::chrono::duration<double>(Clock::now() - begin_).count() > seconds_ ||
            IsStopped();
   }
   void Say(const std::string& text) const {
@@ -143,14 +148,16 @@ class ModelSearch {
   /// with it, or of one that has none?
   bool ChooseSteps();
 
-  const Machine& machine_;
+  const Machine& given_;
+  Machine machine_;  // as given, in the ticks that are looked at
   bool steps_ = true;
   const MeasuredRun& whole_;
-  MeasuredRun as_measured_;  // all of it, or pieces
+  MeasuredRun as_measured_;  // all of it, or once in some ticks
   MeasuredRun run_;          // with its inputs smoothed
   const Eigen::VectorXd& reading_sd_;
   const ExplainOptions& options_;
   Clock::time_point begin_ = Clock::now();
+  double seconds_ = options_.seconds;  // allowed by now
   std::vector<Candidate> candidates_;
   /// What is large comes first.
   bool looks_at_forces_ = true;

@@ -55,11 +55,12 @@ Model Creeping(const std::vector<Block>& blocks, Model model) {
     const auto other = InPlaceOf(
         blocks, block, [](const Block& one) { return one.IsSmoothFriction(); });
     if (!other) continue;
-    // Its bounds are a thousandth of the fastest speed and twice that (candidate_bounds.h).
-    constexpr double kHundredth = 10.0;
-    const double slowest = blocks[*other].candidate->parameters[1].lower;
-    if (!(slowest > 0.0)) continue;
-    member = {*other, Eigen::Vector2d(member.values[0], kHundredth * slowest)};
+    // A filter does not follow what turns round within its doubt of a velocity: it begins by
+    // a wide step, which a fit makes as steep as it is.
+    constexpr double kOfFastest = 0.1;
+    const double fastest = 0.5 * blocks[*other].candidate->parameters[1].upper;
+    if (!(fastest > 0.0)) continue;
+    member = {*other, Eigen::Vector2d(member.values[0], kOfFastest * fastest)};
   }
   return model;
 }

@@ -71,6 +71,15 @@ void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
   }
 }
 
+void WidenFrequencies(Candidate& candidate, double sample_time) {
+  std::size_t i = 0;
+  for (const EffectParameter& p : candidate.effect->parameters()) {
+    FitParameter& parameter = candidate.parameters[i++];
+    if (parameter.role != Role::kFrequency) continue;
+    parameter.upper = std::min({p.maximum, p.plausible, 0.5 / sample_time});
+  }
+}
+
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion) {
   // Waves and resonances come round within what is seen, or they are something else.

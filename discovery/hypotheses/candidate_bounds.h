@@ -20,6 +20,9 @@ namespace mjdiag {
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion);
 
+/// Lets the frequencies of a candidate reach up to half of the rate of a finer look.
+void WidenFrequencies(Candidate& candidate, double sample_time);
+
 /// Errors of readings, narrowed by the steps in which these are written: none is smaller
 /// than half of one, or repeats with it.
 void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,

@@ -60,7 +60,13 @@ void Stepper::Act(const mjModel& model, mjData& data, TickControl& control) noex
 
 void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,
                       const std::function<void()>& after_step) {
-  for (int i = 0; i < substeps_; ++i) {
+  AdvanceSteps(substeps_, model, data, control, after_step);
+}
+
+void Stepper::AdvanceSteps(int steps, const mjModel& model, mjData& data,
+                           TickControl& control,
+                           const std::function<void()>& after_step) {
+  for (int i = 0; i < steps; ++i) {
     mj_step1(&model, &data);
     if (!held_.empty()) mju_zero(data.qfrc_applied, static_cast<int>(model.nv));
     Act(model, data, control);

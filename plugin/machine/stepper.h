@@ -56,6 +56,9 @@ class Stepper {
   /// A whole tick. @param after_step  called after every physics step; may be empty
   void Advance(const mjModel& model, mjData& data, TickControl& control,
                const std::function<void()>& after_step = {});
+  /// Its first physics steps.
+  void AdvanceSteps(int steps, const mjModel& model, mjData& data, TickControl& control,
+                    const std::function<void()>& after_step = {});
   /// Whether the next physics step is the first of a tick.
   bool AtTickStart() const { return substep_ == 0 && stage_ == 0; }
   /// What the sensors read at the start of this tick, as the control was told.

@@ -56,6 +56,15 @@ Outcome Checked(const TickMap::Result& result) {
 
 }  // namespace
 
+TickTangent Repeated(const TickTangent& step, int steps) {
+  TickTangent tick = step;
+  for (int i = 1; i < steps; ++i) {
+    tick.A = step.A * tick.A;
+    tick.B = step.A * tick.B + step.B;
+  }
+  return tick;
+}
+
 std::vector<Index> AllDofs(const mjModel& model) {
   std::vector<Index> dofs(static_cast<std::size_t>(model.nv));
   std::iota(dofs.begin(), dofs.end(), Index{0});
@@ -70,58 +79,72 @@ TickDifferences::TickDifferences(TickMap& map, double tick, std::vector<Index> d
 
 TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
                                 std::int64_t tick, TickControl& control) {
+  return By(&TickMap::Probe, from, forces, tick, control);
+}
+
+TickTangent TickDifferences::OfFirstStep(const PlantState& from, const VectorXd& forces,
+                                         std::int64_t tick, TickControl& control) {
+  return By(&TickMap::ProbeStep, from, forces, tick, control);
+}
+
+TickTangent TickDifferences::By(Probe probe, const PlantState& from,
+                                const VectorXd& forces, std::int64_t tick,
+                                TickControl& control) {
   const Index ns = steps_.size();
   const Index nv = force_steps_.size();
   TickTangent tangent{MatrixXd(ns, ns), MatrixXd::Zero(ns, nv),
                       MatrixXd(map_.sensors(), ns), MatrixXd::Zero(map_.sensors(), nv)};
   for (Index i = 0; i < ns; ++i) {
-    Column(from, forces, tick, control, i, steps_[i], tangent);
+    Column(probe, from, forces, tick, control, i, steps_[i], tangent);
   }
   for (const Index dof : dofs_) {
-    ForceColumn(from, forces, tick, control, dof, force_steps_[dof], tangent);
+    ForceColumn(probe, from, forces, tick, control, dof, force_steps_[dof], tangent);
   }
   return tangent;
 }
 
 void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
                               std::int64_t tick, TickControl& control,
-                              std::span<const Index> dofs, bool positions,
-                              const VectorXd& sd, const VectorXd& force_sd,
-                              TickTangent& tangent) {
+                              std::span<const Index> dofs, bool of_step,
+                              bool positions, const VectorXd& sd,
+                              const VectorXd& force_sd, TickTangent& tangent) {
+  const Probe probe = of_step ? &TickMap::ProbeStep : &TickMap::Probe;
   for (const Index dof : dofs) {
     for (const Index state : {dof, force_steps_.size() + dof}) {
       if (state == dof && !positions) continue;
       const double step = std::max(steps_[state], sd[state]);
-      Column(from, forces, tick, control, state, step, tangent);
+      Column(probe, from, forces, tick, control, state, step, tangent);
     }
     if (std::ranges::find(dofs_, dof) == dofs_.end()) continue;
     const double step = std::max(force_steps_[dof], force_sd[dof]);
-    ForceColumn(from, forces, tick, control, dof, step, tangent);
+    ForceColumn(probe, from, forces, tick, control, dof, step, tangent);
   }
 }
 
-void TickDifferences::Column(const PlantState& from, const VectorXd& forces,
-                             std::int64_t tick, TickControl& control, Index state,
-                             double h, TickTangent& tangent) {
+void TickDifferences::Column(Probe probe, const PlantState& from,
+                             const VectorXd& forces, std::int64_t tick,
+                             TickControl& control, Index state, double h,
+                             TickTangent& tangent) {
   VectorXd dx = VectorXd::Zero(steps_.size());
   dx[state] = h;
   const mjModel& model = map_.model();
   const Outcome above =
-      Checked(map_.Probe(Moved(model, from, dx), forces, tick, control));
+      Checked((map_.*probe)(Moved(model, from, dx), forces, tick, control));
   const Outcome below =
-      Checked(map_.Probe(Moved(model, from, -dx), forces, tick, control));
+      Checked((map_.*probe)(Moved(model, from, -dx), forces, tick, control));
   tangent.A.col(state) = Deviation(model, below.state, above.state) / (2.0 * h);
   tangent.C.col(state) = (above.reading - below.reading) / (2.0 * h);
 }
 
-void TickDifferences::ForceColumn(const PlantState& from, const VectorXd& forces,
-                                  std::int64_t tick, TickControl& control, Index dof,
-                                  double h, TickTangent& tangent) {
+void TickDifferences::ForceColumn(Probe probe, const PlantState& from,
+                                  const VectorXd& forces, std::int64_t tick,
+                                  TickControl& control, Index dof, double h,
+                                  TickTangent& tangent) {
   VectorXd moved = forces;
   moved[dof] += h;
-  const Outcome above = Checked(map_.Probe(from, moved, tick, control));
+  const Outcome above = Checked((map_.*probe)(from, moved, tick, control));
   moved[dof] -= 2.0 * h;
-  const Outcome below = Checked(map_.Probe(from, moved, tick, control));
+  const Outcome below = Checked((map_.*probe)(from, moved, tick, control));
   tangent.B.col(dof) = Deviation(map_.model(), below.state, above.state) / (2.0 * h);
   tangent.D.col(dof) = (above.reading - below.reading) / (2.0 * h);
 }

@@ -16,6 +16,12 @@
 
 namespace mjdiag {
 
+/// Of n physics steps that are one like the other, with forces that are held:
+///   A = A_1^n,  B = (I + A_1 + .. + A_1^(n - 1)) B_1
+/// A motion changes the tangent little within a tick, and where no constraint switches
+/// nothing else does.
+TickTangent Repeated(const TickTangent& step, int steps);
+
 /// 0 .. nv - 1
 std::vector<Eigen::Index> AllDofs(const mjModel& model);
 
@@ -28,17 +34,21 @@ class TickDifferences {
   /// About the Run that was the last one. NumericalError if a tick beside it diverges.
   TickTangent Of(const PlantState& from, const Eigen::VectorXd& forces,
                  std::int64_t tick, TickControl& control);
+  /// The same of its first physics step alone.
+  TickTangent OfFirstStep(const PlantState& from, const Eigen::VectorXd& forces,
+                          std::int64_t tick, TickControl& control);
   /// Computes columns q, v and w of some degrees of freedom anew, as secants over what is
   /// not known of them:
   ///   (F(x + sd_i e_i) - F(x - sd_i e_i)) / (2 sd_i)
   /// M. Norgaard, N. K. Poulsen, O. Ravn, "New developments in state estimation for
   /// nonlinear systems", Automatica 36(11), 2000.
+  /// @param of_step    whether the tangent is of the first physics step
   /// @param positions  with columns q
   /// @param sd         of the state, ns
   /// @param force_sd   of the forces, nv
   void Refresh(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
-               TickControl& control, std::span<const Eigen::Index> dofs, bool positions,
-               const Eigen::VectorXd& sd, const Eigen::VectorXd& force_sd,
+               TickControl& control, std::span<const Eigen::Index> dofs, bool of_step,
+               bool positions, const Eigen::VectorXd& sd, const Eigen::VectorXd& force_sd,
                TickTangent& tangent);
   /// Velocity that a force of 1 gives a degree of freedom in a tick where the model is drawn.
   double VelocityOf(Eigen::Index dof) const {
@@ -46,10 +56,16 @@ class TickDifferences {
   }
 
  private:
-  void Column(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
-              TickControl& control, Eigen::Index state, double step,
+  /// Of ticks, or of first steps.
+  using Probe = const TickMap::Result& (TickMap::*)(const PlantState&,
+                                                    const Eigen::VectorXd&,
+                                                    std::int64_t, TickControl&);
+  TickTangent By(Probe probe, const PlantState& from, const Eigen::VectorXd& forces,
+                 std::int64_t tick, TickControl& control);
+  void Column(Probe probe, const PlantState& from, const Eigen::VectorXd& forces,
+              std::int64_t tick, TickControl& control, Eigen::Index state, double step,
               TickTangent& tangent);
-  void ForceColumn(const PlantState& from, const Eigen::VectorXd& forces,
+  void ForceColumn(Probe probe, const PlantState& from, const Eigen::VectorXd& forces,
                    std::int64_t tick, TickControl& control, Eigen::Index dof,
                    double step, TickTangent& tangent);
 

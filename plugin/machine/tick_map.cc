@@ -48,6 +48,7 @@ VectorXd StateOf(const std::vector<ActiveEffects::BodyOf>& bodies) {
 
 TickMap::TickMap(const Machine& machine)
     : tick_(machine.rates().tick()),
+      steps_(machine.rates().substeps),
       model_(CopyModel(machine.plant())),
       stepper_(machine),
       before_(machine),
@@ -79,26 +80,37 @@ PlantState TickMap::Begun(PlantState state) const {
 const TickMap::Result& TickMap::Run(const PlantState& from, const VectorXd& forces,
                                     std::int64_t tick, TickControl& control) {
   before_.Recall(stepper_);
-  Advance(stepper_, from, forces, tick, control, last_);
+  Advance(stepper_, steps_, from, forces, tick, control, last_);
   return last_;
 }
 
 const TickMap::Result& TickMap::Probe(const PlantState& from, const VectorXd& forces,
                                       std::int64_t tick, TickControl& control) {
   probe_.Recall(before_);
-  Advance(probe_, from, forces, tick, control, probed_);
+  Advance(probe_, steps_, from, forces, tick, control, probed_);
   return probed_;
 }
 
-void TickMap::Advance(Stepper& stepper, const PlantState& from, const VectorXd& forces,
-                      std::int64_t tick, TickControl& control, Result& result) {
+const TickMap::Result& TickMap::ProbeStep(const PlantState& from,
+                                          const VectorXd& forces, std::int64_t tick,
+                                          TickControl& control) {
+  probe_.Recall(before_);
+  Advance(probe_, 1, from, forces, tick, control, probed_);
+  return probed_;
+}
+
+void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
+                      const VectorXd& forces, std::int64_t tick, TickControl& control,
+                      Result& result) {
   SetState(*model_, from, *data_);
   SetBodies(from.bodies, stepper.bodies());
   data_->time = static_cast<double>(tick) * tick_;
   stepper.Hold({forces.data(), static_cast<std::size_t>(forces.size())});
   result.pattern = 0xcbf29ce484222325ULL;
+  result.is_constrained = false;
   std::ranges::fill(friction_, Friction{});
-  stepper.Advance(*model_, *data_, control, [&] {
+  stepper.AdvanceSteps(steps, *model_, *data_, control, [&] {
+    result.is_constrained |= data_->nefc > 0;
     for (int row = 0; row < data_->nefc; ++row) {
       const int type = data_->efc_type[row];
       const int id = data_->efc_id[row];

@@ -32,6 +32,7 @@ class TickMap {
     /// Of what decides by switching: constraints that are active and how, in every
     /// physics step, of dry friction in all steps together, and actuators that are off.
     std::uint64_t pattern = 0;
+    bool is_constrained = false;  ///< any constraint, in any step
     bool diverged = false;
   };
 
@@ -63,12 +64,19 @@ class TickMap {
   /// The same from what effects remembered before the last Run.
   const Result& Probe(const PlantState& from, const Eigen::VectorXd& forces,
                       std::int64_t tick, TickControl& control);
+  /// The same, of the first physics step of the tick alone.
+  const Result& ProbeStep(const PlantState& from, const Eigen::VectorXd& forces,
+                          std::int64_t tick, TickControl& control);
+  /// Physics steps of a tick.
+  int steps() const { return steps_; }
+  bool reads_at_end() const { return reads_at_end_; }
   /// What the sensors read at the start of a tick, without one. Those of its end: 0.
   Eigen::VectorXd Read(const PlantState& at, std::int64_t tick);
 
  private:
-  void Advance(Stepper& stepper, const PlantState& from, const Eigen::VectorXd& forces,
-               std::int64_t tick, TickControl& control, Result& result);
+  void Advance(Stepper& stepper, int steps, const PlantState& from,
+               const Eigen::VectorXd& forces, std::int64_t tick, TickControl& control,
+               Result& result);
 
   /// What the dry friction of a joint or a tendon does in a tick.
   struct Friction {
@@ -77,6 +85,7 @@ class TickMap {
   };
 
   double tick_;  // [s]
+  int steps_;
   ModelPtr model_;
   DataPtr data_;
   Stepper stepper_;  // as it goes on

@@ -10,12 +10,19 @@
 
 namespace mjdiag {
 
-/// Behind a Gaussian window of that standard deviation [ticks], which does not delay; each
-/// record by itself. 0: as it is.
+/// Behind a Gaussian window of that standard deviation, in steps of the signal, which does not
+/// delay; each record by itself. 0: as it is.
+/// @param signal  of every sample of the run, or of every tick of these
 Eigen::VectorXd Smoothed(const Eigen::VectorXd& signal, const MeasuredRun& run,
                          double width);
 
-/// @param widths  of every actuator [ticks]
+/// Whether what smoothing takes from a signal is noise: about as much as differences of
+/// neighbouring samples say (noise_level.h), up to five times for noise that lasts some
+/// samples. Edges and curvature of a command that has none are no noise: taking them away
+/// hides that a drive follows late.
+bool IsNoiseWithin(const Eigen::VectorXd& signal, const MeasuredRun& run, double width);
+
+/// @param widths  of every actuator [samples of the run]
 MeasuredRun WithSmoothedInputs(MeasuredRun run, const Eigen::VectorXd& widths);
 
 }  // namespace mjdiag

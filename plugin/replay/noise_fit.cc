@@ -112,12 +112,13 @@ class LikeliestOf {
  public:
   LikeliestOf(const Machine& machine, const MeasuredRun& run,
               const VectorXd& reading_sd, const std::vector<Index>& dofs,
-              double longest)
+              double longest, const IsTimeOver& is_over)
       : machine_(machine),
         run_(run),
         reading_sd_(reading_sd),
         dofs_(dofs),
         longest_(longest),
+        is_over_(is_over),
         starts_(FilterStarts(machine, run, reading_sd)) {}
 
   const std::vector<FilterStart>& starts() const { return starts_; }
@@ -148,7 +149,7 @@ class LikeliestOf {
   void Improve(bool is_far) {
     constexpr int kRounds = 4;
     constexpr double kGain = 2.0;  // less is noise of the search
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRounds && !IsOver(); ++round) {
       const FilterNoise from = best().noise;
       const double before = best().deviance;
       const NoiseSearch search(best(), reading_sd_, longest_);
@@ -167,11 +168,14 @@ class LikeliestOf {
   }
 
  private:
+  bool IsOver() const { return is_over_ && is_over_(); }
+
   const Machine& machine_;
   const MeasuredRun& run_;
   const VectorXd& reading_sd_;
   const std::vector<Index>& dofs_;
   double longest_;
+  const IsTimeOver& is_over_;
   std::vector<FilterStart> starts_;
   std::optional<FilterPath> best_;
 };
@@ -179,9 +183,10 @@ class LikeliestOf {
 /// Of all of a run, from the noise that is likeliest by pieces of it on.
 FilterPath OfAll(const Machine& machine, const MeasuredRun& run,
                  const VectorXd& reading_sd, const std::vector<Index>& dofs,
-                 const LikeliestOf& by_pieces, const FilterNoise& otherwise) {
+                 const LikeliestOf& by_pieces, const FilterNoise& otherwise,
+                 const IsTimeOver& is_over) {
   if (by_pieces.best().samples() == run.samples()) return by_pieces.best();
-  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run));
+  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run), is_over);
   if (!all.Follow(by_pieces.best().noise)) all.Follow(otherwise);
   all.Improve(false);
   return all.best();
@@ -190,12 +195,12 @@ FilterPath OfAll(const Machine& machine, const MeasuredRun& run,
 }  // namespace
 
 FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
-                           const VectorXd& reading_sd) {
+                           const VectorXd& reading_sd, const IsTimeOver& is_over) {
   const std::vector<Index> dofs = LatentDofs(machine, run);
   // Pieces tell the noise as well as all of a run.
   const MeasuredRun pieces = PiecesOfRun(machine, run, dofs);
   const double longest = LongestMemory(run);
-  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, longest);
+  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, longest, is_over);
   const FilterNoise fast =
       FollowingNoise(machine, pieces, dofs, of_pieces.starts(), reading_sd);
   of_pieces.Follow(fast);
@@ -213,28 +218,30 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
     }
   }
   of_pieces.Improve(true);
-  return OfAll(machine, run, reading_sd, dofs, of_pieces, fast);
+  return OfAll(machine, run, reading_sd, dofs, of_pieces, fast, is_over);
 }
 
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
                                const std::vector<Index>& dofs,
-                               const std::vector<FilterNoise>& near) {
+                               const std::vector<FilterNoise>& near,
+                               const IsTimeOver& is_over) {
   const MeasuredRun pieces = PiecesOfRun(machine, run, dofs);
-  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, LongestMemory(run));
+  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, LongestMemory(run), is_over);
   for (const FilterNoise& noise : near) of_pieces.Follow(noise);
   // What was near to a machine may be far from another: one that rubs sticks behind the small
   // forces of one that does not.
   of_pieces.Follow(
       FollowingNoise(machine, pieces, dofs, of_pieces.starts(), reading_sd));
   of_pieces.Improve(true);
-  return OfAll(machine, run, reading_sd, dofs, of_pieces, near.back());
+  return OfAll(machine, run, reading_sd, dofs, of_pieces, near.back(), is_over);
 }
 
 FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
-                          const VectorXd& reading_sd, FilterPath path) {
+                          const VectorXd& reading_sd, FilterPath path,
+                          const IsTimeOver& is_over) {
   const std::vector<Index> dofs = path.dofs;
-  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run));
+  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run), is_over);
   all.Keep(std::move(path));
   all.Improve(false);
   return all.best();
@@ -243,10 +250,10 @@ FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
                                const std::vector<Index>& dofs,
-                               const FilterNoise& near) {
+                               const FilterNoise& near, const IsTimeOver& is_over) {
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   return FilterLikelier(machine, run, reading_sd,
-                        RunForceFilter(machine, run, dofs, starts, near));
+                        RunForceFilter(machine, run, dofs, starts, near), is_over);
 }
 
 }  // namespace mjdiag

@@ -9,11 +9,16 @@
 // up to four times as many of a small machine; then along all of the run (noise_search.h).
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
+
+/// Asked while a noise is looked for: whether no time is left. What was found until then is the
+/// answer. May be empty.
+using IsTimeOver = std::function<bool()>;
 
 /// Pieces of every record, each a record of its own: what is large shows there as in all of
 /// the run.
@@ -36,23 +41,27 @@ FilterNoise FollowingNoise(const Machine& machine, const MeasuredRun& run,
 /// @param reading_sd  of every sensor, by itself
 /// NumericalError as RunForceFilter.
 FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
-                           const Eigen::VectorXd& reading_sd);
+                           const Eigen::VectorXd& reading_sd,
+                           const IsTimeOver& is_over = {});
 
 /// The path of a run with the noise that is most likely from some near ones on.
 /// @param dofs  with a latent force, of all of those noises
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
                                const std::vector<Eigen::Index>& dofs,
-                               const std::vector<FilterNoise>& near);
+                               const std::vector<FilterNoise>& near,
+                               const IsTimeOver& is_over = {});
 
 /// The path of a machine along a run with a noise that is likelier, from its own on.
 FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
-                          const Eigen::VectorXd& reading_sd, FilterPath path);
+                          const Eigen::VectorXd& reading_sd, FilterPath path,
+                          const IsTimeOver& is_over = {});
 
 /// The same of a machine that is all but the one whose noise it begins with.
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
                                const std::vector<Eigen::Index>& dofs,
-                               const FilterNoise& near);
+                               const FilterNoise& near,
+                               const IsTimeOver& is_over = {});
 
 }  // namespace mjdiag

@@ -5,11 +5,13 @@ namespace mjdiag {
 using Eigen::Index;
 
 RecordedInputs::RecordedInputs(const Machine& machine, const MeasuredRun& run)
-    : run_(run) {
+    : run_(run),
+      ticks_(run.ticks()),
+      substeps_(machine.rates().substeps / static_cast<int>(ticks_)) {
+  const Eigen::MatrixXd& inputs = ticks_ > 1 ? run.finer_inputs : run.inputs;
   Index i = 0;
   for (const ActuatorSetup& actuator : machine.channels().actuators) {
-    courses_.emplace_back(actuator.hold, run.inputs.row(i++).transpose(),
-                          machine.rates().substeps);
+    courses_.emplace_back(actuator.hold, inputs.row(i++).transpose(), substeps_);
   }
 }
 
@@ -23,7 +25,11 @@ void RecordedInputs::Tick(std::span<const double> /*outputs*/,
 }
 
 double RecordedInputs::Above(std::size_t actuator, int substep) const noexcept {
-  return courses_[actuator].Above(now_, substep);
+  if (ticks_ == 1) return courses_[actuator].Above(now_, substep);
+  const Index tick = now_ * ticks_ + substep / substeps_;
+  const auto i = static_cast<Index>(actuator);
+  return run_.finer_inputs(i, tick) - run_.inputs(i, now_) +
+         courses_[actuator].Above(tick, substep % substeps_);
 }
 
 bool RecordedInputs::IsOn(std::size_t actuator) const noexcept {

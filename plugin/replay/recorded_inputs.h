@@ -28,6 +28,8 @@ class RecordedInputs final : public TickControl {
  private:
   const MeasuredRun& run_;
   std::vector<InputCourse> courses_;
+  Eigen::Index ticks_;  // of a sample
+  int substeps_;        // of such a tick
   Eigen::Index tick_ = 0;
   Eigen::Index now_ = 0;
   bool goes_on_ = true;

@@ -94,6 +94,14 @@ TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
       of_effects_(std::max<std::int64_t>(
           1, std::lround(kStretchOfEffects * machine.rates().control))) {}
 
+bool TangentCourse::IsBySteps() const {
+  return !map_.last().is_constrained && !map_.reads_at_end();
+}
+
+TickTangent TangentCourse::OfTick(const TickTangent& part) const {
+  return IsBySteps() ? Repeated(part, map_.steps()) : part;
+}
+
 // A joint that may stick for all that is known of its velocity and of what pushes it moves
 // by neither of the two tangents, for only by what is between them does a filter that holds
 // it learn that it should not.
@@ -140,10 +148,12 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   if (tick < last_) known_.clear();
   last_ = tick;
   const auto [entry, is_new] =
-      known_.try_emplace(map_.last().pattern, Known{0, tick, shortest_});
+      known_.try_emplace(map_.last().pattern, Known{{}, 0, tick, shortest_});
   Known& known = entry->second;
   if (is_new || tick - known.since >= known.stretch) {
-    TickTangent here = differences_.Of(from, forces, tick, control);
+    known.of_part = IsBySteps() ? differences_.OfFirstStep(from, forces, tick, control)
+                                : differences_.Of(from, forces, tick, control);
+    TickTangent here = OfTick(known.of_part);
     known.since = tick;
     if (!is_new && AreAlike(here, tangents[known.place])) {
       known.stretch = std::min(2 * known.stretch, kLongest * shortest_);
@@ -163,15 +173,19 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
                             forces[dof], spread});
   }
   if (refreshed_ && HoldsFor(*refreshed_, now, force_sd)) return refreshed_->place;
-  TickTangent here = tangents[known.place];
+  TickTangent part = known.of_part;
   const bool may_stand = !dofs.empty();
   // Dry friction does not ask where a joint is.
   std::erase_if(dofs, [&](Index dof) {
     return std::ranges::find(with_effects_, dof) != with_effects_.end();
   });
-  differences_.Refresh(from, forces, tick, control, dofs, false, sd, force_sd, here);
-  differences_.Refresh(from, forces, tick, control, with_effects_, true, sd, force_sd,
-                       here);
+  const auto refresh = [&](const std::vector<Index>& some, bool positions) {
+    differences_.Refresh(from, forces, tick, control, some, IsBySteps(), positions, sd,
+                         force_sd, part);
+  };
+  refresh(dofs, false);
+  refresh(with_effects_, true);
+  TickTangent here = OfTick(part);
   // What stands may begin to move at any time.
   if (!may_stand && refreshed_ && refreshed_->of == now.of &&
       ColumnsAreAlike(tangents[refreshed_->place], here, with_effects_)) {

@@ -30,6 +30,10 @@ class TangentCourse {
   std::vector<TickTangent> tangents;
 
  private:
+  /// Where no constraint acts, and nothing is read at its end, a tick is its first physics
+  /// step as often as there are some.
+  bool IsBySteps() const;
+  TickTangent OfTick(const TickTangent& part) const;
   /// Degrees of freedom that may stand, whose columns hold for this tick only.
   std::vector<Eigen::Index> RestlessAt(const PlantState& from,
                                        const Eigen::VectorXd& sd,
@@ -44,6 +48,7 @@ class TangentCourse {
   std::int64_t last_ = 0;              // tick
   /// A tangent, from when on it is taken to hold, and for how long.
   struct Known {
+    TickTangent of_part;  // of the tick, or of its first physics step
     std::size_t place = 0;
     std::int64_t since = 0;
     std::int64_t stretch = 0;

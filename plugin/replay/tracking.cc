@@ -242,6 +242,10 @@ MeasuredRun Excerpt(const MeasuredRun& run, Index first, Index samples) {
   part.sample_time = run.sample_time;
   part.outputs = run.outputs.middleCols(first, samples);
   part.inputs = run.inputs.middleCols(first, samples);
+  if (run.finer_inputs.size() > 0) {
+    part.finer_inputs =
+        run.finer_inputs.middleCols(first * run.ticks(), samples * run.ticks());
+  }
   if (run.on.size() > 0) part.on = run.on.middleCols(first, samples);
   if (run.measured.size() > 0) part.measured = run.measured.middleCols(first, samples);
   if (run.counted.size() > 0) part.counted = run.counted.middleCols(first, samples);
@@ -275,6 +279,8 @@ MeasuredRun Joined(const std::vector<MeasuredRun>& runs) {
   all.outputs = size(runs.front().outputs);
   all.inputs = size(runs.front().inputs);
   all.on = size(runs.front().on);
+  const Index ticks = runs.front().ticks();
+  if (ticks > 1) all.finer_inputs.resize(all.inputs.rows(), ticks * samples);
   const bool complete = std::ranges::all_of(
       runs, [](const MeasuredRun& run) { return run.measured.size() == 0; });
   if (!complete) all.measured.setConstant(all.outputs.rows(), samples, true);
@@ -285,6 +291,10 @@ MeasuredRun Joined(const std::vector<MeasuredRun>& runs) {
   for (const MeasuredRun& run : runs) {
     all.outputs.middleCols(first, run.samples()) = run.outputs;
     all.inputs.middleCols(first, run.samples()) = run.inputs;
+    if (ticks > 1) {
+      all.finer_inputs.middleCols(first * ticks, run.samples() * ticks) =
+          run.finer_inputs;
+    }
     if (run.on.size() > 0) all.on.middleCols(first, run.samples()) = run.on;
     if (run.measured.size() > 0) {
       all.measured.middleCols(first, run.samples()) = run.measured;

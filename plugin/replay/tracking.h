@@ -42,6 +42,9 @@ struct MeasuredRun {
   double sample_time = 0.0;  ///< [s]
   Eigen::MatrixXd outputs;   ///< sensors x samples
   Eigen::MatrixXd inputs;    ///< actuators x samples
+  /// Of a run that is looked at once in some ticks (coarser_run.h), those of every tick, whose
+  /// means `inputs` are then: actuators x ticks x samples; empty: they are the inputs.
+  Eigen::MatrixXd finer_inputs{};
   /// Actuators x samples, 0: an open circuit; empty: all on.
   Eigen::MatrixXd on{};
   /// Which outputs were measured, sensors x samples; empty: all. Where one was not, the
@@ -55,6 +58,10 @@ struct MeasuredRun {
   std::vector<RecordStart> records{{}};  ///< in order, the first at sample 0
 
   Eigen::Index samples() const { return outputs.cols(); }
+  /// Ticks of a sample.
+  Eigen::Index ticks() const {
+    return finer_inputs.size() > 0 ? finer_inputs.cols() / samples() : 1;
+  }
   /// Of a record.
   Eigen::Index SamplesOf(std::size_t record) const;
   /// Which record a sample is of.

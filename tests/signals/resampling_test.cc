@@ -94,6 +94,15 @@ TEST(ChosenGrid, IsTheWantedOneAtAnotherRate) {
   EXPECT_EQ(Choose(2.0 * Jittered(200, 0.2)).time.sample_time, kTick);
 }
 
+// As of a logger whose first interval is one of its own.
+TEST(ChosenGrid, IsWhereMostSamplesAre) {
+  VectorXd times(101);
+  times << 0.0, VectorXd::LinSpaced(100, 0.3 * kTick, 99.3 * kTick);
+  const SampleGrid grid = Choose(times);
+  EXPECT_NEAR(grid.time.start, 0.3 * kTick, 1e-2 * kTick);
+  EXPECT_EQ(grid.samples, 100);
+}
+
 TEST(ChosenGrid, RefusesTimesInAnotherUnit) {
   EXPECT_THAT([] { Choose(1000.0 * Jittered(200, 0.2)); },
               ThrowsMessage<InputError>(

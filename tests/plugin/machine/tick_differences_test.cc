@@ -148,6 +148,32 @@ TEST(TickDifferences, AreTheExactTickOfTheLinearBonder) {
   EXPECT_LT(Relative(tangent.C, tick.C), 1e-6);
 }
 
+// A motion changes it by little within a tick: 5 ms of an arm at 0.1 rad/s.
+TEST(TickDifferences, OfAFirstStepRepeatedAreThoseOfTheTick) {
+  const Machine machine = test::MachineOf(
+      R"(<mujoco><option timestep="0.001"/><worldbody><body>
+      <joint name="a" type="hinge" axis="0 1 0" damping="0.4"/>
+      <inertial pos="0.1 0 0" mass="2" diaginertia="0.1 0.1 0.1"/>
+      <body pos="0.3 0 0"><joint name="b" type="hinge" axis="0 1 0" stiffness="20"/>
+      <inertial pos="0.1 0 0" mass="1" diaginertia="0.1 0.1 0.1"/></body>
+      </body></worldbody><actuator><motor name="u" joint="a"/></actuator>
+      <sensor><jointpos name="y" joint="b"/></sensor></mujoco>)",
+      "[rates]\ncontrol = 200.0\nsubsteps = 5\n[sensors.y]\nelement = \"y\"\n"
+      "unit = \"rad\"\n[actuators.u]\nelement = \"u\"\nunit = \"N m\"\n");
+  TickMap map(machine);
+  HeldInput control(0.3);
+  const VectorXd none = VectorXd::Zero(2);
+  const PlantState state = SomeState(machine.plant());
+  map.Run(state, none, 0, control);
+  TickDifferences differences(map, machine.rates().tick(), AllDofs(machine.plant()));
+  const TickTangent tick = differences.Of(state, none, 0, control);
+  const TickTangent repeated =
+      Repeated(differences.OfFirstStep(state, none, 0, control), 5);
+  EXPECT_LT(Relative(repeated.A, tick.A), 1e-5);
+  EXPECT_LT(Relative(repeated.B, tick.B), 1e-3);
+  EXPECT_LT(Relative(repeated.C, tick.C), 1e-9);
+}
+
 TEST(TickMap, ReadsForcesAtTheEndOfTheTickThatTheyMove) {
   const Machine machine = test::MachineOf(
       R"(<mujoco><option timestep="0.001"/><worldbody><body>
@@ -250,7 +276,7 @@ TEST(TickDifferences, AreSecantsOverWhatIsNotKnownOfAStickingJoint) {
   TickTangent tangent = differences.Of(rest, none, 0, control);
   EXPECT_LT(tangent.B(1, 0), 0.02 * free);
   const std::vector<Index> dofs{0};
-  differences.Refresh(rest, none, 0, control, dofs, true, VectorXd::Constant(2, 1e-6),
+  differences.Refresh(rest, none, 0, control, dofs, false, true, VectorXd::Constant(2, 1e-6),
                       VectorXd::Constant(1, 10.0), tangent);
   // MuJoCo's friction is right to a hundredth.
   EXPECT_NEAR(tangent.B(1, 0) / free, 0.9, 0.01);

@@ -77,6 +77,16 @@ TEST(ForceFilter, LeavesTheNoiseOfItsSensorBesideTheTrueMachine) {
   EXPECT_LT(path.forces.norm() / std::sqrt(3000.0), 0.05);
 }
 
+TEST(ForceFilter, HasANoiseWhereNoTimeIsLeftToLookForABetterOne) {
+  const Slide slide;
+  const MeasuredRun run = slide.Measure(None);
+  const VectorXd sd = VectorXd::Constant(1, kNoise);
+  const FilterPath path =
+      FilterLikeliest(slide.machine, run, sd, [] { return true; });
+  EXPECT_EQ(path.samples(), run.samples());
+  EXPECT_GE(path.deviance, FilterLikeliest(slide.machine, run, sd).deviance);
+}
+
 TEST(ForceFilter, BeginsInMidMotion) {
   const Slide slide;
   const MeasuredRun run = slide.Measure(None);

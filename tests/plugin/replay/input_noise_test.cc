@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -44,6 +45,31 @@ TEST(InputNoise, IsOfEveryRecordByItself) {
   run.inputs(1, 10) = 1.0;
   const MeasuredRun smooth = WithSmoothedInputs(run, Eigen::Vector2d(8.0, 0.0));
   EXPECT_TRUE(smooth.inputs.isApprox(run.inputs, 1e-12));
+}
+
+/// Of 4000 samples.
+VectorXd SignalOf(const std::function<double(Index)>& value) {
+  return VectorXd::NullaryExpr(4000, value);
+}
+
+TEST(InputNoise, IsWhatScattersFromSampleToSample) {
+  const MeasuredRun run = TwoRecords(2000);
+  std::mt19937 generator(2);
+  std::normal_distribution<double> normal;
+  const auto slow = [](Index k) { return std::sin(1e-3 * static_cast<double>(k)); };
+  EXPECT_TRUE(IsNoiseWithin(
+      SignalOf([&](Index k) { return slow(k) + 0.02 * normal(generator); }), run, 2.0));
+}
+
+// What a relay, or a sine, asks of a drive is no noise, however much smoothing takes of it.
+TEST(InputNoise, IsNotWhatACommandHasOfEdgesAndCurvature) {
+  const MeasuredRun run = TwoRecords(2000);
+  EXPECT_FALSE(
+      IsNoiseWithin(SignalOf([](Index k) { return k / 30 % 2 == 0 ? 4.0 : -4.0; }), run,
+                    2.0));
+  EXPECT_FALSE(IsNoiseWithin(
+      SignalOf([](Index k) { return std::sin(0.05 * static_cast<double>(k)); }), run,
+      2.0));
 }
 
 }  // namespace
