@@ -266,6 +266,12 @@ double SizePrice(double x) { return 3.0 * std::log1p(x * x / 3.0); }
 double SizePrice(const Block& block, const VectorXd& values) {
   if (block.number) return SizePrice(std::log(values[0]) / block.doubt);
   double sum = 0.0;
+  if (IsCurve(*block.candidate)) {
+    const double spread = block.candidate->parameters.front().spread;
+    const VectorXd white = WhiteningOfKnots(*block.candidate) * (values / spread);
+    for (const double one : white) sum += SizePrice(one);
+    return sum;
+  }
   for (Index i = 0; i < values.size(); ++i) {
     const FitParameter& parameter =
         block.candidate->parameters[static_cast<std::size_t>(i)];

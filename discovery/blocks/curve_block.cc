@@ -1,5 +1,6 @@
 #include "mjdiag/discovery/blocks/curve_block.h"
 
+#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <map>
@@ -112,6 +113,26 @@ std::vector<Candidate> CurveCandidates(const Machine& machine,
     curves.push_back(CurveOver(*at, CurveVariable::kVelocity, joint, axis, spread));
   }
   return curves;
+}
+
+MatrixXd WhiteningOfKnots(const Candidate& curve) {
+  const CurveAxis axis = CurveAxisOf(curve.chosen);
+  const bool is_split = axis.shape == CurveShapes::kSplit;
+  const double length = 0.25 * (axis.high - axis.low);
+  MatrixXd K(axis.knots, axis.knots);
+  for (int i = 0; i < axis.knots; ++i) {
+    for (int j = 0; j < axis.knots; ++j) {
+      const bool is_apart = is_split && (2 * i < axis.knots) != (2 * j < axis.knots);
+      const double s = (axis.KnotAt(i) - axis.KnotAt(j)) / length;
+      K(i, j) = is_apart ? 0.0 : std::exp(-0.5 * s * s);
+    }
+  }
+  constexpr double kRough = 1e-4;
+  K.diagonal().array() += kRough * kRough;
+  // K^-1 = R^T R
+  const MatrixXd precision =
+      K.llt().solve(MatrixXd::Identity(axis.knots, axis.knots));
+  return precision.llt().matrixU();
 }
 
 bool IsCurve(const Candidate& candidate) {

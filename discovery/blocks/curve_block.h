@@ -19,6 +19,14 @@ namespace mjdiag {
 std::vector<Candidate> CurveCandidates(const Machine& machine,
                                        const std::vector<Candidate>& candidates,
                                        const ObservedMotion& motion);
+/// What makes the knots of a curve, over their spread, white as they are known beforehand: a
+/// smooth function, of covariance
+///   k(d) = exp(-s^2 / 2),   s = d / (a quarter of the axis)
+/// (C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, MIT Press 2006,
+/// 4.2.1), rough to 1e-4 of the spread, on either side of 0 its own where it is split. Many
+/// knots cost what the function that they describe does, then. Upper triangular.
+Eigen::MatrixXd WhiteningOfKnots(const Candidate& curve);
+
 bool IsCurve(const Candidate& candidate);
 
 /// The force of every knot along the motion.

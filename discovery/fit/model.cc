@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 #include "mjdiag/plugin/effects/wave.h"
 
@@ -186,6 +187,20 @@ Model At(const std::vector<Coordinate>& coordinates, Model model, const VectorXd
     model[one.member].values[one.value] = one.ToTheta(x[i]);
   }
   return model;
+}
+
+Eigen::MatrixXd WhiteningOf(const std::vector<Block>& blocks, const Model& model,
+                            const std::vector<Coordinate>& coordinates) {
+  const Index size = std::ssize(coordinates);
+  Eigen::MatrixXd R = Eigen::MatrixXd::Identity(size, size);
+  for (Index i = 0; i < size; ++i) {
+    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
+    const Block& block = blocks[model[one.member].block];
+    if (one.value != 0 || !block.candidate || !IsCurve(*block.candidate)) continue;
+    const Eigen::MatrixXd knots = WhiteningOfKnots(*block.candidate);
+    R.block(i, i, knots.rows(), knots.cols()) = knots;
+  }
+  return R;
 }
 
 }  // namespace mjdiag

@@ -58,4 +58,9 @@ Eigen::VectorXd Place(const std::vector<Coordinate>& coordinates, const Model& m
 Model At(const std::vector<Coordinate>& coordinates, Model model,
          const Eigen::VectorXd& x);
 
+/// What makes coordinates white as they are known beforehand: nothing, but for the knots of a
+/// curve (WhiteningOfKnots). Upper triangular.
+Eigen::MatrixXd WhiteningOf(const std::vector<Block>& blocks, const Model& model,
+                            const std::vector<Coordinate>& coordinates);
+
 }  // namespace mjdiag

@@ -116,25 +116,24 @@ class InnovationCost final : public ceres::CostFunction {
   Innovations& innovations_;
 };
 
-/// One x of what is known beforehand.
+/// What is known beforehand: w^T x has a standard deviation of 1.
 class KnownCost final : public ceres::CostFunction {
  public:
-  KnownCost(Index place, Index size) : place_(place), size_(size) {
+  explicit KnownCost(VectorXd w) : w_(std::move(w)) {
     set_num_residuals(1);
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(size));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(w_.size()));
   }
   bool Evaluate(const double* const* blocks, double* residuals,
                 double** jacobians) const override {
-    residuals[0] = blocks[0][place_];
+    residuals[0] = w_.dot(VectorXd::Map(blocks[0], w_.size()));
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      VectorXd::Map(jacobians[0], size_) = VectorXd::Unit(size_, place_);
+      VectorXd::Map(jacobians[0], w_.size()) = w_;
     }
     return true;
   }
 
  private:
-  Index place_;
-  Index size_;
+  VectorXd w_;
 };
 
 }  // namespace
@@ -152,6 +151,7 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const std::vector<Block>& blocks, const Model& start,
                   int iterations) {
   const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, start);
+  const MatrixXd R = WhiteningOf(blocks, start, coordinates);
   Innovations innovations(machine_with, run, path, gains, start, coordinates);
   VectorXd x = Place(coordinates, start);
   innovations.Of(x);
@@ -166,7 +166,7 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
     std::vector<std::unique_ptr<KnownCost>> known;
     for (Index i = 0; i < x.size(); ++i) {
       if (!coordinates[static_cast<std::size_t>(i)].is_known) continue;
-      known.push_back(std::make_unique<KnownCost>(i, x.size()));
+      known.push_back(std::make_unique<KnownCost>(R.row(i).transpose()));
       problem.AddResidualBlock(known.back().get(), &loss, x.data());
     }
     for (Index i = 0; i < x.size(); ++i) {
@@ -203,9 +203,9 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
   }
   if (x.size() > 0) {
     const MatrixXd& J = innovations.Jacobian(x);
-    const MatrixXd H = J.transpose() * J + MatrixXd::Identity(x.size(), x.size());
-    const Eigen::LLT<MatrixXd> solved(H);
-    fit.occam = 2.0 * solved.matrixLLT().diagonal().array().log().sum();
+    const Eigen::LLT<MatrixXd> solved(J.transpose() * J + R.transpose() * R);
+    fit.occam = 2.0 * (solved.matrixLLT().diagonal().array().log().sum() -
+                       R.diagonal().array().log().sum());
     fit.sd =
         solved.solve(MatrixXd::Identity(x.size(), x.size())).diagonal().cwiseSqrt();
   }

@@ -70,6 +70,14 @@ std::vector<MatrixXd> ForcesOfChanges(const FilterPath& path) {
   return forces;
 }
 
+/// What positions are off by where readings are, behind their noises.
+MatrixXd PositionOfReadings(const FilterPath& path) {
+  const TickTangent& tangent = path.tangents.front();
+  const VectorXd weight = path.noise.reading.cwiseInverse();
+  const MatrixXd C = weight.asDiagonal() * tangent.C.leftCols(tangent.B.cols());
+  return PseudoInverse(C) * weight.asDiagonal();
+}
+
 }  // namespace
 
 MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
@@ -84,6 +92,7 @@ MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
   }
   missing = Means(forces);
   force_of_change = ForcesOfChanges(path);
+  position_of_readings = PositionOfReadings(path);
 }
 
 VectorXd MissingForceRows::Means(const MatrixXd& forces) const {
@@ -126,6 +135,47 @@ double MissingForceMap::log_determinant() const {
   return sum;
 }
 
+MatrixXd MissingForceMap::ForcesOfErrors(const MatrixXd& errors) const {
+  const FilterPath& path = of_.path;
+  const Index nv = path.tangents.front().B.cols();
+  MatrixXd forces = MatrixXd::Zero(path.dof_count(), path.samples());
+  const MatrixXd dq = of_.position_of_readings * errors;
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
+    for (Index k = path.first[record]; k + 2 < path.EndOf(record); ++k) {
+      const auto tangent = path.of_tick[static_cast<std::size_t>(k)];
+      const MatrixXd& A = path.tangents[tangent].A;
+      VectorXd change = VectorXd::Zero(A.rows());
+      const VectorXd dv = (dq.col(k + 1) - dq.col(k)) / path.sample_time;
+      change.head(nv) = dq.col(k + 1);
+      change.segment(nv, nv) = (dq.col(k + 2) - dq.col(k + 1)) / path.sample_time;
+      change -= A.leftCols(nv) * dq.col(k) + A.middleCols(nv, nv) * dv;
+      forces.col(k) = of_.force_of_change[tangent] * change;
+    }
+  }
+  return forces;
+}
+
+MatrixXd MissingForceMap::ErrorsOfForces(const MatrixXd& forces) const {
+  const FilterPath& path = of_.path;
+  const Index nv = path.tangents.front().B.cols();
+  MatrixXd dq = MatrixXd::Zero(nv, path.samples());
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
+    for (Index k = path.first[record]; k + 2 < path.EndOf(record); ++k) {
+      const auto tangent = path.of_tick[static_cast<std::size_t>(k)];
+      const MatrixXd& A = path.tangents[tangent].A;
+      const VectorXd change =
+          of_.force_of_change[tangent].transpose() * forces.col(k);
+      const VectorXd next = change.segment(nv, nv) / path.sample_time;
+      const VectorXd now =
+          A.middleCols(nv, nv).transpose() * change / path.sample_time;
+      dq.col(k + 2) += next;
+      dq.col(k + 1) += change.head(nv) - next - now;
+      dq.col(k) += now - A.leftCols(nv).transpose() * change;
+    }
+  }
+  return of_.position_of_readings.transpose() * dq;
+}
+
 MatrixXd MissingForceMap::Of(const std::vector<const Column*>& columns) const {
   const Index nf = of_.path.dof_count();
   MatrixXd out(rows(), std::ssize(columns));
@@ -147,6 +197,13 @@ MatrixXd MissingForceMap::Of(const std::vector<const Column*>& columns) const {
                 state);
       }
     }
+    if (!column.readings.empty()) {
+      MatrixXd errors = MatrixXd::Zero(of_.path.sensors(), of_.path.samples());
+      for (const auto& [sensor, signal] : column.readings) {
+        errors.row(sensor) += signal.transpose();
+      }
+      forces += ForcesOfErrors(errors);
+    }
     out.col(number) =
         (weight_.asDiagonal() * of_.Means(forces).reshaped(nf, std::ssize(of_.windows)))
             .reshaped();
@@ -162,16 +219,21 @@ std::vector<RowMap::Transposed> MissingForceMap::TransposedTimes(
   ParallelFor(static_cast<int>(u.cols()), [&](int number) {
     Transposed& one = all[static_cast<std::size_t>(number)];
     one.forces = MatrixXd::Zero(of_.path.samples(), nv);
-    one.readings = MatrixXd::Zero(of_.path.samples(), of_.path.sensors());
+    MatrixXd forces = MatrixXd::Zero(nf, of_.path.samples());
     Index row = 0;
     for (const MissingForceRows::Window& window : of_.windows) {
       for (Index j = 0; j < nf; ++j, ++row) {
-        one.forces.col(of_.path.dofs[static_cast<std::size_t>(j)])
+        forces.row(j)
             .segment(window.first, window.count)
             .setConstant(weight_[j] * u(row, number) /
                          static_cast<double>(window.count));
       }
     }
+    for (Index j = 0; j < nf; ++j) {
+      one.forces.col(of_.path.dofs[static_cast<std::size_t>(j)]) =
+          forces.row(j).transpose();
+    }
+    one.readings = ErrorsOfForces(forces).transpose();
   });
   return all;
 }

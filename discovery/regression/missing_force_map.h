@@ -8,7 +8,10 @@
 // lasts: rows count once in the time over which they repeat themselves (R. Geyer, "Practical
 // Markov Chain Monte Carlo", Statist. Sci. 7, 1992: the initial positive sequence).
 //
-// Errors of readings have no force here.
+// A reading that is off makes a motion that was not, and a force for it: with what positions
+// that read so are off by, dq = C^+ dy, and dv = dq' beside them,
+//
+//   f[k] = B^+ (dx[k + 1] - A dx[k]),     dx = [dq; dv].
 
 #include <Eigen/Core>
 #include <vector>
@@ -35,6 +38,8 @@ struct MissingForceRows {
   Eigen::VectorXd missing;
   /// Of every tangent, latent forces that do a change of the state in a tick, nf x ns.
   std::vector<Eigen::MatrixXd> force_of_change;
+  /// Positions that readings tell, C^+ behind their noises, nv x ny.
+  Eigen::MatrixXd position_of_readings;
 };
 
 class MissingForceMap final : public RowMap {
@@ -60,6 +65,11 @@ class MissingForceMap final : public RowMap {
   std::vector<Transposed> TransposedTimes(const Eigen::MatrixXd& u) const override;
 
  private:
+  /// Forces for errors of readings. @param errors  ny x samples  @return nf x samples
+  Eigen::MatrixXd ForcesOfErrors(const Eigen::MatrixXd& errors) const;
+  /// The adjoint. @param forces  nf x samples  @return ny x samples
+  Eigen::MatrixXd ErrorsOfForces(const Eigen::MatrixXd& forces) const;
+
   const MissingForceRows& of_;
   Rest rest_;
   Eigen::VectorXd weight_;  // nf

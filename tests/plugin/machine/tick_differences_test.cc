@@ -148,7 +148,8 @@ TEST(TickDifferences, AreTheExactTickOfTheLinearBonder) {
   EXPECT_LT(Relative(tangent.C, tick.C), 1e-6);
 }
 
-// A motion changes it by little within a tick: 5 ms of an arm at 0.1 rad/s.
+// Within 5 ms an arm at 0.1 rad/s turns by half a milliradian, by which springs, dampers and
+// inertia change little more.
 TEST(TickDifferences, OfAFirstStepRepeatedAreThoseOfTheTick) {
   const Machine machine = test::MachineOf(
       R"(<mujoco><option timestep="0.001"/><worldbody><body>
@@ -169,7 +170,7 @@ TEST(TickDifferences, OfAFirstStepRepeatedAreThoseOfTheTick) {
   const TickTangent tick = differences.Of(state, none, 0, control);
   const TickTangent repeated =
       Repeated(differences.OfFirstStep(state, none, 0, control), 5);
-  EXPECT_LT(Relative(repeated.A, tick.A), 1e-5);
+  EXPECT_LT(Relative(repeated.A, tick.A), 1e-4);
   EXPECT_LT(Relative(repeated.B, tick.B), 1e-3);
   EXPECT_LT(Relative(repeated.C, tick.C), 1e-9);
 }

@@ -74,8 +74,8 @@ TEST_P(RunInTicks, MovesItsMachineAsAllOfTheTicksDo) {
 
 INSTANTIATE_TEST_SUITE_P(Inputs, RunInTicks,
                          testing::Values("zero", "linear", "band_limited"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& one) {
+                           std::string name = one.param;
                            std::erase(name, '_');
                            return name;
                          });
