@@ -47,7 +47,8 @@ std::string Irregularity(const VectorXd& intervals, double usual) {
 /// Of a tick after the first sample, where most samples are: a logger's first interval may be
 /// one of its own. 0 where they are all over the tick, or next to it.
 double PhaseOf(const VectorXd& times, double tick) {
-  constexpr double kMost = 0.5;  // resultant length: within a sixth of a tick of each other
+  constexpr double kMost =
+      0.5;  // resultant length: within a sixth of a tick of each other
   constexpr double kNear = 0.1;  // is jitter
   std::complex<double> sum = 0.0;
   for (const double time : times) {

@@ -83,6 +83,7 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given,
   for (const double part : {0.0, 1e-2}) {
     const FilterNoise noise = AtLeast(one.seen.noise, part, given);
     if (part > 0.0 && noise.size == one.seen.noise.size) continue;
+    if (std::isfinite(one.unseen_deviance) && is_over()) break;
     TakeUnseen(
         data,
         [&] { return RunForceFilter(machine, run, one.seen.dofs, starts, noise); },
@@ -103,9 +104,8 @@ ModelOnRuns Refitted(const AnswerData& data, const Model& model,
                      const std::function<bool()>& is_over) {
   constexpr int kIterations = 4;
   ModelOnRuns one;
-  const FilterPath path =
-      FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd, dofs, near,
-                          is_over);
+  const FilterPath path = FilterLikeliestFrom(data.With(model), data.run.seen,
+                                              data.reading_sd, dofs, near, is_over);
   one.fit =
       FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
                data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
@@ -121,11 +121,11 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
   // Of an empty model the search has it with the physics steps that it chose.
   const bool as_given = data.steps && explained.input_width == 0.0;
   nothing.seen = explained.fit.model.empty() ? explained.path
-                 : as_given                  ? explained.nothing
-                                             : FilterLikeliestFrom(
-                                                   data.With({}), data.run.seen, data.reading_sd,
-                                                   explained.nothing.dofs, {explained.nothing.noise},
-                                                   is_over);
+                 : as_given
+                     ? explained.nothing
+                     : FilterLikeliestFrom(data.With({}), data.run.seen,
+                                           data.reading_sd, explained.nothing.dofs,
+                                           {explained.nothing.noise}, is_over);
   try {
     FollowUnseen(data, nothing.seen.noise, is_over, nothing);
   } catch (const NumericalError&) {

@@ -130,8 +130,7 @@ MatrixXd WhiteningOfKnots(const Candidate& curve) {
   constexpr double kRough = 1e-4;
   K.diagonal().array() += kRough * kRough;
   // K^-1 = R^T R
-  const MatrixXd precision =
-      K.llt().solve(MatrixXd::Identity(axis.knots, axis.knots));
+  const MatrixXd precision = K.llt().solve(MatrixXd::Identity(axis.knots, axis.knots));
   return precision.llt().matrixU();
 }
 

@@ -82,11 +82,10 @@ class Settling {
     const Machine machine = beside_.machine_with(settled_.fit.model);
     const bool is_near = near_.empty() || (!beside_.is_far && !IsNowhere());
     FilterPath path =
-        is_near
-            ? FilterLikelier(machine, beside_.run, beside_.reading_sd, settled_.path,
-                             beside_.is_over)
-            : FilterLikeliestFrom(machine, beside_.run, beside_.reading_sd,
-                                  beside_.dofs, near_, beside_.is_over);
+        is_near ? FilterLikelier(machine, beside_.run, beside_.reading_sd,
+                                 settled_.path, beside_.is_over)
+                : FilterLikeliestFrom(machine, beside_.run, beside_.reading_sd,
+                                      beside_.dofs, near_, beside_.is_over);
     near_.clear();
     Take({settled_.fit, std::move(path)});
   }

@@ -41,10 +41,10 @@ struct ExplainOptions {
 struct Explained {
   std::vector<Block> blocks;
   ModelFit fit;
-  FilterPath nothing;               ///< of the machine as given
-  FilterPath path;                  ///< of that with the model
-  double score = 0.0;               ///< -2 ln L and what the model costs
-  bool steps = true;                ///< the physics steps of the model are part of it
+  FilterPath nothing;        ///< of the machine as given
+  FilterPath path;           ///< of that with the model
+  double score = 0.0;        ///< -2 ln L and what the model costs
+  bool steps = true;         ///< the physics steps of the model are part of it
   int ticks = 1;             ///< of a sample of the paths (coarser_run.h)
   double input_width = 0.0;  ///< over which inputs are smoothed [samples of the paths]
   std::vector<Decision> decisions;  ///< what was tried, in that order

@@ -50,7 +50,7 @@ ConvergedBeside ModelSearch::Beside(bool steps) const {
           reading_sd_,
           found_.path.dofs,
           found_.blocks,
-          IsCoarse(),
+          IsFirstLook(),
           [this] { return IsOver(); }};
 }
 
@@ -312,9 +312,9 @@ bool ModelSearch::ChooseSteps() {
 
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
   const double width = found_.input_width;
-  std::optional<InputChoice> choice = ChooseInputs(With(found_.fit.model), as_measured_,
-                                                   reading_sd_, found_.path, width,
-                                                   [this] { return IsOver(); });
+  std::optional<InputChoice> choice =
+      ChooseInputs(With(found_.fit.model), as_measured_, reading_sd_, found_.path,
+                   width, [this] { return IsOver(); });
   if (!choice) return std::nullopt;
   ConvergedModel settled{found_.fit, std::move(choice->path)};
   Say("inputs over " + std::to_string(choice->width) + " ticks: " +
@@ -353,29 +353,40 @@ bool ModelSearch::Step() {
   return move.has_value();
 }
 
-void ModelSearch::LookEvery(int ticks) {
+void ModelSearch::LookAt(const MeasuredRun& run, int ticks) {
   machine_ = InTicksOf(given_, ticks);
-  as_measured_ = Coarser(whole_, ticks);
+  as_measured_ = Coarser(run, ticks);
   run_ = WithInputsOver(as_measured_, found_.input_width);
   found_.ticks = ticks;
+  is_part_ = run.samples() < whole_.samples();
 }
 
-// What is large and slow shows in a part of the readings, and takes a part of the time there;
-// how many that are does not grow with the run.
-Index ModelSearch::SamplesToBeginWith() const {
+// What is large and slow shows in a part of a run, and takes a part of the time there; how much
+// of it does not grow with the run. Steps take their time whether somebody looks or not: of a
+// machine that takes few, all of the motion is looked at once in some ticks, of one that takes
+// many, pieces.
+void ModelSearch::LookFirst() {
   constexpr double kPart = 0.25;
-  constexpr Index kSamples = 2500;
-  const auto part =
-      static_cast<Index>(kPart * static_cast<double>(whole_.samples()));
-  const Index states =
-      TangentSize(given_.plant()) + std::ssize(LatentDofs(given_, whole_)) + 1;
-  return std::min(kSamples, std::max(part, EnoughOf(whole_.outputs.rows(), states)));
+  constexpr double kSamples = 2500.0;
+  constexpr double kSteps = 10000.0;
+  const auto samples = static_cast<double>(whole_.samples());
+  const std::vector<Index> dofs = LatentDofs(given_, whole_);
+  const double share = std::max(
+      kPart, kSteps / (samples * static_cast<double>(given_.rates().substeps)));
+  MeasuredRun pieces = PiecesOfRun(given_, whole_, dofs, std::min(1.0, share));
+  const bool is_part = 2 * pieces.samples() <= whole_.samples();
+  const MeasuredRun& run = is_part ? pieces : whole_;
+  const Index states = TangentSize(given_.plant()) + std::ssize(dofs) + 1;
+  const double enough = static_cast<double>(EnoughOf(whole_.outputs.rows(), states));
+  LookAt(run, TicksThatShowMotion(run, reading_sd_,
+                                  static_cast<Index>(std::min(
+                                      kSamples, std::max(kPart * samples, enough)))));
 }
 
 void ModelSearch::Prepare() {
-  LookEvery(TicksThatShowMotion(whole_, reading_sd_, SamplesToBeginWith()));
-  // All of them get at least as long, if they are asked.
-  if (IsCoarse()) seconds_ = 0.5 * options_.seconds;
+  LookFirst();
+  // All of it gets at least as long.
+  if (IsFirstLook()) seconds_ = 0.5 * options_.seconds;
   const IsTimeOver is_over = [this] { return IsOver(); };
   found_.path = FilterLikeliest(machine_, run_, reading_sd_, is_over);
   const FilterPath nothing = found_.path;
@@ -387,7 +398,9 @@ void ModelSearch::Prepare() {
   }
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
   found_.nothing = nothing;
-  const ObservedMotion motion = MotionAlong(machine_, run_, found_.nothing);
+  const MeasuredRun all = is_part_ ? Coarser(whole_, found_.ticks) : as_measured_;
+  if (is_part_) found_.nothing = Along(machine_, all, nothing);
+  const ObservedMotion motion = MotionAlong(machine_, all, found_.nothing);
   BoundByRecord(candidates_, machine_, motion);
   BoundDriveLimits(candidates_, machine_, motion);
   BoundByReadings(candidates_, machine_, whole_);
@@ -419,42 +432,42 @@ bool ModelSearch::TellsMoreInBetween() const {
   return false;
 }
 
+FilterPath ModelSearch::Along(const Machine& machine, const MeasuredRun& run,
+                              const FilterPath& path) const {
+  FilterNoise noise = path.noise;
+  // White forces are held over a tick.
+  noise.white *= std::sqrt(path.sample_time / run.sample_time);
+  return RunForceFilter(machine, run, path.dofs,
+                        FilterStarts(machine, run, reading_sd_), noise);
+}
+
 void ModelSearch::LookAtAll() {
   seconds_ = options_.seconds;
-  if (!IsCoarse() || IsOver() || !TellsMoreInBetween()) return;
-  const int ticks = found_.ticks;
-  found_.input_width *= ticks;
-  LookEvery(1);
+  const int before = found_.ticks;
+  const int ticks = IsOver() || !TellsMoreInBetween() ? before : 1;
+  if (!is_part_ && ticks == before) return;
+  found_.input_width *= before / ticks;
+  LookAt(whole_, ticks);
   found_.rivals.clear();
   hopeless_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {
-    if (block.candidate) WidenFrequencies(*block.candidate, whole_.sample_time);
+    if (block.candidate) WidenFrequencies(*block.candidate, as_measured_.sample_time);
   }
-  // White forces are held over a tick.
-  const auto in_a_tick = [&](FilterNoise noise) {
-    noise.white *= std::sqrt(static_cast<double>(ticks));
-    return noise;
-  };
-  const auto along = [&](const Machine& machine, const MeasuredRun& run,
-                         const FilterPath& path) {
-    return RunForceFilter(machine, run, path.dofs,
-                          FilterStarts(machine, run, reading_sd_),
-                          in_a_tick(path.noise));
-  };
-  found_.nothing = along(machine_, whole_, found_.nothing);
+  if (ticks != before) found_.nothing = Along(machine_, whole_, found_.nothing);
   try {
     // Also of what has been asked to end.
-    found_.path = along(Made(found_.fit.model, steps_), run_, found_.path);
+    found_.path = Along(Made(found_.fit.model, steps_), run_, found_.path);
   } catch (const NumericalError&) {
     found_.fit = {};
     found_.path = found_.nothing;
     found_.input_width = 0.0;
-    run_ = whole_;
+    run_ = as_measured_;
     steps_ = true;
   }
   // What was found so far is where the search begins, whatever it is worth by all.
   found_.score = ConvergedModel{found_.fit, found_.path}.score();
+  if (IsOver()) return;
   ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, found_.path);
   found_.score = settled.score();
   found_.fit = std::move(settled.fit);
@@ -466,7 +479,7 @@ void ModelSearch::LookAtAll() {
 Explained ModelSearch::Run() {
   Prepare();
   try {
-    if (IsCoarse()) StepOn();
+    if (IsFirstLook()) StepOn();
   } catch (const NumericalError&) {
   }
   try {

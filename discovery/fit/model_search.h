@@ -91,15 +91,18 @@ class ModelSearch {
   bool Step();
   /// What no law explains may be a force without a name.
   void AddCurves();
-  Eigen::Index SamplesToBeginWith() const;
+  void LookFirst();
   void Prepare();
   void StepOn();
-  /// The machine and the run looked at once in so many ticks.
-  void LookEvery(int ticks);
+  /// A run, all of it or pieces, once in so many ticks.
+  void LookAt(const MeasuredRun& run, int ticks);
+  /// A machine along a run, behind the noise of a path of other ticks.
+  FilterPath Along(const Machine& machine, const MeasuredRun& run,
+                   const FilterPath& path) const;
   /// Whether readings in between tell more than those that are looked at: where most of what
   /// is left is their noise. What a model lacks is finer there, and no more.
   bool TellsMoreInBetween() const;
-  /// From every so many ticks to every tick.
+  /// From pieces to all of the run, and to every tick if that tells more.
   void LookAtAll();
   void Decide(const Model& tried, double score, const std::string& why) {
     found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
@@ -125,7 +128,7 @@ class ModelSearch {
     const Model after = After(move, found_.fit.model);
     return !HasTooManyCauses(after) && IsResolved(found_.blocks, after);
   }
-  bool IsCoarse() const { return found_.ticks > 1; }
+  bool IsFirstLook() const { return is_part_ || found_.ticks > 1; }
   bool IsStopped() const { return options_.stop && options_.stop(); }
   bool IsOver() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count() > seconds_ ||
@@ -152,8 +155,9 @@ class ModelSearch {
   Machine machine_;  // as given, in the ticks that are looked at
   bool steps_ = true;
   const MeasuredRun& whole_;
-  MeasuredRun as_measured_;  // all of it, or once in some ticks
-  MeasuredRun run_;          // with its inputs smoothed
+  MeasuredRun as_measured_;  // all of it, or pieces, or once in some ticks
+  bool is_part_ = false;
+  MeasuredRun run_;  // with its inputs smoothed
   const Eigen::VectorXd& reading_sd_;
   const ExplainOptions& options_;
   Clock::time_point begin_ = Clock::now();

@@ -163,11 +163,9 @@ MatrixXd MissingForceMap::ErrorsOfForces(const MatrixXd& forces) const {
     for (Index k = path.first[record]; k + 2 < path.EndOf(record); ++k) {
       const auto tangent = path.of_tick[static_cast<std::size_t>(k)];
       const MatrixXd& A = path.tangents[tangent].A;
-      const VectorXd change =
-          of_.force_of_change[tangent].transpose() * forces.col(k);
+      const VectorXd change = of_.force_of_change[tangent].transpose() * forces.col(k);
       const VectorXd next = change.segment(nv, nv) / path.sample_time;
-      const VectorXd now =
-          A.middleCols(nv, nv).transpose() * change / path.sample_time;
+      const VectorXd now = A.middleCols(nv, nv).transpose() * change / path.sample_time;
       dq.col(k + 2) += next;
       dq.col(k + 1) += change.head(nv) - next - now;
       dq.col(k) += now - A.leftCols(nv).transpose() * change;

@@ -105,9 +105,9 @@ TickTangent TickDifferences::By(Probe probe, const PlantState& from,
 
 void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
                               std::int64_t tick, TickControl& control,
-                              std::span<const Index> dofs, bool of_step,
-                              bool positions, const VectorXd& sd,
-                              const VectorXd& force_sd, TickTangent& tangent) {
+                              std::span<const Index> dofs, bool of_step, bool positions,
+                              const VectorXd& sd, const VectorXd& force_sd,
+                              TickTangent& tangent) {
   const Probe probe = of_step ? &TickMap::ProbeStep : &TickMap::Probe;
   for (const Index dof : dofs) {
     for (const Index state : {dof, force_steps_.size() + dof}) {

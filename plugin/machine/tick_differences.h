@@ -48,8 +48,8 @@ class TickDifferences {
   /// @param force_sd   of the forces, nv
   void Refresh(const PlantState& from, const Eigen::VectorXd& forces, std::int64_t tick,
                TickControl& control, std::span<const Eigen::Index> dofs, bool of_step,
-               bool positions, const Eigen::VectorXd& sd, const Eigen::VectorXd& force_sd,
-               TickTangent& tangent);
+               bool positions, const Eigen::VectorXd& sd,
+               const Eigen::VectorXd& force_sd, TickTangent& tangent);
   /// Velocity that a force of 1 gives a degree of freedom in a tick where the model is drawn.
   double VelocityOf(Eigen::Index dof) const {
     return steps_[force_steps_.size() + dof] / force_steps_[dof];

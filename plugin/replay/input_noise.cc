@@ -37,8 +37,7 @@ bool IsNoiseWithin(const VectorXd& signal, const MeasuredRun& run, double width)
   if (width <= 0.0) return false;
   const VectorXd taken =
       signal -
-      Smoothed(signal, run,
-               width * static_cast<double>(signal.size() / run.samples()));
+      Smoothed(signal, run, width * static_cast<double>(signal.size() / run.samples()));
   const double rms = std::sqrt(taken.squaredNorm() / static_cast<double>(taken.size()));
   return rms > 0.0 && rms <= kMost * NoiseLevel(signal);
 }

@@ -249,8 +249,8 @@ FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
 
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
-                               const std::vector<Index>& dofs,
-                               const FilterNoise& near, const IsTimeOver& is_over) {
+                               const std::vector<Index>& dofs, const FilterNoise& near,
+                               const IsTimeOver& is_over) {
   const std::vector<FilterStart> starts = FilterStarts(machine, run, reading_sd);
   return FilterLikelier(machine, run, reading_sd,
                         RunForceFilter(machine, run, dofs, starts, near), is_over);

@@ -61,7 +61,6 @@ FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
                                const std::vector<Eigen::Index>& dofs,
-                               const FilterNoise& near,
-                               const IsTimeOver& is_over = {});
+                               const FilterNoise& near, const IsTimeOver& is_over = {});
 
 }  // namespace mjdiag

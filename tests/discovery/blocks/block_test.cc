@@ -6,6 +6,9 @@
 
 #include <cmath>
 
+#include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/effects/structure/force_curve.h"
+
 namespace mjdiag {
 namespace {
 
@@ -23,6 +26,37 @@ TEST(Block, KnowsANumberAtTheEndOfWhatIsKnown) {
     EXPECT_TRUE(IsAllowed(mass, at(kFarthest * 0.1)));
     EXPECT_FALSE(IsAllowed(mass, at(0.91)));
   }
+}
+
+/// A curve over a position of 0 to 1, forces over the spread.
+Block CurveOfKnots(int knots) {
+  Candidate curve{.effect = Lasting(ForceCurve()), .site = "j", .parameters = {}};
+  curve.chosen = Eigen::VectorXd::Zero(force_curve::kFirst);
+  curve.chosen[force_curve::kWidth] = 1.0;
+  curve.chosen[force_curve::kShape] = static_cast<double>(CurveShapes::kPlain);
+  curve.chosen[force_curve::kKnots] = knots;
+  for (int i = 0; i < knots; ++i) {
+    curve.parameters.push_back({"force", Role::kAmplitude, -10.0, 10.0, 0.0, 1.0});
+  }
+  Block block;
+  block.candidate = curve;
+  return block;
+}
+
+TEST(Block, CostsOfACurveWhatTheFunctionDoesThatItsKnotsDescribe) {
+  const auto price = [](int knots, const auto& force) {
+    const Eigen::VectorXd values =
+        Eigen::VectorXd::NullaryExpr(knots, [&](Eigen::Index i) {
+          return force(static_cast<double>(i) / static_cast<double>(knots - 1));
+        });
+    return SizePrice(CurveOfKnots(knots), values);
+  };
+  const auto square = [](double x) { return x * x; };
+  // Knots in between say nothing new: less than one unit each.
+  EXPECT_LT(price(17, square), price(9, square) + 8.0);
+  // One that is off by a spread is another function.
+  const auto kinked = [&](double x) { return square(x) + (x == 0.5 ? 1.0 : 0.0); };
+  EXPECT_GT(price(17, kinked), price(17, square) + 30.0);
 }
 
 }  // namespace

@@ -277,8 +277,9 @@ TEST(TickDifferences, AreSecantsOverWhatIsNotKnownOfAStickingJoint) {
   TickTangent tangent = differences.Of(rest, none, 0, control);
   EXPECT_LT(tangent.B(1, 0), 0.02 * free);
   const std::vector<Index> dofs{0};
-  differences.Refresh(rest, none, 0, control, dofs, false, true, VectorXd::Constant(2, 1e-6),
-                      VectorXd::Constant(1, 10.0), tangent);
+  differences.Refresh(rest, none, 0, control, dofs, false, true,
+                      VectorXd::Constant(2, 1e-6), VectorXd::Constant(1, 10.0),
+                      tangent);
   // MuJoCo's friction is right to a hundredth.
   EXPECT_NEAR(tangent.B(1, 0) / free, 0.9, 0.01);
 }

@@ -36,7 +36,8 @@ MeasuredRun Noisy(Index samples) {
   std::normal_distribution<double> normal;
   MeasuredRun run;
   run.sample_time = kTick;
-  run.outputs = Eigen::MatrixXd::NullaryExpr(1, samples, [&] { return normal(random); });
+  run.outputs =
+      Eigen::MatrixXd::NullaryExpr(1, samples, [&] { return normal(random); });
   run.inputs = Eigen::MatrixXd::NullaryExpr(1, samples, [&] { return normal(random); });
   run.records = {{}, {}};
   run.records[1].sample = samples / 2;
@@ -55,7 +56,8 @@ TEST_P(RunInTicks, MovesItsMachineAsAllOfTheTicksDo) {
   TickMap map(machine), slow(slower);
   RecordedInputs inputs(machine, run), slow_inputs(slower, coarse);
   const VectorXd none = VectorXd::Zero(1);
-  PlantState state{VectorXd::Constant(1, 0.3), VectorXd::Constant(1, -0.5), VectorXd(0)};
+  PlantState state{VectorXd::Constant(1, 0.3), VectorXd::Constant(1, -0.5),
+                   VectorXd(0)};
   PlantState other = state;
   for (Index k = 0; k < coarse.samples(); ++k) {
     EXPECT_EQ(coarse.outputs(0, k), run.outputs(0, k * kTicks));

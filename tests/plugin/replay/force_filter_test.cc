@@ -81,8 +81,7 @@ TEST(ForceFilter, HasANoiseWhereNoTimeIsLeftToLookForABetterOne) {
   const Slide slide;
   const MeasuredRun run = slide.Measure(None);
   const VectorXd sd = VectorXd::Constant(1, kNoise);
-  const FilterPath path =
-      FilterLikeliest(slide.machine, run, sd, [] { return true; });
+  const FilterPath path = FilterLikeliest(slide.machine, run, sd, [] { return true; });
   EXPECT_EQ(path.samples(), run.samples());
   EXPECT_GE(path.deviance, FilterLikeliest(slide.machine, run, sd).deviance);
 }

@@ -64,9 +64,8 @@ TEST(InputNoise, IsWhatScattersFromSampleToSample) {
 // What a relay, or a sine, asks of a drive is no noise, however much smoothing takes of it.
 TEST(InputNoise, IsNotWhatACommandHasOfEdgesAndCurvature) {
   const MeasuredRun run = TwoRecords(2000);
-  EXPECT_FALSE(
-      IsNoiseWithin(SignalOf([](Index k) { return k / 30 % 2 == 0 ? 4.0 : -4.0; }), run,
-                    2.0));
+  EXPECT_FALSE(IsNoiseWithin(
+      SignalOf([](Index k) { return k / 30 % 2 == 0 ? 4.0 : -4.0; }), run, 2.0));
   EXPECT_FALSE(IsNoiseWithin(
       SignalOf([](Index k) { return std::sin(0.05 * static_cast<double>(k)); }), run,
       2.0));
