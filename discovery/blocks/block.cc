@@ -241,7 +241,7 @@ bool Block::IsSimplest() const {
          candidate->effect->kind() != Kind::kLoadFriction;
 }
 
-bool IsAtItsEnd(const Block& block, const Eigen::VectorXd& values) {
+bool HasActiveBound(const Block& block, const Eigen::VectorXd& values) {
   return !block.candidate &&
          std::abs(std::log(values[0])) >= (1.0 - kEnd) * kFarthest * block.doubt;
 }

@@ -70,7 +70,7 @@ struct BlockMotion {
 
 /// Whether a number is at the end of what is known of it: it would be further off still, if
 /// it might, and makes up for something else, or for a model of another machine.
-bool IsAtItsEnd(const Block& block, const Eigen::VectorXd& values);
+bool HasActiveBound(const Block& block, const Eigen::VectorXd& values);
 /// Whether values are such as its law, or the number, can have.
 bool IsAllowed(const Block& block, const RegressorValues& values);
 

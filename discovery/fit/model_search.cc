@@ -14,6 +14,7 @@
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/fit/converged_model.h"
 #include "mjdiag/discovery/fit/exact_columns.h"
+#include "mjdiag/discovery/fit/first_look.h"
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/fit/moved_model.h"
 #include "mjdiag/discovery/fit/pruned_fit.h"
@@ -24,7 +25,6 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
-#include "mjdiag/plugin/replay/noise_search.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -195,12 +195,12 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     const bool rubs = std::ranges::any_of(move->added, [&](const Added& added) {
       return found_.blocks[added.variation.block].IsDryFriction();
     });
-    for (const Model& twin :
-         {Creeping(found_.blocks, model), Abrupt(found_.blocks, model)}) {
-      if ((rubs || iterations == 0) && !SameBlocks(twin, model)) try_one(twin, *move);
-      if (iterations > 0) break;
-    }
+    const auto try_other = [&](const Model& other) {
+      if (!SameBlocks(other, model)) try_one(other, *move);
+    };
+    if (rubs || iterations == 0) try_other(Creeping(found_.blocks, model));
     if (iterations > 0) continue;
+    try_other(Abrupt(found_.blocks, model));
     // A noise that is less likely than another one is no reason for a law.
     if (beside_itself) try_one(found_.fit.model, *move);
   }
@@ -361,30 +361,9 @@ void ModelSearch::LookAt(const MeasuredRun& run, int ticks) {
   is_part_ = run.samples() < whole_.samples();
 }
 
-// What is large and slow shows in a part of a run, and takes a part of the time there; how much
-// of it does not grow with the run. Steps take their time whether somebody looks or not: of a
-// machine that takes few, all of the motion is looked at once in some ticks, of one that takes
-// many, pieces.
-void ModelSearch::LookFirst() {
-  constexpr double kPart = 0.25;
-  constexpr double kSamples = 2500.0;
-  constexpr double kSteps = 10000.0;
-  const auto samples = static_cast<double>(whole_.samples());
-  const std::vector<Index> dofs = LatentDofs(given_, whole_);
-  const double share = std::max(
-      kPart, kSteps / (samples * static_cast<double>(given_.rates().substeps)));
-  MeasuredRun pieces = PiecesOfRun(given_, whole_, dofs, std::min(1.0, share));
-  const bool is_part = 2 * pieces.samples() <= whole_.samples();
-  const MeasuredRun& run = is_part ? pieces : whole_;
-  const Index states = TangentSize(given_.plant()) + std::ssize(dofs) + 1;
-  const double enough = static_cast<double>(EnoughOf(whole_.outputs.rows(), states));
-  LookAt(run, TicksThatShowMotion(run, reading_sd_,
-                                  static_cast<Index>(std::min(
-                                      kSamples, std::max(kPart * samples, enough)))));
-}
-
 void ModelSearch::Prepare() {
-  LookFirst();
+  const FirstLook look = FirstLookAt(given_, whole_, reading_sd_);
+  LookAt(look.run, look.ticks);
   // All of it gets at least as long.
   if (IsFirstLook()) seconds_ = 0.5 * options_.seconds;
   const IsTimeOver is_over = [this] { return IsOver(); };
@@ -419,32 +398,17 @@ void ModelSearch::StepOn() {
   }
 }
 
-bool ModelSearch::TellsMoreInBetween() const {
-  constexpr double kMost = 2.0;  // times what its noise is
-  const FilterPath& path = found_.path;
-  for (Index i = 0; i < path.sensors(); ++i) {
-    const auto counted = static_cast<double>(path.counts.row(i).count());
-    if (path.innovations.row(i).squaredNorm() <
-        kMost * counted * std::pow(path.noise.reading[i], 2)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 FilterPath ModelSearch::Along(const Machine& machine, const MeasuredRun& run,
                               const FilterPath& path) const {
-  FilterNoise noise = path.noise;
-  // White forces are held over a tick.
-  noise.white *= std::sqrt(path.sample_time / run.sample_time);
   return RunForceFilter(machine, run, path.dofs,
-                        FilterStarts(machine, run, reading_sd_), noise);
+                        FilterStarts(machine, run, reading_sd_),
+                        NoiseInTicksOf(path, run.sample_time));
 }
 
 void ModelSearch::LookAtAll() {
   seconds_ = options_.seconds;
   const int before = found_.ticks;
-  const int ticks = IsOver() || !TellsMoreInBetween() ? before : 1;
+  const int ticks = IsOver() || !TellsMoreInBetween(found_.path) ? before : 1;
   if (!is_part_ && ticks == before) return;
   found_.input_width *= before / ticks;
   LookAt(whole_, ticks);

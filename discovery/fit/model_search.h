@@ -91,7 +91,6 @@ class ModelSearch {
   bool Step();
   /// What no law explains may be a force without a name.
   void AddCurves();
-  void LookFirst();
   void Prepare();
   void StepOn();
   /// A run, all of it or pieces, once in so many ticks.
@@ -99,9 +98,6 @@ class ModelSearch {
   /// A machine along a run, behind the noise of a path of other ticks.
   FilterPath Along(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path) const;
-  /// Whether readings in between tell more than those that are looked at: where most of what
-  /// is left is their noise. What a model lacks is finer there, and no more.
-  bool TellsMoreInBetween() const;
   /// From pieces to all of the run, and to every tick if that tells more.
   void LookAtAll();
   void Decide(const Model& tried, double score, const std::string& why) {
@@ -118,7 +114,7 @@ class ModelSearch {
     return std::ranges::all_of(model, [&](const Member& member) {
       const Block& block = found_.blocks[member.block];
       return IsAllowed(block, member.values) &&
-             (may_be_at_ends_ || !IsAtItsEnd(block, member.values));
+             (may_be_at_ends_ || !HasActiveBound(block, member.values));
     });
   }
   bool IsOne(const Model& model) const {

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/regression/fold_gram.h"
 #include "mjdiag/discovery/regression/promising.h"
@@ -129,6 +130,15 @@ void MoveSearch::Whiten() {
 
 bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
   const Block& block = blocks_[kept_[variation].block];
+  const auto is_curve = [&](std::size_t v) {
+    const Block& one = blocks_[kept_[v].block];
+    return one.candidate && IsCurve(*one.candidate);
+  };
+  // A force without a name is all that is left, or there is a name for it.
+  if (!change.added.empty() &&
+      (is_curve(variation) || std::ranges::any_of(change.added, is_curve))) {
+    return false;
+  }
   return std::ranges::none_of(change.added, [&](std::size_t v) {
     // Two of one block are two waves; of anything else two points of its grid.
     return v == variation ||

@@ -21,8 +21,8 @@ TEST(Block, KnowsANumberAtTheEndOfWhatIsKnown) {
     const auto at = [&](double logarithm) {
       return Eigen::VectorXd::Constant(1, std::exp(sign * logarithm)).eval();
     };
-    EXPECT_FALSE(IsAtItsEnd(mass, at(0.89)));
-    EXPECT_TRUE(IsAtItsEnd(mass, at(kFarthest * 0.1)));
+    EXPECT_FALSE(HasActiveBound(mass, at(0.89)));
+    EXPECT_TRUE(HasActiveBound(mass, at(kFarthest * 0.1)));
     EXPECT_TRUE(IsAllowed(mass, at(kFarthest * 0.1)));
     EXPECT_FALSE(IsAllowed(mass, at(0.91)));
   }

@@ -31,6 +31,11 @@ TEST(MissingForceMap, IsTheTransposeOfItsTransposed) {
                                  return normal(generator);
                                }));
   }
+  for (Index sensor = 0; sensor < followed.path.sensors(); ++sensor) {
+    column.readings.emplace_back(
+        sensor, VectorXd::NullaryExpr(followed.path.samples(),
+                                      [&] { return 1e-6 * normal(generator); }));
+  }
   const VectorXd there = map.Of({&column}).col(0);
   const VectorXd u = VectorXd::LinSpaced(map.rows(), -1.0, 1.0).array().sin();
   const double back = map.TransposedTimes(u).front().Times(column);
@@ -91,6 +96,7 @@ TEST(MissingForceMap, HasNoForceOfWhatSticks) {
   path.of_tick.assign(kSamples, 0);
   std::fill(path.of_tick.begin() + kSamples / 2, path.of_tick.end(), 1);
   path.innovations = Eigen::MatrixXd::Zero(1, kSamples);
+  path.noise.reading = VectorXd::Ones(1);
   const MissingForceRows rows(path, Eigen::MatrixXd::Ones(1, kSamples));
   const MissingForceMap map(rows, {VectorXd::Ones(1), VectorXd::Ones(1)});
   Column change;
