@@ -16,22 +16,23 @@ namespace {
 /// Whether a cubic through readings that are some ticks apart tells those between them.
 bool ShowsMotion(const MeasuredRun& run, const VectorXd& reading_sd, int ticks) {
   constexpr double kTenth = 0.1;
+  // Lagrange's cubic, next to the middle.
+  const Index half = ticks / 2;
+  const double x = static_cast<double>(half) / ticks;
+  const double weights[] = {
+      -x * (x - 1.0) * (x - 2.0) / 6.0, (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0,
+      (x + 1.0) * x * (x - 2.0) / 2.0, (x + 1.0) * x * (x - 1.0) / 6.0};
   for (Index i = 0; i < run.outputs.rows(); ++i) {
     double wrong = 0.0, changes = 0.0;
     Index count = 0;
     for (std::size_t r = 0; r < run.records.size(); ++r) {
       const Index first = run.records[r].sample;
       const VectorXd y = run.outputs.row(i).segment(first, run.SamplesOf(r));
-      const Index half = ticks / 2;
       const SampleMask counts = run.CountedOf(i, first, y.size());
       for (Index k = ticks; k + 2 * ticks < y.size(); k += ticks) {
         if (!counts.segment(k - ticks, 3 * ticks + 1).all()) continue;
-        // Lagrange's, next to the middle.
-        const double x = static_cast<double>(half) / ticks;
-        const double told = -x * (x - 1.0) * (x - 2.0) / 6.0 * y[k - ticks] +
-                            (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 * y[k] -
-                            (x + 1.0) * x * (x - 2.0) / 2.0 * y[k + ticks] +
-                            (x + 1.0) * x * (x - 1.0) / 6.0 * y[k + 2 * ticks];
+        const double told = weights[0] * y[k - ticks] + weights[1] * y[k] -
+                            weights[2] * y[k + ticks] + weights[3] * y[k + 2 * ticks];
         // Not squared: a logger's time stamps are off by much now and then.
         wrong += std::abs(y[k + half] - told);
         changes += std::abs(y[k + ticks] - y[k]);

@@ -20,8 +20,8 @@ MeasuredRun Coarser(const MeasuredRun& run, int ticks);
 /// How many ticks at most a look may take that sees the motion, and leaves that many samples: a
 /// cubic through two readings on either side tells that between them to a tenth of what changes
 /// from one to the next, as it does of a sine that is looked at four times a period, or to the
-/// noise of the readings. 1 where none does, and of a run whose drives are switched, or sensors read more seldom: what these do in a
-/// tick is not the same all through it.
+/// noise of the readings. 1 where none does, and of a run whose drives are switched, or sensors
+/// read more seldom: what these do in a tick is not the same all through it.
 /// @param reading_sd  of every sensor, by itself
 int TicksThatShowMotion(const MeasuredRun& run, const Eigen::VectorXd& reading_sd,
                         Eigen::Index samples);

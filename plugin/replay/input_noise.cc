@@ -12,13 +12,14 @@ using Eigen::VectorXd;
 
 VectorXd Smoothed(const VectorXd& signal, const MeasuredRun& run, double width) {
   if (width <= 0.0) return signal;
+  const Index ticks = signal.size() / run.samples();
+  width *= static_cast<double>(ticks);
   constexpr double kReach = 3.0;  // standard deviations
   const auto reach = static_cast<Index>(std::ceil(kReach * width));
   const VectorXd window = VectorXd::NullaryExpr(2 * reach + 1, [&](Index i) {
     return std::exp(-0.5 * std::pow(static_cast<double>(i - reach) / width, 2));
   });
   VectorXd smooth(signal.size());
-  const Index ticks = signal.size() / run.samples();
   for (std::size_t record = 0; record < run.records.size(); ++record) {
     const Index first = run.records[record].sample * ticks;
     const Index end = first + run.SamplesOf(record) * ticks;
@@ -35,9 +36,7 @@ VectorXd Smoothed(const VectorXd& signal, const MeasuredRun& run, double width) 
 bool IsNoiseWithin(const VectorXd& signal, const MeasuredRun& run, double width) {
   constexpr double kMost = 5.0;
   if (width <= 0.0) return false;
-  const VectorXd taken =
-      signal -
-      Smoothed(signal, run, width * static_cast<double>(signal.size() / run.samples()));
+  const VectorXd taken = signal - Smoothed(signal, run, width);
   const double rms = std::sqrt(taken.squaredNorm() / static_cast<double>(taken.size()));
   return rms > 0.0 && rms <= kMost * NoiseLevel(signal);
 }
@@ -51,8 +50,7 @@ MeasuredRun WithSmoothedInputs(MeasuredRun run, const VectorXd& widths) {
           Smoothed(run.inputs.row(i).transpose(), run, widths[i]).transpose();
       continue;
     }
-    const VectorXd fine = Smoothed(run.finer_inputs.row(i).transpose(), run,
-                                   widths[i] * static_cast<double>(ticks));
+    const VectorXd fine = Smoothed(run.finer_inputs.row(i).transpose(), run, widths[i]);
     run.finer_inputs.row(i) = fine.transpose();
     run.inputs.row(i) = fine.reshaped(ticks, run.samples()).colwise().mean();
   }

@@ -10,7 +10,7 @@
 
 namespace mjdiag {
 
-/// Behind a Gaussian window of that standard deviation, in steps of the signal, which does not
+/// Behind a Gaussian window of that standard deviation [samples of the run], which does not
 /// delay; each record by itself. 0: as it is.
 /// @param signal  of every sample of the run, or of every tick of these
 Eigen::VectorXd Smoothed(const Eigen::VectorXd& signal, const MeasuredRun& run,
