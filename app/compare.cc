@@ -10,7 +10,7 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/report/comparison_json.h"
 #include "mjdiag/report/comparison_page.h"
 #include "mjdiag/signals/quantity.h"

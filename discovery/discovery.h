@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/missing_force.h"
 #include "mjdiag/discovery/fit/decision.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/cause.h"

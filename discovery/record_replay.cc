@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/comparison/replay_error.h"
+#include "mjdiag/discovery/comparison/replay_error.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/plugin/effects/changes.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "python/machine.h"
 
 namespace mjdiag::python {

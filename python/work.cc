@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mjdiag/comparison/observed_joints.h"
+#include "mjdiag/discovery/comparison/observed_joints.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/plugin/setup/declared_names.h"
 #include "mjdiag/report/tolerance_json.h"

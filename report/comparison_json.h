@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 
 namespace mjdiag {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/report/page/page.h"
 #include "mjdiag/report/page/run_description.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/studies/hidden_effect.h"
 

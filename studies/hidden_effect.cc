@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/runtime/simulation.h"

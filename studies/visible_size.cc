@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "mjdiag/comparison/noise_floor.h"
 #include "mjdiag/discovery/blocks/candidate_regressors.h"
+#include "mjdiag/discovery/comparison/noise_floor.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/runtime/parallel.h"

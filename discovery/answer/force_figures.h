@@ -2,9 +2,9 @@
 // Where a model is wrong and over what: forces that it lacks, laws as curves through what the
 // rest of the model leaves, and what the last rest depends on.
 
-#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
+#include "mjdiag/discovery/comparison/missing_force.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/law.h"
 #include "mjdiag/plugin/effects/observed_motion.h"

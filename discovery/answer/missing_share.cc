@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "mjdiag/comparison/mismatch.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/signals/error.h"
 

@@ -14,8 +14,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mjdiag/comparison/missing_force.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
+#include "mjdiag/discovery/comparison/missing_force.h"
 #include "mjdiag/discovery/verdict.h"
 
 namespace mjdiag {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/comparison/prediction.h"
+#include "mjdiag/discovery/comparison/prediction.h"
 #include "mjdiag/discovery/mismatch_figures.h"
 
 namespace mjdiag {

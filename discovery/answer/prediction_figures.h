@@ -1,7 +1,7 @@
 #pragma once
 // Mismatch of a machine of which no free simulation says anything: how far predictions over a
-// short time are off (comparison/prediction.h), from where the filter of each plant has the
-// machine, before and after.
+// short time are off (discovery/comparison/prediction.h), from where the filter of each plant
+// has the machine, before and after.
 
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"

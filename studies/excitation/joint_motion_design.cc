@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "mjdiag/comparison/force_balance.h"
+#include "mjdiag/discovery/comparison/force_balance.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/listed.h"

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <map>
 
-#include "mjdiag/comparison/comparison.h"
 #include "mjdiag/discovery/blocks/path_motion.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"

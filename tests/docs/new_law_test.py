@@ -116,8 +116,8 @@ class NewLaw(unittest.TestCase):
         rule = re.search(r"^build app/mjdiag:.*?^  LINK_LIBRARIES = (.*?)$", link,
                          re.DOTALL | re.MULTILINE)
         return [word for word in shlex.split(rule[1]) if not re.search(r"mjdiag_|^plugin/|"
-                r"^(signals|diagnosis|controllers|discovery|comparison|report|render|"
-                r"studies|watch)/", word)]
+                r"^(signals|diagnosis|controllers|discovery|report|render|studies|"
+                r"watch)/", word)]
 
 
 if __name__ == "__main__":

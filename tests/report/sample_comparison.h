@@ -1,7 +1,7 @@
 #pragma once
 // A small comparison for the tests of this folder: q is 3 um off after 0.5 s, u is not.
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 
 namespace mjdiag {
 

@@ -1,6 +1,6 @@
-#include "mjdiag/comparison/derived.h"
+#include "mjdiag/discovery/comparison/derived.h"
 
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/derivative.h"
 #include "mjdiag/signals/zero_phase.h"

@@ -1,10 +1,10 @@
-#include "mjdiag/comparison/replay_error.h"
+#include "mjdiag/discovery/comparison/replay_error.h"
 
 #include <limits>
 #include <vector>
 
-#include "mjdiag/comparison/derived.h"
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/derived.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 

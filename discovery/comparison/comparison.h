@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/comparison/derived.h"
-#include "mjdiag/comparison/mismatch.h"
-#include "mjdiag/comparison/missing_force.h"
-#include "mjdiag/comparison/prediction.h"
+#include "mjdiag/discovery/comparison/derived.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/prediction.h"
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"

@@ -1,4 +1,4 @@
-#include "mjdiag/comparison/force_balance.h"
+#include "mjdiag/discovery/comparison/force_balance.h"
 
 #include <algorithm>
 #include <cmath>

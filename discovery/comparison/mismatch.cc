@@ -1,4 +1,4 @@
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // What a plant lacks along a measured motion, as forces at its joints.
 
-#include "mjdiag/comparison/force_balance.h"
+#include "mjdiag/discovery/comparison/force_balance.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/zero_phase.h"

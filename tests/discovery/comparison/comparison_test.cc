@@ -1,4 +1,4 @@
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

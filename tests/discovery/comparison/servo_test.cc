@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/signals/record_file.h"
 
 namespace mjdiag {

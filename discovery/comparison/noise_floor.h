@@ -14,7 +14,7 @@
 #include <map>
 #include <string>
 
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/record.h"

@@ -1,6 +1,6 @@
-#include "mjdiag/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/missing_force.h"
 
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
 #include "mjdiag/plugin/replay/force_smoother.h"
 

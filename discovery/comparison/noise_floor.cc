@@ -1,4 +1,4 @@
-#include "mjdiag/comparison/noise_floor.h"
+#include "mjdiag/discovery/comparison/noise_floor.h"
 
 #include <algorithm>
 #include <cmath>

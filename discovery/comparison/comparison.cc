@@ -1,9 +1,9 @@
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "mjdiag/comparison/noise_floor.h"
+#include "mjdiag/discovery/comparison/noise_floor.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"

@@ -1,11 +1,11 @@
-#include "mjdiag/comparison/derived.h"
+#include "mjdiag/discovery/comparison/derived.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "mjdiag/comparison/mismatch.h"
+#include "mjdiag/discovery/comparison/mismatch.h"
 #include "support/gaussian_noise.h"
 
 namespace mjdiag {

@@ -1,4 +1,4 @@
-#include "mjdiag/comparison/observed_joints.h"
+#include "mjdiag/discovery/comparison/observed_joints.h"
 
 #include <utility>
 #include <vector>

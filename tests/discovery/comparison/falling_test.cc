@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "support/arm.h"
 #include "support/stage.h"
 

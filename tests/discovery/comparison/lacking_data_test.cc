@@ -12,7 +12,7 @@
 #include <random>
 #include <sstream>
 
-#include "mjdiag/comparison/comparison.h"
+#include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/text_file.h"
 #include "support/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "mjdiag/comparison/prediction.h"
+#include "mjdiag/discovery/comparison/prediction.h"
 
 #include <algorithm>
 #include <cmath>
