@@ -11,7 +11,7 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/plugin/plant/fixed_numbers.h"
 #include "mjdiag/signals/error.h"
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "app/format.h"
-#include "mjdiag/discovery/extension/effects_file.h"
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/effects_file.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"
 

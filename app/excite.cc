@@ -12,7 +12,7 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/subject.h"
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/report/excitation_json.h"
 #include "mjdiag/report/excitation_page.h"
 #include "mjdiag/signals/error.h"

@@ -5,9 +5,9 @@
 
 #include "fuzz/target.h"
 #include "mjdiag/controllers/trajectory.h"
-#include "mjdiag/discovery/extension/calibrated_setup.h"
-#include "mjdiag/discovery/extension/extended_plant.h"
-#include "mjdiag/discovery/extension/setup_following.h"
+#include "mjdiag/plugin/extension/calibrated_setup.h"
+#include "mjdiag/plugin/extension/extended_plant.h"
+#include "mjdiag/plugin/extension/setup_following.h"
 #include "mjdiag/plugin/setup/calibration_file.h"
 #include "mjdiag/plugin/setup/chain_file.h"
 #include "mjdiag/plugin/setup/published_relation_file.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
 #include "python/arrays.h"

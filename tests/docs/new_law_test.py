@@ -98,7 +98,7 @@ class NewLaw(unittest.TestCase):
             self.check_python(scratch, forces)
 
     def check_python(self, scratch, forces):
-        source = (ROOT / "discovery/extension/effects_laws.py").read_text(encoding="utf-8")
+        source = (ROOT / "plugin/extension/effects_laws.py").read_text(encoding="utf-8")
         module = scratch / "laws.py"
         module.write_text(source + "\n\n" + code("python", "@_law"), encoding="utf-8")
         spec = importlib.util.spec_from_file_location("laws", module)

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/error.h"

@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/extension/calibrated_setup.h"
+#include "mjdiag/plugin/extension/calibrated_setup.h"
 
 #include <gtest/gtest.h>
 

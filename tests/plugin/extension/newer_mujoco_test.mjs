@@ -2,7 +2,7 @@
 // the one that mjdiag builds on. MuJoCo comes as a module of Node, `npm install -g mujoco-js`;
 // without it the test is skipped.
 //
-// node newer_mujoco_test.mjs EXTENDED_PLANTS DISCOVERY_TEST: the program that writes plants
+// node newer_mujoco_test.mjs EXTENDED_PLANTS PLUGIN_TEST: the program that writes plants
 // with every effect (extended_plants.cc), and the tests that extend other people's MJCF.
 
 import {execFileSync} from 'node:child_process';
@@ -37,24 +37,24 @@ function faultOf(mujoco, name, stock) {
   }
 }
 
-function writePlants(folder, extendedPlants, discoveryTest) {
+function writePlants(folder, extendedPlants, pluginTest) {
   execFileSync(extendedPlants, [path.join(folder, 'every_effect')], {stdio: 'inherit'});
   // Each effect by itself is among those already.
   const tests = '--gtest_filter=ExtendedMjcf.*:ExtendedPlant.*-*EveryEffectByItself';
-  execFileSync(discoveryTest, [tests], {
+  execFileSync(pluginTest, [tests], {
     stdio: ['ignore', 'ignore', 'inherit'],
     env: {...process.env, MJDIAG_KEPT_FOLDERS: folder},
   });
 }
 
-async function main(extendedPlants, discoveryTest) {
+async function main(extendedPlants, pluginTest) {
   const mujoco = await loadMujoco();
   if (!mujoco) return SKIPPED;
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'mjdiag-plants-'));
   let failures = 0;
   let compared = 0;
   try {
-    writePlants(folder, extendedPlants, discoveryTest);
+    writePlants(folder, extendedPlants, pluginTest);
     const plants = mirror(mujoco, folder);
     for (const plant of plants) {
       const file = path.join(folder, path.dirname(plant), 'stock.json');

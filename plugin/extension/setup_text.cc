@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/extension/setup_text.h"
+#include "mjdiag/plugin/extension/setup_text.h"
 
 #include <algorithm>
 #include <utility>

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "mjdiag/discovery/extension/extended_plant.h"
+#include "mjdiag/plugin/extension/extended_plant.h"
 #include "support/temporary_folder.h"
 
 namespace mjdiag {

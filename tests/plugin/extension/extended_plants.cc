@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/extension/setup_folder.h"
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/plugin/machine/stepper.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/text_file.h"

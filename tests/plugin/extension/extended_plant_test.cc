@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/extension/extended_plant.h"
+#include "mjdiag/plugin/extension/extended_plant.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

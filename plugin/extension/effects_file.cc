@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/extension/effects_file.h"
+#include "mjdiag/plugin/extension/effects_file.h"
 
 #include <algorithm>
 #include <system_error>

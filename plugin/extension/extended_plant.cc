@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/extension/extended_plant.h"
+#include "mjdiag/plugin/extension/extended_plant.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,13 +1,13 @@
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
-#include "mjdiag/discovery/extension/effects_file.h"
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
+#include "mjdiag/plugin/extension/effects_file.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
 #include "support/temporary_folder.h"

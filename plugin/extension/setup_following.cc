@@ -1,6 +1,6 @@
-#include "mjdiag/discovery/extension/setup_following.h"
+#include "mjdiag/plugin/extension/setup_following.h"
 
-#include "mjdiag/discovery/extension/setup_text.h"
+#include "mjdiag/plugin/extension/setup_text.h"
 #include "mjdiag/plugin/setup/setup.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"

@@ -1,8 +1,8 @@
 // The setup of an extended plant: ExtendSetup of extended_plant.h.
 
-#include "mjdiag/discovery/extension/extended_plant.h"
-#include "mjdiag/discovery/extension/setup_text.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/extension/extended_plant.h"
+#include "mjdiag/plugin/extension/setup_text.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
 

@@ -1,9 +1,9 @@
-#include "mjdiag/discovery/extension/setup_following.h"
+#include "mjdiag/plugin/extension/setup_following.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "support/temporary_folder.h"

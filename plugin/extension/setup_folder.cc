@@ -1,13 +1,13 @@
-#include "mjdiag/discovery/extension/setup_folder.h"
+#include "mjdiag/plugin/extension/setup_folder.h"
 
 #include <string>
 
 #include "mjdiag/diagnosis/filters_file.h"
-#include "mjdiag/discovery/extension/calibrated_setup.h"
-#include "mjdiag/discovery/extension/effects_file.h"
-#include "mjdiag/discovery/extension/extended_plant.h"
-#include "mjdiag/discovery/extension/setup_following.h"
 #include "mjdiag/plugin/design/diagnosis.h"
+#include "mjdiag/plugin/extension/calibrated_setup.h"
+#include "mjdiag/plugin/extension/effects_file.h"
+#include "mjdiag/plugin/extension/extended_plant.h"
+#include "mjdiag/plugin/extension/setup_following.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/folder_update.h"
 #include "mjdiag/signals/text_file.h"

@@ -1,6 +1,6 @@
-#include "mjdiag/discovery/extension/calibrated_setup.h"
+#include "mjdiag/plugin/extension/calibrated_setup.h"
 
-#include "mjdiag/discovery/extension/setup_text.h"
+#include "mjdiag/plugin/extension/setup_text.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
