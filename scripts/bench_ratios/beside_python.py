@@ -79,7 +79,7 @@ def require_equal(what, ours, theirs, within):
 
 
 class Peer:
-    """bench/python_peer.cc, asked for a slice at a time."""
+    """tests/bench/python_peer.cc, asked for a slice at a time."""
 
     def __init__(self, build):
         self.process = subprocess.Popen([str(build / "bench" / "python_peer")], text=True,

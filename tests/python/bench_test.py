@@ -71,7 +71,7 @@ class BenchTest(Test):
                          page.document(entries))
 
     def test_ratios_come_from_benchmarks_that_exist(self):
-        bench = pathlib.Path(ROOT) / "bench"
+        bench = pathlib.Path(ROOT) / "tests/bench"
         for ratio in ratios.RATIOS:
             if ratio.source[0] == "beside_python":
                 continue

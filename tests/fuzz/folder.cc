@@ -18,7 +18,7 @@ fs::path Within() {
 class FolderWithStage : public test::TemporaryFolder {
  public:
   FolderWithStage() : TemporaryFolder(Within()) {
-    fs::copy(MJDIAG_SOURCE_DIR "/fuzz/stage", path());
+    fs::copy(MJDIAG_SOURCE_DIR "/tests/fuzz/stage", path());
   }
 };
 
