@@ -5,6 +5,8 @@
     check.py sources             every formula of docs/theory.md says which name in which file
                                  has it, and it is there; so is every source that the texts
                                  name
+    check.py folders             the table of docs/house.md has a row for every folder, and for
+                                 none that is not there
     check.py links <folder>      every link of the built site that stays inside leads
                                  somewhere, anchors included, and nothing is loaded from
                                  elsewhere
@@ -13,6 +15,7 @@
 import re
 import shlex
 import sys
+from fnmatch import fnmatch
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
@@ -111,6 +114,34 @@ def check_sources():
     return faults
 
 
+def folders_of(parent, ignored=()):
+    """Names of its folders with a file in them; what tools leave behind is none."""
+    return [path.name for path in sorted(parent.iterdir())
+            if path.is_dir() and not path.name.startswith((".", "__"))
+            and not any(fnmatch(path.name, pattern) for pattern in ignored)
+            and any(file.is_file() and "__pycache__" not in file.parts
+                    for file in path.rglob("*"))]
+
+
+def check_folders():
+    """Rows are the folders of the sources, of plugin/ those in it."""
+    house = (ROOT / "docs/house.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `([\w/]+)/` \| (.*) \|$", house, re.MULTILINE))
+    ignored = re.findall(r"^/(.+)/$", (ROOT / ".gitignore").read_text(encoding="utf-8"),
+                         re.MULTILINE)
+    there = [name for name in folders_of(ROOT, ignored) if name != "plugin"]
+    there += [f"plugin/{name}" for name in folders_of(ROOT / "plugin")]
+    faults = [f"docs/house.md: no row for {name}/" for name in there if name not in rows]
+    for name, text in rows.items():
+        if name not in there:
+            faults.append(f"docs/house.md: no folder {name}/")
+        faults += [f"docs/house.md: no folder {name}/{room}/"
+                   for room in re.findall(r"`(\w+)/`", text)
+                   if not (ROOT / name / room).is_dir()]
+    print(f"{len(rows)} folders")
+    return faults
+
+
 class Page(HTMLParser):
     def __init__(self, text):
         super().__init__()
@@ -154,10 +185,11 @@ def check_links(folder):
 
 
 def main():
-    checks = {"commands": check_commands, "links": check_links, "sources": check_sources}
+    checks = {"commands": check_commands, "folders": check_folders, "links": check_links,
+              "sources": check_sources}
     arguments = sys.argv[1:]
     if not arguments or arguments[0] not in checks or len(arguments) != (
-            1 if arguments[0] == "sources" else 2):
+            1 if arguments[0] in ("folders", "sources") else 2):
         sys.exit(__doc__)
     faults = checks[arguments[0]](*(Path(path).resolve() for path in arguments[1:]))
     for fault in faults:
