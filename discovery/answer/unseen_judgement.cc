@@ -375,11 +375,17 @@ UnseenJudgement UnseenJudge::Run() {
     if (exchanges == kMost || judged_.is_cut_short || !ExchangeOne()) break;
   }
   for (std::size_t m = 0; m < judged_.losses.size(); ++m) {
-    char by_unseen[64];
-    std::snprintf(by_unseen, sizeof by_unseen,
-                  "kept: %.1f of it on data that no fit saw", judged_.losses[m].unseen);
-    Decide("without " + Names({judged_.answer.fit.model[m]}), judged_.losses[m].Total(),
-           by_unseen);
+    const MemberLoss& loss = judged_.losses[m];
+    std::string why = "kept: no machine without it was found to follow the run";
+    if (std::isfinite(loss.unseen)) {
+      char text[64];
+      std::snprintf(text, sizeof text, "kept: %.1f of it on data that no fit saw",
+                    loss.unseen);
+      why = text;
+    } else if (judged_.is_cut_short) {
+      why = "kept: no time was left to ask data that no fit saw";
+    }
+    Decide("without " + Names({judged_.answer.fit.model[m]}), loss.Total(), why);
   }
   const double gain = judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance;
   if (!judged_.answer.fit.model.empty() && gain < kLeastGain) {
