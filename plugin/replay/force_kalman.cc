@@ -122,11 +122,10 @@ void ForceKalman::Correct(Index sensor) {
 
 double ForceKalman::Take(Index sensor, bool late, double innovation, double speed) {
   Expect(sensor, late, innovation, speed);
-  const double square = last_innovation * last_innovation / S_;
-  inflation = std::max(1.0, square / (kCorner * kCorner));
+  const double off = std::abs(last_innovation) / std::sqrt(S_);
+  inflation = std::max(1.0, off / kCorner);
   Correct(sensor);
-  const double cost =
-      inflation > 1.0 ? 2.0 * kCorner * std::sqrt(square) - kCorner * kCorner : square;
+  const double cost = inflation > 1.0 ? kCorner * (2.0 * off - kCorner) : off * off;
   return std::log(S_) + cost;
 }
 

@@ -16,7 +16,9 @@ class ForceKalman {
  public:
   /// Readings further off count linearly (P. J. Huber, "Robust Estimation of a Location
   /// Parameter", Ann. Math. Statist. 35, 1964): beyond 4 standard deviations noise is seen
-  /// once in 16,000 readings.
+  /// once in 16,000 readings. With z = e / sqrt(S) such a reading has the variance
+  /// S |z| / 4, so that it pulls as one at 4 standard deviations does, however far it is;
+  /// with one that grows as z^2 the filter, and -2 ln L with it, would jump with its noise.
   static constexpr double kCorner = 4.0;
 
   /// @param dofs  those with a latent force

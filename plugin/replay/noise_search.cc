@@ -69,6 +69,19 @@ double LeastOf(double before, double here, double after) {
   return std::clamp(-slope / bend, -kMost, kMost);
 }
 
+/// How -2 ln L bends: half the sum of g g', g its slopes by stretches, is the information of
+/// all of them (E. R. Berndt, B. H. Hall, R. E. Hall, J. A. Hausman, "Estimation and Inference
+/// in Nonlinear Structural Models", Ann. Econ. Soc. Meas. 3, 1974). What no reading tells
+/// bends by 1.
+MatrixXd CurvatureOf(const std::vector<NoiseSlope>& slopes) {
+  const Index n = slopes.front().slope.size();
+  MatrixXd curvature = MatrixXd::Identity(n, n);
+  for (const NoiseSlope& one : slopes) {
+    curvature += 0.5 * one.parts * one.parts.transpose();
+  }
+  return curvature;
+}
+
 VectorXd LogarithmsOf(const FilterNoise& noise) {
   const Index nf = noise.size.size();
   const Index ny = noise.reading.size();
@@ -246,14 +259,20 @@ LikelyNoise NoiseSearch::Downhill(const VectorXd& x, bool with_clock) const {
           const auto i = static_cast<std::size_t>(number);
           slopes[i] = SlopeAlong(path_, noise, pieces_[i].first, pieces_[i].count);
         });
-        Sloped all{0.0, VectorXd::Zero(at.size())};
+        Sloped all{0.0, VectorXd::Zero(at.size()), CurvatureOf(slopes)};
         for (const NoiseSlope& one : slopes) {
           all.value += one.deviance;
           all.slope += one.slope;
         }
-        if (!with_clock) all.slope.tail(2).setZero();
+        if (!with_clock) {
+          all.slope.tail(2).setZero();
+          all.curvature.rightCols(2).setZero();
+          all.curvature.bottomRows(2).setZero();
+          all.curvature.diagonal().tail(2).setOnes();
+        }
         // Noises that are far off make slopes beyond all numbers.
-        if (!all.slope.allFinite()) all.value = std::numeric_limits<double>::infinity();
+        const bool is_finite = all.slope.allFinite() && all.curvature.allFinite();
+        if (!is_finite) all.value = std::numeric_limits<double>::infinity();
         return all;
       },
       x, lower_, upper_, kEnd);

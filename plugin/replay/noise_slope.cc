@@ -1,6 +1,7 @@
 #include "mjdiag/plugin/replay/noise_slope.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/plugin/replay/linear_pass.h"
@@ -12,6 +13,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
+
+/// Ticks of a part.
+constexpr Index kPart = 20;
 
 /// What the pass forwards keeps of a reading.
 struct Reading {
@@ -94,8 +98,8 @@ double Backwards::Take(Index place) {
   const auto u = u_.col(place);
   const auto c = c_.col(place);
   const double root = std::sqrt(one.S);
-  const double V =
-      one.cut ? one.e * one.e / (ForceKalman::kCorner * ForceKalman::kCorner) : one.S;
+  constexpr double kCorner = ForceKalman::kCorner;
+  const double V = one.cut ? std::abs(one.e) * root / kCorner : one.S;
   const double Zu = Z_.dot(u);
   du_.noalias() = Q_ * u;
   const double uQu = u.dot(du_);
@@ -103,9 +107,8 @@ double Backwards::Take(Index place) {
   double by_S = 1.0 / one.S;
   double by_e = Zu / V;
   if (one.cut) {
-    by_S -= ForceKalman::kCorner * std::abs(one.e) / (one.S * root);
-    by_e += std::copysign(2.0 * ForceKalman::kCorner, one.e) / root +
-            by_V * 2.0 * one.e / (ForceKalman::kCorner * ForceKalman::kCorner);
+    by_S += 0.5 * by_V * V / one.S - kCorner * std::abs(one.e) / (one.S * root);
+    by_e += std::copysign(2.0 * kCorner, one.e) / root + by_V * V / one.e;
   } else {
     by_S += by_V - one.e * one.e / (one.S * one.S);
     by_e += 2.0 * one.e / one.S;
@@ -194,9 +197,17 @@ NoiseSlope Backwards::Run() {
   by_rho_ = by_renewal_ = by_start_ = VectorXd::Zero(nf_ + 1);
   by_white_ = VectorXd::Zero(nf_);
   by_reading_ = VectorXd::Zero(noise_.reading.size());
-  for (Index k = count_ - 1; k >= 0; --k) Tick(k);
-  by_start_ = Q_.diagonal().tail(nf_ + 1);
-  return {deviance_, Slope()};
+  MatrixXd parts(3 * nf_ + by_reading_.size() + 2, (count_ - 1) / kPart + 1);
+  VectorXd later = VectorXd::Zero(parts.rows());
+  for (Index k = count_ - 1; k >= 0; --k) {
+    Tick(k);
+    if (k % kPart != 0) continue;
+    if (k == 0) by_start_ = Q_.diagonal().tail(nf_ + 1);
+    const VectorXd until = Slope();
+    parts.col(k / kPart) = until - later;
+    later = until;
+  }
+  return {deviance_, std::move(later), std::move(parts)};
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 //   dS = 1 / S - e^2 / S^2 - (e Z u - u' Q u) / S^2,
 //   Z - de c,   Q + (du c' + c du') / 2,
 //
-// and dS is the slope by r^2. Through a tick, z = F z, P = F P F' + N: F' Z and F' Q F; Q is
+// and dS is the slope by r^2. Beyond Huber's corner c0 it is V = |e| sqrt(S) / c0 that stands
+// for S in z+ and P+, and the cost is ln S + c0 (2 |e| / sqrt(S) - c0). Through a tick, z = F z, P = F P F' + N: F' Z and F' Q F; Q is
 // the slope by N. Takes as long as three passes, however many noises there are.
 
 #include <Eigen/Core>
@@ -24,6 +25,9 @@ struct NoiseSlope {
   double deviance = 0.0;
   /// By ln of: size, memory, white (nf each), reading (ny), clock, clock_memory.
   Eigen::VectorXd slope;
+  /// The same of parts of 20 ticks, one after the other, whose sum it is: how it scatters
+  /// tells how -2 ln L bends.
+  Eigen::MatrixXd parts;
 };
 
 /// @param count  as LinearPass::Over

@@ -98,6 +98,8 @@ TEST(NoiseSlope, IsTheDerivativeOfTheLikelihoodByEveryNoise) {
       return Score(path, NoiseOf(at), 0, 400).deviance.sum();
     };
     EXPECT_NEAR(slope.deviance, deviance(x), 1e-9 * std::abs(slope.deviance));
+    EXPECT_LT((slope.parts.rowwise().sum() - slope.slope).norm(),
+              1e-9 * slope.slope.norm());
     for (Index i = 0; i < x.size(); ++i) {
       constexpr double kStep = 1e-4;
       const VectorXd step = kStep * VectorXd::Unit(x.size(), i);
