@@ -53,8 +53,8 @@ std::string CalibrationText(const CalibrateCommand& command,
   text += "\n";
   for (std::size_t i = 0; i < report.records.size(); ++i) {
     const CalibratedRecord& record = report.records[i];
-    text += command.records[i] + ": misfit " + Short(record.misfit) +
-            (record.misfit > 2.0 ? ", which this plant does not explain" : "") + "\n";
+    text += command.records[i] + ": NIS " + Short(record.nis) +
+            (record.nis > 2.0 ? ", which this plant does not explain" : "") + "\n";
   }
   if (calibration.model.any()) {
     text +=
@@ -106,7 +106,7 @@ nlohmann::json CalibrationDocument(const CalibrateCommand& command,
   for (std::size_t i = 0; i < report.records.size(); ++i) {
     document["records"].push_back(
         {{"file", fs::path(command.records[i]).filename().string()},
-         {"misfit", report.records[i].misfit}});
+         {"misfit", report.records[i].nis}});
   }
   return document;
 }

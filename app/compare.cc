@@ -68,7 +68,7 @@ std::string FollowedText(const Comparison& comparison) {
     ahead.Add(row);
   }
   Table forces({"joint", "missing force, rms", "known to", "lasts"});
-  for (const MissingForce& force : comparison.missing_force) {
+  for (const DisturbanceEstimate& force : comparison.missing_force) {
     forces.Add({force.joint, FormatQuantity(force.rms, force.unit),
                 FormatQuantity(force.sd, force.unit),
                 FormatQuantity(force.memory, "s")});

@@ -31,7 +31,7 @@ void Diagnose(const DiagnoseOptions& options) {
   auto document = nlohmann::json::parse(DiagnosisJson(diagnosis.result));
   document["command"] = CommandLine();
   document["record"] = std::filesystem::path(options.record).filename().string();
-  std::string text = Describe(diagnosis.result);
+  std::string text = DiagnosisText(diagnosis.result);
   AddNotes(notes, document, text);
   Publish(options.output, "diagnosis", document, text, [&] {
     NamedPage page = PageOf(prepared.design, diagnosis, document["record"]);

@@ -59,7 +59,7 @@ NamedPage PageOf(const DiagnosisDesign& design, const Diagnosis& diagnosis,
   return {"diagnosis", DiagnosisPage(design, diagnosis.result, diagnosis.log, run)};
 }
 
-std::string Describe(const DiagnosisResult& result) {
+std::string DiagnosisText(const DiagnosisResult& result) {
   std::string text = DiagnosisVerdict(result) + "\n\n";
   text += "residual     " + Short(result.residual.min) + " to " +
           Short(result.residual.max) + ", limits " + Short(result.limits.min) + " to " +

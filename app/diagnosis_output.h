@@ -22,6 +22,6 @@ NamedPage PageOf(const DiagnosisDesign& design, const Diagnosis& diagnosis,
                  const std::string& record);
 
 /// The table for people.
-std::string Describe(const DiagnosisResult& result);
+std::string DiagnosisText(const DiagnosisResult& result);
 
 }  // namespace mjdiag::app

@@ -17,7 +17,7 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
 #include "mjdiag/signals/error.h"
@@ -109,7 +109,7 @@ void Discover(DiscoverCommand& command) {
       validation.empty() ? nlohmann::json() : nlohmann::json(validation);
   document["seed"] = command.search.seed;
   document["command"] = CommandLine();
-  std::string text = Describe(discovery);
+  std::string text = DiscoveryAsText(discovery);
   if (!run.extended_plant.empty()) {
     text += "\nextended plant: " + run.extended_plant + "\n";
   }

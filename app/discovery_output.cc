@@ -31,7 +31,7 @@ std::string NotesText(const std::vector<std::string>& notes) {
 
 }  // namespace
 
-std::string Describe(const Discovery& discovery) {
+std::string DiscoveryAsText(const Discovery& discovery) {
   return DiscoveryAnswer(discovery) + "\n" +
          Section("Kinds of physics", KindTable(discovery)) +
          Section("Causes", CauseTable(discovery)) +
@@ -52,7 +52,7 @@ std::string WriteExtendedPlant(const std::string& folder, const std::string& set
   if (!HasFound(discovery)) return "";
   return WriteExtendedSetup(std::filesystem::path(folder) / "extended", setup,
                             machine.WithSubsteps(discovery.substeps),
-                            ChangesOf(discovery))
+                            ChangesOfAnswer(discovery))
       .string();
 }
 

@@ -10,7 +10,7 @@
 namespace mjdiag::app {
 
 /// The answer and its tables.
-std::string Describe(const Discovery& discovery);
+std::string DiscoveryAsText(const Discovery& discovery);
 
 /// Writes `<folder>/extended/plant.xml` and `setup.toml` if causes were found.
 /// @return the path of the plant; empty without causes

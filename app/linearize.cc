@@ -146,7 +146,7 @@ void Linearize(LinearizeOptions& options) {
   document["states"] = StateNames(machine.plant());
   document["step"] = StateSpaceJson(transition.step);
   document["tick"] = StateSpaceJson(transition.tick);
-  std::string text = machine.setup().name + ", " + Describe(subject) + "\n" +
+  std::string text = machine.setup().name + ", " + SubjectText(subject) + "\n" +
                      PlaceText(machine, named, linear.stable) + TiesText(linear) +
                      "\n\n" + ModeTable(linear.model);
   if (!machine.setup().control.axes.empty()) {

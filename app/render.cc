@@ -82,8 +82,8 @@ std::vector<TitledRecord> SimulateRuns(const Subject& subject,
   runs.push_back({"healthy", Run(subject.nominal, motion, excitation, healthy,
                                  "simulating the healthy")});
   if (!subject.healthy()) {
-    runs.push_back({Describe(subject), Run(subject.machine, motion, excitation, faulty,
-                                           "simulating the faulty")});
+    runs.push_back({SubjectText(subject), Run(subject.machine, motion, excitation,
+                                              faulty, "simulating the faulty")});
   }
   return runs;
 }

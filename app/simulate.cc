@@ -49,7 +49,7 @@ std::map<std::string, double> LargestTrackingErrors(const Setup& setup,
 
 std::string RunSummary(const Setup& setup, const Subject& subject, const Record& record,
                        const nlohmann::json& document) {
-  std::string text = setup.name + ", " + Describe(subject) + ": " +
+  std::string text = setup.name + ", " + SubjectText(subject) + ": " +
                      std::to_string(record.samples()) + " samples, " +
                      Short(record.duration()) + " s, " +
                      Short(document["real_time_factor"]) + " times real time\n\n";
@@ -138,13 +138,13 @@ void Simulate(const SimulateOptions& options) {
   }
   if (diagnosis) {
     document["diagnosis"] = nlohmann::json::parse(DiagnosisJson(diagnosis->result));
-    text += "\n" + Describe(diagnosis->result);
+    text += "\n" + DiagnosisText(diagnosis->result);
     if (!options.output.folder.empty()) {
       WriteTextFile(std::filesystem::path(options.output.folder) / "diagnosis.json",
                     document["diagnosis"].dump(2) + "\n");
     }
     page = [&] {
-      return PageOf(prepared->design, *diagnosis, "simulated: " + Describe(subject));
+      return PageOf(prepared->design, *diagnosis, "simulated: " + SubjectText(subject));
     };
   }
   AddNotes(notes, document, text);

@@ -176,10 +176,11 @@ void Stream(const Subject& subject, const MotionOptions& motion,
   const TickLayout layout = LayoutOf(subject.setup());
   const auto sender = OpenSender(address, layout, wanted.login, wanted.send);
   if (address.kind != StreamAddress::Kind::kProcess) {
-    std::printf("%s: %s to %s, %d ticks of %s a packet\n", subject.setup().name.c_str(),
-                options.play.empty() ? Describe(subject).c_str() : options.play.c_str(),
-                mjdiag::Describe(address).c_str(), sender->batch(),
-                mjdiag::Describe(layout).c_str());
+    std::printf(
+        "%s: %s to %s, %d ticks of %s a packet\n", subject.setup().name.c_str(),
+        options.play.empty() ? SubjectText(subject).c_str() : options.play.c_str(),
+        mjdiag::AddressText(address).c_str(), sender->batch(),
+        mjdiag::LayoutText(layout).c_str());
     std::fflush(stdout);
   }
   const Interrupt interrupt;

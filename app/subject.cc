@@ -232,7 +232,7 @@ Record Run(const Machine& machine, const MotionOptions& motion,
                        : Simulate(machine, excitation, with_bar);
 }
 
-std::string Describe(const Subject& subject) {
+std::string SubjectText(const Subject& subject) {
   const auto& [faults, effects, numbers] = subject.machine.changes();
   std::string text;
   const auto append = [&text](const std::string& item) {

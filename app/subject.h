@@ -90,7 +90,7 @@ Record Run(const Machine& machine, const MotionOptions& motion,
            const std::string& label);
 
 /// Folder names of the faults and effects, for titles: "zeta_x = 1.2, ..."; "healthy".
-std::string Describe(const Subject& subject);
+std::string SubjectText(const Subject& subject);
 /// The same for machines to read.
 nlohmann::json ToJson(const Subject& subject);
 

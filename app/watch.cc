@@ -41,7 +41,7 @@ struct LiveOptions {
   WatchOptions watch;
 };
 
-std::string WordsOf(PlantNumberKind kind) {
+std::string WordsOf(ModelParameterKind kind) {
   return std::string(MeaningOf(kind)) + " of ";
 }
 
@@ -132,7 +132,7 @@ void Watch(const LiveOptions& options) {
   const Interrupt interrupt;
   LiveWatch live(machine, prepared, watch);
   std::fprintf(stderr, "watch: %s from %s\nwatch: %s\n", machine.setup().name.c_str(),
-               mjdiag::Describe(watch.source).c_str(), live.url().c_str());
+               mjdiag::AddressText(watch.source).c_str(), live.url().c_str());
   live.Run([] { return Interrupt::IsWished(); });
 }
 

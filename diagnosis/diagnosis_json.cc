@@ -65,7 +65,7 @@ std::string DiagnosisJson(const DiagnosisResult& result) {
         {"threshold_min", result.limits.min},
         {"threshold_max", result.limits.max}}},
       {"faults", Faults(result.faults)},
-      {"misfit", result.by_twin ? nlohmann::json(result.misfit) : nlohmann::json()},
+      {"misfit", result.by_twin ? nlohmann::json(result.nis) : nlohmann::json()},
       {"model_records", result.model_records},
       {"disturbance", Disturbance(result.disturbance)}};
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);

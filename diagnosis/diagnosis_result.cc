@@ -55,8 +55,8 @@ TwinReading ReadFaults(const DiagnosisMonitor& monitor, double noise_ratio) {
                                    : ReadResiduals(monitor, noise_ratio);
 }
 
-std::vector<FaultVerdict> Judge(const DiagnosisDesign& design,
-                                const TwinReading& reading) {
+std::vector<FaultVerdict> FaultVerdictsOf(const DiagnosisDesign& design,
+                                          const TwinReading& reading) {
   const std::vector<std::string> names = design.FaultNames();
   std::vector<FaultVerdict> verdicts;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -126,7 +126,7 @@ CalibratedEstimate Calibrate(const DiagnosisDesign& design, Index fault,
 }
 
 std::vector<FaultVerdict> JudgeFaults(const DiagnosisMonitor& monitor) {
-  return Judge(monitor.design(), ReadFaults(monitor, 1.0));
+  return FaultVerdictsOf(monitor.design(), ReadFaults(monitor, 1.0));
 }
 
 DisturbanceReport AnalyseStretch(const DiagnosisDesign& design, const MonitorLog& log,
@@ -156,9 +156,9 @@ DiagnosisResult Conclude(const DiagnosisMonitor& monitor, const MonitorLog& log)
   const TwinReading reading =
       ReadFaults(monitor, std::max(1.0, result.disturbance.noise_ratio));
   RequireSeparableFaults(design, reading.inseparable);
-  result.faults = Judge(design, reading);
+  result.faults = FaultVerdictsOf(design, reading);
   result.by_twin = monitor.twin() != nullptr;
-  result.misfit = reading.misfit;
+  result.nis = reading.nis;
   result.model_records = reading.model_runs;
   if (AnyDetected(result.faults)) {
     result.disturbance = analyse(WithoutFaults(design, log, result.faults));

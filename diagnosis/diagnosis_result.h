@@ -39,7 +39,7 @@ struct DiagnosisResult {
   bool by_twin = false;
   /// Of the twin: squared innovations over what is expected of them, 1 where it explains
   /// all that it sees.
-  double misfit = 1.0;
+  double nis = 1.0;
   /// Healthy records that tell how uncertain its model is (model_uncertainty.h); 0: it is
   /// not.
   int model_records = 0;

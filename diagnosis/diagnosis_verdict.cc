@@ -95,10 +95,10 @@ std::string ModelText(const DiagnosisResult& result) {
 }
 
 std::string DiagnosisVerdict(const DiagnosisResult& result) {
-  if (result.by_twin && !(result.misfit < kLargestMisfit)) {
+  if (result.by_twin && !(result.nis < kLargestNis)) {
     return "Neither the healthy machine nor its faults explain this run: what is left "
            "has " +
-           FormatNumber(std::sqrt(result.misfit)) + " times the noise.";
+           FormatNumber(std::sqrt(result.nis)) + " times the noise.";
   }
   if (!result.detected) return "Nothing is wrong that this run shows.";
   const std::string faults = NamedFaults(RankedFaults(result), result.by_twin);

@@ -7,7 +7,7 @@
 
 namespace mjdiag {
 
-Changes ChangesOf(const Discovery& discovery) {
+Changes ChangesOfAnswer(const Discovery& discovery) {
   std::vector<Cause> causes;
   for (const FoundCause& found : discovery.causes) causes.push_back(found.cause);
   Changes changes = ChangesOf(causes);

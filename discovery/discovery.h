@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/disturbance_estimate.h"
 #include "mjdiag/discovery/fit/decision.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
@@ -23,7 +23,7 @@
 #include "mjdiag/discovery/verdict.h"
 #include "mjdiag/plugin/effects/kind.h"
 #include "mjdiag/plugin/machine/machine.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -40,7 +40,7 @@ struct CauseParameter {
 /// A number of the plant as the record has it.
 struct CalibratedNumber {
   std::string name;  ///< "mass@stage"
-  PlantNumber number;
+  ModelParameter number;
   double factor = 1.0;  ///< of what the model says
   double low = 1.0;     ///< 95 % interval
   double high = 1.0;
@@ -198,8 +198,9 @@ struct Discovery {
   double colour_after = 0.0;
 
   std::vector<LadderStep> ladder;
-  std::vector<MissingForce> forces_before;  ///< unexplained, at the driven joints
-  std::vector<MissingForce> forces_after;
+  std::vector<DisturbanceEstimate>
+      forces_before;  ///< unexplained, at the driven joints
+  std::vector<DisturbanceEstimate> forces_after;
   std::vector<LawPlot> laws;
   std::vector<FaultLimit> fault_limits;
   double sample_time = 0.0;
@@ -249,6 +250,6 @@ bool IsMoved(const CalibratedMoment& moment);
 bool HasFound(const Discovery& discovery);
 
 /// The causes and the numbers as changes to a plant, for Simulate and ExtendMjcf.
-Changes ChangesOf(const Discovery& discovery);
+Changes ChangesOfAnswer(const Discovery& discovery);
 
 }  // namespace mjdiag

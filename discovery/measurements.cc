@@ -46,7 +46,7 @@ Machine WithOwnNumbers(const ManifestRecord& record, const Machine& during) {
   NumberFactors factors;
   for (const auto& [name, value] : record.numbers) {
     try {
-      const PlantNumber number = FindPlantNumber(during.plant(), name);
+      const ModelParameter number = FindModelParameter(during.plant(), name);
       factors.emplace_back(number, FactorFor(during.plant(), number, value));
     } catch (const InputError& error) {
       throw InputError("numbers of " + record.file.filename().string() + ": " +

@@ -7,14 +7,15 @@
 
 namespace mjdiag::python {
 
-void BindRecord(pybind11::module_& module);        // Record
-void BindLinear(pybind11::module_& module);        // LinearModel
-void BindDiagnosis(pybind11::module_& module);     // Diagnosis, Fault
-void BindDiscovery(pybind11::module_& module);     // Discovery, Cause, Parameter
-void BindComparison(pybind11::module_& module);    // Comparison, Mismatch, MissingForce
-void BindFilterDesign(pybind11::module_& module);  // FilterDesign
-void BindTolerance(pybind11::module_& module);     // TolerantRun
-void BindExcitation(pybind11::module_& module);    // MotionDesign
+void BindRecord(pybind11::module_& module);     // Record
+void BindLinear(pybind11::module_& module);     // LinearModel
+void BindDiagnosis(pybind11::module_& module);  // Diagnosis, Fault
+void BindDiscovery(pybind11::module_& module);  // Discovery, Cause, Parameter
+void BindComparison(
+    pybind11::module_& module);  // Comparison, Mismatch, DisturbanceEstimate
+void BindFilterDesign(pybind11::module_& module);     // FilterDesign
+void BindTolerance(pybind11::module_& module);        // TolerantRun
+void BindExcitation(pybind11::module_& module);       // MotionDesign
 void BindJointExcitation(pybind11::module_& module);  // JointMotionDesign
 void BindMachine(pybind11::module_& module);          // Machine
 void BindMonitor(pybind11::module_& module);          // Monitor

@@ -48,7 +48,7 @@ std::string ComparisonHtml(const ComparisonObject& object) {
   }
   if (comparison.deviance) {
     page.AddTable(PredictionTable(comparison));
-    page.AddTable(MissingForceTable(comparison));
+    page.AddTable(DisturbanceTable(comparison));
   }
   for (const std::string& note : object.notes) page.AddParagraph(note);
   return NotebookHtml(page);
@@ -85,9 +85,9 @@ py::dict PredictionOf(const ComparisonObject& object) {
   return prediction;
 }
 
-py::dict MissingForcesOf(const ComparisonObject& object) {
+py::dict DisturbancesOf(const ComparisonObject& object) {
   py::dict forces;
-  for (const MissingForce& force : object.comparison.missing_force) {
+  for (const DisturbanceEstimate& force : object.comparison.missing_force) {
     forces[force.joint.c_str()] = force;
   }
   return forces;
@@ -131,22 +131,23 @@ void BindMismatch(py::module_& module) {
       });
 }
 
-void BindMissingForce(py::module_& module) {
-  py::class_<MissingForce>(module, "MissingForce",
-                           "The force that the model lacks at a joint.")
-      .def_readonly("joint", &MissingForce::joint, "Its name.")
-      .def_readonly("unit", &MissingForce::unit, R"("N" or "N m".)")
+void BindDisturbance(py::module_& module) {
+  py::class_<DisturbanceEstimate>(module, "DisturbanceEstimate",
+                                  "The force that the model lacks at a joint.")
+      .def_readonly("joint", &DisturbanceEstimate::joint, "Its name.")
+      .def_readonly("unit", &DisturbanceEstimate::unit, R"("N" or "N m".)")
       .def_property_readonly(
           "value",
           [](const py::object& self) {
-            return View(py::cast<const MissingForce&>(self).value, self);
+            return View(py::cast<const DisturbanceEstimate&>(self).value, self);
           },
           "Of every sample, (samples,) [unit].")
-      .def_readonly("rms", &MissingForce::rms, "Of value [unit].")
-      .def_readonly("sd", &MissingForce::sd, "Standard deviation of its error [unit].")
-      .def_readonly("memory", &MissingForce::memory, "How long it lasts [s].")
-      .def("__repr__", [](const MissingForce& force) {
-        return "<mjdiag.MissingForce: " + force.joint + " " +
+      .def_readonly("rms", &DisturbanceEstimate::rms, "Of value [unit].")
+      .def_readonly("sd", &DisturbanceEstimate::sd,
+                    "Standard deviation of its error [unit].")
+      .def_readonly("memory", &DisturbanceEstimate::memory, "How long it lasts [s].")
+      .def("__repr__", [](const DisturbanceEstimate& force) {
+        return "<mjdiag.DisturbanceEstimate: " + force.joint + " " +
                FormatQuantity(force.rms, force.unit) + " rms, known to " +
                FormatQuantity(force.sd, force.unit) + ">";
       });
@@ -176,8 +177,8 @@ void BindFollowed(ComparisonClass& comparison) {
                              R"(
           Sensor channel -> rms of the error over every horizon, (horizons,), in the unit
           of the channel; inf where a prediction diverges.)")
-      .def_property_readonly("missing_force", &MissingForcesOf,
-                             "Joint -> MissingForce.")
+      .def_property_readonly("missing_force", &DisturbancesOf,
+                             "Joint -> DisturbanceEstimate.")
       .def_property_readonly(
           "deviance",
           [](const ComparisonObject& object) -> py::object {
@@ -194,7 +195,7 @@ void BindFollowed(ComparisonClass& comparison) {
 
 void BindComparison(py::module_& module) {
   BindMismatch(module);
-  BindMissingForce(module);
+  BindDisturbance(module);
   ComparisonClass comparison(module, "Comparison",
                              R"(
                              The answer of Machine.compare: what the simulation gets wrong

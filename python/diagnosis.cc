@@ -174,7 +174,7 @@ void BindDiagnosis(py::module_& module) {
           "When its mean magnitude did, which no passing disturbance does [s]; None.")
       .def_property_readonly(
           "misfit",
-          [](const DiagnosisObject& object) { return object.diagnosis.result.misfit; },
+          [](const DiagnosisObject& object) { return object.diagnosis.result.nis; },
           R"(
           Squared innovations of the twin over what is expected: 1 where it explains all
           that it sees.)")

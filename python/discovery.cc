@@ -39,7 +39,7 @@ py::list AlternativesOf(const FoundCause& found) {
 }
 
 py::dict UncertainParameters(const Discovery& discovery) {
-  const py::object make = py::module_::import("mjdiag").attr("PlantNumber");
+  const py::object make = py::module_::import("mjdiag").attr("ModelParameter");
   py::dict numbers;
   for (const CalibratedNumber& number : discovery.calibration) {
     numbers[number.name.c_str()] =
@@ -106,7 +106,7 @@ void BindCause(py::module_& module) {
           "words", &FoundCause::unnamed,
           "Of a force that was learned and has no name, what it is; else \"\".")
       .def("__repr__", [](const FoundCause& found) {
-        return "<mjdiag.Cause: " + Describe(found.cause) + ">";
+        return "<mjdiag.Cause: " + CauseName(found.cause) + ">";
       });
 }
 
@@ -159,7 +159,7 @@ void BindDiscovery(py::module_& module) {
       .def_property_readonly(
           "machine",
           [](const DiscoveryObject& object) {
-            return object.machine.Extended(ChangesOf(object.discovery),
+            return object.machine.Extended(ChangesOfAnswer(object.discovery),
                                            object.discovery.substeps);
           },
           "The Machine with all causes in it, ready to simulate.")
@@ -213,7 +213,7 @@ void BindDiscovery(py::module_& module) {
           "write",
           [](const DiscoveryObject& object, const py::object& folder) {
             return object.machine
-                .Extended(ChangesOf(object.discovery), object.discovery.substeps)
+                .Extended(ChangesOfAnswer(object.discovery), object.discovery.substeps)
                 .Write(PathOf(folder, "Discovery.write"))
                 .string();
           },

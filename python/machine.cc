@@ -63,16 +63,16 @@ py::object CalibrationOf(const MachineObject& machine) {
         known->factors[at], sd[at],
         report ? py::object(py::float_(report->prior_sd[at])) : py::none());
   }
-  py::list misfits;
+  py::list nis;
   py::list doubts;
   if (report) {
     for (const CalibratedRecord& record : report->records) {
-      misfits.append(record.misfit);
+      nis.append(record.nis);
     }
     for (const std::string& name : report->doubts) doubts.append(name);
   }
   return package.attr("Calibration")(numbers, Copy(known->sensor_noise),
-                                     known->force_noise, misfits, doubts);
+                                     known->force_noise, nis, doubts);
 }
 
 std::vector<std::string> TrajectoriesOf(const MachineObject& machine) {

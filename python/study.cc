@@ -81,7 +81,7 @@ py::dict DescribeRun(const StudyObject& study, std::int64_t index) {
   }
   py::dict numbers;
   for (const auto& [number, factor] : run.numbers) {
-    numbers[PlantNumberName(study.loaded->machine.plant(), number).c_str()] = factor;
+    numbers[ModelParameterName(study.loaded->machine.plant(), number).c_str()] = factor;
   }
   py::dict told;
   told["machine"] = run.machine;

@@ -69,7 +69,7 @@ py::dict RunColumns(const StudyResultObject& result) {
     columns["disturbed"] =
         ArrayOf<bool>(results, [](const RunResult& run) { return run.disturbed; });
     columns["misfit"] =
-        ArrayOf<double>(results, [](const RunResult& run) { return run.misfit; });
+        ArrayOf<double>(results, [](const RunResult& run) { return run.nis; });
   }
   return columns;
 }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "mjdiag/discovery/comparison/observed_joints.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/setup/declared_names.h"
 #include "mjdiag/report/tolerance_json.h"
 #include "mjdiag/signals/error.h"

@@ -21,7 +21,7 @@ constexpr std::array kGroups{
 std::string Times(double factor) { return " \u00d7" + GroupedNumber(factor); }
 
 // The group's factor, or one entry a joint where the user split the group.
-void Describe(const Amplification& amplification, const Group& group,
+void AddGroup(const Amplification& amplification, const Group& group,
               std::vector<std::string>& parts) {
   const auto shared = amplification.GroupFactor(group.role, group.motion);
   if (shared) {
@@ -41,7 +41,7 @@ void Describe(const Amplification& amplification, const Group& group,
 
 std::vector<std::string> AmplificationLabels(const Amplification& amplification) {
   std::vector<std::string> parts;
-  for (const Group& group : kGroups) Describe(amplification, group, parts);
+  for (const Group& group : kGroups) AddGroup(amplification, group, parts);
   if (parts.empty()) return {""};
   std::string list;
   for (const std::string& part : parts) {

@@ -81,7 +81,7 @@ std::string Plain(double value) {
 }
 
 /// "zeta_x = 1.2, coulomb_friction at X": what the second machine of the clip has.
-std::string ChangesOf(const json& description) {
+std::string ChangesText(const json& description) {
   std::string text;
   for (const char* kind : {"faults", "effects"}) {
     const auto found = description.find(kind);
@@ -130,7 +130,7 @@ std::string AmplificationText(const json& description) {
 
 std::string Caption(const json& description) {
   const std::string setup = TextOf(description, "setup");
-  const std::string changes = ChangesOf(description);
+  const std::string changes = ChangesText(description);
   return (setup.empty() ? "The machine" : setup) +
          (changes.empty() ? "" : ", healthy and with " + changes) +
          SpeedText(description) + AmplificationText(description) + ".";

@@ -37,7 +37,7 @@ void AddFollowed(const Comparison& comparison, nlohmann::json& document) {
     for (const double value : sensor.rms) rms.push_back(FiniteOrNull(value));
   }
   document["missing_force"] = nlohmann::json::object();
-  for (const MissingForce& force : comparison.missing_force) {
+  for (const DisturbanceEstimate& force : comparison.missing_force) {
     document["missing_force"][force.joint] = force.rms;
   }
 }

@@ -65,7 +65,7 @@ void AddFollowed(Page& page, const Comparison& comparison) {
       "The plant runs on with the measured inputs alone, from states that a filter "
       "has found from the readings up to then.");
   page.AddHeading("Missing forces");
-  for (const MissingForce& force : comparison.missing_force) {
+  for (const DisturbanceEstimate& force : comparison.missing_force) {
     TimePlot plot;
     plot.quantity = force.joint;
     plot.unit = force.unit;
@@ -148,7 +148,7 @@ void AddMismatchSpectrum(Page& page, const ChannelMismatch& channel) {
 std::string ComparisonVerdict(const Comparison& comparison) {
   if (comparison.falls && !comparison.missing_force.empty()) {
     std::string forces;
-    for (const MissingForce& force : comparison.missing_force) {
+    for (const DisturbanceEstimate& force : comparison.missing_force) {
       forces += (forces.empty() ? "" : ", ") + force.joint + " " +
                 FormatQuantity(force.rms, force.unit);
     }
@@ -228,11 +228,11 @@ Table PredictionTable(const Comparison& comparison) {
   return ahead;
 }
 
-Table MissingForceTable(const Comparison& comparison) {
+Table DisturbanceTable(const Comparison& comparison) {
   Table table;
   table.columns = {
       {"Joint"}, {"Missing force, rms", true}, {"Known to", true}, {"Lasts", true}};
-  for (const MissingForce& force : comparison.missing_force) {
+  for (const DisturbanceEstimate& force : comparison.missing_force) {
     table.rows.push_back({force.joint, FormatQuantity(force.rms, force.unit),
                           FormatQuantity(force.sd, force.unit),
                           FormatQuantity(force.memory, "s")});

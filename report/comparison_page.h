@@ -20,7 +20,7 @@ Table DerivedTable(const Comparison& comparison);
 /// How far ahead it predicts, a column for every horizon.
 Table PredictionTable(const Comparison& comparison);
 /// A row for every joint.
-Table MissingForceTable(const Comparison& comparison);
+Table DisturbanceTable(const Comparison& comparison);
 
 /// The whole page.
 Page ComparisonPage(const Comparison& comparison, const RunDescription& run);

@@ -214,7 +214,7 @@ void AddLaws(Page& page, const Discovery& discovery) {
 
 /// Unit of what is left at the site of the signature.
 std::string UnitOfRest(const Discovery& discovery) {
-  for (const MissingForce& force : discovery.forces_after) {
+  for (const DisturbanceEstimate& force : discovery.forces_after) {
     if (force.joint == discovery.unexplained_site) return force.unit;
   }
   return "";

@@ -81,7 +81,7 @@ void AddLimitLevels(TimePlot& plot, double limit, const std::string& name) {
       {"-" + FormatQuantity(limit, plot.unit), CurveRole::kNoise, -level});
 }
 
-TimePlot UnexplainedPlot(const MissingForce& force, const std::string& plant,
+TimePlot UnexplainedPlot(const DisturbanceEstimate& force, const std::string& plant,
                          double start_time, double sample_time) {
   TimePlot plot;
   plot.caption = "Unexplained at " + force.joint + ", " + plant;
@@ -124,10 +124,10 @@ std::vector<TimePlot> UnexplainedPlots(const Discovery& discovery) {
   const RecordReplay* first = discovery.Fitted();
   const double start = first != nullptr ? first->before.measured.start_time() : 0.0;
   std::vector<TimePlot> plots;
-  for (const MissingForce& before : discovery.forces_before) {
+  for (const DisturbanceEstimate& before : discovery.forces_before) {
     plots.push_back(
         UnexplainedPlot(before, "plant as given", start, discovery.sample_time));
-    for (const MissingForce& after : discovery.forces_after) {
+    for (const DisturbanceEstimate& after : discovery.forces_after) {
       if (after.joint != before.joint || !HasFound(discovery)) continue;
       plots.push_back(
           UnexplainedPlot(after, "extended plant", start, discovery.sample_time));

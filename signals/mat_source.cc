@@ -42,7 +42,7 @@ MatColumns ColumnsIn(const matvar_t& variable) {
                         : MatColumns{rows, columns, false};
 }
 
-std::string Describe(const matvar_t& variable) {
+std::string VariableText(const matvar_t& variable) {
   switch (variable.class_type) {
     case MAT_C_CELL:
       return "a cell array";
@@ -286,7 +286,7 @@ class MatSource : public RecordSource {
     const matvar_t* variable = Fetch(place.path);
     if (!variable) throw InputError(Variable(column), "cannot be read", "a vector");
     if (!IsRealMatrix(*variable) || (!place.matrix && !IsRealVector(*variable))) {
-      throw InputError(Variable(column), Describe(*variable), "a real vector");
+      throw InputError(Variable(column), VariableText(*variable), "a real vector");
     }
     if (!variable->data) throw InputError(Variable(column), "has no data", "a vector");
     Eigen::VectorXd values = ToVector(*variable);

@@ -70,7 +70,7 @@ class DrawnMachine {
   NumberFactors Draw() const {
     Random random(seed_);
     return DrawNumbers(nominal_.plant(), random,
-                       [](const mjModel&, const PlantNumber& number) {
+                       [](const mjModel&, const ModelParameter& number) {
                          return UsualSpread(number.kind);
                        });
   }
@@ -86,7 +86,7 @@ class DrawnMachine {
     Eigen::VectorXd away = learned.factors.array().log();
     double most = 0.0;
     for (const auto& [number, factor] : factors_) {
-      const std::string name = PlantNumberName(nominal_.plant(), number);
+      const std::string name = ModelParameterName(nominal_.plant(), number);
       if (std::abs(std::log(factor)) > most) {
         most = std::abs(std::log(factor));
         outcome_.farthest = name;

@@ -101,7 +101,7 @@ struct Seen {
   Index looks = 0;
   Index named_looks = 0;  ///< in which anything was named
   Index false_looks = 0;  ///< in which a fault was named that is not there
-  double misfit = 0.0;    ///< largest
+  double nis = 0.0;       ///< largest
   VectorXd squares;       ///< of errors over their standard deviation
   VectorXd largest;       ///< of them, by size
   std::set<std::size_t> named;
@@ -111,7 +111,7 @@ struct Seen {
 
   void Add(const TwinReading& reading, const VectorXd& truth) {
     ++looks;
-    misfit = std::max(misfit, reading.misfit);
+    nis = std::max(nis, reading.nis);
     bool any = false;
     bool wrong = false;
     for (Index i = 0; i < truth.size(); ++i) {
@@ -144,9 +144,9 @@ StudyTable EmptyRows(const Machine& machine, const StudyOptions& options,
       "Endurance of " + machine.setup().name + ", " +
           (options.linear ? "linear plant" : "nonlinear plant"),
       {"time [s]", "named", "looks", "with names", "false", "alarms [ticks]",
-       "since [s]", "passes", "misfit", "error / sd", "memory [MB]", "wall [s/s]"},
+       "since [s]", "passes", "NIS", "error / sd", "memory [MB]", "wall [s/s]"},
       {},
-      {"Looks, names, alarms of the residual, the largest misfit and the largest "
+      {"Looks, names, alarms of the residual, the largest NIS and the largest "
        "error over its standard deviation are those since the row before; estimates "
        "(deviations from healthy) and their standard deviations are those at its "
        "end."}};
@@ -230,7 +230,7 @@ class LongRun {
                              Cell(static_cast<double>(alarms)),
                              Cell(TimeOf(estimator.since())),
                              Cell(static_cast<double>(estimator.returns())),
-                             Cell(recent_.misfit),
+                             Cell(recent_.nis),
                              Cell(recent_.largest.maxCoeff()),
                              Cell(ResidentMemory()),
                              Cell(seconds / TimeOf(done - row_end_))};
@@ -252,7 +252,7 @@ class LongRun {
              {"looks with a name", count(whole_.named_looks)},
              {"looks with a false name", count(whole_.false_looks)},
              {"ticks with an alarm of the residual", count(alarms_)},
-             {"largest misfit", Cell(whole_.misfit)},
+             {"largest NIS", Cell(whole_.nis)},
              {"memory at the start [MB]", Cell(memory_)},
              {"memory at the end [MB]", Cell(ResidentMemory())},
              {"wall time a simulated second [s]", Cell(wall_ / TimeOf(row_end_))}},

@@ -181,9 +181,9 @@ HardPlan PlanOf(std::uint64_t seed) {
 
 NumberFactors DrawNumbers(const mjModel& plant, Random& random,
                           double (*spread)(const mjModel& plant,
-                                           const PlantNumber& number)) {
+                                           const ModelParameter& number)) {
   NumberFactors factors;
-  for (const PlantNumber& number : PlantNumbers(plant)) {
+  for (const ModelParameter& number : ModelParameters(plant)) {
     factors.emplace_back(number, std::exp(spread(plant, number) * random.Normal()));
   }
   return factors;

@@ -55,7 +55,7 @@ inline constexpr double kLeastTold = 50.0;
 /// @param spread  standard deviation of the logarithm of one
 NumberFactors DrawNumbers(const mjModel& plant, Random& random,
                           double (*spread)(const mjModel& plant,
-                                           const PlantNumber& number) = DoubtOf);
+                                           const ModelParameter& number) = DoubtOf);
 
 /// The same seed, the same case. InputError on a machine without a controller, which
 /// follows no motion.

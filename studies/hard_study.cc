@@ -76,7 +76,7 @@ HardOutcome RunHard(const Machine& model, const HardPlan& plan, std::uint64_t se
   }
   outcome.before = UnseenMismatch(model, hard, {});
   outcome.after = UnseenMismatch(model.WithSubsteps(outcome.answer.substeps), hard,
-                                 ChangesOf(outcome.answer));
+                                 ChangesOfAnswer(outcome.answer));
   return outcome;
 }
 

@@ -84,8 +84,8 @@ void CountParameters(const mjModel& plant, const FoundCause& found, const Cause&
 /// The worst sensor's.
 double UnseenRatio(const Machine& machine, const HiddenCase& hidden,
                    const Discovery& answer) {
-  const std::vector<double> ratios =
-      UnseenRatios(machine, ChangesOf(answer), hidden.unseen, hidden.unseen_clean);
+  const std::vector<double> ratios = UnseenRatios(machine, ChangesOfAnswer(answer),
+                                                  hidden.unseen, hidden.unseen_clean);
   return ratios.empty() ? std::numeric_limits<double>::infinity()
                         : std::ranges::max(ratios);
 }

@@ -15,7 +15,7 @@ namespace {
 std::string ListOf(const std::vector<FoundCause>& causes) {
   std::string text;
   for (const FoundCause& found : causes) {
-    text += (text.empty() ? "" : "; ") + Describe(found.cause);
+    text += (text.empty() ? "" : "; ") + CauseName(found.cause);
   }
   return text.empty() ? "nothing" : text;
 }

@@ -89,7 +89,7 @@ std::vector<Cell> RowOf(const RandomOutcome& run, const std::vector<std::string>
   return {seed,
           Cell(from),
           run.Right() ? "right" : "wrong",
-          Cell(run.reading.misfit),
+          Cell(run.reading.nis),
           Cell(over_sd),
           Cell(over_bound),
           NamesWhere(run, names, named),
@@ -102,7 +102,7 @@ StudyTable EmptyRuns(const Machine& machine, bool linear) {
   return {
       "Random faults of " + machine.setup().name + ", " +
           (linear ? "linear plant" : "nonlinear plant"),
-      {"seed", "from [s]", "names", "misfit", "error / sd", "error / bound", "named",
+      {"seed", "from [s]", "names", "NIS", "error / sd", "error / bound", "named",
        "missed", "false", "drawn (multiple of the bound)"},
       {},
       {"Names are right if every fault farther from healthy than " +
@@ -167,11 +167,11 @@ StudyTable Counts(const std::vector<RandomOutcome>& runs) {
   int faint_named = 0;
   int named = 0;
   int diverged = 0;
-  double misfit = 0.0;
+  double nis = 0.0;
   for (const RandomOutcome& run : runs) {
     diverged += run.diverged ? 1 : 0;
     if (run.diverged) continue;
-    misfit = std::max(misfit, run.reading.misfit);
+    nis = std::max(nis, run.reading.nis);
     for (Index i = 0; i < run.truth.size(); ++i) {
       if (!run.Present(i)) continue;
       const bool is_named = run.reading.named[static_cast<std::size_t>(i)];
@@ -183,7 +183,7 @@ StudyTable Counts(const std::vector<RandomOutcome>& runs) {
   }
   AddCount(table, "nameable faults that are named", named, nameable);
   AddCount(table, "fainter faults that are named", faint_named, present - nameable);
-  table.rows.push_back({"largest misfit", Cell(misfit), "", ""});
+  table.rows.push_back({"largest NIS", Cell(nis), "", ""});
   if (diverged > 0)
     AddCount(table, "runs that diverged", diverged, static_cast<int>(runs.size()));
   return table;

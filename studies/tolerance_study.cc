@@ -59,8 +59,8 @@ struct Errors {
   VectorXd healthy, uncorrected, corrected;
 };
 
-void Judge(const Errors& errors, Index fault, Index window, Index repetition,
-           double noise, double tick, ToleratedRun& run) {
+void Add(const Errors& errors, Index fault, Index window, Index repetition,
+         double noise, double tick, ToleratedRun& run) {
   const double healthy = Rms(errors.healthy.tail(repetition));
   run.uncorrected =
       std::max(run.uncorrected, Rms(errors.uncorrected.tail(repetition)) / healthy);
@@ -278,10 +278,10 @@ ToleratedRun TryTolerance(const Machine& machine, const TolerancePlan& plan,
                      "an earlier time or a longer motion");
   }
   for (const AxisSetup& axis : machine.setup().control.axes) {
-    Judge({TrackingError(healthy, axis), TrackingError(uncorrected, axis),
-           TrackingError(corrected, axis)},
-          fault, window, RepetitionOf(machine, healthy.samples()),
-          machine.channels().Sensor(axis.sensor).noise_sd, tick, result);
+    Add({TrackingError(healthy, axis), TrackingError(uncorrected, axis),
+         TrackingError(corrected, axis)},
+        fault, window, RepetitionOf(machine, healthy.samples()),
+        machine.channels().Sensor(axis.sensor).noise_sd, tick, result);
   }
   return result;
 }

@@ -28,7 +28,7 @@ constexpr double kFarthest = 10.0;
 
 /// What numbers do to innovations, and that physics steps are late by half of one.
 MatrixXd NumbersShown(const ObservedRuns& runs,
-                      const std::vector<PlantNumber>& numbers) {
+                      const std::vector<ModelParameter>& numbers) {
   const Machine& machine = runs.machine();
   const mjModel& plant = machine.plant();
   VectorXd noise(std::ssize(machine.channels().sensors));
@@ -90,7 +90,7 @@ double OverdispersionBy(const VectorXd& left, Index channels, double sample_time
 /// A run beside the machine with numbers and a law that are such that it leaves least.
 class LeastLeft {
  public:
-  LeastLeft(const ObservedRuns& runs, const std::vector<PlantNumber>& doubted,
+  LeastLeft(const ObservedRuns& runs, const std::vector<ModelParameter>& doubted,
             const MatrixXd& J, const MatrixXd& R, const MeasuredRun& run)
       : runs_(runs), doubted_(doubted), J_(J), R_(R), run_(run) {}
 
@@ -131,13 +131,13 @@ class LeastLeft {
     Changes changes;
     if (law_ != nullptr) {
       const VectorXd values = x.tail(law_size());
-      changes = ChangesOf({*law_}, {{0, values}});
+      changes = ChangesOfFit({*law_}, {{0, values}});
     }
     const mjModel& plant = runs_.machine().plant();
     // That inputs are late is first order only: no step of the model has it.
     for (Index i = 0; i + 1 < J_.cols(); ++i) {
       if (x[i] == 0.0) continue;
-      const PlantNumber& number = doubted_[static_cast<std::size_t>(i)];
+      const ModelParameter& number = doubted_[static_cast<std::size_t>(i)];
       changes.numbers.emplace_back(number, std::exp(DoubtOf(plant, number) * x[i]));
     }
     const Index late = J_.cols() - 1;
@@ -218,7 +218,7 @@ class LeastLeft {
   }
 
   const ObservedRuns& runs_;
-  const std::vector<PlantNumber>& doubted_;
+  const std::vector<ModelParameter>& doubted_;
   const MatrixXd& J_;
   const MatrixXd& R_;
   const MeasuredRun& run_;
@@ -232,7 +232,7 @@ class LeastLeft {
 
 VisibleSize::VisibleSize(const Machine& machine, int substeps, const Excitation& motion)
     : runs_(machine, motion),
-      doubted_(PlantNumbers(machine.plant())),
+      doubted_(ModelParameters(machine.plant())),
       numbers_(NumbersShown(runs_, doubted_)) {
   const MeasuredRun finer = runs_.RunOf(machine.WithSubsteps(substeps));
   const MatrixXd none = NoOthers();

@@ -19,7 +19,7 @@
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/discovery/hypotheses/cause.h"
 #include "mjdiag/plugin/effects/scales.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/studies/observed_runs.h"
 
@@ -74,7 +74,7 @@ class VisibleSize {
       const Candidate& law, const Eigen::VectorXd& innovations) const;
 
   ObservedRuns runs_;
-  std::vector<PlantNumber> doubted_;
+  std::vector<ModelParameter> doubted_;
   Eigen::MatrixXd numbers_;  // J
   double inflation_ = 1.0;
 };

@@ -50,7 +50,7 @@ std::vector<HistoryValue> HistoryValuesOf(const Finding& look) {
                                        static_cast<float>(look.residual.mean()),
                                        static_cast<float>(look.residual.most)},
                                       One(look.integral),
-                                      One(look.result.misfit),
+                                      One(look.result.nis),
                                       One(static_cast<double>(look.missing))};
   for (const FaultVerdict& fault : look.result.faults) {
     // Before the motion has told anything of it, there is no estimate.

@@ -9,7 +9,7 @@
 
 namespace mjdiag {
 
-/// residual, integral, misfit, missing; then every fault and its standard deviation.
+/// residual, integral, nis, missing; then every fault and its standard deviation.
 std::vector<std::string> HistoryQuantities(const DiagnosisDesign& design);
 /// In that order.
 std::vector<HistoryValue> HistoryValuesOf(const Finding& look);

@@ -126,7 +126,7 @@ nlohmann::json ToJson(const LiveState& state, const std::vector<FaultMeaning>& f
         {"alarm", look.residual_alarm},
         {"integral", Finite(look.integral)},
         {"lasting", look.lasting_alarm}}},
-      {"misfit", Finite(look.result.misfit)},
+      {"misfit", Finite(look.result.nis)},
       {"by_twin", look.result.by_twin},
       {"faults", FaultsJson(look, faults)},
       {"disturbance", DisturbanceJson(look)}};

@@ -106,7 +106,7 @@ void AddLook(const Finding& look, MetricText& metrics) {
               look.integral);
   metrics.One("misfit", "gauge",
               "Squared innovations of the twin over what is expected of them.",
-              look.result.misfit);
+              look.result.nis);
   metrics.Describe("fault_value", "gauge", "Estimated value of a fault parameter.");
   for (const FaultVerdict& fault : look.result.faults) {
     metrics.Add("fault_value", "fault", fault.name, fault.value);

@@ -58,8 +58,8 @@ RowVectorXd SolveUnique(const MatrixXd& equations, const RowVectorXd& right_side
   const VectorXd parts =
       (svd.U.transpose() * target).head(values.size()).cwiseQuotient(values);
   const VectorXd solution = svd.V * parts;
-  const double misfit = (scaled.matrix.transpose() * solution - target).norm();
-  if (misfit > 1e-8 * target.norm()) {
+  const double residual = (scaled.matrix.transpose() * solution - target).norm();
+  if (residual > 1e-8 * target.norm()) {
     throw NumericalError("no parity relation has the pinned coefficients");
   }
   return (scaled.rows.asDiagonal() * solution).transpose();

@@ -29,7 +29,7 @@ constexpr Index kBrief = 128;
 constexpr Index kWalkEvery = 128;
 /// That a machine which is constant is taken for one that wears, in one look at it.
 constexpr double kNoGrowth = 1e-6;
-/// By chance the misfit is not above it.
+/// By chance the NIS is not above it.
 constexpr double kLooksExplained = 2.0;
 /// Moves of the state take for granted that theta has always been what it is now: what has
 /// grown leaves errors of the rate times the memory of the gain. Where growth is seen, that
@@ -170,7 +170,7 @@ void PredictionErrorEstimator::Say() noexcept {
   if (said_.drifts) said_.drift.Know(pass_.drift());
   said_.theta = pass_.theta();
   said_.prior = prior_;
-  said_.surprise = pass_.surprise().recent() / options_.tolerated;
+  said_.recent_nis = pass_.innovation().recent() / options_.tolerated;
   said_.since = segment_.since;
   said_.until = pass_.seen();
   said_.gain = gain();
@@ -208,7 +208,7 @@ void PredictionErrorEstimator::Follow() noexcept {
 
 bool PredictionErrorEstimator::SeesGrowth() noexcept {
   // What the pass does not explain is no growth, either.
-  return options_.exact && pass_.misfit() < kLooksExplained &&
+  return options_.exact && pass_.nis() < kLooksExplained &&
          pass_.DriftGain(kRateSpread) > constant_;
 }
 
@@ -237,7 +237,7 @@ double PredictionErrorEstimator::Bias() const noexcept {
 }
 
 bool PredictionErrorEstimator::RejectsItsInnovations() const noexcept {
-  return (gain() == 0 || following()) && pass_.surprise().NoChance();
+  return (gain() == 0 || following()) && pass_.innovation().NoChance();
 }
 
 }  // namespace mjdiag

@@ -89,7 +89,7 @@ class PredictionErrorEstimator {
   /// Mean over recent blocks of the squared innovations over what noise and the
   /// uncertainty of the estimate let expect of them, over what is tolerated: 1 where the
   /// twin explains them.
-  double surprise() const { return said_.surprise; }
+  double recent_nis() const { return said_.recent_nis; }
   /// Whether what it says is of the machine as it is now: it knows of no change since.
   bool current() const { return sure() && said_.since == segment_.since; }
   /// Whether the twin ran so near to it that the first order tells it, as its standard
@@ -141,7 +141,7 @@ class PredictionErrorEstimator {
     double drift_time = 0.0;  // [s]
     Eigen::VectorXd theta, variance;
     Eigen::MatrixXd prior;
-    double surprise = 1.0;
+    double recent_nis = 1.0;
     Eigen::Index since = 0;
     Eigen::Index until = 0;  ///< tick up to which it has seen
     std::size_t gain = 0;
@@ -209,9 +209,9 @@ class PredictionErrorEstimator {
   /// From where a number of the machine is orders of magnitude off.
   void ApproachFromFar() noexcept;
   /// Of this pass; infinite where it diverges.
-  double Misfit() const noexcept;
+  double Nis() const noexcept;
   /// Of a pass about that theta up to a tick.
-  double MisfitOf(const Eigen::VectorXd& theta, Eigen::Index until) noexcept;
+  double NisOf(const Eigen::VectorXd& theta, Eigen::Index until) noexcept;
   /// far_ with one number of the machine orders of magnitude off, that which explains most
   /// of where it fails.
   void TryFarNumbers() noexcept;

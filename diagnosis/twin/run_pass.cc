@@ -76,7 +76,7 @@ RunInformation RunPass::About(const VectorXd& numbers, std::size_t gain) {
     g_before += said.parts.back().g;
   }
   said.innovations.conservativeResize(Eigen::NoChange, counted);
-  said.misfit = pass_.misfit();
+  said.nis = pass_.nis();
   said.excess = std::max(said.excess, pass_.excess());
   Reduce(said);
   return said;

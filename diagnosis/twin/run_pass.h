@@ -20,9 +20,9 @@ struct PartInformation {
 };
 
 struct RunInformation {
-  Eigen::MatrixXd H;    ///< of the numbers, n x n, without any prior
-  Eigen::VectorXd g;    ///< n: H^-1 g is the change that it asks for
-  double misfit = 1.0;  ///< mean square of the innovations over what is expected
+  Eigen::MatrixXd H;  ///< of the numbers, n x n, without any prior
+  Eigen::VectorXd g;  ///< n: H^-1 g is the change that it asks for
+  double nis = 1.0;   ///< mean square of the innovations over what is expected
   double excess =
       0.0;  ///< of the worst of them over what may be chance (NormalizedInnovation)
   /// Of kRunParts stretches of about one length, its start as it is estimated, or known.

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 constexpr double kNothing = 1e-6;
 /// Squared correlation of what two parameters do to the readings.
 constexpr double kAlike = 1.0 - 1e-9;
-/// By chance the misfit is not above it: a mean of about a hundred squares.
+/// By chance the NIS is not above it: a mean of about a hundred squares.
 constexpr double kExplained = 2.0;
 constexpr double kDay = 86400.0;  // s
 /// That a machine which is constant is taken for one that is not.
@@ -162,9 +162,9 @@ TwinReading TwinEstimator::Read() const {
       information = drift.information().topLeftCorner(active, active);
     }
   }
-  reading.misfit = estimator_.surprise();
+  reading.nis = estimator_.recent_nis();
   // A twin that does not explain what it sees is less sure than it says.
-  const double honest = reading.misfit > kExplained ? reading.misfit : 1.0;
+  const double honest = reading.nis > kExplained ? reading.nis : 1.0;
   const MatrixXd noise = honest * CovarianceOf(information);
   // Its model was off in a few healthy runs by so much, once: that is one draw, however
   // often one looks, and has the tail of Student's t.
@@ -210,7 +210,7 @@ TwinReading TwinEstimator::Read() const {
       TwoSidedNormalQuantile(kFalseFault / each) / TwoSidedNormalQuantile(look);
   FindAlarms(WithModel(noise, (times - 1.0) * normal * normal), reading.best_alarm);
   reading.model_runs = model_.any() ? model_.runs : 0;
-  if (!groups.empty() && estimator_.sure() && reading.misfit < kLargestMisfit) {
+  if (!groups.empty() && estimator_.sure() && reading.nis < kLargestNis) {
     reading.named = NameFaults(theta.head(active), judged, groups, FalseNaming());
   }
   return reading;

@@ -43,9 +43,9 @@ struct MachineTwin {
   double tolerated = 1.0;
 };
 
-/// A misfit beyond this is no chance and no small error of the model: the run is not
+/// A normalised innovation squared (NIS) beyond this is no chance and no small error of the model: the run is not
 /// explained by any faults, and none is named.
-inline constexpr double kLargestMisfit = 3.0;
+inline constexpr double kLargestNis = 3.0;
 
 /// What a twin says of the faults of its machine. Where it follows, what it says is
 /// another estimate after every block, and each may be looked at: named is what would be
@@ -59,7 +59,7 @@ struct TwinReading {
   std::vector<bool> named;  ///< nf, see NameFaults
   /// Fault parameters, by place, that act as another one does, or not at all.
   std::vector<Eigen::Index> inseparable;
-  double misfit = 1.0;  ///< squared innovations over what is expected of them
+  double nis = 1.0;  ///< squared innovations over what is expected of them
   /// Deviation from which on a fault parameter is named where it is the only one, and
   /// where the healthy machine is as well known as more records could make it, nf; NaN
   /// of disturbances. The same where the model is the machine.

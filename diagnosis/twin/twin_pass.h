@@ -46,7 +46,7 @@ struct PassStart {
 
 class TwinPass {
  public:
-  /// @param tolerated  of its surprises
+  /// @param tolerated  of its NIS
   explicit TwinPass(std::unique_ptr<Twin> twin, double tolerated = 1.0);
 
   const Twin& twin() const { return *twin_; }
@@ -103,11 +103,11 @@ class TwinPass {
   bool drifts() const { return drifts_; }
   const Drift& drift() const { return drift_; }
   double drift_time() const { return twin_->drift_time(); }
-  const NormalizedInnovation& surprise() const { return surprise_; }
+  const NormalizedInnovation& innovation() const { return innovation_; }
   /// Of the tick before.
   const Eigen::VectorXd& innovation() const { return innovation_; }
   /// Mean square of the innovations so far over what was expected of them.
-  double misfit() const {
+  double nis() const {
     return blocks_ > 0 ? squares_ / static_cast<double>(blocks_) : 1.0;
   }
   /// The largest of a block (NormalizedInnovation::Excess).
@@ -132,7 +132,7 @@ class TwinPass {
   Information information_;
   Drift drift_;
   bool drifts_ = false;
-  NormalizedInnovation surprise_;
+  NormalizedInnovation innovation_;
   Eigen::VectorXd theta0_, theta_, away_;
   WhitenedBlock block_;
 

@@ -22,7 +22,7 @@ constexpr double kThere = 0.1;
 constexpr std::array kFarFactors = {1e-3, 1e-2, 0.1, 10.0, 1e2, 1e3};
 /// Ticks in which it shows whether one is better.
 constexpr Index kFarLook = 4096;
-/// Of the misfit, that another pass has to leave for the next one to be worth its time: near
+/// Of the NIS, that another pass has to leave for the next one to be worth its time: near
 /// an explanation each squares the error that is left.
 constexpr double kWorthwhile = 0.9;
 /// Numbers that are that far off together.
@@ -66,22 +66,22 @@ void PredictionErrorEstimator::ApproachWhole() noexcept {
   RunToTheEnd();
 }
 
-double PredictionErrorEstimator::Misfit() const noexcept {
-  const double misfit = pass_.misfit();
-  return std::isfinite(misfit) ? misfit : std::numeric_limits<double>::infinity();
+double PredictionErrorEstimator::Nis() const noexcept {
+  const double nis = pass_.nis();
+  return std::isfinite(nis) ? nis : std::numeric_limits<double>::infinity();
 }
 
-double PredictionErrorEstimator::MisfitOf(const VectorXd& theta, Index until) noexcept {
+double PredictionErrorEstimator::NisOf(const VectorXd& theta, Index until) noexcept {
   Begin(0, theta);
   while (!CaughtUp() && pass_.seen() < until) pass_.Step(kept_);
-  return Misfit();
+  return Nis();
 }
 
 void PredictionErrorEstimator::TryFarNumbers() noexcept {
   next_ = far_;
   WidenPrior();
   Begin(0, far_);
-  while (!CaughtUp() && !pass_.surprise().NoChance()) pass_.Step(kept_);
+  while (!CaughtUp() && !pass_.innovation().NoChance()) pass_.Step(kept_);
   // Where it fails something can be told of what would not.
   const Index failed = pass_.seen() - now().origin;
   const Index until = now().origin + std::max(kFarLook, 4 * failed);
@@ -94,9 +94,9 @@ void PredictionErrorEstimator::TryFarNumbers() noexcept {
     const double from = far_[i];
     for (const double factor : kFarFactors) {
       far_[i] = unknown.nominal + std::log(factor) / unknown.reach;
-      const double misfit = MisfitOf(far_, until);
-      if (!(misfit < least)) continue;
-      least = misfit;
+      const double nis = NisOf(far_, until);
+      if (!(nis < least)) continue;
+      least = nis;
       which = i;
       where = far_[i];
     }
@@ -112,7 +112,7 @@ void PredictionErrorEstimator::ApproachFromFar() noexcept {
   // way, and beside what was found another one.
   const Index end = kept_.added();
   nearest_ = pass_.theta0();
-  const double before = Misfit();
+  const double before = Nis();
   double least = before;
   // A fault that large shows at once, as a start in motion does.
   const bool rest = looked_at_rest_ && !segment_.first.at_rest && segment_.since == 0 &&
@@ -121,23 +121,23 @@ void PredictionErrorEstimator::ApproachFromFar() noexcept {
   far_ = nominal_;
   for (int number = 0; number < kFarNumbers && !Explained(); ++number) {
     TryFarNumbers();
-    double misfit = MisfitOf(far_, end);
+    double nis = NisOf(far_, end);
     for (int i = 0; i < kLastPasses && !Explained(); ++i) {
-      const double next = MisfitOf(NextTheta(), end);
-      const bool worth = next < kWorthwhile * misfit;
-      if (next < misfit) {
-        misfit = next;
+      const double next = NisOf(NextTheta(), end);
+      const bool worth = next < kWorthwhile * nis;
+      if (next < nis) {
+        nis = next;
         far_ = pass_.theta0();
       }
       if (!worth) break;
     }
-    if (!(misfit < least)) break;
-    least = misfit;
+    if (!(nis < least)) break;
+    least = nis;
     nearest_ = far_;
   }
   if (Explained()) return;
   if (rest && !(least < before)) std::swap(segment_.first, at_rest_);
-  MisfitOf(nearest_, end);
+  NisOf(nearest_, end);
 }
 
 void PredictionErrorEstimator::CatchUp() noexcept {

@@ -19,7 +19,7 @@ struct AnswerData {
   bool steps = true;  ///< Explained::steps
 
   Machine With(const Model& model) const {
-    const Machine with = machine.With(ChangesOf(blocks, model));
+    const Machine with = machine.With(ChangesOfModel(blocks, model));
     return steps ? with : with.WithoutSteps();
   }
 };

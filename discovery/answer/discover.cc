@@ -70,12 +70,12 @@ class RunningTime {
   Clock::time_point begin_ = Clock::now();
 };
 
-std::vector<PlantNumber> UncertainParameters(const Machine& machine,
-                                             const DiscoverOptions& options) {
+std::vector<ModelParameter> UncertainParameters(const Machine& machine,
+                                                const DiscoverOptions& options) {
   if (!options.doubt) return {};
-  std::vector<PlantNumber> numbers = NumbersOf(machine.plant());
+  std::vector<ModelParameter> numbers = NumbersOf(machine.plant());
   for (const std::string& text : options.known) {
-    for (const PlantNumber& known : PlantNumbersOf(machine.plant(), text)) {
+    for (const ModelParameter& known : ModelParametersOf(machine.plant(), text)) {
       std::erase(numbers, known);
     }
   }
@@ -209,7 +209,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   }
   if (options.figures) {
     time.Say("figures", 0.9);
-    const Changes changes = ChangesOf(discovery);
+    const Changes changes = ChangesOfAnswer(discovery);
     const bool follows =
         AddReplays(measurements, changes, machine.setup().compare.skip_samples,
                    options.seed, discovery);

@@ -47,7 +47,7 @@ struct Beside {
 
 Beside BesideOf(const AnswerData& data, const ModelOnRuns& one) {
   Beside beside{
-      ChangesOf(data.blocks, one.fit.model), one.seen, KeepGains(one.seen), {}};
+      ChangesOfModel(data.blocks, one.fit.model), one.seen, KeepGains(one.seen), {}};
   try {
     beside.left =
         PredictAlong(data.With(one.fit.model), data.run.seen, one.seen, beside.gains);

@@ -28,9 +28,9 @@ namespace {
 constexpr Index kPointsOfLaw = 3000;
 constexpr Index kLeastSamples = 400;  // FindResidualDependence
 
-const MissingForce* ForceAt(const std::vector<MissingForce>& forces,
-                            const std::string& joint) {
-  const auto found = std::ranges::find(forces, joint, &MissingForce::joint);
+const DisturbanceEstimate* ForceAt(const std::vector<DisturbanceEstimate>& forces,
+                                   const std::string& joint) {
+  const auto found = std::ranges::find(forces, joint, &DisturbanceEstimate::joint);
   return found == forces.end() ? nullptr : &*found;
 }
 
@@ -41,14 +41,14 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
   const Candidate& candidate = *data.blocks[model[member].block].candidate;
   const mjModel& plant = data.machine.plant();
   LawPlot plot;
-  plot.cause = Describe(candidate);
+  plot.cause = CandidateName(candidate);
   plot.site = CoordinateNames(plant)[static_cast<std::size_t>(candidate.joint)];
-  const MissingForce* after = ForceAt(discovery.forces_after, plot.site);
+  const DisturbanceEstimate* after = ForceAt(discovery.forces_after, plot.site);
   if (after == nullptr) return std::nullopt;
   const FilterPath& path = judged.nothing.seen;
   const auto without =
       ForcesBeside(data.With(Without(model, member)), data.run.seen, path);
-  const MissingForce& force = *ForceAt(without, plot.site);
+  const DisturbanceEstimate& force = *ForceAt(without, plot.site);
   const bool hinge = plant.jnt_type[plant.dof_jntid[candidate.joint]] == mjJNT_HINGE;
   const auto channel = static_cast<std::size_t>(
       std::clamp<Index>(candidate.channel, 0, data.run.seen.inputs.rows() - 1));
@@ -64,8 +64,8 @@ std::optional<LawPlot> LawPlotOf(const AnswerData& data, const UnseenJudgement& 
 
 }  // namespace
 
-void DrawLaw(const LawAxis& axis, const MissingForce& force, const VectorXd& explained,
-             const Cause& cause, LawPlot& plot) {
+void DrawLaw(const LawAxis& axis, const DisturbanceEstimate& force,
+             const VectorXd& explained, const Cause& cause, LawPlot& plot) {
   plot.x_name = axis.name;
   plot.x_unit = axis.unit;
   plot.y_unit = force.unit;
@@ -86,7 +86,7 @@ ObservedMotion MotionOfAnswer(const AnswerData& data, const UnseenJudgement& jud
 void AddForces(const AnswerData& data, const UnseenJudgement& judged,
                Discovery& discovery) {
   const FilterPath& path = judged.nothing.seen;
-  discovery.forces_before = MissingForces(data.With({}), path);
+  discovery.forces_before = DisturbanceEstimates(data.With({}), path);
   discovery.forces_after = discovery.forces_before;
   if (judged.answer.fit.model.empty()) return;
   try {
@@ -123,15 +123,15 @@ void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
 
 void AddResidualDependence(const AnswerData& data, const UnseenJudgement& judged,
                            const ObservedMotion& motion, Discovery& discovery) {
-  const std::vector<MissingForce>& forces = discovery.forces_after;
+  const std::vector<DisturbanceEstimate>& forces = discovery.forces_after;
   if (forces.empty() || forces.front().value.size() < kLeastSamples) return;
-  const MissingForce& force =
-      *std::ranges::max_element(forces, std::less<>(), [](const MissingForce& one) {
+  const DisturbanceEstimate& force = *std::ranges::max_element(
+      forces, std::less<>(), [](const DisturbanceEstimate& one) {
         return one.value.norm() / std::max(one.sd, 1e-300);
       });
   const std::vector<std::string>& names = data.machine.mechanics().coordinates;
   std::vector<std::string> joints;
-  for (const MissingForce& one : forces) {
+  for (const DisturbanceEstimate& one : forces) {
     if (std::ranges::find(names, one.joint) != names.end()) joints.push_back(one.joint);
   }
   const Index joint = std::ranges::find(names, force.joint) - names.begin();

@@ -4,7 +4,7 @@
 
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
-#include "mjdiag/discovery/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/disturbance_estimate.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/law.h"
 #include "mjdiag/plugin/effects/observed_motion.h"
@@ -13,7 +13,7 @@ namespace mjdiag {
 
 /// A law over what it depends on, and the force that all but it leave, at points.
 /// @param explained  what it explains of that
-void DrawLaw(const LawAxis& axis, const MissingForce& force,
+void DrawLaw(const LawAxis& axis, const DisturbanceEstimate& force,
              const Eigen::VectorXd& explained, const Cause& cause, LawPlot& plot);
 
 /// The motion that the machine with the answer made in what fits saw.

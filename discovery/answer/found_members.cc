@@ -84,7 +84,7 @@ Cause CauseOfBlock(const Block& block, const VectorXd& values) {
 
 CalibratedNumber NumberOf(const mjModel& plant, const Block& block, double factor,
                           const Span& span) {
-  const PlantNumber& number = *block.number;
+  const ModelParameter& number = *block.number;
   return {block.name,
           number,
           factor,

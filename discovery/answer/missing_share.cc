@@ -61,11 +61,11 @@ VectorXd UsualForces(const Machine& machine, const MeasuredRun& run,
 
 /// Mean square in units of what accelerates the joints, less that of errors.
 /// @param counts  which samples do
-double PowerOf(const std::vector<MissingForce>& forces, const VectorXd& usual,
+double PowerOf(const std::vector<DisturbanceEstimate>& forces, const VectorXd& usual,
                const SampleMask& counts) {
   double sum = 0.0;
   for (std::size_t j = 0; j < forces.size(); ++j) {
-    const MissingForce& force = forces[j];
+    const DisturbanceEstimate& force = forces[j];
     const VectorXd counted = Kept(force.value, counts);
     const double square = counted.squaredNorm() / static_cast<double>(counted.size()) -
                           force.sd * force.sd;
@@ -88,9 +88,10 @@ FilterPath BesideUnseen(const AnswerData& data, const ModelOnRuns& nothing) {
 
 }  // namespace
 
-std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
-                                       const FilterPath& path) {
-  return MissingForces(
+std::vector<DisturbanceEstimate> ForcesBeside(const Machine& changed,
+                                              const MeasuredRun& run,
+                                              const FilterPath& path) {
+  return DisturbanceEstimates(
       changed, RunForceFilter(changed, run, path.dofs, path.starts, path.noise));
 }
 
@@ -102,7 +103,7 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   const SampleMask all_seen = SampleMask::Constant(data.run.seen.samples(), true);
   const auto is_there = [&](const Machine& machine, const FilterPath& path) {
     return AsksForForces(machine, data.run.seen, path) &&
-           PowerOf(MissingForces(machine, path), usual, all_seen) >
+           PowerOf(DisturbanceEstimates(machine, path), usual, all_seen) >
                kNegligible * kNegligible;
   };
   share.is_missing = is_there(given, judged.nothing.seen);
@@ -115,7 +116,7 @@ MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged) {
   share.is_left = is_there(changed, judged.answer.seen);
   const auto share_along = [&](const MeasuredRun& run, const FilterPath& path,
                                const SampleMask& counts) {
-    const double before = PowerOf(MissingForces(given, path), usual, counts);
+    const double before = PowerOf(DisturbanceEstimates(given, path), usual, counts);
     if (!(before > 0.0)) return std::numeric_limits<double>::infinity();
     return std::sqrt(PowerOf(ForcesBeside(changed, run, path), usual, counts) / before);
   };

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/answer/unseen_judgement.h"
-#include "mjdiag/discovery/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/disturbance_estimate.h"
 #include "mjdiag/discovery/verdict.h"
 
 namespace mjdiag {
@@ -34,7 +34,8 @@ DiscoveryVerdict VerdictOf(const MissingShare& share, bool has_model);
 /// machine as given.
 /// @param changed  the machine with the model
 /// @param path     of the machine as given
-std::vector<MissingForce> ForcesBeside(const Machine& changed, const MeasuredRun& run,
-                                       const FilterPath& path);
+std::vector<DisturbanceEstimate> ForcesBeside(const Machine& changed,
+                                              const MeasuredRun& run,
+                                              const FilterPath& path);
 
 }  // namespace mjdiag

@@ -146,7 +146,7 @@ void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
         break;
     }
     if (follows) return;
-    const Changes changes = ChangesOf(data.blocks, model);
+    const Changes changes = ChangesOfModel(data.blocks, model);
     const bool is_fit = number % kParts == 2;
     try {
       (is_fit ? step.error_percent : step.validation_percent) =

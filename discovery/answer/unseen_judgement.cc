@@ -171,7 +171,7 @@ class UnseenJudge {
   void Decide(const std::string& tried, double score, const std::string& why) {
     judged_.decisions.push_back({tried, score, why});
   }
-  std::string Names(const Model& model) const { return Describe(data_.blocks, model); }
+  std::string Names(const Model& model) const { return ModelText(data_.blocks, model); }
   void LeaveNothing();
   /// Values and noises of some models anew; none of one that the machine cannot be.
   std::vector<std::optional<ModelOnRuns>> RefittedAll(

@@ -114,7 +114,7 @@ void OfCandidate(const Machine& machine, const BlockMotion& along, std::size_t p
 
 void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t place,
               Block& block, const std::function<void(Variation&&)>& take) {
-  const PlantNumber& number = *block.number;
+  const ModelParameter& number = *block.number;
   const MatrixXd force = NumberForce(
       machine.plant(), machine.actuator_addresses(), number, along.motion,
       StillSpeeds(machine.plant(), along.reading_noise, along.motion.sample_time));
@@ -150,19 +150,19 @@ std::string GroupOf(Kind kind, const std::string& name) {
 
 }  // namespace
 
-std::vector<PlantNumber> NumbersOf(const mjModel& plant) {
-  std::vector<PlantNumber> numbers = PlantNumbers(plant);
+std::vector<ModelParameter> NumbersOf(const mjModel& plant) {
+  std::vector<ModelParameter> numbers = ModelParameters(plant);
   std::ranges::copy(CentreNumbers(plant), std::back_inserter(numbers));
   return numbers;
 }
 
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates,
-                            const std::vector<PlantNumber>& numbers) {
+                            const std::vector<ModelParameter>& numbers) {
   std::vector<Block> blocks;
-  std::vector<PlantNumber> stood_for;
+  std::vector<ModelParameter> stood_for;
   for (const Candidate& candidate : candidates) {
-    const std::string name = Describe(candidate);
+    const std::string name = CandidateName(candidate);
     const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
     // A law that changes a number that is in doubt, or that is known where others are not, is
     // said as that number; a fault parameter has a name of its own, and friction is found as
@@ -192,9 +192,9 @@ std::vector<Block> BlocksOf(const Machine& machine,
     }
     if (number) stood_for.push_back(*number);
   }
-  for (const PlantNumber& number : numbers) {
+  for (const ModelParameter& number : numbers) {
     if (std::ranges::find(stood_for, number) != stood_for.end()) continue;
-    const std::string name = PlantNumberName(machine.plant(), number);
+    const std::string name = ModelParameterName(machine.plant(), number);
     blocks.push_back({.name = name,
                       .candidate = std::nullopt,
                       .number = number,

@@ -21,7 +21,7 @@
 #include "mjdiag/plugin/effects/observed_motion.h"
 #include "mjdiag/plugin/effects/scales.h"
 #include "mjdiag/plugin/machine/machine.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/replay/tracking.h"
 
 namespace mjdiag {
@@ -40,7 +40,7 @@ struct Variation {
 struct Block {
   std::string name;  ///< "coulomb_friction@X", "mass@stage"
   std::optional<Candidate> candidate;
-  std::optional<PlantNumber> number;
+  std::optional<ModelParameter> number;
   double doubt = 0.0;  ///< of the number's logarithm, a standard deviation
   /// Blocks of one group are one thing in several shapes: a model has one of them. Empty:
   /// a group of its own, of which there may be several members.
@@ -97,10 +97,10 @@ double SizePrice(const Block& block, const Eigen::VectorXd& values);
 /// where no numbers are in doubt, or as a fault parameter, which then stands for the number.
 std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates,
-                            const std::vector<PlantNumber>& numbers);
+                            const std::vector<ModelParameter>& numbers);
 
 /// Numbers of a plant, and centres of mass.
-std::vector<PlantNumber> NumbersOf(const mjModel& plant);
+std::vector<ModelParameter> NumbersOf(const mjModel& plant);
 
 /// The sweep of a block that repeats itself over a period or a frequency, if it does.
 std::optional<ParameterScan> ParameterScanOf(const Machine& machine,

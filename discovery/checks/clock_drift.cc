@@ -54,7 +54,7 @@ class ClockCheck {
       : machine_(machine), measured_(measured), simulated_(simulated) {}
 
   std::vector<std::string> Check() {
-    for (const ClockPair& pair : ClockPairsOf(machine_.setup())) Judge(pair);
+    for (const ClockPair& pair : ClockPairsOf(machine_.setup())) Compare(pair);
     return std::move(notes_);
   }
 
@@ -88,7 +88,7 @@ class ClockCheck {
     return ClockDrift(*reading, *other);
   }
 
-  void Judge(const ClockPair& pair) {
+  void Compare(const ClockPair& pair) {
     LagWindows all{};
     all.fill(true);
     const double drift = DriftOf(pair, simulated_, all).value_or(0.0);

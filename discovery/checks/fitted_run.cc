@@ -11,7 +11,7 @@
 
 #include "mjdiag/discovery/checks/lag_trend.h"
 #include "mjdiag/discovery/checks/nominal_run.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/error.h"
@@ -23,19 +23,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool IsStiffness(const PlantNumber& number) {
-  return number.kind == PlantNumberKind::kStiffness ||
-         number.kind == PlantNumberKind::kTendonStiffness;
+bool IsStiffness(const ModelParameter& number) {
+  return number.kind == ModelParameterKind::kStiffness ||
+         number.kind == ModelParameterKind::kTendonStiffness;
 }
 
 /// Those that move resonances: stiffnesses, and what swings where there are none.
-std::vector<PlantNumber> NumbersOfFrequencies(const mjModel& plant) {
-  std::vector<PlantNumber> all = PlantNumbers(plant);
+std::vector<ModelParameter> NumbersOfFrequencies(const mjModel& plant) {
+  std::vector<ModelParameter> all = ModelParameters(plant);
   const bool any = std::ranges::any_of(all, IsStiffness);
-  std::erase_if(all, [&](const PlantNumber& number) {
+  std::erase_if(all, [&](const ModelParameter& number) {
     return any ? !IsStiffness(number)
-               : number.kind == PlantNumberKind::kDamping ||
-                     number.kind == PlantNumberKind::kTendonDamping ||
+               : number.kind == ModelParameterKind::kDamping ||
+                     number.kind == ModelParameterKind::kTendonDamping ||
                      IsFriction(number.kind);
   });
   return all;
@@ -178,7 +178,7 @@ class NumbersFit {
 
   const Machine& machine_;
   const Record& measured_;
-  std::vector<PlantNumber> numbers_;
+  std::vector<ModelParameter> numbers_;
   std::vector<std::pair<std::string, double>> channels_;  ///< with what they move
   Index rows_ = 0;
 };

@@ -232,7 +232,7 @@ Comparison Compare(const Machine& machine, const Record& measured,
   const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
   result.deviance = path.deviance;
   result.prediction = Predict(machine, run, path, result.options.skip_samples);
-  result.missing_force = MissingForces(machine, path);
+  result.missing_force = DisturbanceEstimates(machine, path);
   if (result.falls) PredictATick(machine, measured, path, result);
   return result;
 }

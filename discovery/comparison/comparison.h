@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mjdiag/discovery/comparison/derived.h"
+#include "mjdiag/discovery/comparison/disturbance_estimate.h"
 #include "mjdiag/discovery/comparison/mismatch.h"
-#include "mjdiag/discovery/comparison/missing_force.h"
 #include "mjdiag/discovery/comparison/prediction.h"
 #include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/machine/machine.h"
@@ -44,7 +44,7 @@ struct Comparison {
   bool falls = false;  ///< as above: no free simulation, and nothing derived
   /// From here on empty where the record lacks sensors or commands.
   Prediction prediction;
-  std::vector<MissingForce> missing_force;
+  std::vector<DisturbanceEstimate> missing_force;
   std::optional<double> deviance;  ///< -2 ln L
 
   /// True if any channel exceeds its noise floor.

@@ -28,7 +28,7 @@ constexpr int kFilterOrder = 2;  // forwards and backwards: four
 constexpr double kFastestOfMotion = 32.0;  // times its bandwidth
 
 /// Changes of every row in a tick, over 20 ms to each side.
-MatrixXd ChangesOf(const MatrixXd& rows, double tick) {
+MatrixXd DifferencesOf(const MatrixXd& rows, double tick) {
   constexpr double kSide = 0.02;  // [s]
   const auto side = std::max<Index>(2, static_cast<Index>(std::lround(kSide / tick)));
   MatrixXd changes(rows.rows(), rows.cols());
@@ -43,8 +43,8 @@ MatrixXd ChangesOf(const MatrixXd& rows, double tick) {
 
 /// [rad a tick] Of the fastest reading, by its rms acceleration over its rms velocity.
 double MotionBandwidth(const MeasuredRun& run) {
-  const MatrixXd velocity = ChangesOf(run.outputs, run.sample_time);
-  const MatrixXd acceleration = ChangesOf(velocity, run.sample_time);
+  const MatrixXd velocity = DifferencesOf(run.outputs, run.sample_time);
+  const MatrixXd acceleration = DifferencesOf(velocity, run.sample_time);
   return (acceleration.rowwise().norm().array() /
           velocity.rowwise().norm().array().max(1e-300))
       .maxCoeff();
@@ -273,7 +273,7 @@ ForceBalance InverseDynamicsResidual(const Machine& machine, const Changes& chan
 MatrixXd MissingWithoutFriction(const Machine& machine, const FilteredRun& filtered,
                                 const ForceBalance& balance) {
   Changes frictionless;
-  for (const PlantNumber& number : PlantNumbers(machine.plant())) {
+  for (const ModelParameter& number : ModelParameters(machine.plant())) {
     if (IsFriction(number.kind)) {
       frictionless.numbers.emplace_back(number, 0.0);
     }

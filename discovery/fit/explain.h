@@ -16,7 +16,7 @@
 #include "mjdiag/discovery/fit/model_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/regression/moves.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
@@ -31,7 +31,7 @@ struct ExplainOptions {
   std::function<void(const Explained&)> better = {};
   CandidateChoice choice = {};
   /// Numbers of the plant that may be others; none given: all of NumbersInDoubt.
-  std::optional<std::vector<PlantNumber>> numbers = {};
+  std::optional<std::vector<ModelParameter>> numbers = {};
   /// Members that are no numbers.
   std::size_t most_causes = std::numeric_limits<std::size_t>::max();
   /// Whether it is asked to end with what it has; called from this thread. May be empty.

@@ -99,7 +99,7 @@ double Coordinate::ToTheta(double x) const {
   return is_log ? std::exp(unit * x) : unit * x;
 }
 
-Changes ChangesOf(const std::vector<Block>& blocks, const Model& model) {
+Changes ChangesOfModel(const std::vector<Block>& blocks, const Model& model) {
   Changes changes;
   for (const Member& member : model) {
     const Block& block = blocks[member.block];
@@ -107,7 +107,7 @@ Changes ChangesOf(const std::vector<Block>& blocks, const Model& model) {
       changes.numbers.emplace_back(*block.number, member.values[0]);
       continue;
     }
-    const Changes own = ChangesOf({*block.candidate}, {{0, member.values}});
+    const Changes own = ChangesOfFit({*block.candidate}, {{0, member.values}});
     changes.faults.insert(changes.faults.end(), own.faults.begin(), own.faults.end());
     changes.effects.insert(changes.effects.end(), own.effects.begin(),
                            own.effects.end());
@@ -135,7 +135,7 @@ bool IsResolved(const std::vector<Block>& blocks, const Model& model) {
   return true;
 }
 
-std::string Describe(const std::vector<Block>& blocks, const Model& model) {
+std::string ModelText(const std::vector<Block>& blocks, const Model& model) {
   std::string text;
   for (const Member& member : model) {
     text += (text.empty() ? "" : ", ") + blocks[member.block].name + "(";

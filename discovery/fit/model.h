@@ -26,7 +26,7 @@ struct Member {
 using Model = std::vector<Member>;
 
 /// What it does to the plant.
-Changes ChangesOf(const std::vector<Block>& blocks, const Model& model);
+Changes ChangesOfModel(const std::vector<Block>& blocks, const Model& model);
 /// Without the member at a place.
 Model Without(Model model, std::size_t place);
 /// Whether members of one block can be told apart along what was seen: waves that differ by
@@ -34,7 +34,7 @@ Model Without(Model model, std::size_t place);
 /// widths, zeta f. Two that are closer are one, of another shape.
 bool IsResolved(const std::vector<Block>& blocks, const Model& model);
 /// "coulomb_friction@load(20.4), mass@stage(1.02)".
-std::string Describe(const std::vector<Block>& blocks, const Model& model);
+std::string ModelText(const std::vector<Block>& blocks, const Model& model);
 
 struct Coordinate {
   std::size_t member = 0;

@@ -176,7 +176,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
       char text[80];
       std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
                     -gain);
-      Say(text + Describe(found_.blocks, fit.model));
+      Say(text + ModelText(found_.blocks, fit.model));
       Rate(model, -gain);
       if (gain < kLeastGain) {
         Decide(fit.model, -gain, "fitted, it is worth less than it costs");
@@ -247,7 +247,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   for (std::size_t i = 0; i < settled.size(); ++i) {
     if (!settled[i]) continue;
     Say("  filtered: " + Difference(settled[i]->score()) + "  " +
-        Describe(found_.blocks, settled[i]->fit.model));
+        ModelText(found_.blocks, settled[i]->fit.model));
     if (!IsOne(settled[i]->fit.model)) continue;
     const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
     if (settled[i]->score() < least) best = i;
@@ -383,9 +383,9 @@ void ModelSearch::Prepare() {
   BoundByRecord(candidates_, machine_, motion);
   BoundDriveLimits(candidates_, machine_, motion);
   BoundByReadings(candidates_, machine_, whole_);
-  const std::vector<PlantNumber> in_doubt = IsExact(machine_.plant())
-                                                ? std::vector<PlantNumber>{}
-                                                : NumbersOf(machine_.plant());
+  const std::vector<ModelParameter> in_doubt = IsExact(machine_.plant())
+                                                   ? std::vector<ModelParameter>{}
+                                                   : NumbersOf(machine_.plant());
   found_.blocks = BlocksOf(machine_, candidates_, options_.numbers.value_or(in_doubt));
 }
 
@@ -393,7 +393,7 @@ void ModelSearch::StepOn() {
   while (!IsOver() && Step()) {
     char text[80];
     std::snprintf(text, sizeof text, "%.1f  ", found_.score);
-    Say(text + Describe(found_.blocks, found_.fit.model));
+    Say(text + ModelText(found_.blocks, found_.fit.model));
     if (options_.better) options_.better(found_);
   }
 }
@@ -437,7 +437,7 @@ void ModelSearch::LookAtAll() {
   found_.fit = std::move(settled.fit);
   found_.path = std::move(settled.path);
   Say("with all of the run: " + std::to_string(found_.score) + "  " +
-      mjdiag::Describe(found_.blocks, found_.fit.model));
+      ModelText(found_.blocks, found_.fit.model));
 }
 
 Explained ModelSearch::Run() {

@@ -101,7 +101,7 @@ class ModelSearch {
   /// From pieces to all of the run, and to every tick if that tells more.
   void LookAtAll();
   void Decide(const Model& tried, double score, const std::string& why) {
-    found_.decisions.push_back({mjdiag::Describe(found_.blocks, tried), score, why});
+    found_.decisions.push_back({ModelText(found_.blocks, tried), score, why});
   }
   bool HasTooManyCauses(const Model& model) const {
     const auto causes = std::ranges::count_if(model, [&](const Member& member) {
@@ -140,7 +140,7 @@ class ModelSearch {
     return Made(model, steps);
   }
   Machine Made(const Model& model, bool steps) const {
-    const Machine machine = machine_.With(ChangesOf(found_.blocks, model));
+    const Machine machine = machine_.With(ChangesOfModel(found_.blocks, model));
     return steps ? machine : machine.WithoutSteps();
   }
   /// Is the run of a machine with the physics steps of the model, as one that was simulated

@@ -39,7 +39,7 @@ Eigen::Index PeriodPlace(const Candidate& candidate) {
          candidate.parameters.begin();
 }
 
-std::string Describe(const Candidate& candidate) {
+std::string CandidateName(const Candidate& candidate) {
   const std::string& name = candidate.effect->name();
   return candidate.effect->IsFault() ? name : name + "@" + candidate.site;
 }

@@ -55,7 +55,7 @@ Eigen::Index PlaceOf(const Candidate& candidate, Role role);
 Eigen::Index PeriodPlace(const Candidate& candidate);
 
 /// "coulomb_friction@X", "zeta_x".
-std::string Describe(const Candidate& candidate);
+std::string CandidateName(const Candidate& candidate);
 
 /// @param with_seen  at joints that are only seen, too
 std::vector<Candidate> ListCandidates(const Machine& machine, bool with_seen = false);

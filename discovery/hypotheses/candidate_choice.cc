@@ -32,7 +32,7 @@ std::vector<std::string> PlacesOf(const std::vector<Candidate>& all,
   std::vector<std::string> places;
   for (const Candidate& candidate : all) {
     if (candidate.effect->IsFault() || candidate.effect->name() != effect) continue;
-    places.push_back(Describe(candidate));
+    places.push_back(CandidateName(candidate));
   }
   return places;
 }
@@ -42,7 +42,7 @@ std::vector<std::string> PlainNames(const std::vector<Candidate>& all) {
   std::vector<std::string> names;
   for (const Family family : kFamilies) names.push_back(FamilyName(family));
   for (const Candidate& candidate : all) {
-    if (candidate.effect->IsFault()) names.push_back(Describe(candidate));
+    if (candidate.effect->IsFault()) names.push_back(CandidateName(candidate));
   }
   for (const Effect* effect : Effects()) names.push_back(effect->name());
   return names;
@@ -61,7 +61,7 @@ void RequireMeaning(const std::vector<Candidate>& all, const std::string& option
   throw InputError(option, "'" + text + "' is no cause that is looked for here",
                    places.empty()
                        ? "one of " + Listed(plain) + ", or an effect at a site as in " +
-                             (all.empty() ? "" : Describe(all.back()))
+                             (all.empty() ? "" : CandidateName(all.back()))
                        : "one of " + Listed(places));
 }
 

@@ -19,8 +19,8 @@ Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitte
   return {candidate.effect, candidate.site, std::move(values)};
 }
 
-Changes ChangesOf(const std::vector<Candidate>& candidates,
-                  const std::vector<FittedCause>& causes) {
+Changes ChangesOfFit(const std::vector<Candidate>& candidates,
+                     const std::vector<FittedCause>& causes) {
   std::vector<Cause> list;
   list.reserve(causes.size());
   for (const FittedCause& fitted : causes) {

@@ -16,7 +16,7 @@ struct FittedCause {
 
 Cause CauseOf(const std::vector<Candidate>& candidates, const FittedCause& fitted);
 /// Changes to the plant that the causes are.
-Changes ChangesOf(const std::vector<Candidate>& candidates,
-                  const std::vector<FittedCause>& causes);
+Changes ChangesOfFit(const std::vector<Candidate>& candidates,
+                     const std::vector<FittedCause>& causes);
 
 }  // namespace mjdiag

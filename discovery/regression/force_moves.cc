@@ -1,6 +1,6 @@
 #include "mjdiag/discovery/regression/force_moves.h"
 
-#include "mjdiag/discovery/regression/missing_force_map.h"
+#include "mjdiag/discovery/regression/disturbance_map.h"
 #include "mjdiag/plugin/replay/force_smoother.h"
 
 namespace mjdiag {
@@ -29,21 +29,21 @@ VectorXd LeftBehind(const ModelMove& move, const std::vector<Term>& terms,
 Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, std::vector<Block>& blocks,
                    const std::vector<Term>& terms, bool at_every_shape) {
-  const MissingForceRows missing(path, SmoothForces(path).value);
-  MissingForceMap::Rest rest = MissingForceMap::RestOf(missing);
+  const DisturbanceRows missing(path, SmoothForces(path).value);
+  DisturbanceMap::Rest rest = DisturbanceMap::RestOf(missing);
   // How lasting the rest is nobody knows before something is explained.
   rest.repeats.setOnes();
   constexpr int kRounds = 2;
   Moves moves;
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<MissingForceMap> maps;
+    std::vector<DisturbanceMap> maps;
     // A set that is right deserves a smaller rest.
     for (const double part : {1.0, 0.5, 0.25, 0.125}) {
-      maps.emplace_back(missing, MissingForceMap::Rest{part * rest.sd, rest.repeats});
+      maps.emplace_back(missing, DisturbanceMap::Rest{part * rest.sd, rest.repeats});
     }
     if (maps.front().rows() == 0) break;
     std::vector<const RowMap*> all;
-    for (const MissingForceMap& one : maps) all.push_back(&one);
+    for (const DisturbanceMap& one : maps) all.push_back(&one);
     // What physics steps make is no force that lasts.
     moves = MovesOf(machine, run, path, all, blocks, terms, {},
                     {.at_forces = true, .at_every_shape = at_every_shape});

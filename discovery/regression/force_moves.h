@@ -1,5 +1,5 @@
 #pragma once
-// Moves (moves.h) by the forces that a machine lacks (missing_force_map.h), behind what the
+// Moves (moves.h) by the forces that a machine lacks (disturbance_map.h), behind what the
 // best of them leaves: what it leaves is found again about it.
 
 #include <vector>

@@ -30,7 +30,7 @@ class Chooser {
  public:
   Chooser(const VectorXd& x, const VectorXd& y, const VectorXd& sd)
       : x_(x), weight_(sd.cwiseInverse()), y_(y.cwiseProduct(weight_)) {
-    constant_ = Misfit({});
+    constant_ = ResidualOf({});
   }
 
   const ArrayXd& x() const { return x_; }
@@ -42,14 +42,14 @@ class Chooser {
     const auto n = static_cast<double>(x_.size());
     const double linear = 1.0 + static_cast<double>(columns.size());
     if (linear + parameters >= n && !columns.empty()) return;
-    const double misfit = Misfit(columns);
+    const double residual = ResidualOf(columns);
     const double score =
-        n * std::log(std::max({misfit / n, 1.0, 0.01 * constant_ / n})) +
+        n * std::log(std::max({residual / n, 1.0, 0.01 * constant_ / n})) +
         (linear + parameters) * std::log(n);
     // Of forms that are equally good by that, the closest.
-    if (score < score_ || (score == score_ && misfit < best_misfit_)) {
+    if (score < score_ || (score == score_ && residual < least_residual_)) {
       score_ = score;
-      best_misfit_ = misfit;
+      least_residual_ = residual;
       best_ = std::move(shape);
     }
   }
@@ -57,14 +57,14 @@ class Chooser {
   CurveShape best() const {
     const auto n = static_cast<double>(x_.size());
     // Four times the noise and a fifth of the curve left over: not described.
-    if (best_misfit_ > 4.0 * n && best_misfit_ > 0.2 * constant_) {
+    if (least_residual_ > 4.0 * n && least_residual_ > 0.2 * constant_) {
       return {"no simple form"};
     }
     return best_;
   }
 
  private:
-  double Misfit(const std::vector<ArrayXd>& columns) const {
+  double ResidualOf(const std::vector<ArrayXd>& columns) const {
     MatrixXd design(x_.size(), static_cast<Index>(columns.size()) + 1);
     design.col(0) = weight_;
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -77,7 +77,7 @@ class Chooser {
   VectorXd weight_;
   VectorXd y_;
   double constant_ = 0.0;
-  double best_misfit_ = 0.0;
+  double least_residual_ = 0.0;
   double score_ = std::numeric_limits<double>::infinity();
   CurveShape best_;
 };

@@ -144,7 +144,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   const bool inflated = !learner.Explains();
   if (inflated) {
     // What not even that explains counts as noise.
-    noise *= std::sqrt(learner.Misfit());
+    noise *= std::sqrt(learner.Nis());
     learner = about(learner.theta());
     learner.Learn(learner.stiffest(), true);
   }
@@ -163,7 +163,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   learner = about(learner.theta());
   learner.Learn(gain, false);
   if (inflated) {
-    noise *= std::sqrt(learner.Misfit());
+    noise *= std::sqrt(learner.Nis());
     learner = about(learner.theta());
     learner.Learn(gain, false);
   }
@@ -190,7 +190,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
     }
   }
   for (const RunInformation& said : learner.said()) {
-    report.records.push_back({said.misfit});
+    report.records.push_back({said.nis});
   }
   progress(0.9);
   calibration.model = ModelUncertaintyOf(CalibratedMachine(machine, calibration), runs,
@@ -202,7 +202,7 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
 Machine CalibratedMachine(const Machine& machine, const Calibration& calibration) {
   NumberFactors factors;
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
-    factors.emplace_back(FindPlantNumber(machine.plant(), calibration.numbers[i]),
+    factors.emplace_back(FindModelParameter(machine.plant(), calibration.numbers[i]),
                          calibration.factors[static_cast<Index>(i)]);
   }
   const Machine with =

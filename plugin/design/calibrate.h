@@ -33,7 +33,7 @@
 namespace mjdiag {
 
 struct CalibratedRecord {
-  double misfit = 1.0;  ///< of the twin with that calibration
+  double nis = 1.0;  ///< of the twin with that calibration
 };
 
 struct CalibrationReport {

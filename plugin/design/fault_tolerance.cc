@@ -25,7 +25,7 @@ constexpr double kSlowness = 3.0;
 /// lacks, and a twin that has not settled yet is wrong by less than that.
 constexpr double kLeast = 1e-3;
 constexpr double kPatience = 10.0;
-/// By chance the misfit is not above it.
+/// By chance the NIS is not above it.
 constexpr double kExplained = 2.0;
 /// Part of the largest force along a derivative below which it is rounding.
 constexpr double kNoForce = 1e-9;
@@ -85,7 +85,7 @@ FaultRemedy RemedyOf(const Machine& machine, const FaultFamily& family,
                      const GainMargins& margins, const FaultRange& range) {
   FaultRemedy remedy;
   remedy.fault = parameter.name;
-  if (parameter.kind == PlantNumberKind::kGear) {
+  if (parameter.kind == ModelParameterKind::kGear) {
     remedy.drives = DrivesOf(machine, parameter);
     double least = 1.0;
     double most = 1.0;
@@ -184,16 +184,16 @@ void ReadEstimates(const DiagnosisMonitor& monitor,
   const TwinEstimator* twin = monitor.twin();
   if (twin == nullptr || !twin->estimator().began()) return;
   const PredictionErrorEstimator& estimator = twin->estimator();
-  const double misfit = estimator.surprise();
+  const double nis = estimator.recent_nis();
   // A run that no faults explain tells of none (TwinEstimator::Read), and a twin that is
   // catching up with its machine does not know yet.
-  if (!(misfit < kLargestMisfit) || !estimator.current()) {
+  if (!(nis < kLargestNis) || !estimator.current()) {
     estimates.sd.setConstant(kNone);
     return;
   }
   estimates.deviation = monitor.estimate();
   estimates.sd = monitor.estimate_sd();
-  if (misfit > kExplained) estimates.sd *= std::sqrt(misfit);
+  if (nis > kExplained) estimates.sd *= std::sqrt(nis);
   Index tone = 0;
   for (const TwinFault& fault : twin->faults()) {
     if (fault.frequencies.empty()) continue;

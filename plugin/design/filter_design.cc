@@ -170,8 +170,8 @@ Machine DrawnPlant(const Machine& machine, std::uint64_t seed) {
   NumberFactors factors;
   for (Index i = 0; i < moved.size(); ++i) {
     factors.emplace_back(
-        FindPlantNumber(machine.plant(),
-                        calibration->numbers[static_cast<std::size_t>(i)]),
+        FindModelParameter(machine.plant(),
+                           calibration->numbers[static_cast<std::size_t>(i)]),
         std::exp(moved[i]));
   }
   return machine.WithNumbers(factors);

@@ -31,8 +31,8 @@ Machine WithNumbers(const Machine& machine, const UncertaintyOptions& options,
   NumberFactors factors;
   for (Index i = 0; i < theta.size(); ++i) {
     factors.emplace_back(
-        FindPlantNumber(machine.plant(),
-                        uncertain.unknowns[static_cast<std::size_t>(i)].name),
+        FindModelParameter(machine.plant(),
+                           uncertain.unknowns[static_cast<std::size_t>(i)].name),
         std::exp(theta[i]));
   }
   return machine.WithNumbers(factors);
@@ -94,8 +94,8 @@ void NumberLearner::Learn(std::size_t gain, bool rough) {
     // Errors that are left count as noise: far from the solution, what is hardly known
     // must not be bent to explain them.
     for (const RunInformation& said : said_) {
-      H += said.H / std::max(1.0, said.misfit);
-      g += said.g / std::max(1.0, said.misfit);
+      H += said.H / std::max(1.0, said.nis);
+      g += said.g / std::max(1.0, said.nis);
     }
     H_ = H;
     VectorXd change = CovarianceOf(H) * g;
@@ -118,9 +118,9 @@ double NumberLearner::Excess() const {
   return excess;
 }
 
-double NumberLearner::Misfit() const {
+double NumberLearner::Nis() const {
   double sum = 0.0;
-  for (const RunInformation& said : said_) sum += said.misfit;
+  for (const RunInformation& said : said_) sum += said.nis;
   return sum / static_cast<double>(said_.size());
 }
 
@@ -181,7 +181,7 @@ std::optional<LearnedNumbers> LearnNumbers(const Machine& machine,
   learned.passes += softest.passes;
   learned.theta = softest.learner.theta();
   for (const Unknown& unknown : softest.learner.unknowns()) {
-    learned.numbers.push_back(FindPlantNumber(machine.plant(), unknown.name));
+    learned.numbers.push_back(FindModelParameter(machine.plant(), unknown.name));
   }
   return learned;
 }

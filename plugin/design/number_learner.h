@@ -59,7 +59,7 @@ class NumberLearner {
   double Excess() const;
 
   /// Mean square of what all runs leave, over what noise lets expect.
-  double Misfit() const;
+  double Nis() const;
 
   /// Of the readings, by what changes from one innovation to the next.
   Eigen::VectorXd Noise() const;
@@ -95,7 +95,7 @@ SoftestLearner LearnSoftest(
 /// theta of the numbers that MakeUncertainMachine names, from the plant as it is given to
 /// the softest gain that explains the runs, or the stiffest; and what it took.
 struct LearnedNumbers {
-  std::vector<PlantNumber> numbers;
+  std::vector<ModelParameter> numbers;
   Eigen::VectorXd theta;
   int passes = 0;  ///< over all runs
 };

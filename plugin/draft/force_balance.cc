@@ -113,7 +113,7 @@ class FrictionOut {
   MatrixXd basis_;
 };
 
-std::optional<double> MisfitOf(const Terms& terms) {
+std::optional<double> ImbalanceOf(const Terms& terms) {
   double left = 0.0;
   int joints = 0;
   for (Index j = 0; j < terms.speed.rows(); ++j) {
@@ -143,8 +143,8 @@ bool HasForceBalance(const mjModel& model) {
   return true;
 }
 
-std::optional<double> ForceMisfit(const mjModel& model, const LoggedMotion& motion,
-                                  int lag) {
+std::optional<double> ForceImbalance(const mjModel& model, const LoggedMotion& motion,
+                                     int lag) {
   if (motion.positions.cols() < kFewest) return std::nullopt;
   const DataPtr data = MakeData(model);
   const MatrixXd controls = Later(motion.controls, lag);
@@ -156,11 +156,11 @@ std::optional<double> ForceMisfit(const mjModel& model, const LoggedMotion& moti
         DigitalButterworth(FilterKind::kLowPass, kOrder,
                            share / motion.sample_time / 2.0, motion.sample_time);
     try {
-      const std::optional<double> misfit = MisfitOf(
+      const std::optional<double> imbalance = ImbalanceOf(
           EvaluateTerms(model, *data,
                         {motion.sample_time, LowPassed(motion.positions, filter),
                          LowPassed(controls, filter), LowPassed(forces, filter)}));
-      if (misfit && (!least || *misfit < *least)) least = misfit;
+      if (imbalance && (!least || *imbalance < *least)) least = imbalance;
     } catch (const NumericalError&) {
       // Columns that are taken for what they are not may be out of all bounds.
     }

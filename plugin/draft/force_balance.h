@@ -6,7 +6,7 @@
 //
 // Positions and controls go through the same zero-phase low-pass, behind which positions are
 // differentiated. What a plant mostly lacks, an offset, viscous and dry friction, is fitted
-// and taken out of every term. The misfit is what is left of the balance over the terms
+// and taken out of every term. The imbalance is what is left of the balance over the terms
 // that ought to cancel, as root mean squares, all joints together:
 //
 //   0  they cancel      1  they have nothing to do with each other, or the wrong sign
@@ -34,7 +34,7 @@ bool HasForceBalance(const mjModel& model);
 
 /// @param lag  samples by which controls and forces act later
 /// None of a log that is too short, or does not move.
-std::optional<double> ForceMisfit(const mjModel& model, const LoggedMotion& motion,
-                                  int lag = 0);
+std::optional<double> ForceImbalance(const mjModel& model, const LoggedMotion& motion,
+                                     int lag = 0);
 
 }  // namespace mjdiag

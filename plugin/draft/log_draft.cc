@@ -283,41 +283,42 @@ class Drafter {
   void CheckAgainstForces(const LogPhysics& physics) {
     const LogReading known = Known();
     if (known.motors.empty() && known.forces.empty()) return;
-    const std::optional<double> misfit = physics.Misfit(known);
-    if (!misfit) return;
+    const std::optional<double> imbalance = physics.Imbalance(known);
+    if (!imbalance) return;
     for (const auto& [motor, scaled] : known.motors) {
       LogReading turned = known;
       turned.motors[motor].factor *= -1.0;
-      const std::optional<double> other = physics.Misfit(turned);
-      if (!other || *other > kBalanced || *other > kClearly * *misfit) continue;
+      const std::optional<double> other = physics.Imbalance(turned);
+      if (!other || *other > kBalanced || *other > kClearly * *imbalance) continue;
       draft_.questions.push_back(
           "sign of " + Quoted(Column(scaled.column).name) +
           ": forces balance the other way round; turn the gear of actuator " +
           Quoted(GivenName(model_, mjOBJ_ACTUATOR, motor)) + " round if so");
     }
-    if (*misfit > kBalanced) return;
-    GuessDelay(physics, known, *misfit);
+    if (*imbalance > kBalanced) return;
+    GuessDelay(physics, known, *imbalance);
   }
 
-  void GuessDelay(const LogPhysics& physics, const LogReading& known, double misfit) {
-    double least = misfit;
+  void GuessDelay(const LogPhysics& physics, const LogReading& known,
+                  double imbalance) {
+    double least = imbalance;
     int best = 0;
     for (const int lag : {1, 2, 3, 4, 5, 7, 10, 14, 20}) {
       const double seconds = lag * physics.sample_time();
       if (seconds > kLongestDelay) break;
-      const std::optional<double> other = physics.Misfit(known, lag);
+      const std::optional<double> other = physics.Imbalance(known, lag);
       if (other && *other < least) {
         least = *other;
         best = lag;
       }
     }
-    if (best == 0 || least > kClearly * misfit) return;
+    if (best == 0 || least > kClearly * imbalance) return;
     draft_.notes.push_back("the motion follows the input by about " +
                            FormatQuantity(best * physics.sample_time(), "s") +
                            "; it is not put in: --effect input_delay would");
   }
 
-  static constexpr double kClearly = 0.8;        // of a misfit
+  static constexpr double kClearly = 0.8;        // of a imbalance
   static constexpr double kLongestDelay = 0.05;  // [s]
 
   const mjModel& model_;

@@ -25,7 +25,7 @@ LogPhysics::LogPhysics(const mjModel& model, const LogColumns& log,
   }
 }
 
-std::optional<double> LogPhysics::Misfit(const LogReading& reading, int lag) const {
+std::optional<double> LogPhysics::Imbalance(const LogReading& reading, int lag) const {
   if (!record_ || !HasForceBalance(model_)) return std::nullopt;
   if (static_cast<int>(reading.joints.size()) != model_.njnt) return std::nullopt;
   LoggedMotion motion;
@@ -46,7 +46,7 @@ std::optional<double> LogPhysics::Misfit(const LogReading& reading, int lag) con
   for (const auto& [joint, scaled] : reading.forces) {
     motion.forces.row(model_.jnt_dofadr[joint]) = samples(scaled);
   }
-  return ForceMisfit(model_, motion, lag);
+  return ForceImbalance(model_, motion, lag);
 }
 
 std::optional<double> LogPhysics::Largest(std::size_t column) const {

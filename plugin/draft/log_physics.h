@@ -38,7 +38,7 @@ class LogPhysics {
 
   /// None where nothing can be said: a joint that no column is of, actuators with
   /// dynamics, a log that does not move.
-  std::optional<double> Misfit(const LogReading& reading, int lag = 0) const;
+  std::optional<double> Imbalance(const LogReading& reading, int lag = 0) const;
 
   /// Largest magnitude of a column, as it stands in the file.
   std::optional<double> Largest(std::size_t column) const;
@@ -51,7 +51,7 @@ class LogPhysics {
   std::optional<Record> record_;
 };
 
-/// A misfit from which on the terms do not cancel enough to decide anything.
+/// A imbalance from which on the terms do not cancel enough to decide anything.
 inline constexpr double kBalanced = 0.8;
 
 }  // namespace mjdiag

@@ -24,11 +24,11 @@ void TakeTheOnlyPossible(OpenChoice& choice) {
   choice.chosen = only;
 }
 
-/// Least misfit behind every option of every choice, over those of the others.
+/// Least imbalance behind every option of every choice, over those of the others.
 using Least = std::vector<std::vector<double>>;
 
-std::optional<Least> LeastMisfits(const LogPhysics& physics, const LogReading& known,
-                                  const std::vector<OpenChoice>& choices) {
+std::optional<Least> LeastImbalances(const LogPhysics& physics, const LogReading& known,
+                                     const std::vector<OpenChoice>& choices) {
   Least least;
   std::size_t count = 1;
   for (const OpenChoice& choice : choices) {
@@ -51,29 +51,30 @@ std::optional<Least> LeastMisfits(const LogPhysics& physics, const LogReading& k
     for (std::size_t i = 0; i < choices.size(); ++i) {
       choices[i].options[picked[i]].apply(reading);
     }
-    const std::optional<double> misfit = physics.Misfit(reading);
-    if (!misfit) return std::nullopt;
+    const std::optional<double> imbalance = physics.Imbalance(reading);
+    if (!imbalance) return std::nullopt;
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      least[i][picked[i]] = std::min(least[i][picked[i]], *misfit);
+      least[i][picked[i]] = std::min(least[i][picked[i]], *imbalance);
     }
   }
   return least;
 }
 
-void Decide(const std::vector<double>& misfits, OpenChoice& choice) {
-  const auto best = std::ranges::min_element(misfits);
+void Decide(const std::vector<double>& imbalances, OpenChoice& choice) {
+  const auto best = std::ranges::min_element(imbalances);
   if (*best > kBalanced) return;
   double next = std::numeric_limits<double>::infinity();
   std::size_t second = 0;
-  for (std::size_t i = 0; i < misfits.size(); ++i) {
-    if (i == static_cast<std::size_t>(best - misfits.begin()) || misfits[i] >= next) {
+  for (std::size_t i = 0; i < imbalances.size(); ++i) {
+    if (i == static_cast<std::size_t>(best - imbalances.begin()) ||
+        imbalances[i] >= next) {
       continue;
     }
-    next = misfits[i];
+    next = imbalances[i];
     second = i;
   }
   if (*best > kMargin * next) return;
-  choice.chosen = static_cast<std::size_t>(best - misfits.begin());
+  choice.chosen = static_cast<std::size_t>(best - imbalances.begin());
   choice.because = "forces balance to " + Percent(*best);
   if (std::isfinite(next)) {
     choice.because += ", with " + choice.options[second].label + " to " + Percent(next);
@@ -88,7 +89,7 @@ void DecideByForces(const LogPhysics& physics, const LogReading& known,
   if (std::ranges::all_of(choices,
                           [](const OpenChoice& c) { return c.chosen.has_value(); }))
     return;
-  const std::optional<Least> least = LeastMisfits(physics, known, choices);
+  const std::optional<Least> least = LeastImbalances(physics, known, choices);
   if (!least) return;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (!choices[i].chosen) Decide((*least)[i], choices[i]);

@@ -6,7 +6,7 @@
 
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/plant/fault.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 namespace mjdiag {
 

@@ -145,8 +145,8 @@ std::optional<double> Effect::Law(double, const EffectValues&) const {
   return std::nullopt;
 }
 
-std::optional<PlantNumber> NumberAt(const Effect& effect, const mjModel& plant,
-                                    const std::string& site) {
+std::optional<ModelParameter> NumberAt(const Effect& effect, const mjModel& plant,
+                                       const std::string& site) {
   const int element = mj_name2id(&plant, effect.element(), site.c_str());
   if (element < 0) return std::nullopt;  // a sensor channel
   return effect.Number(plant, element);

@@ -26,7 +26,7 @@
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/effects/role.h"
 #include "mjdiag/plugin/effects/site.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/setup/setup.h"
 
 namespace mjdiag {
@@ -183,7 +183,7 @@ class Effect {
   /// The number of the plant at that element that a part of it adds to, or that it
   /// scales: no record tells the two apart, and with it the number is what the plant
   /// says.
-  virtual std::optional<PlantNumber> Number(const mjModel&, int /*element*/) const {
+  virtual std::optional<ModelParameter> Number(const mjModel&, int /*element*/) const {
     return std::nullopt;
   }
 
@@ -210,8 +210,8 @@ class Effect {
 inline EffectPtr Lasting(const Effect& effect) { return {EffectPtr(), &effect}; }
 
 /// Effect::Number at the element of that name; none if there is no such element.
-std::optional<PlantNumber> NumberAt(const Effect& effect, const mjModel& plant,
-                                    const std::string& site);
+std::optional<ModelParameter> NumberAt(const Effect& effect, const mjModel& plant,
+                                       const std::string& site);
 
 /// "effect <name>@<site>", where messages begin.
 std::string Where(const Effect& effect, const std::string& site);

@@ -16,7 +16,7 @@ using Eigen::Index;
 // Where a fit ends: far beyond any machine.
 constexpr double kMost = 100.0;
 
-Family FamilyOf(PlantNumberKind kind) {
+Family FamilyOf(ModelParameterKind kind) {
   if (IsDrive(kind)) return Family::kDrive;
   if (IsFriction(kind) || KindOf(kind) == Kind::kViscousFriction) {
     return Family::kFriction;
@@ -135,7 +135,7 @@ CandidateRegressor FaultParameterEffect::RegressorOfNumbers(
 
 std::vector<CandidateRegressor> FaultParameterEffect::CandidateRegressors(
     const SiteMotion& at) const {
-  if (declared_.kind == PlantNumberKind::kGear) {
+  if (declared_.kind == ModelParameterKind::kGear) {
     return {LinearRegressor(at.u(), at.MotorEntry(), 1.0, true)};
   }
   const auto as_one = [](CandidateRegressor trial) {
@@ -144,8 +144,8 @@ std::vector<CandidateRegressor> FaultParameterEffect::CandidateRegressors(
     trial.least.conservativeResize(1);
     return std::vector<CandidateRegressor>{std::move(trial)};
   };
-  if (declared_.kind != PlantNumberKind::kDamping &&
-      declared_.kind != PlantNumberKind::kStiffness) {
+  if (declared_.kind != ModelParameterKind::kDamping &&
+      declared_.kind != ModelParameterKind::kStiffness) {
     return as_one(RegressorOfNumbers(at));
   }
   const auto joints = static_cast<Index>(declared_.elements.size());
@@ -156,7 +156,7 @@ std::vector<CandidateRegressor> FaultParameterEffect::CandidateRegressors(
     const int dof = at.plant.jnt_dofadr[joint];
     const int address = at.plant.jnt_qposadr[joint];
     entry(dof, i) = 1.0;
-    if (declared_.kind == PlantNumberKind::kDamping) {
+    if (declared_.kind == ModelParameterKind::kDamping) {
       signals.col(i) = -at.plant.dof_damping[dof] * at.motion.velocity.row(dof);
     } else {
       const double rest = at.plant.qpos_spring[address] - at.plant.qpos0[address];
@@ -170,11 +170,11 @@ std::vector<CandidateRegressor> FaultParameterEffect::CandidateRegressors(
 const Effect* FaultParameterEffect::Twin() const {
   if (declared_.elements.size() != 1) return nullptr;
   switch (declared_.kind) {
-    case PlantNumberKind::kDamping:
+    case ModelParameterKind::kDamping:
       return &ViscousFriction();
-    case PlantNumberKind::kStiffness:
+    case ModelParameterKind::kStiffness:
       return &StructuralStiffness();
-    case PlantNumberKind::kGear:
+    case ModelParameterKind::kGear:
       return &MotorConstant();
     default:
       return nullptr;
@@ -184,13 +184,13 @@ const Effect* FaultParameterEffect::Twin() const {
 // Damping is added in N s/m, everything else scaled.
 EffectValues FaultParameterEffect::ToTwin(const mjModel& plant,
                                           const EffectValues& values) const {
-  if (declared_.kind != PlantNumberKind::kDamping) return values;
+  if (declared_.kind != ModelParameterKind::kDamping) return values;
   return ValuesOf({(values[0] - 1.0) * Damping(plant)});
 }
 
 std::optional<EffectValues> FaultParameterEffect::FromTwin(
     const mjModel& plant, const EffectValues& twin) const {
-  if (declared_.kind != PlantNumberKind::kDamping) return twin;
+  if (declared_.kind != ModelParameterKind::kDamping) return twin;
   if (Damping(plant) == 0.0) return std::nullopt;
   return ValuesOf({1.0 + twin[0] / Damping(plant)});
 }

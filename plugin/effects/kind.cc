@@ -50,30 +50,30 @@ std::string KindName(Kind kind) { return TextOf(kind).first; }
 
 std::string KindMeaning(Kind kind) { return TextOf(kind).second; }
 
-Kind KindOf(PlantNumberKind number) {
+Kind KindOf(ModelParameterKind number) {
   switch (number) {
-    case PlantNumberKind::kMass:
-    case PlantNumberKind::kInertia:
-    case PlantNumberKind::kArmature:
-    case PlantNumberKind::kCentreX:
-    case PlantNumberKind::kCentreY:
-    case PlantNumberKind::kCentreZ:
+    case ModelParameterKind::kMass:
+    case ModelParameterKind::kInertia:
+    case ModelParameterKind::kArmature:
+    case ModelParameterKind::kCentreX:
+    case ModelParameterKind::kCentreY:
+    case ModelParameterKind::kCentreZ:
       return Kind::kInertia;
-    case PlantNumberKind::kStiffness:
-    case PlantNumberKind::kTendonStiffness:
+    case ModelParameterKind::kStiffness:
+    case ModelParameterKind::kTendonStiffness:
       return Kind::kCompliance;
-    case PlantNumberKind::kDamping:
-    case PlantNumberKind::kTendonDamping:
+    case ModelParameterKind::kDamping:
+    case ModelParameterKind::kTendonDamping:
       return Kind::kViscousFriction;
-    case PlantNumberKind::kFriction:
-    case PlantNumberKind::kTendonFriction:
+    case ModelParameterKind::kFriction:
+    case ModelParameterKind::kTendonFriction:
       return Kind::kDryFriction;
-    case PlantNumberKind::kGear:
-    case PlantNumberKind::kGain:
-    case PlantNumberKind::kKp:
-    case PlantNumberKind::kKv:
+    case ModelParameterKind::kGear:
+    case ModelParameterKind::kGain:
+    case ModelParameterKind::kKp:
+    case ModelParameterKind::kKv:
       return Kind::kDriveGain;
-    case PlantNumberKind::kRef:
+    case ModelParameterKind::kRef:
       return Kind::kEncoder;
   }
   return Kind::kUnknownForce;

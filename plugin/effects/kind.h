@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 namespace mjdiag {
 
@@ -33,6 +33,6 @@ std::string KindName(Kind kind);
 /// What it does: "a resistance that does not grow with speed".
 std::string KindMeaning(Kind kind);
 /// What a number of the plant that is another one is.
-Kind KindOf(PlantNumberKind number);
+Kind KindOf(ModelParameterKind number);
 
 }  // namespace mjdiag

@@ -84,9 +84,9 @@ class AlongMotion {
   VectorXd origin_;
 };
 
-ModelPtr Scaled(const mjModel& plant, const PlantNumber& number, double factor) {
+ModelPtr Scaled(const mjModel& plant, const ModelParameter& number, double factor) {
   ModelPtr scaled = CopyModel(plant);
-  if (number.kind == PlantNumberKind::kRef) {
+  if (number.kind == ModelParameterKind::kRef) {
     ScaleNumbers(*scaled, {{number, factor}});
   } else {
     Scale(*scaled, number, factor);
@@ -95,7 +95,7 @@ ModelPtr Scaled(const mjModel& plant, const PlantNumber& number, double factor) 
 }
 
 MatrixXd MassForce(const mjModel& plant, std::span<const int> actuators,
-                   const PlantNumber& number, const ObservedMotion& motion) {
+                   const ModelParameter& number, const ObservedMotion& motion) {
   AlongMotion once(CopyModel(plant), plant.qpos0, actuators, motion);
   AlongMotion twice(Scaled(plant, number, 2.0), plant.qpos0, actuators, motion);
   MatrixXd force(motion.samples(), plant.nv);
@@ -109,7 +109,7 @@ MatrixXd MassForce(const mjModel& plant, std::span<const int> actuators,
 /// @param force  of a plant at a sample
 template <typename Force>
 MatrixXd DifferenceOf(const mjModel& plant, std::span<const int> actuators,
-                      const PlantNumber& number, const ObservedMotion& motion,
+                      const ModelParameter& number, const ObservedMotion& motion,
                       const Force& force) {
   constexpr double kStep = 1e-4;
   AlongMotion less(Scaled(plant, number, std::exp(-kStep)), plant.qpos0, actuators,
@@ -142,19 +142,19 @@ MatrixXd TendonFriction(const mjModel& plant, int tendon, const ObservedMotion& 
 }
 
 /// Of a number of a joint, on its own degree of freedom.
-VectorXd JointForceOf(const mjModel& plant, const PlantNumber& number, int dof,
+VectorXd JointForceOf(const mjModel& plant, const ModelParameter& number, int dof,
                       const ObservedMotion& motion, double still) {
   const int joint = number.element;
   switch (number.kind) {
-    case PlantNumberKind::kStiffness: {
+    case ModelParameterKind::kStiffness: {
       const int address = plant.jnt_qposadr[joint];
       const double rest = plant.qpos_spring[address] - plant.qpos0[address];
       return -plant.jnt_stiffness[joint] *
              (motion.position.row(dof).array() - rest).matrix();
     }
-    case PlantNumberKind::kDamping:
+    case ModelParameterKind::kDamping:
       return -plant.dof_damping[dof] * motion.velocity.row(dof);
-    case PlantNumberKind::kFriction:
+    case ModelParameterKind::kFriction:
       return motion.velocity.row(dof).unaryExpr(
           [&](double v) { return -plant.dof_frictionloss[dof] * Slides(v, still); });
     default:
@@ -171,37 +171,37 @@ VectorXd StillSpeeds(const mjModel& plant, const VectorXd& reading_noise,
 }
 
 MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators,
-                     const PlantNumber& number, const ObservedMotion& motion,
+                     const ModelParameter& number, const ObservedMotion& motion,
                      const VectorXd& still) {
   const auto by_difference = [&](auto force) {
     return DifferenceOf(plant, actuators, number, motion, force);
   };
   switch (number.kind) {
-    case PlantNumberKind::kMass:
-    case PlantNumberKind::kInertia:
+    case ModelParameterKind::kMass:
+    case ModelParameterKind::kInertia:
       return MassForce(plant, actuators, number, motion);
-    case PlantNumberKind::kCentreX:
-    case PlantNumberKind::kCentreY:
-    case PlantNumberKind::kCentreZ:
+    case ModelParameterKind::kCentreX:
+    case ModelParameterKind::kCentreY:
+    case ModelParameterKind::kCentreZ:
       return by_difference(
           [](AlongMotion& at, Index k) -> VectorXd { return -at.Inertial(k); });
-    case PlantNumberKind::kGear:
-    case PlantNumberKind::kGain:
-    case PlantNumberKind::kKp:
-    case PlantNumberKind::kKv:
+    case ModelParameterKind::kGear:
+    case ModelParameterKind::kGain:
+    case ModelParameterKind::kKp:
+    case ModelParameterKind::kKv:
       return by_difference(
           [](AlongMotion& at, Index k) -> VectorXd { return at.Motors(k); });
-    case PlantNumberKind::kTendonStiffness:
-    case PlantNumberKind::kTendonDamping:
-    case PlantNumberKind::kRef:
+    case ModelParameterKind::kTendonStiffness:
+    case ModelParameterKind::kTendonDamping:
+    case ModelParameterKind::kRef:
       return by_difference(
           [](AlongMotion& at, Index k) -> VectorXd { return at.Balance(k); });
-    case PlantNumberKind::kTendonFriction:
+    case ModelParameterKind::kTendonFriction:
       return TendonFriction(plant, number.element, motion, still);
-    case PlantNumberKind::kStiffness:
-    case PlantNumberKind::kDamping:
-    case PlantNumberKind::kFriction:
-    case PlantNumberKind::kArmature:
+    case ModelParameterKind::kStiffness:
+    case ModelParameterKind::kDamping:
+    case ModelParameterKind::kFriction:
+    case ModelParameterKind::kArmature:
       break;
   }
   MatrixXd force = MatrixXd::Zero(motion.samples(), plant.nv);

@@ -16,7 +16,7 @@
 #include <span>
 
 #include "mjdiag/plugin/effects/observed_motion.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 namespace mjdiag {
 
@@ -30,7 +30,7 @@ Eigen::VectorXd StillSpeeds(const mjModel& plant, const Eigen::VectorXd& reading
 /// @param actuators  ids of those that the inputs drive; -1: none
 /// @param still      speeds of the joints below which dry friction holds them, nv
 Eigen::MatrixXd NumberForce(const mjModel& plant, std::span<const int> actuators,
-                            const PlantNumber& number, const ObservedMotion& motion,
+                            const ModelParameter& number, const ObservedMotion& motion,
                             const Eigen::VectorXd& still);
 
 /// The same of all inputs and dampers a second later: - Gamma du/dt, of inputs that are

@@ -43,7 +43,7 @@ void ApplyCalibration(const Setup& setup, mjModel& model) {
   }
   NumberFactors factors;
   for (std::size_t i = 0; i < calibration.numbers.size(); ++i) {
-    factors.emplace_back(FindPlantNumber(model, calibration.numbers[i]),
+    factors.emplace_back(FindModelParameter(model, calibration.numbers[i]),
                          calibration.factors[static_cast<Eigen::Index>(i)]);
   }
   ScaleNumbers(model, factors);

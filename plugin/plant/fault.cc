@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kPrefix = "fault.";
 
-PlantNumberKind ParseKind(const std::string& where, const std::string& word) {
+ModelParameterKind ParseKind(const std::string& where, const std::string& word) {
   const auto kind = FindKind(word);
   if (kind && !IsAdditive(*kind)) return *kind;
   throw InputError(where, "unknown kind of fault parameter \"" + word + "\"",
@@ -27,12 +27,12 @@ FaultParameter ParseFaultParameter(const mjModel& model, const std::string& text
   std::istringstream words(data);
   std::string word;
   words >> word;
-  const PlantNumberKind kind = ParseKind(where, word);
+  const ModelParameterKind kind = ParseKind(where, word);
   FaultParameter parameter{text_name.substr(kPrefix.size()), kind, {}};
   const std::string of_kind = word + "@";
   while (words >> word) {
     try {
-      parameter.elements.push_back(FindPlantNumber(model, of_kind + word).element);
+      parameter.elements.push_back(FindModelParameter(model, of_kind + word).element);
     } catch (const InputError& error) {
       throw InputError(where + ": " + error.what());
     }

@@ -2,7 +2,7 @@
 // Fault parameters: a plant declares them itself, as
 //   <custom><text name="fault.zeta_x" data="damping X"/></custom>
 // and a fault is one of them off its healthy value, 1: it scales that number of every
-// element named, any kind of plant_number_kind.h that a factor multiplies: "stiffness
+// element named, any kind of model_parameter_kind.h that a factor multiplies: "stiffness
 // <joints>", "gear <actuators>", "mass <bodies>", "tendon_damping <tendons>". [AB383], Eq. 4,
 // 5 and 6, has dampers, springs and motors.
 
@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 namespace mjdiag {
 
 struct FaultParameter {
   std::string name;  ///< without "fault."
-  PlantNumberKind kind = PlantNumberKind::kDamping;
+  ModelParameterKind kind = ModelParameterKind::kDamping;
   std::vector<int> elements;  ///< ids of what ElementOf(kind) says
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // What of a plant is never in doubt, whatever a record says: numbers that act on its
-// motion and are of no kind of plant_number_kind.h. Lengths, gears of the geometry and
+// motion and are of no kind of model_parameter_kind.h. Lengths, gears of the geometry and
 // limits, which every plant has, are not told.
 
 #include <mujoco/mujoco.h>

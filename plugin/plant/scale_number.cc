@@ -43,13 +43,13 @@ bool FeedsBack(const mjModel& model, int actuator, std::size_t of) {
 }
 
 /// Whether an actuator has the number at all, be it 0.
-bool ActuatorHas(const mjModel& model, const PlantNumber& number) {
+bool ActuatorHas(const mjModel& model, const ModelParameter& number) {
   switch (number.kind) {
-    case PlantNumberKind::kGain:
+    case ModelParameterKind::kGain:
       return HasAffineBias(model, number.element);  // else it is the gear
-    case PlantNumberKind::kKp:
+    case ModelParameterKind::kKp:
       return FeedsBack(model, number.element, kOfLength);
-    case PlantNumberKind::kKv:
+    case ModelParameterKind::kKv:
       return FeedsBack(model, number.element, kOfVelocity);
     default:
       return true;
@@ -57,39 +57,39 @@ bool ActuatorHas(const mjModel& model, const PlantNumber& number) {
 }
 
 /// Where a number that is multiplied would stand in the model, one place or two.
-Places PlacesOf(const mjModel& model, const PlantNumber& number) {
+Places PlacesOf(const mjModel& model, const ModelParameter& number) {
   const int element = number.element;
   switch (number.kind) {
-    case PlantNumberKind::kMass:
+    case ModelParameterKind::kMass:
       return {{{model.body_mass + element, 1}}};
-    case PlantNumberKind::kInertia:
+    case ModelParameterKind::kInertia:
       return {{{RowOf(model.body_inertia, 3, element), 3}}};
-    case PlantNumberKind::kStiffness:
+    case ModelParameterKind::kStiffness:
       return {{{model.jnt_stiffness + element, 1}}};
-    case PlantNumberKind::kDamping:
+    case ModelParameterKind::kDamping:
       return {DofsOf(model, element, model.dof_damping)};
-    case PlantNumberKind::kFriction:
+    case ModelParameterKind::kFriction:
       return {DofsOf(model, element, model.dof_frictionloss)};
-    case PlantNumberKind::kGear:
+    case ModelParameterKind::kGear:
       return {{{RowOf(model.actuator_gear, 6, element), 6}}};
-    case PlantNumberKind::kArmature:
+    case ModelParameterKind::kArmature:
       return {DofsOf(model, element, model.dof_armature)};
-    case PlantNumberKind::kGain:
+    case ModelParameterKind::kGain:
       return {GainOf(model, element), BiasOf(model, element)};
-    case PlantNumberKind::kKp:
+    case ModelParameterKind::kKp:
       return {GainOf(model, element), BiasOf(model, element).subspan(kOfLength, 1)};
-    case PlantNumberKind::kKv:
+    case ModelParameterKind::kKv:
       return {BiasOf(model, element).subspan(kOfVelocity, 1)};
-    case PlantNumberKind::kTendonStiffness:
+    case ModelParameterKind::kTendonStiffness:
       return {{{model.tendon_stiffness + element, 1}}};
-    case PlantNumberKind::kTendonDamping:
+    case ModelParameterKind::kTendonDamping:
       return {{{model.tendon_damping + element, 1}}};
-    case PlantNumberKind::kTendonFriction:
+    case ModelParameterKind::kTendonFriction:
       return {{{model.tendon_frictionloss + element, 1}}};
-    case PlantNumberKind::kCentreX:
-    case PlantNumberKind::kCentreY:
-    case PlantNumberKind::kCentreZ:
-    case PlantNumberKind::kRef:
+    case ModelParameterKind::kCentreX:
+    case ModelParameterKind::kCentreY:
+    case ModelParameterKind::kCentreZ:
+    case ModelParameterKind::kRef:
       break;  // none that is multiplied
   }
   return {};
@@ -99,13 +99,13 @@ bool IsScalar(const mjModel& model, int joint) {
   return model.jnt_type[joint] == mjJNT_SLIDE || model.jnt_type[joint] == mjJNT_HINGE;
 }
 
-int AxisOf(PlantNumberKind kind) {
-  return static_cast<int>(kind) - static_cast<int>(PlantNumberKind::kCentreX);
+int AxisOf(ModelParameterKind kind) {
+  return static_cast<int>(kind) - static_cast<int>(ModelParameterKind::kCentreX);
 }
 
 /// Where a number that is additive stands.
-mjtNum& PlaceOf(const mjModel& model, const PlantNumber& number) {
-  if (number.kind == PlantNumberKind::kRef) {
+mjtNum& PlaceOf(const mjModel& model, const ModelParameter& number) {
+  if (number.kind == ModelParameterKind::kRef) {
     return model.qpos0[model.jnt_qposadr[number.element]];
   }
   return RowOf(model.body_ipos, 3, number.element)[AxisOf(number.kind)];
@@ -146,13 +146,13 @@ class MeasuredLengths {
 
 bool MovesReferences(const mjModel& model, const NumberFactors& factors) {
   return model.ntendon > 0 && std::ranges::any_of(factors, [](const auto& factor) {
-           return factor.first.kind == PlantNumberKind::kRef;
+           return factor.first.kind == ModelParameterKind::kRef;
          });
 }
 
 }  // namespace
 
-void Scale(mjModel& model, const PlantNumber& number, double factor) noexcept {
+void Scale(mjModel& model, const ModelParameter& number, double factor) noexcept {
   if (IsAdditive(number.kind)) {
     PlaceOf(model, number) += std::log(factor) * UnitOf(model, number);
     return;
@@ -172,7 +172,7 @@ void ScaleNumbers(mjModel& model, const NumberFactors& factors) {
   DeriveConstants(model);
 }
 
-void SetNumber(mjModel& model, const mjModel& nominal, const PlantNumber& number,
+void SetNumber(mjModel& model, const mjModel& nominal, const ModelParameter& number,
                double factor) noexcept {
   if (IsAdditive(number.kind)) {
     PlaceOf(model, number) =
@@ -198,16 +198,16 @@ void DeriveConstants(mjModel& model) {
   std::ranges::copy(said.center, model.stat.center);
 }
 
-bool HasNumber(const mjModel& model, const PlantNumber& number) {
-  if (number.kind == PlantNumberKind::kRef) return IsScalar(model, number.element);
+bool HasNumber(const mjModel& model, const ModelParameter& number) {
+  if (number.kind == ModelParameterKind::kRef) return IsScalar(model, number.element);
   if (IsAdditive(number.kind)) {
     return model.body_mass[number.element] > 0.0 && UnitOf(model, number) > 0.0;
   }
   return !IsDrive(number.kind) || ActuatorHas(model, number);
 }
 
-double UnitOf(const mjModel& model, const PlantNumber& number) {
-  if (number.kind == PlantNumberKind::kRef) {
+double UnitOf(const mjModel& model, const ModelParameter& number) {
+  if (number.kind == ModelParameterKind::kRef) {
     return model.jnt_type[number.element] == mjJNT_HINGE ? 1.0 : model.stat.extent;
   }
   const mjtNum* inertia = RowOf(model.body_inertia, 3, number.element);
@@ -215,22 +215,22 @@ double UnitOf(const mjModel& model, const PlantNumber& number) {
   return std::sqrt(trace / (2.0 * model.body_mass[number.element]));
 }
 
-const char* UnitName(const mjModel& model, const PlantNumber& number) {
-  return number.kind == PlantNumberKind::kRef &&
+const char* UnitName(const mjModel& model, const ModelParameter& number) {
+  return number.kind == ModelParameterKind::kRef &&
                  model.jnt_type[number.element] == mjJNT_HINGE
              ? "rad"
              : "m";
 }
 
-double ValueOf(const mjModel& model, const PlantNumber& number) {
+double ValueOf(const mjModel& model, const ModelParameter& number) {
   if (IsAdditive(number.kind)) return PlaceOf(model, number);
   double largest = 0.0;
   if (!HasNumber(model, number)) return largest;
   // A feedback is what the bias takes away.
-  if (number.kind == PlantNumberKind::kKp) {
+  if (number.kind == ModelParameterKind::kKp) {
     return -BiasOf(model, number.element)[kOfLength];
   }
-  if (number.kind == PlantNumberKind::kKv) {
+  if (number.kind == ModelParameterKind::kKv) {
     return -BiasOf(model, number.element)[kOfVelocity];
   }
   for (const auto values : PlacesOf(model, number)) {
@@ -242,9 +242,9 @@ double ValueOf(const mjModel& model, const PlantNumber& number) {
   return largest;
 }
 
-double FactorFor(const mjModel& model, const PlantNumber& number, double value) {
+double FactorFor(const mjModel& model, const ModelParameter& number, double value) {
   const auto fail = [&](const std::string& problem, const std::string& expected) {
-    throw InputError("plant number " + PlantNumberName(model, number), problem,
+    throw InputError("plant number " + ModelParameterName(model, number), problem,
                      expected);
   };
   if (!std::isfinite(value)) fail("is " + std::to_string(value), "a finite number");

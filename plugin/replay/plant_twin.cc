@@ -33,19 +33,19 @@ std::vector<PlacedEffect> FrictionOf(std::vector<PlacedEffect> effects) {
 /// How the force of a number is known along a run.
 enum class Law { kJoint, kTendonFriction, kGear, kInertia, kAtRest };
 
-Law LawOf(const mjModel& model, const PlantNumber& number) {
+Law LawOf(const mjModel& model, const ModelParameter& number) {
   switch (number.kind) {
-    case PlantNumberKind::kStiffness:
-    case PlantNumberKind::kDamping:
-    case PlantNumberKind::kFriction:
+    case ModelParameterKind::kStiffness:
+    case ModelParameterKind::kDamping:
+    case ModelParameterKind::kFriction:
       return Law::kJoint;
-    case PlantNumberKind::kTendonFriction:
+    case ModelParameterKind::kTendonFriction:
       return Law::kTendonFriction;
-    case PlantNumberKind::kMass:
-    case PlantNumberKind::kInertia:
-    case PlantNumberKind::kArmature:
+    case ModelParameterKind::kMass:
+    case ModelParameterKind::kInertia:
+    case ModelParameterKind::kArmature:
       return Law::kInertia;
-    case PlantNumberKind::kGear:
+    case ModelParameterKind::kGear:
       // Behind it a bias acts, too.
       return model.actuator_biastype[number.element] == mjBIAS_AFFINE ? Law::kAtRest
                                                                       : Law::kGear;
@@ -296,8 +296,8 @@ void PlantTwin::AddWorkForce(const Number& number) noexcept {
 /// Of what slides.
 void PlantTwin::AddFriction(int type, Index at, double force) noexcept {
   const bool of_dof = type == mjCNSTR_FRICTION_DOF;
-  const PlantNumberKind kind =
-      of_dof ? PlantNumberKind::kFriction : PlantNumberKind::kTendonFriction;
+  const ModelParameterKind kind =
+      of_dof ? ModelParameterKind::kFriction : ModelParameterKind::kTendonFriction;
   for (const Number& number : numbers_) {
     if (number.number.kind != kind || number.at != at) continue;
     if (of_dof) {
@@ -354,7 +354,7 @@ void PlantTwin::AddStepForces() noexcept {
   }
   const Index nv = model_->nv;
   for (const Number& number : numbers_) {
-    if (number.number.kind == PlantNumberKind::kStiffness) {
+    if (number.number.kind == ModelParameterKind::kStiffness) {
       const int address = model_->jnt_qposadr[number.number.element];
       AddForce(force_, number, number.at,
                -model_->jnt_stiffness[number.number.element] *
@@ -425,7 +425,7 @@ void PlantTwin::Substep() noexcept {
   }
   acceleration_ = (VectorXd::Map(data_->qvel, nv) - before_) / model_->opt.timestep;
   for (const Number& number : numbers_) {
-    if (number.number.kind == PlantNumberKind::kDamping) {
+    if (number.number.kind == ModelParameterKind::kDamping) {
       AddForce(force_, number, number.at,
                -model_->dof_damping[number.at] * data_->qvel[number.at]);
     }

@@ -58,7 +58,7 @@ class PlantTwin final : public Twin {
  private:
   /// A number of the plant with what a unit of it means where the machine is.
   struct Number {
-    PlantNumber number;
+    ModelParameter number;
     std::vector<Eigen::Index> factors;
     int at = 0;        ///< degree of freedom, place among the commands, or tendon
     ModelPart part{};  ///< of those without a law of their own

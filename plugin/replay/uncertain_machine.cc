@@ -27,11 +27,11 @@ Index InCalibration(const Machine& machine, const std::string& number) {
   return found == names.end() ? -1 : found - names.begin();
 }
 
-double Spread(const Machine& machine, const PlantNumber& number,
+double Spread(const Machine& machine, const ModelParameter& number,
               const UncertaintyOptions& options) {
   if (options.unmeasured) return DoubtOf(machine.plant(), number);
   const bool doubt = options.doubt;
-  const Index at = InCalibration(machine, PlantNumberName(machine.plant(), number));
+  const Index at = InCalibration(machine, ModelParameterName(machine.plant(), number));
   const bool friction = IsFriction(number.kind);
   // Dry friction is another one today than it was in the runs that were calibrated on.
   if (at >= 0 && !doubt && !friction) return machine.setup().calibration->Sd()[at];
@@ -39,7 +39,7 @@ double Spread(const Machine& machine, const PlantNumber& number,
   return declared > 0.0 || !(doubt || friction) ? declared : UsualSpread(number.kind);
 }
 
-UncertainNumber& NumberOf(const Machine& machine, const PlantNumber& number,
+UncertainNumber& NumberOf(const Machine& machine, const ModelParameter& number,
                           UncertainMachine& uncertain) {
   const auto found = std::find_if(
       uncertain.numbers.begin(), uncertain.numbers.end(),
@@ -72,7 +72,7 @@ bool Acts(const ModelPart& part) {
 void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
                 UncertainMachine& uncertain) {
   const mjModel& plant = machine.plant();
-  for (const PlantNumber& number : PlantNumbers(plant)) {
+  for (const ModelParameter& number : ModelParameters(plant)) {
     const bool friction = IsFriction(number.kind);
     if (friction && !options.friction) continue;
     const double spread = Spread(machine, number, options);
@@ -85,7 +85,7 @@ void AddNumbers(const Machine& machine, const UncertaintyOptions& options,
     const auto unknown = static_cast<Index>(uncertain.unknowns.size());
     uncertain_number.part.factors.push_back(unknown);
     uncertain.unknowns.push_back(
-        {PlantNumberName(plant, number), 0.0, spread, 1.0, friction});
+        {ModelParameterName(plant, number), 0.0, spread, 1.0, friction});
     ++uncertain.known;
   }
 }
@@ -101,8 +101,8 @@ void AddResistances(const Machine& machine, UncertainMachine& uncertain) {
       return resistance.joint == joint;
     };
     if (std::ranges::any_of(uncertain.resistances, known)) continue;
-    const PlantNumber number{PlantNumberKind::kFriction, joint};
-    const std::string name = PlantNumberName(plant, number);
+    const ModelParameter number{ModelParameterKind::kFriction, joint};
+    const std::string name = ModelParameterName(plant, number);
     auto found = std::ranges::find(uncertain.unknowns, name, &Unknown::name);
     if (found == uncertain.unknowns.end()) {
       const double spread = Spread(machine, number, {});
@@ -198,7 +198,7 @@ KnownTogether AsCalibrated(const Machine& machine, const UncertainMachine& uncer
   return known;
 }
 
-ModelPart PartOf(const Machine& machine, const PlantNumber& number) {
+ModelPart PartOf(const Machine& machine, const ModelParameter& number) {
   // Central differences. Where the machine stays where it is, the model is affine in
   // the number, and the step does not matter.
   constexpr double kStep = 1e-3;

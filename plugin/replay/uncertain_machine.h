@@ -8,13 +8,13 @@
 
 #include "mjdiag/diagnosis/twin/linear_twin.h"
 #include "mjdiag/plugin/machine/machine.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 namespace mjdiag {
 
 /// A number of the plant with the unknowns whose product it is multiplied by.
 struct UncertainNumber {
-  PlantNumber number;
+  ModelParameter number;
   ModelPart part;  ///< of its linear plant, its factors among it; of dry friction: none
 };
 
@@ -71,6 +71,6 @@ UncertainModel MakeUncertainModel(const Machine& machine,
                                   const UncertainMachine& uncertain);
 
 /// What a number of the plant adds to M, D, K and Gamma and to the forces at rest.
-ModelPart PartOf(const Machine& machine, const PlantNumber& number);
+ModelPart PartOf(const Machine& machine, const ModelParameter& number);
 
 }  // namespace mjdiag

@@ -12,7 +12,7 @@
 namespace mjdiag {
 
 struct Calibration {
-  std::vector<std::string> numbers;  ///< "mass@stage", see plant_number.h
+  std::vector<std::string> numbers;  ///< "mass@stage", see model_parameter.h
   Eigen::VectorXd factors;           ///< of what the plant says
   /// Root R of the covariance R R^T of their logarithms, n x n: some directions may be
   /// known a million times better than others, which R still tells.

@@ -23,7 +23,7 @@ struct ManifestRecord {
   bool fit = true;
   std::vector<std::string> overrides{};  ///< "key.path=value", for ReadSetup
   std::string plant{};  ///< its MJCF, relative to the setup; empty: that of the setup
-  /// Numbers of that plant by their names (FindPlantNumber), in SI units.
+  /// Numbers of that plant by their names (FindModelParameter), in SI units.
   std::vector<std::pair<std::string, double>> numbers{};
 };
 

@@ -23,7 +23,7 @@ from ._mjdiag import (
     LinearModel,
     Machine,
     Mismatch,
-    MissingForce,
+    DisturbanceEstimate,
     Monitor,
     JointMotionDesign,
     MotionDesign,
@@ -58,7 +58,7 @@ class Mode(_NamedTuple):
     shape: object
 
 
-class PlantNumber(_NamedTuple):
+class ModelParameter(_NamedTuple):
     """A number of the plant as records have it: factor times what the model says.
 
     ci95: interval (low, high) of factor; is_off: whether it is another than the model's.
@@ -151,14 +151,14 @@ __all__ = [
     "LoopGain",
     "Machine",
     "Mismatch",
-    "MissingForce",
+    "DisturbanceEstimate",
     "Mode",
     "Monitor",
     "JointMotionDesign",
     "MotionDesign",
     "NumericalError",
     "Parameter",
-    "PlantNumber",
+    "ModelParameter",
     "Record",
     "StateSpace",
     "Study",

@@ -6,7 +6,7 @@
 
 namespace mjdiag {
 
-void Describe(const std::exception_ptr& failure, RankReport& report) {
+void TellFailure(const std::exception_ptr& failure, RankReport& report) {
   report.kind = RankReport::Kind::kFailed;
   try {
     std::rethrow_exception(failure);
@@ -40,7 +40,7 @@ std::optional<RankReport> PoolReport::Next(std::chrono::milliseconds longest) {
   if (fails) {
     has_failed_ = true;
     report.run = news.failed_run;
-    Describe(news.failure, report);
+    TellFailure(news.failure, report);
   }
   return report;
 }

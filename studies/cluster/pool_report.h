@@ -33,6 +33,6 @@ class PoolReport {
 };
 
 /// What was thrown, as a report tells it.
-void Describe(const std::exception_ptr& failure, RankReport& report);
+void TellFailure(const std::exception_ptr& failure, RankReport& report);
 
 }  // namespace mjdiag

@@ -209,7 +209,7 @@ void ReportClosed(RankTeam& team, const std::vector<std::int64_t>& done) {
 void ReportFailedBeginning(RankTeam& team, std::exception_ptr failure,
                            double patience) {
   RankReport report;
-  Describe(failure, report);
+  TellFailure(failure, report);
   team.Report(report);
   for (double heard = Now(), told = heard; Now() - heard < patience;) {
     while (const auto order = team.NextOrder()) {

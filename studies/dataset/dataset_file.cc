@@ -148,7 +148,7 @@ void WriteMachines(Hdf5Writer& writer, const LoadedPlan& loaded,
   std::vector<double> factors;
   std::vector<std::string> names;
   for (const auto& [number, sd] : machines.numbers) {
-    names.push_back(PlantNumberName(loaded.machine.plant(), number));
+    names.push_back(ModelParameterName(loaded.machine.plant(), number));
   }
   for (int machine = 0; machine < machines.count; ++machine) {
     splits.push_back(SplitName(planner.SplitOf(machine)));
@@ -176,7 +176,7 @@ void WriteAnswers(Table& table, const PlanKeep& keep, const DatasetLayout& layou
                                  [](const RunResult& r) { return r.disturbed; });
     table.OfResult<double>("verdicts/misfit",
                            {"squared innovations of the twin over those expected", "1"},
-                           [](const RunResult& r) { return r.misfit; });
+                           [](const RunResult& r) { return r.nis; });
     table.OfResult<double>("verdicts/residual_low", {"least of the residual", "1"},
                            [](const RunResult& r) { return r.residual_low; });
     table.OfResult<double>("verdicts/residual_high", {"most of the residual", "1"},

@@ -70,7 +70,7 @@ std::string Packed(const RunResult& result) {
   writer.Put(result.first_detection);
   writer.Put(result.lasting);
   writer.Put(static_cast<std::uint8_t>(result.disturbed));
-  writer.Put(result.misfit);
+  writer.Put(result.nis);
   writer.Put(result.residual_low);
   writer.Put(result.residual_high);
   writer.Put(static_cast<std::uint32_t>(result.faults.size()));
@@ -93,7 +93,7 @@ RunResult Unpacked(const std::string& bytes) {
   result.first_detection = reader.Get<double>();
   result.lasting = reader.Get<double>();
   result.disturbed = reader.Get<std::uint8_t>() != 0;
-  result.misfit = reader.Get<double>();
+  result.nis = reader.Get<double>();
   result.residual_low = reader.Get<double>();
   result.residual_high = reader.Get<double>();
   constexpr std::size_t kEstimate = 2 * sizeof(double) + 1;

@@ -26,7 +26,7 @@ struct RunResult {
   double first_detection = kNoValue;  ///< of the residual [s]
   double lasting = kNoValue;          ///< when its windowed mean left its limit [s]
   bool disturbed = false;             ///< tones or raised noise
-  double misfit = kNoValue;           ///< of the twin
+  double nis = kNoValue;              ///< of the twin
   double residual_low = kNoValue;     ///< extremes of r
   double residual_high = kNoValue;
   std::vector<KeptEstimate> faults;

@@ -29,7 +29,7 @@ void RunWork::KeepVerdict(const Diagnosis& diagnosis, RunResult& result) const {
   result.first_detection = said.first_detection.value_or(kNoValue);
   result.lasting = said.lasting.value_or(kNoValue);
   result.disturbed = said.disturbance.disturbed;
-  result.misfit = said.misfit;
+  result.nis = said.nis;
   result.residual_low = said.residual.min;
   result.residual_high = said.residual.max;
   result.faults.resize(layout_.faults.size());

@@ -183,8 +183,8 @@ class JointMotionDesigner {
   }
 
   /// Nothing where it violates a limit.
-  InertialInformation Judge(InertialRegressor& regressor,
-                            const VectorXd& parameters) const {
+  InertialInformation InformationAlong(InertialRegressor& regressor,
+                                       const VectorXd& parameters) const {
     const JointMotion motion = judged_->At(parameters);
     const InertialRows rows = RowsAlong(regressor, motion, columns_, design_.noise);
     if (rows.touches) return {};
@@ -254,7 +254,7 @@ class JointMotionDesigner {
         child = parent.size() > 0 ? Child(parent, step) : Start(since);
       ParallelFor(kChildren, [&](int i) {
         const auto at = static_cast<std::size_t>(i);
-        told[at] = Judge(regressors[at], tried[at]);
+        told[at] = InformationAlong(regressors[at], tried[at]);
       });
       bool better = parent.size() == 0;
       for (std::size_t i = 0; i < tried.size(); ++i) {

@@ -5,7 +5,7 @@
 #include "mjdiag/diagnosis/residuals/cramer_rao.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/design/filter_design.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -28,7 +28,7 @@ MotionInformation::MotionInformation(const Machine& machine,
   const FaultFamily family = MakeFaultFamily(machine);
   models_ = family.Perturbed();
   for (const std::string& name : numbers) {
-    const PlantNumber number = FindPlantNumber(machine.plant(), name);
+    const ModelParameter number = FindModelParameter(machine.plant(), name);
     models_.push_back({name, kNumberStep,
                        machine.WithNumbers({{number, 1.0 - kNumberStep}}).linear(),
                        machine.WithNumbers({{number, 1.0 + kNumberStep}}).linear()});

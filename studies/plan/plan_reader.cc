@@ -75,14 +75,14 @@ std::vector<PlanMotion> ReadMotions(const TomlTable& root, const Setup& setup,
 }
 
 double SpreadFor(const TomlTable& table, const mjModel& plant,
-                 const PlantNumber& number, const std::optional<double>& given) {
+                 const ModelParameter& number, const std::optional<double>& given) {
   if (given) return *given;
   const std::string spread = table.Text("spread", "known");
   if (spread == "usual") return UsualSpread(number.kind);
   const double known = SpreadOf(plant, number);
   if (known > 0.0) return known;
   table.Fail("numbers",
-             "the plant says that " + PlantNumberName(plant, number) + " is exact",
+             "the plant says that " + ModelParameterName(plant, number) + " is exact",
              R"(spread = "usual", or sd = a relative standard deviation)");
 }
 
@@ -99,7 +99,7 @@ PlanMachines ReadMachines(const TomlTable& root, const Machine& machine) {
   }
   for (const std::string& text : table->Texts("numbers", {})) {
     WithPlace(*table, "numbers", [&] {
-      for (const PlantNumber& number : PlantNumbersOf(machine.plant(), text)) {
+      for (const ModelParameter& number : ModelParametersOf(machine.plant(), text)) {
         machines.numbers.emplace_back(number,
                                       SpreadFor(*table, machine.plant(), number, sd));
       }

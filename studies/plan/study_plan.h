@@ -85,7 +85,7 @@ std::string SplitName(Split split);
 struct PlanMachines {
   int count = 1;
   /// What differs between them, with the standard deviation of its logarithm.
-  std::vector<std::pair<PlantNumber, double>> numbers;
+  std::vector<std::pair<ModelParameter, double>> numbers;
   std::array<double, 3> shares = {1.0, 0.0, 0.0};  ///< of train, validation and test
 };
 

@@ -52,7 +52,7 @@ int Main(int argc, char** argv) {
                 path.noise.white[j], found.nothing.noise.white[j]);
   }
   for (const Member& member : found.fit.model) {
-    std::printf("  %s\n", Describe(found.blocks, {member}).c_str());
+    std::printf("  %s\n", ModelText(found.blocks, {member}).c_str());
   }
   return 0;
 }

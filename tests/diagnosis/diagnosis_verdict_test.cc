@@ -53,7 +53,7 @@ TEST(DiagnosisVerdict, LeavesOutNoneThatATwinHasToldApart) {
 TEST(DiagnosisVerdict, SaysThatNoFaultExplainsTheRun) {
   DiagnosisResult result = Found({Fault("a", 1.0, 1e-3)});
   result.by_twin = true;
-  result.misfit = 400.0;
+  result.nis = 400.0;
   EXPECT_EQ(DiagnosisVerdict(result),
             "Neither the healthy machine nor its faults explain this run: what is left "
             "has 20.0 times the noise.");

@@ -15,7 +15,7 @@
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/machine/tick_map.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 namespace mjdiag {
 namespace {
@@ -106,7 +106,7 @@ constexpr char kHovers[] =
 TEST(DiscoverAnyMachine, FindsAWeakMotorOfWhatFlies) {
   const Machine craft =
       MachineOf(kHovers, "element = \"y\"\ncomponent = 2\nunit = \"m\"");
-  const PlantNumber gear = FindPlantNumber(craft.plant(), "gear@u");
+  const ModelParameter gear = FindModelParameter(craft.plant(), "gear@u");
   const Discovery answer =
       Asked(craft, Measure(craft.WithNumbers({{gear, 0.9}}), TwoSines, 1e-5));
   ASSERT_THAT(NamesOf(answer), ElementsAre(::testing::_));

@@ -14,7 +14,7 @@ namespace mjdiag::test {
 inline std::size_t Place(const std::vector<Candidate>& candidates,
                          const std::string& name) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (Describe(candidates[i]) == name) return i;
+    if (CandidateName(candidates[i]) == name) return i;
   }
   ADD_FAILURE() << "no candidate " << name;
   return 0;

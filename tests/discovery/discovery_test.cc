@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
 #include "support/stage.h"
@@ -41,7 +41,7 @@ constexpr double kLight = 0.99;
 
 Record MeasureLight(const test::Stage& stage, const std::vector<std::string>& effects) {
   const Machine light = stage.machine.WithNumbers(
-      {{FindPlantNumber(stage.machine.plant(), "mass@load"), kLight}});
+      {{FindModelParameter(stage.machine.plant(), "mass@load"), kLight}});
   return Simulate(light.With(test::With(effects)), stage.Motion(), {});
 }
 

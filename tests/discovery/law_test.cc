@@ -64,7 +64,7 @@ TEST(LawCurve, OfAMassIsAgainstTheAcceleration) {
 }
 
 TEST(LawCurve, WithoutAClosedFormIsTheMeanOfWhatTheCauseExplains) {
-  const Cause fault{FaultEffect({"zeta", PlantNumberKind::kDamping, {0}}), "q",
+  const Cause fault{FaultEffect({"zeta", ModelParameterKind::kDamping, {0}}), "q",
                     Eigen::VectorXd::Constant(1, 1.2)};
   // Neither in order nor evenly spaced.
   const VectorXd x = VectorXd::LinSpaced(4000, 0.0, 40.0).array().sin();

@@ -91,7 +91,7 @@ TEST_F(LoadedRecords, MayDifferInNumbersAlone) {
   // What is found of the machine holds for the load as well.
   const Machine& loaded = measurements.fit[1].machine;
   const Machine heavier =
-      loaded.With({{}, {}, {{FindPlantNumber(loaded.plant(), "mass@stage"), 1.1}}});
+      loaded.With({{}, {}, {{FindModelParameter(loaded.plant(), "mass@stage"), 1.1}}});
   EXPECT_NEAR(heavier.plant().body_mass[1], 1.87, 1e-15);
   EXPECT_THAT(test::MessageOf<InputError>([&] { ReadWith("mass@table", 2.0); }),
               testing::AllOf(HasSubstr("numbers of loaded.csv"), HasSubstr("table")));

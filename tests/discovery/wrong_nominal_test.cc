@@ -6,7 +6,7 @@
 #include <string>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 
 namespace mjdiag {
@@ -18,7 +18,7 @@ TEST(WrongNominal, OfTheBonderIsItsNumbersAndNothingElse) {
                                             {"damping@X", 1.08}};
   NumberFactors off;
   for (const auto& [name, factor] : truth) {
-    off.emplace_back(FindPlantNumber(model.plant(), name), factor);
+    off.emplace_back(FindModelParameter(model.plant(), name), factor);
   }
   Trajectory motion = model.setup().trajectories.Find("multi");
   motion.duration = 0.5;

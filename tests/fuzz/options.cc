@@ -40,7 +40,7 @@ void OfEffect(std::string_view word) {
 void OfAddress(std::string_view word) {
   const StreamAddress address = ParseStreamAddress(word, "--source");
   if (address.kind == StreamAddress::Kind::kProcess) return;
-  const std::string text = Describe(address);
+  const std::string text = AddressText(address);
   MustDo("an address as text", [&] {
     const StreamAddress again = ParseStreamAddress(text, "--source");
     Require(again.kind == address.kind && again.host == address.host &&

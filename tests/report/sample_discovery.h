@@ -50,7 +50,7 @@ inline FoundCause SampleFriction() {
 
 inline FoundCause SampleFault() {
   FoundCause fault;
-  fault.cause = {FaultEffect({"eta", PlantNumberKind::kGear, {0}}), "drive",
+  fault.cause = {FaultEffect({"eta", ModelParameterKind::kGear, {0}}), "drive",
                  Eigen::VectorXd::Constant(1, 1.0342)};
   fault.parameters = {{"value", "1", 1.0342, 2e-5, 1.03416, 1.03424}};
   fault.probability = 1.0;

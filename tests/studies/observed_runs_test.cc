@@ -6,7 +6,7 @@
 #include <string>
 
 #include "mjdiag/plugin/effects/number_forces.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "support/stage.h"
 
 namespace mjdiag {
@@ -20,9 +20,9 @@ TEST(ObservedRuns, ForcesOfNumbersShowWhatTheirChangesDo) {
   const MeasuredRun run = runs.RunOf(stage.machine);
   const Eigen::VectorXd still = StillSpeeds(plant, Eigen::VectorXd::Constant(1, 1e-8),
                                             stage.machine.rates().tick());
-  const auto numbers = PlantNumbers(plant);
+  const auto numbers = ModelParameters(plant);
   ASSERT_EQ(numbers.size(), 4u);  // mass, inertia of what slides, damper, motor
-  for (const PlantNumber& number : numbers) {
+  for (const ModelParameter& number : numbers) {
     constexpr double kStep = 1e-5;
     const auto moved = [&](double by) {
       return runs.Innovations(run, {{}, {}, {{number, std::exp(by)}}});
@@ -31,7 +31,7 @@ TEST(ObservedRuns, ForcesOfNumbersShowWhatTheirChangesDo) {
     const Eigen::VectorXd rough = -runs.ResponseTo(NumberForce(
         plant, stage.machine.actuator_addresses(), number, runs.motion(), still));
     EXPECT_LE((rough - exact).norm(), 0.02 * exact.norm() + 1e-9)
-        << PlantNumberName(plant, number);
+        << ModelParameterName(plant, number);
   }
 }
 

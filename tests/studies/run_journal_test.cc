@@ -20,7 +20,7 @@ RunResult ResultOf(int run) {
   RunResult result;
   result.samples = 10 + run;
   result.detected = true;
-  result.misfit = 0.1 * run;
+  result.nis = 0.1 * run;
   result.faults = {{1.5, 0.25, true}, {1.0, 0.5, false}};
   result.features = {1.0, -2.0, 3.0 + run};
   result.series = {std::string("\0ab", 3), std::string(20, static_cast<char>(run))};
@@ -31,7 +31,7 @@ void ExpectSame(const RunJournal& journal, int run) {
   const RunResult wanted = ResultOf(run);
   const RunResult& found = journal.Result(run);
   EXPECT_EQ(found.samples, wanted.samples);
-  EXPECT_EQ(found.misfit, wanted.misfit);
+  EXPECT_EQ(found.nis, wanted.nis);
   EXPECT_EQ(found.features, wanted.features);
   ASSERT_EQ(found.faults.size(), 2u);
   EXPECT_EQ(found.faults[0].sd, 0.25);

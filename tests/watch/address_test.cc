@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string Again(const char* text) {
-  return Describe(ParseStreamAddress(text, "--source"));
+  return AddressText(ParseStreamAddress(text, "--source"));
 }
 
 TEST(AddressTest, ReadsWhatIsDocumented) {

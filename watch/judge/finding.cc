@@ -34,7 +34,7 @@ VerdictKind VerdictKindOf(const std::string& name) {
 }
 
 VerdictKind KindOf(const DiagnosisResult& result) {
-  if (result.by_twin && !(result.misfit < kLargestMisfit)) {
+  if (result.by_twin && !(result.nis < kLargestNis)) {
     return VerdictKind::kUnexplained;
   }
   if (!result.detected) return VerdictKind::kHealthy;

@@ -49,7 +49,7 @@ struct Finding {
   bool lasting_alarm = false;   ///< now
   VerdictKind kind = VerdictKind::kSettling;
   std::string words;  ///< DiagnosisVerdict
-  /// Faults, misfit, and the disturbance of the last stretch that was analysed, with the
+  /// Faults, nis, and the disturbance of the last stretch that was analysed, with the
   /// tones that were in the one before, too.
   DiagnosisResult result;
   bool analysed = false;  ///< whether there was such a stretch

@@ -173,7 +173,7 @@ void TickJudge::LookAt(double time) {
   result.faults = JudgeFaults(monitor);
   if (const TwinEstimator* twin = monitor.twin(); twin != nullptr) {
     result.by_twin = true;
-    if (twin->estimator().began()) result.misfit = twin->estimator().surprise();
+    if (twin->estimator().began()) result.nis = twin->estimator().recent_nis();
   }
   result.disturbance = disturbance_;
   const bool alarm = any_alarm_ && look.run_time - last_alarm_ < kAlarmLasts;

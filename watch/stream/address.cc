@@ -79,7 +79,7 @@ StreamAddress ParseStreamAddress(std::string_view text, const std::string& what)
                    "stdin, udp:[HOST:]PORT or mqtt:HOST[:PORT]/TOPIC");
 }
 
-std::string Describe(const StreamAddress& address) {
+std::string AddressText(const StreamAddress& address) {
   const bool six = address.host.find(':') != std::string::npos;
   const std::string place = (six ? "[" + address.host + "]" : address.host) + ":" +
                             std::to_string(address.port);

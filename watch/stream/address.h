@@ -22,7 +22,7 @@ struct StreamAddress {
 /// InputError on anything else.
 StreamAddress ParseStreamAddress(std::string_view text, const std::string& what);
 
-std::string Describe(const StreamAddress& address);
+std::string AddressText(const StreamAddress& address);
 
 /// HOST:PORT, [HOST]:PORT of IPv6, or PORT alone.
 struct HostPort {

@@ -19,7 +19,7 @@ bool HasMqtt() { return false; }
 
 std::unique_ptr<MqttClient> OpenMqtt(const StreamAddress& address, const MqttLogin&,
                                      std::function<void(std::string_view)>) {
-  throw InputError(Describe(address), "this mjdiag was built without MQTT",
+  throw InputError(AddressText(address), "this mjdiag was built without MQTT",
                    "one that was built where libmosquitto-dev is installed");
 }
 
@@ -99,7 +99,7 @@ class MosquittoClient final : public MqttClient {
                        "a file of certificates in PEM");
     }
     if (!topic_.empty() && mosquitto_sub_topic_check(topic_.c_str()) != 0) {
-      throw InputError(Describe(address), "no topic of MQTT",
+      throw InputError(AddressText(address), "no topic of MQTT",
                        "for example plant/ticks");
     }
     mosquitto_reconnect_delay_set(client_, 1, kLongestPause, true);

@@ -72,7 +72,7 @@ class UdpSource final : public Source {
  public:
   UdpSource(const StreamAddress& address, const TickLayout& layout, TickQueue& queue,
             StreamCounts& counts)
-      : name_(Describe(address)),
+      : name_(AddressText(address)),
         socket_(ListenForDatagrams(address.host, address.port)),
         counts_(counts),
         decoder_(layout, queue, counts),
@@ -132,7 +132,7 @@ class MqttSource final : public Source {
  public:
   MqttSource(const StreamAddress& address, const TickLayout& layout,
              const MqttLogin& login, TickQueue& queue, StreamCounts& counts)
-      : name_(Describe(address)),
+      : name_(AddressText(address)),
         decoder_(layout, queue, counts),
         client_(OpenMqtt(address, login, [this](std::string_view message) {
           decoder_.TakeMessage(message, 0, WallClock());

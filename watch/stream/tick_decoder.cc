@@ -28,7 +28,7 @@ std::size_t TickDecoder::TakePacket(std::string_view bytes, bool whole,
         trouble != nullptr ? trouble : std::to_string(head.channels) + " channels";
     counts_.AddNonsense("packet: " + what + "; expected " +
                         std::to_string(layout_.channels.size()) + " channels of " +
-                        Describe(layout_));
+                        LayoutText(layout_));
     // In a stream the next one begins somewhere behind.
     return whole ? 0 : kPacketMagic.size();
   }

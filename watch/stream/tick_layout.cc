@@ -30,7 +30,7 @@ TickLayout LayoutOf(const Setup& setup) {
   return layout;
 }
 
-std::string Describe(const TickLayout& layout) {
+std::string LayoutText(const TickLayout& layout) {
   std::string text;
   for (const TickChannel& channel : layout.channels) {
     text += (text.empty() ? "" : ", ") + channel.name + " [" + channel.unit + "]";

@@ -30,6 +30,6 @@ struct TickLayout {
 TickLayout LayoutOf(const Setup& setup);
 
 /// "x [m], y [m], u_x [N]"
-std::string Describe(const TickLayout& layout);
+std::string LayoutText(const TickLayout& layout);
 
 }  // namespace mjdiag

@@ -28,8 +28,8 @@ class MotorConstantEffect final : public Effect {
       const SiteMotion& at) const override {
     return {LinearRegressor(at.u(), at.MotorEntry(), 1.0, true)};
   }
-  std::optional<PlantNumber> Number(const mjModel&, int actuator) const override {
-    return PlantNumber{PlantNumberKind::kGear, actuator};
+  std::optional<ModelParameter> Number(const mjModel&, int actuator) const override {
+    return ModelParameter{ModelParameterKind::kGear, actuator};
   }
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.3}); }
   Sized Draw(const Scales&, Random& r) const override {

@@ -50,8 +50,8 @@ class AsymmetricViscousFrictionEffect final : public JointDampingEffect {
     return PlacedEffect{Lasting(ViscousFriction()), self.site,
                         ValuesOf({(self.values[0] + self.values[1]) / 2.0})};
   }
-  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
-    return PlantNumber{PlantNumberKind::kDamping, joint};
+  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
+    return ModelParameter{ModelParameterKind::kDamping, joint};
   }
   Sized Draw(const Scales& k, Random& r) const override {
     const double up = r.Uniform(0.2, 1.0) * k.FrictionForce() / k.speed;

@@ -25,8 +25,8 @@ class CoulombFrictionEffect final : public Effect {
       const SiteMotion& at) const override {
     return {LinearRegressor(-Direction(at.v()), at.JointEntry(), 0.0, true)};
   }
-  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
-    return PlantNumber{PlantNumberKind::kFriction, joint};
+  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
+    return ModelParameter{ModelParameterKind::kFriction, joint};
   }
   std::optional<double> Law(double v, const EffectValues& values) const override {
     return -values[0] * Sign(v);

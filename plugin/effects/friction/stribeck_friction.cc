@@ -46,8 +46,8 @@ class StribeckFrictionEffect final : public VaryingFrictionEffect<FallingBound> 
   std::optional<PlacedEffect> Simpler(const PlacedEffect& self) const override {
     return PlacedEffect{Lasting(CoulombFriction()), self.site, self.values.head(1)};
   }
-  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
-    return PlantNumber{PlantNumberKind::kFriction, joint};
+  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
+    return ModelParameter{ModelParameterKind::kFriction, joint};
   }
   std::optional<double> Law(double v, const EffectValues& values) const override {
     return -Sign(v) * (values[0] + values[1] * StribeckShare(v, values[2]));

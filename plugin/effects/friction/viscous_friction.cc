@@ -28,8 +28,8 @@ class ViscousFrictionEffect final : public Effect {
       const SiteMotion& at) const override {
     return {LinearRegressor(-at.v(), at.JointEntry())};
   }
-  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
-    return PlantNumber{PlantNumberKind::kDamping, joint};
+  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
+    return ModelParameter{ModelParameterKind::kDamping, joint};
   }
   std::optional<double> Law(double v, const EffectValues& values) const override {
     return -values[0] * v;

@@ -48,9 +48,9 @@ class AddedMassEffect final : public Effect {
   std::optional<double> Law(double a, const EffectValues& values) const override {
     return -values[0] * a;
   }
-  std::optional<PlantNumber> Number(const mjModel& model, int joint) const override {
+  std::optional<ModelParameter> Number(const mjModel& model, int joint) const override {
     if (model.jnt_type[joint] == mjJNT_HINGE) return std::nullopt;
-    return PlantNumber{PlantNumberKind::kMass, model.jnt_bodyid[joint]};
+    return ModelParameter{ModelParameterKind::kMass, model.jnt_bodyid[joint]};
   }
   EffectValues Spread(const Scales& k) const override {
     return ValuesOf({0.5 * k.mass});

@@ -46,8 +46,8 @@ class StructuralStiffnessEffect final : public Effect {
     }
     return trials;
   }
-  std::optional<PlantNumber> Number(const mjModel&, int joint) const override {
-    return PlantNumber{PlantNumberKind::kStiffness, joint};
+  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
+    return ModelParameter{ModelParameterKind::kStiffness, joint};
   }
   EffectValues Spread(const Scales&) const override { return ValuesOf({0.5}); }
   Sized Draw(const Scales&, Random& r) const override {

@@ -99,9 +99,9 @@ Eigen::Vector3d MaximumLikelihood(const MatrixXd& readings, const MatrixXd& comm
                                   const MatrixXd& sensitivity) {
   Eigen::Vector3d fault = Eigen::Vector3d::Zero();
   for (int iteration = 0; iteration < 4; ++iteration) {
-    const MatrixXd misfit =
+    const MatrixXd nis =
         readings - test::Motion(test::Stage(test::Moved(fault)), commands).topRows(2);
-    fault += LeastSquares(sensitivity, misfit.reshaped());
+    fault += LeastSquares(sensitivity, nis.reshaped());
   }
   return fault;
 }

@@ -62,7 +62,7 @@ TEST(Following, KeepsItsIntervalsAndNamesNothingOnAHealthyMachine) {
   Follow(estimator, run, [&](Index k) {
     const TwinReading reading = estimator.Read();
     ASSERT_THAT(reading.named, Each(false)) << k;
-    ASSERT_LT(reading.misfit, 2.0) << k;
+    ASSERT_LT(reading.nis, 2.0) << k;
     for (int i = 0; i < 3; ++i) {
       squares[i] += std::pow(reading.deviation[i] / reading.sd[i], 2);
     }

@@ -47,7 +47,7 @@ TEST(RunPass, FindsTheNumbersOfARunFromRestAndInMidMotion) {
           << from << i;
     }
     // A mean of 2 * 400 squares at most, of standard deviation 0.05 to 0.06.
-    EXPECT_NEAR(said.misfit, 1.0, 0.3) << from;
+    EXPECT_NEAR(said.nis, 1.0, 0.3) << from;
   }
 }
 

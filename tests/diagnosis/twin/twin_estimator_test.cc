@@ -124,8 +124,8 @@ TEST(TwinEstimator, SaysThatItsTwinDoesNotExplainAnotherMachine) {
   test::StageRun run = test::RunStage(Vector3d::Zero(), 0.0, 1);
   // A force that no unknown is: a quadratic one.
   run.outputs.row(0).array() += 1e-3 * (run.inputs.row(0).array() / 60.0).square();
-  EXPECT_GT(Reading(run).misfit, 10.0);
-  EXPECT_LT(Reading(test::RunStage(Vector3d::Zero(), 0.0, 1)).misfit, 2.0);
+  EXPECT_GT(Reading(run).nis, 10.0);
+  EXPECT_LT(Reading(test::RunStage(Vector3d::Zero(), 0.0, 1)).nis, 2.0);
 }
 
 TEST(TwinEstimator, DoesNotAllocateWhileTheMachineRuns) {

@@ -3,7 +3,7 @@
 
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "support/arm.h"
 
 namespace mjdiag {
@@ -76,13 +76,13 @@ TEST(Answer, SaysWhatWasTried) {
 Discovery Heavy(const DiscoverOptions& options) {
   const test::Arm arm;
   const Machine light = arm.machine.WithNumbers(
-      {{FindPlantNumber(arm.machine.plant(), "mass@fore"), 1.0 / 1.1}});
+      {{FindModelParameter(arm.machine.plant(), "mass@fore"), 1.0 / 1.1}});
   return Discover(light, test::Arm::Measure({}, 1.0, 64), nullptr, options);
 }
 
 TEST(Answer, WritesEveryNumberThatDiffersIntoTheExtendedPlant) {
   const Discovery answer = Heavy(WithDoubt());
-  const Changes changes = ChangesOf(answer);
+  const Changes changes = ChangesOfAnswer(answer);
   for (const CalibratedNumber& number : answer.calibration) {
     EXPECT_TRUE(IsOff(number)) << number.name;
     EXPECT_TRUE(std::ranges::any_of(changes.numbers, [&](const auto& one) {

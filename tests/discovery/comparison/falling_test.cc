@@ -43,7 +43,7 @@ TEST(CompareFalling, MissesNextToNothingOnTheTrueArm) {
   const test::Arm arm;
   const Comparison comparison = Compare(arm.machine, test::Arm::Measure(), {});
   ASSERT_TRUE(comparison.falls);
-  for (const MissingForce& force : comparison.missing_force) {
+  for (const DisturbanceEstimate& force : comparison.missing_force) {
     EXPECT_LT(force.rms, 0.06) << force.joint;
   }
 }

@@ -49,7 +49,7 @@ TEST(ForceBalance, IsInUnitsOfWhatWasMeasured) {
   for (const char* number :
        {"mass@upper", "mass@fore", "inertia@upper", "inertia@fore", "armature@shoulder",
         "armature@elbow", "gear@motor1", "gear@motor2"}) {
-    half.numbers.emplace_back(FindPlantNumber(balanced.arm.machine.plant(), number),
+    half.numbers.emplace_back(FindModelParameter(balanced.arm.machine.plant(), number),
                               0.5);
   }
   const Eigen::VectorXd whole = balanced.Rms({});

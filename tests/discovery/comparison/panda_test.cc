@@ -41,7 +41,7 @@ TEST_F(Panda, LacksTheTorqueThatInverseDynamicsFinds) {
       {"joint1", 0.415}, {"joint2", 0.598}, {"joint3", 0.376}, {"joint4", 0.618},
       {"joint5", 0.339}, {"joint6", 0.184}, {"joint7", 0.279}};
   ASSERT_EQ(comparison.missing_force.size(), inverse.size());
-  for (const MissingForce& force : comparison.missing_force) {
+  for (const DisturbanceEstimate& force : comparison.missing_force) {
     const Eigen::VectorXd slow = FilterZeroPhase(
         DigitalButterworth(FilterKind::kLowPass, 4, 10.0, 1e-3), force.value);
     EXPECT_NEAR(Rms(slow), inverse.at(force.joint), 0.15 * inverse.at(force.joint))

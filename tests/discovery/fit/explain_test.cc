@@ -74,7 +74,7 @@ TEST(Explain, SaysHowWellValuesAreKnownBehindTheNoiseOfItsAnswer) {
       Explain(arm.machine, run, Eigen::VectorXd::Constant(2, test::Arm::kNoise),
               {.seconds = 300.0});
   const auto machine_with = [&](const Model& model) {
-    const Machine machine = arm.machine.With(ChangesOf(found.blocks, model));
+    const Machine machine = arm.machine.With(ChangesOfModel(found.blocks, model));
     return found.steps ? machine : machine.WithoutSteps();
   };
   const ModelFit anew = FitModel(machine_with, run, found.path, KeepGains(found.path),

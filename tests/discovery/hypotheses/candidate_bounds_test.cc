@@ -12,8 +12,8 @@ namespace {
 
 const FitParameter& Parameter(const std::vector<Candidate>& candidates,
                               const std::string& candidate, const std::string& name) {
-  const auto found = std::ranges::find(candidates, candidate,
-                                       [](const Candidate& c) { return Describe(c); });
+  const auto found = std::ranges::find(
+      candidates, candidate, [](const Candidate& c) { return CandidateName(c); });
   return *std::ranges::find(found->parameters, name, &FitParameter::name);
 }
 
@@ -49,7 +49,7 @@ TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
     return candidate.effect->name() == "encoder_periodic_error";
   });
   ASSERT_NE(wave, candidates.end());
-  const std::string name = Describe(*wave);
+  const std::string name = CandidateName(*wave);
   EXPECT_NEAR(Parameter(candidates, name, "period").lower, 4.0 * kStep, 1e-3 * kStep);
   EXPECT_NEAR(Parameter(candidates, name, "amplitude").least_size, 0.5 * kStep,
               1e-3 * kStep);

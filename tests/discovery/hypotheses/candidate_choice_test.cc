@@ -25,7 +25,7 @@ class CandidateChoice : public ::testing::Test {
     std::vector<std::string> names;
     for (const Candidate& candidate :
          ChooseCandidates(stage_.machine, {std::move(only), std::move(without)})) {
-      names.push_back(Describe(candidate));
+      names.push_back(CandidateName(candidate));
     }
     return names;
   }

@@ -42,10 +42,10 @@ TEST(MassMoments, DoNotChangeWithWhatNoMotionTells) {
   }
 }
 
-TEST(PlantNumber, MovesACentreOfMassByItsShareOfTheSizeOfTheBody) {
+TEST(ModelParameter, MovesACentreOfMassByItsShareOfTheSizeOfTheBody) {
   const test::Arm arm;
   const ModelPtr plant = CopyModel(arm.machine.plant());
-  const PlantNumber number = FindPlantNumber(*plant, "centre_z@fore");
+  const ModelParameter number = FindModelParameter(*plant, "centre_z@fore");
   const int fore = number.element;
   const double unit = std::sqrt((0.008 + 0.008 + 0.001) / (2.0 * 1.0));
   Scale(*plant, number, std::exp(0.1));

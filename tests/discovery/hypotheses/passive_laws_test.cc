@@ -180,7 +180,7 @@ class PassiveLaws : public ::testing::Test {
           ++refused;  // as a fit is
         }
       }
-      EXPECT_LT(refused, kDraws / 2) << Describe(any);
+      EXPECT_LT(refused, kDraws / 2) << CandidateName(any);
       tried_.insert(any.effect->name());
     }
   }

@@ -18,7 +18,7 @@ class CalibrateTheBonder : public testing::Test {
  protected:
   CalibrateTheBonder() {
     const auto number = [this](const char* name) {
-      return FindPlantNumber(nominal_.plant(), name);
+      return FindModelParameter(nominal_.plant(), name);
     };
     real_ = nominal_.WithNumbers({{number("damping@Y"), 1.2},
                                   {number("mass@y_stage"), 0.99},
@@ -59,7 +59,7 @@ TEST_F(CalibrateTheBonder, LearnsItsNumbersAndItsNoise) {
   }
   EXPECT_EQ(learned.force_noise, 0.0);
   for (const double noise : learned.sensor_noise) EXPECT_NEAR(noise, 20e-9, 1e-9);
-  for (const CalibratedRecord& record : report.records) EXPECT_LT(record.misfit, 2.0);
+  for (const CalibratedRecord& record : report.records) EXPECT_LT(record.nis, 2.0);
 }
 
 TEST_F(CalibrateTheBonder, ThenNamesNothingThatIsHealthyAndEverythingThatIsNot) {

@@ -98,7 +98,7 @@ TEST(Diagnose, NamesTheFaultsOfTheNonlinearMachineAndNothingElse) {
                   {{{"zeta_x", 1.001}, {"beta_y", 0.98}, {"eta_z", 0.7}}, {}});
   const DiagnosisResult& result = run.diagnosis.result;
   EXPECT_TRUE(result.by_twin);
-  EXPECT_LT(result.misfit, 2.0);
+  EXPECT_LT(result.nis, 2.0);
   for (const FaultVerdict& fault : result.faults) {
     const double truth = fault.name == "zeta_x"   ? 0.001
                          : fault.name == "beta_y" ? -0.02
@@ -121,7 +121,7 @@ TEST(Diagnose, NamesAFaultThatAppearsInTheCourseOfARun) {
       SimulateLinear(machine, DefaultMotion(machine.setup()), options);
   const Diagnosis diagnosis =
       Diagnose(machine, PrepareDiagnosis(machine, source), record);
-  EXPECT_LT(diagnosis.result.misfit, 2.0);
+  EXPECT_LT(diagnosis.result.nis, 2.0);
   for (const FaultVerdict& fault : diagnosis.result.faults) {
     EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
     if (fault.name != "eta_x") continue;
@@ -136,7 +136,7 @@ TEST(Diagnose, NamesAFaultThatAppearsATenthOfASecondAfterTheStart) {
   options.late_faults = {{{"eta_x", 0.7}, 0.1}};
   const Record record = Simulate(machine, DefaultMotion(machine.setup()), options);
   const Diagnosis diagnosis = Diagnose(machine, PrepareDiagnosis(machine), record);
-  EXPECT_LT(diagnosis.result.misfit, 2.0);
+  EXPECT_LT(diagnosis.result.nis, 2.0);
   for (const FaultVerdict& fault : diagnosis.result.faults) {
     EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
     if (fault.name != "eta_x") continue;
@@ -159,7 +159,7 @@ TEST(Diagnose, NamesWhatIsOrdersOfMagnitudeOff) {
     const Record record =
         SimulateLinear(machine.With({faults, {}}), DefaultMotion(machine.setup()), {});
     const DiagnosisResult result = Diagnose(machine, prepared, record).result;
-    EXPECT_LT(result.misfit, 2.0);
+    EXPECT_LT(result.nis, 2.0);
     for (const FaultVerdict& fault : result.faults) {
       const auto truth = std::ranges::find(faults, fault.name, &Fault::name);
       EXPECT_EQ(fault.detected, truth != faults.end()) << fault.name;
@@ -177,7 +177,7 @@ TEST(Diagnose, NamesADamperOfTheNonlinearMachineThatIsGone) {
                                  DefaultMotion(machine.setup()), {});
   const DiagnosisResult result =
       Diagnose(machine, PrepareDiagnosis(machine), record).result;
-  EXPECT_LT(result.misfit, 2.0);
+  EXPECT_LT(result.nis, 2.0);
   for (const FaultVerdict& fault : result.faults) {
     EXPECT_EQ(fault.detected, fault.name == "beta_y") << fault.name;
     if (fault.name != "beta_y") continue;
@@ -193,7 +193,7 @@ TEST(Diagnose, NamesAFaultOfTheNonlinearMachineInMidMotion) {
                                 DefaultMotion(machine.setup()), {});
   const Record record = whole.Slice(2001, whole.samples() - 2001);
   const DiagnosisResult result = Diagnose(machine, prepared, record).result;
-  EXPECT_LT(result.misfit, 2.0);
+  EXPECT_LT(result.nis, 2.0);
   for (const FaultVerdict& fault : result.faults) {
     EXPECT_EQ(fault.detected, fault.name == "eta_x") << fault.name;
     if (fault.name != "eta_x") continue;

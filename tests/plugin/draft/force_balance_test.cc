@@ -23,7 +23,7 @@ class ForceBalance : public ::testing::Test {
       return std::string();
     });
   }
-  double Misfit(int lag = 0) const { return *ForceMisfit(*model_, motion_, lag); }
+  double Imbalance(int lag = 0) const { return *ForceImbalance(*model_, motion_, lag); }
 
   test::TemporaryFolder folder_;
   ModelPtr model_;
@@ -31,28 +31,28 @@ class ForceBalance : public ::testing::Test {
   Eigen::Index next_ = 0;
 };
 
-TEST_F(ForceBalance, ClosesOnWhatColumnsAre) { EXPECT_LT(Misfit(), 0.05); }
+TEST_F(ForceBalance, ClosesOnWhatColumnsAre) { EXPECT_LT(Imbalance(), 0.05); }
 
 TEST_F(ForceBalance, IsOpenWhereDegreesAreTakenForRadians) {
   motion_.positions *= 180.0 / std::numbers::pi;
-  EXPECT_GT(Misfit(), 0.5);
+  EXPECT_GT(Imbalance(), 0.5);
 }
 
 TEST_F(ForceBalance, IsOpenWhereASignIsWrong) {
   motion_.controls *= -1.0;
-  EXPECT_GT(Misfit(), 0.5);
+  EXPECT_GT(Imbalance(), 0.5);
 }
 
 TEST_F(ForceBalance, CountsForcesThatNoActuatorGives) {
   motion_.forces = motion_.controls;
   motion_.controls.setZero();
-  EXPECT_LT(Misfit(), 0.05);
+  EXPECT_LT(Imbalance(), 0.05);
 }
 
 TEST_F(ForceBalance, SaysNothingOfAMachineThatStands) {
   motion_.positions.setConstant(0.1);
   motion_.controls.setZero();
-  EXPECT_FALSE(ForceMisfit(*model_, motion_));
+  EXPECT_FALSE(ForceImbalance(*model_, motion_));
 }
 
 }  // namespace

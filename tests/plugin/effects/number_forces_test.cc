@@ -56,7 +56,7 @@ TEST(ForceOfANumber, IsTheDerivativeOfInverseDynamics) {
   const ObservedMotion motion = AnyMotion(machine);
   const VectorXd qpos0 = VectorXd::Map(plant.qpos0, plant.nv);
   for (const auto& [name, value] : smooth) {
-    const PlantNumber number = FindPlantNumber(plant, name);
+    const ModelParameter number = FindModelParameter(plant, name);
     if (IsFriction(number.kind)) continue;
     const MatrixXd force = NumberForce(plant, machine.actuator_addresses(), number,
                                        motion, VectorXd::Zero(plant.nv));
@@ -83,7 +83,7 @@ TEST(ForceOfANumber, OfDryFrictionPullsATendonBackWhereItSlides) {
   const ObservedMotion motion = AnyMotion(machine);
   const VectorXd still = VectorXd::Constant(plant.nv, 0.05);
   const MatrixXd force = NumberForce(
-      plant, {}, FindPlantNumber(plant, "tendon_friction@rope"), motion, still);
+      plant, {}, FindModelParameter(plant, "tendon_friction@rope"), motion, still);
   const Eigen::Vector3d moment(1.0, 0.0, -0.5);
   int sliding = 0;
   for (Index k = 0; k < kSamples; ++k) {

@@ -130,13 +130,13 @@ TEST(ExtendedPlant, MovesAsTheMachineWithOtherNumbers) {
                                      {"damping@X", 0.7},
                                      {"friction@Y", 1.3},
                                      {"gear@z_motor", 0.95}}) {
-    changes.numbers.emplace_back(FindPlantNumber(extension.machine().plant(), name),
+    changes.numbers.emplace_back(FindModelParameter(extension.machine().plant(), name),
                                  factor);
   }
   ExpectSameMotion(extension, changes, "all kinds");
   for (const auto& number : changes.numbers) {
     EXPECT_GT(extension.Influence({{}, {}, {number}}), 1e-7)
-        << PlantNumberName(extension.machine().plant(), number.first);
+        << ModelParameterName(extension.machine().plant(), number.first);
   }
 }
 
@@ -145,7 +145,7 @@ TEST(ExtendedPlant, HasTheRotorAndTheWindingThatWereFound) {
   const std::filesystem::path plant = servo.setup().plant;
   NumberFactors numbers;
   for (const std::string name : {"armature@shaft", "gain@motor"}) {
-    numbers.emplace_back(FindPlantNumber(servo.plant(), name), 1.125);
+    numbers.emplace_back(FindModelParameter(servo.plant(), name), 1.125);
   }
   const test::TemporaryFolder folder;
   const std::string text =
@@ -178,7 +178,7 @@ TEST(ExtendedPlant, HasEveryNumberThatIsAnother) {
       "<mujoco><option timestep=\"0.001\"/>" + test::NumberedMjcf() + "</mujoco>";
   const ModelPtr nominal = test::PlantOf(mjcf);
   for (const auto& [name, value] : test::kNumberedValues) {
-    const PlantNumber number = FindPlantNumber(*nominal, name);
+    const ModelParameter number = FindModelParameter(*nominal, name);
     const ModelPtr expected = CopyModel(*nominal);
     ScaleNumbers(*expected, {{number, 1.1}});
     const ModelPtr read = ReadWith(mjcf, {{number, 1.1}});
@@ -196,11 +196,11 @@ TEST(ExtendedPlant, SaysWhatATagCannotSay) {
     <actuator><velocity name="drive" joint="j" kv="3"/></actuator></mujoco>)";
   const ModelPtr nominal = test::PlantOf(mjcf);
   const ModelPtr read =
-      ReadWith(mjcf, {{FindPlantNumber(*nominal, "gain@drive"), 2.0}});
+      ReadWith(mjcf, {{FindModelParameter(*nominal, "gain@drive"), 2.0}});
   EXPECT_EQ(read->actuator_gainprm[0], 6.0);
   EXPECT_EQ(read->actuator_biasprm[2], -6.0);
   EXPECT_THAT(test::MessageOf<InputError>([&] {
-                ReadWith(mjcf, {{FindPlantNumber(*nominal, "kv@drive"), 2.0}});
+                ReadWith(mjcf, {{FindModelParameter(*nominal, "kv@drive"), 2.0}});
               }),
               testing::AllOf(HasSubstr("<velocity>"), HasSubstr("<general>")));
 }

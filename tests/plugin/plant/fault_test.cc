@@ -158,7 +158,7 @@ TEST(ApplyFault, IsTheNumbersOfItsKindTogether) {
     std::string element;
     words >> kind;
     while (words >> element) {
-      factors.emplace_back(FindPlantNumber(*scaled, kind + "@" + element), 0.7);
+      factors.emplace_back(FindModelParameter(*scaled, kind + "@" + element), 0.7);
     }
     const Eigen::VectorXd healthy = Swing(*faulty);
     ScaleNumbers(*scaled, factors);

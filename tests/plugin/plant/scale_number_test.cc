@@ -74,7 +74,7 @@ TEST(ScaleNumbers, GivesWhatLoadingTheMjcfWithTheOtherNumberDoes) {
   const ModelPtr nominal = test::SmallPlant(test::NumberedMjcf());
   const VectorXd as_it_is = Swing(*nominal);
   for (const auto& [name, value] : test::kNumberedValues) {
-    const PlantNumber number = FindPlantNumber(*nominal, name);
+    const ModelParameter number = FindModelParameter(*nominal, name);
     const bool additive = IsAdditive(number.kind);
     const double shift = additive ? std::log(kFactor) * UnitOf(*nominal, number) : 0.0;
     test::MjcfValues other = test::kNumberedValues;
@@ -92,7 +92,7 @@ TEST(SetNumber, GoesThereFromAnywhereAndDoesNotAllocate) {
   const ModelPtr nominal = test::SmallPlant(test::NumberedMjcf());
   const VectorXd as_it_is = Swing(*nominal);
   for (const auto& [name, value] : test::kNumberedValues) {
-    const PlantNumber number = FindPlantNumber(*nominal, name);
+    const ModelParameter number = FindModelParameter(*nominal, name);
     const ModelPtr model = CopyModel(*nominal);
     const long allocations = test::CountAllocations([&] {
       SetNumber(*model, *nominal, number, IsAdditive(number.kind) ? 2.0 : 0.0);
@@ -115,12 +115,12 @@ TEST(FactorFor, MakesItTheValueThatIsAskedFor) {
                                      {"centre_z@fore", -0.2},
                                      {"ref@slide", -0.1}}) {
     const ModelPtr model = CopyModel(*nominal);
-    const PlantNumber number = FindPlantNumber(*model, name);
+    const ModelParameter number = FindModelParameter(*model, name);
     ScaleNumbers(*model, {{number, FactorFor(*model, number, value)}});
     EXPECT_NEAR(ValueOf(*model, number), value, 1e-12) << name;
   }
   const auto factor = [&](const std::string& name, double value) {
-    return FactorFor(*nominal, FindPlantNumber(*nominal, name), value);
+    return FactorFor(*nominal, FindModelParameter(*nominal, name), value);
   };
   EXPECT_THAT(MessageOf<InputError>([&] { factor("friction@elbow", 1.0); }),
               AllOf(HasSubstr("friction@elbow"), HasSubstr("0 in the plant")));
@@ -132,7 +132,7 @@ TEST(FactorFor, MakesItTheValueThatIsAskedFor) {
 TEST(ScaleNumbers, KeepsTheStatisticsOfTheFile) {
   const ModelPtr model = test::SmallPlant(
       test::NumberedMjcf(test::kNumberedValues, "<statistic extent=\"3\"/>"));
-  ScaleNumbers(*model, {{FindPlantNumber(*model, "mass@fore"), 2.0}});
+  ScaleNumbers(*model, {{FindModelParameter(*model, "mass@fore"), 2.0}});
   EXPECT_EQ(model->stat.extent, 3.0);
 }
 

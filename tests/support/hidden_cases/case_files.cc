@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "mjdiag/plugin/extension/setup_folder.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/plant/plant_number.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/record_file.h"
 #include "mjdiag/signals/text_file.h"
@@ -70,7 +70,7 @@ void WriteGivenSetup(const fs::path& folder, const fs::path& setup,
                      const Machine& machine, const NamedFactors& numbers) {
   Changes given;
   for (const auto& [name, factor] : numbers) {
-    given.numbers.emplace_back(FindPlantNumber(machine.plant(), name), 1.0 / factor);
+    given.numbers.emplace_back(FindModelParameter(machine.plant(), name), 1.0 / factor);
   }
   const fs::path plant = WriteExtendedSetup(folder, setup, machine, given);
   if (!numbers.empty()) TakeBackThatItIsExact(plant);

@@ -22,14 +22,14 @@
 namespace mjdiag {
 
 /// What all maps of a path share: they differ in how large the rest is.
-struct MissingForceRows {
+struct DisturbanceRows {
   struct Window {
     Eigen::Index first = 0;
     Eigen::Index count = 0;
   };
   /// @param path     has to outlive it
   /// @param missing  of all latent forces, nf x samples
-  MissingForceRows(const FilterPath& path, const Eigen::MatrixXd& missing);
+  DisturbanceRows(const FilterPath& path, const Eigen::MatrixXd& missing);
   /// Means of forces in every window, window by window.
   Eigen::VectorXd Means(const Eigen::MatrixXd& forces) const;
 
@@ -42,7 +42,7 @@ struct MissingForceRows {
   Eigen::MatrixXd position_of_readings;
 };
 
-class MissingForceMap final : public RowMap {
+class DisturbanceMap final : public RowMap {
  public:
   /// How large what is left is of every latent force, and over how many rows it repeats
   /// itself.
@@ -52,9 +52,9 @@ class MissingForceMap final : public RowMap {
   };
 
   /// @param of  has to outlive it
-  MissingForceMap(const MissingForceRows& of, const Rest& rest);
+  DisturbanceMap(const DisturbanceRows& of, const Rest& rest);
   /// Rest of all that is missing.
-  static Rest RestOf(const MissingForceRows& of);
+  static Rest RestOf(const DisturbanceRows& of);
   /// Of what is left of it in the rows of this.
   Rest RestOf(const Eigen::VectorXd& left) const;
 
@@ -70,7 +70,7 @@ class MissingForceMap final : public RowMap {
   /// The adjoint. @param forces  nf x samples  @return ny x samples
   Eigen::MatrixXd ErrorsOfForces(const Eigen::MatrixXd& forces) const;
 
-  const MissingForceRows& of_;
+  const DisturbanceRows& of_;
   Rest rest_;
   Eigen::VectorXd weight_;  // nf
   Eigen::VectorXd left_;

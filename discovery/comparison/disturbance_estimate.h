@@ -13,7 +13,7 @@
 
 namespace mjdiag {
 
-struct MissingForce {
+struct DisturbanceEstimate {
   std::string joint;      ///< or coordinate of one (tangent_coordinates.h)
   std::string unit;       ///< "N" or "N m"
   Eigen::VectorXd value;  ///< of every sample
@@ -22,6 +22,7 @@ struct MissingForce {
   double memory = 0.0;    ///< how long it lasts [s]
 };
 
-std::vector<MissingForce> MissingForces(const Machine& machine, const FilterPath& path);
+std::vector<DisturbanceEstimate> DisturbanceEstimates(const Machine& machine,
+                                                      const FilterPath& path);
 
 }  // namespace mjdiag

@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/regression/missing_force_map.h"
+#include "mjdiag/discovery/regression/disturbance_map.h"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using test::FollowedArm;
 
-MissingForceRows RowsOf(const FollowedArm& followed) {
+DisturbanceRows RowsOf(const FollowedArm& followed) {
   return {followed.path, SmoothForces(followed.path).value};
 }
 
-TEST(MissingForceMap, IsTheTransposeOfItsTransposed) {
+TEST(DisturbanceMap, IsTheTransposeOfItsTransposed) {
   const FollowedArm followed({});
-  const MissingForceRows rows = RowsOf(followed);
-  const MissingForceMap map(rows, MissingForceMap::RestOf(rows));
+  const DisturbanceRows rows = RowsOf(followed);
+  const DisturbanceMap map(rows, DisturbanceMap::RestOf(rows));
   std::mt19937 generator(1);
   std::normal_distribution<double> normal;
   Column column;
@@ -45,14 +45,14 @@ TEST(MissingForceMap, IsTheTransposeOfItsTransposed) {
 
 // A force that lasts all the time, of which a latent force that lasts leaves the innovations
 // nothing, has its size here, to a hundredth of what the filter has to find where it begins.
-TEST(MissingForceMap, HasAForceThatIsMissingInItsSize) {
+TEST(DisturbanceMap, HasAForceThatIsMissingInItsSize) {
   const FollowedArm without({}, 0.0);
   const FollowedArm with({"force_offset@elbow:force=0.01"}, 0.0);
-  const MissingForceRows rows_with = RowsOf(with);
-  const MissingForceRows rows_without = RowsOf(without);
-  const MissingForceMap::Rest rest = MissingForceMap::RestOf(rows_with);
-  const MissingForceMap map(rows_with, rest);
-  const MissingForceMap before(rows_without, rest);
+  const DisturbanceRows rows_with = RowsOf(with);
+  const DisturbanceRows rows_without = RowsOf(without);
+  const DisturbanceMap::Rest rest = DisturbanceMap::RestOf(rows_with);
+  const DisturbanceMap map(rows_with, rest);
+  const DisturbanceMap before(rows_without, rest);
   Column column;
   column.forces = {{1, VectorXd::Constant(with.path.samples(), 0.01)}};
   const VectorXd one = map.Of({&column}).col(0);
@@ -61,10 +61,10 @@ TEST(MissingForceMap, HasAForceThatIsMissingInItsSize) {
 }
 
 // What a change of the velocity does in a tick is a force over the tick.
-TEST(MissingForceMap, TakesAChangeOfTheStateForTheForceThatMakesIt) {
+TEST(DisturbanceMap, TakesAChangeOfTheStateForTheForceThatMakesIt) {
   const FollowedArm followed({});
-  const MissingForceRows rows = RowsOf(followed);
-  const MissingForceMap map(rows, MissingForceMap::RestOf(rows));
+  const DisturbanceRows rows = RowsOf(followed);
+  const DisturbanceMap map(rows, DisturbanceMap::RestOf(rows));
   const FilterPath& path = followed.path;
   Column force;
   force.forces = {{1, VectorXd::Ones(path.samples())}};
@@ -82,7 +82,7 @@ TEST(MissingForceMap, TakesAChangeOfTheStateForTheForceThatMakesIt) {
 
 // A force moves what sticks by a fiftieth of what it moves elsewhere: what little such a joint
 // does is no force fifty times as large.
-TEST(MissingForceMap, HasNoForceOfWhatSticks) {
+TEST(DisturbanceMap, HasNoForceOfWhatSticks) {
   FilterPath path;
   path.sample_time = 1e-3;
   path.dofs = {0};
@@ -97,8 +97,8 @@ TEST(MissingForceMap, HasNoForceOfWhatSticks) {
   std::fill(path.of_tick.begin() + kSamples / 2, path.of_tick.end(), 1);
   path.innovations = Eigen::MatrixXd::Zero(1, kSamples);
   path.noise.reading = VectorXd::Ones(1);
-  const MissingForceRows rows(path, Eigen::MatrixXd::Ones(1, kSamples));
-  const MissingForceMap map(rows, {VectorXd::Ones(1), VectorXd::Ones(1)});
+  const DisturbanceRows rows(path, Eigen::MatrixXd::Ones(1, kSamples));
+  const DisturbanceMap map(rows, {VectorXd::Ones(1), VectorXd::Ones(1)});
   Column change;
   change.states = {{1, VectorXd::Constant(kSamples, 2e-3)}};
   const VectorXd force = map.Of({&change}).col(0);

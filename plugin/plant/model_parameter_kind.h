@@ -30,7 +30,7 @@
 
 namespace mjdiag {
 
-enum class PlantNumberKind {
+enum class ModelParameterKind {
   kMass,
   kInertia,
   kStiffness,
@@ -51,27 +51,27 @@ enum class PlantNumberKind {
 };
 
 /// "stiffness".
-std::string_view WordOf(PlantNumberKind kind);
+std::string_view WordOf(ModelParameterKind kind);
 /// None of a word that is no kind.
-std::optional<PlantNumberKind> FindKind(std::string_view word);
+std::optional<ModelParameterKind> FindKind(std::string_view word);
 /// What kind of element it is of.
-mjtObj ElementOf(PlantNumberKind kind);
+mjtObj ElementOf(ModelParameterKind kind);
 /// "dry friction", of a joint or a tendon.
-std::string_view MeaningOf(PlantNumberKind kind);
+std::string_view MeaningOf(ModelParameterKind kind);
 /// All of them: "mass@ or inertia@ a body, stiffness@, ... a joint, ...". Without the
 /// additive ones if those are no answer.
 std::string AllKinds(bool additive = true);
 
 /// A factor of it is a shift.
-bool IsAdditive(PlantNumberKind kind);
+bool IsAdditive(ModelParameterKind kind);
 /// Of a body's mass.
-bool IsCentre(PlantNumberKind kind);
+bool IsCentre(ModelParameterKind kind);
 /// Dry friction, of a joint or a tendon: its force jumps, and it wears.
-bool IsFriction(PlantNumberKind kind);
+bool IsFriction(ModelParameterKind kind);
 /// How much force an actuator makes of a control: gear, gain, kp, kv.
-bool IsDrive(PlantNumberKind kind);
+bool IsDrive(ModelParameterKind kind);
 /// Whether MuJoCo derives constants from it (mj_setConst).
-bool IsDerivedFrom(PlantNumberKind kind);
+bool IsDerivedFrom(ModelParameterKind kind);
 
 /// Relative standard deviation with which such a number is known without measuring it:
 /// masses by weighing 1 %, inertias from drawings 3 %, centres of mass 3 % of the radius of
@@ -80,13 +80,13 @@ bool IsDerivedFrom(PlantNumberKind kind);
 /// drive, exact but for the motor constant behind it, 1 %; a kv acts on a speed that the
 /// drive makes of its encoder through a filter, 5 %. Joints that are homed on an index
 /// pulse or on absolute encoders come back to 0.2 mrad of where they are drawn.
-double UsualSpread(PlantNumberKind kind);
+double UsualSpread(ModelParameterKind kind);
 /// Standard deviation of the logarithm of a number that nobody has measured on the machine
 /// itself: masses 5 %, inertias, rotors and springs 10 %, centres of mass 10 % of the
 /// radius of gyration, motor constants 5 %, resistances 10 %, damping and dry friction a
 /// factor of 2. A drive counts its kp and kv in units of its own, and what an MJCF has of
 /// them is often tuned by hand, 20 %. Joints that are homed on marks or an end stop are off
 /// by 5 mrad.
-double UsualDoubt(PlantNumberKind kind);
+double UsualDoubt(ModelParameterKind kind);
 
 }  // namespace mjdiag

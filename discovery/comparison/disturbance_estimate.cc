@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/comparison/missing_force.h"
+#include "mjdiag/discovery/comparison/disturbance_estimate.h"
 
 #include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
@@ -9,15 +9,15 @@ namespace mjdiag {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::vector<MissingForce> MissingForces(const Machine& machine,
-                                        const FilterPath& path) {
+std::vector<DisturbanceEstimate> DisturbanceEstimates(const Machine& machine,
+                                                      const FilterPath& path) {
   const SmoothedForces smoothed = SmoothForces(path);
   const std::vector<std::string> names = CoordinateNames(machine.plant());
-  std::vector<MissingForce> forces;
+  std::vector<DisturbanceEstimate> forces;
   for (std::size_t j = 0; j < path.dofs.size(); ++j) {
     const auto row = static_cast<Index>(j);
     const Index dof = path.dofs[j];
-    MissingForce force;
+    DisturbanceEstimate force;
     force.joint = names[static_cast<std::size_t>(dof)];
     force.unit = IsLength(machine.plant(), static_cast<int>(dof)) ? "N" : "N m";
     force.value = smoothed.value.row(row).transpose();

@@ -1,4 +1,4 @@
-#include "mjdiag/discovery/regression/missing_force_map.h"
+#include "mjdiag/discovery/regression/disturbance_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +29,8 @@ double RepeatsOf(const VectorXd& signal) {
   return repeats;
 }
 
-MissingForceMap::Rest RestOfRows(const VectorXd& rows, Index nf) {
-  MissingForceMap::Rest rest{VectorXd(nf), VectorXd(nf)};
+DisturbanceMap::Rest RestOfRows(const VectorXd& rows, Index nf) {
+  DisturbanceMap::Rest rest{VectorXd(nf), VectorXd(nf)};
   const Index count = rows.size() / nf;
   for (Index j = 0; j < nf; ++j) {
     const VectorXd one = rows(Eigen::seqN(j, count, nf));
@@ -80,7 +80,7 @@ MatrixXd PositionOfReadings(const FilterPath& path) {
 
 }  // namespace
 
-MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
+DisturbanceRows::DisturbanceRows(const FilterPath& of, const MatrixXd& forces)
     : path(of) {
   constexpr double kLength = 0.02;  // [s]
   const auto ticks =
@@ -95,7 +95,7 @@ MissingForceRows::MissingForceRows(const FilterPath& of, const MatrixXd& forces)
   position_of_readings = PositionOfReadings(path);
 }
 
-VectorXd MissingForceRows::Means(const MatrixXd& forces) const {
+VectorXd DisturbanceRows::Means(const MatrixXd& forces) const {
   const Index nf = path.dof_count();
   VectorXd rows(std::ssize(windows) * nf);
   Index row = 0;
@@ -107,7 +107,7 @@ VectorXd MissingForceRows::Means(const MatrixXd& forces) const {
   return rows;
 }
 
-MissingForceMap::MissingForceMap(const MissingForceRows& of, const Rest& rest)
+DisturbanceMap::DisturbanceMap(const DisturbanceRows& of, const Rest& rest)
     : of_(of),
       rest_(rest),
       weight_((rest.sd.cwiseProduct(rest.repeats.cwiseSqrt())).cwiseInverse()),
@@ -115,18 +115,18 @@ MissingForceMap::MissingForceMap(const MissingForceRows& of, const Rest& rest)
              of.missing.reshaped(of.path.dof_count(), std::ssize(of.windows)))
                 .reshaped()) {}
 
-MissingForceMap::Rest MissingForceMap::RestOf(const MissingForceRows& of) {
+DisturbanceMap::Rest DisturbanceMap::RestOf(const DisturbanceRows& of) {
   return RestOfRows(of.missing, of.path.dof_count());
 }
 
-MissingForceMap::Rest MissingForceMap::RestOf(const VectorXd& left) const {
+DisturbanceMap::Rest DisturbanceMap::RestOf(const VectorXd& left) const {
   const Index nf = of_.path.dof_count();
   MatrixXd rows = left.reshaped(nf, std::ssize(of_.windows));
   rows.array().colwise() /= weight_.array();
   return RestOfRows(rows.reshaped(), nf);
 }
 
-double MissingForceMap::log_determinant() const {
+double DisturbanceMap::log_determinant() const {
   double sum = 0.0;
   for (Index j = 0; j < rest_.sd.size(); ++j) {
     sum += 2.0 * static_cast<double>(of_.windows.size()) / rest_.repeats[j] *
@@ -135,7 +135,7 @@ double MissingForceMap::log_determinant() const {
   return sum;
 }
 
-MatrixXd MissingForceMap::ForcesOfErrors(const MatrixXd& errors) const {
+MatrixXd DisturbanceMap::ForcesOfErrors(const MatrixXd& errors) const {
   const FilterPath& path = of_.path;
   const Index nv = path.tangents.front().B.cols();
   MatrixXd forces = MatrixXd::Zero(path.dof_count(), path.samples());
@@ -155,7 +155,7 @@ MatrixXd MissingForceMap::ForcesOfErrors(const MatrixXd& errors) const {
   return forces;
 }
 
-MatrixXd MissingForceMap::ErrorsOfForces(const MatrixXd& forces) const {
+MatrixXd DisturbanceMap::ErrorsOfForces(const MatrixXd& forces) const {
   const FilterPath& path = of_.path;
   const Index nv = path.tangents.front().B.cols();
   MatrixXd dq = MatrixXd::Zero(nv, path.samples());
@@ -174,7 +174,7 @@ MatrixXd MissingForceMap::ErrorsOfForces(const MatrixXd& forces) const {
   return of_.position_of_readings.transpose() * dq;
 }
 
-MatrixXd MissingForceMap::Of(const std::vector<const Column*>& columns) const {
+MatrixXd DisturbanceMap::Of(const std::vector<const Column*>& columns) const {
   const Index nf = of_.path.dof_count();
   MatrixXd out(rows(), std::ssize(columns));
   ParallelFor(static_cast<int>(columns.size()), [&](int number) {
@@ -209,7 +209,7 @@ MatrixXd MissingForceMap::Of(const std::vector<const Column*>& columns) const {
   return out;
 }
 
-std::vector<RowMap::Transposed> MissingForceMap::TransposedTimes(
+std::vector<RowMap::Transposed> DisturbanceMap::TransposedTimes(
     const MatrixXd& u) const {
   const Index nf = of_.path.dof_count();
   const Index nv = of_.path.tangents.front().B.cols();
@@ -219,7 +219,7 @@ std::vector<RowMap::Transposed> MissingForceMap::TransposedTimes(
     one.forces = MatrixXd::Zero(of_.path.samples(), nv);
     MatrixXd forces = MatrixXd::Zero(nf, of_.path.samples());
     Index row = 0;
-    for (const MissingForceRows::Window& window : of_.windows) {
+    for (const DisturbanceRows::Window& window : of_.windows) {
       for (Index j = 0; j < nf; ++j, ++row) {
         forces.row(j)
             .segment(window.first, window.count)

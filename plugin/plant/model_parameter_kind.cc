@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/plant/plant_number_kind.h"
+#include "mjdiag/plugin/plant/model_parameter_kind.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@ namespace mjdiag {
 namespace {
 
 struct KindOfNumber {
-  PlantNumberKind kind;
+  ModelParameterKind kind;
   std::string_view word;
   mjtObj element;
   std::string_view meaning;
@@ -19,9 +19,9 @@ struct KindOfNumber {
 
 constexpr double kFactorOfTwo = std::numbers::ln2;
 
-using enum PlantNumberKind;
+using enum ModelParameterKind;
 
-/// In the order of PlantNumberKind.
+/// In the order of ModelParameterKind.
 constexpr auto kKinds = std::to_array<KindOfNumber>({
     {kMass, "mass", mjOBJ_BODY, "mass", 0.01, 0.05},
     {kInertia, "inertia", mjOBJ_BODY, "inertia", 0.03, 0.1},
@@ -51,7 +51,7 @@ consteval bool IsInOrder() {
 }
 static_assert(IsInOrder());
 
-const KindOfNumber& Of(PlantNumberKind kind) {
+const KindOfNumber& Of(ModelParameterKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];
 }
 
@@ -67,17 +67,17 @@ std::string Alternatives(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string_view WordOf(PlantNumberKind kind) { return Of(kind).word; }
+std::string_view WordOf(ModelParameterKind kind) { return Of(kind).word; }
 
-std::optional<PlantNumberKind> FindKind(std::string_view word) {
+std::optional<ModelParameterKind> FindKind(std::string_view word) {
   const auto found = std::ranges::find(kKinds, word, &KindOfNumber::word);
   if (found == kKinds.end()) return std::nullopt;
   return found->kind;
 }
 
-mjtObj ElementOf(PlantNumberKind kind) { return Of(kind).element; }
+mjtObj ElementOf(ModelParameterKind kind) { return Of(kind).element; }
 
-std::string_view MeaningOf(PlantNumberKind kind) { return Of(kind).meaning; }
+std::string_view MeaningOf(ModelParameterKind kind) { return Of(kind).meaning; }
 
 std::string AllKinds(bool additive) {
   std::string text;
@@ -94,24 +94,24 @@ std::string AllKinds(bool additive) {
   return text;
 }
 
-bool IsAdditive(PlantNumberKind kind) { return IsCentre(kind) || kind == kRef; }
+bool IsAdditive(ModelParameterKind kind) { return IsCentre(kind) || kind == kRef; }
 
-bool IsCentre(PlantNumberKind kind) {
+bool IsCentre(ModelParameterKind kind) {
   return kind == kCentreX || kind == kCentreY || kind == kCentreZ;
 }
 
-bool IsFriction(PlantNumberKind kind) {
+bool IsFriction(ModelParameterKind kind) {
   return kind == kFriction || kind == kTendonFriction;
 }
 
-bool IsDrive(PlantNumberKind kind) { return Of(kind).element == mjOBJ_ACTUATOR; }
+bool IsDrive(ModelParameterKind kind) { return Of(kind).element == mjOBJ_ACTUATOR; }
 
-bool IsDerivedFrom(PlantNumberKind kind) {
+bool IsDerivedFrom(ModelParameterKind kind) {
   return Of(kind).element == mjOBJ_BODY || kind == kArmature || kind == kRef;
 }
 
-double UsualSpread(PlantNumberKind kind) { return Of(kind).spread; }
+double UsualSpread(ModelParameterKind kind) { return Of(kind).spread; }
 
-double UsualDoubt(PlantNumberKind kind) { return Of(kind).doubt; }
+double UsualDoubt(ModelParameterKind kind) { return Of(kind).doubt; }
 
 }  // namespace mjdiag

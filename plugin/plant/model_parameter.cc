@@ -1,4 +1,4 @@
-#include "mjdiag/plugin/plant/plant_number.h"
+#include "mjdiag/plugin/plant/model_parameter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,13 +40,13 @@ struct Declarations {
   }
 };
 
-Declarations DeclarationsOf(const mjModel& model, const PlantNumber& number) {
+Declarations DeclarationsOf(const mjModel& model, const ModelParameter& number) {
   const std::string name(kDeclaration);
-  Declarations declared{Declared(model, name + "." + PlantNumberName(model, number)),
+  Declarations declared{Declared(model, name + "." + ModelParameterName(model, number)),
                         Declared(model, name + "." + std::string(WordOf(number.kind))),
                         Declared(model, name)};
   // No part of anything, it is known to a distance of its own.
-  if (number.kind == PlantNumberKind::kRef && declared.of_all > 0.0) {
+  if (number.kind == ModelParameterKind::kRef && declared.of_all > 0.0) {
     declared.of_all = -1.0;
   }
   return declared;
@@ -66,23 +66,23 @@ int CountOf(const mjModel& model, mjtObj element) {
 }
 
 /// Whether an element has such a number that is not 0, and no other one does the same.
-bool IsInDoubt(const mjModel& model, const PlantNumber& number) {
-  const auto has = [&](PlantNumberKind kind) {
+bool IsInDoubt(const mjModel& model, const ModelParameter& number) {
+  const auto has = [&](ModelParameterKind kind) {
     return HasNumber(model, {kind, number.element});
   };
   if (!HasNumber(model, number)) return false;
   switch (number.kind) {
-    case PlantNumberKind::kMass:
-    case PlantNumberKind::kInertia:
+    case ModelParameterKind::kMass:
+    case ModelParameterKind::kInertia:
       if (!Moves(model, number.element)) return false;
       break;
-    case PlantNumberKind::kGain:
-      if (has(PlantNumberKind::kKp) || !has(PlantNumberKind::kKv)) return false;
+    case ModelParameterKind::kGain:
+      if (has(ModelParameterKind::kKp) || !has(ModelParameterKind::kKv)) return false;
       break;
-    case PlantNumberKind::kKv:
-      if (!has(PlantNumberKind::kKp)) return false;
+    case ModelParameterKind::kKv:
+      if (!has(ModelParameterKind::kKp)) return false;
       break;
-    case PlantNumberKind::kRef:
+    case ModelParameterKind::kRef:
       return DeclarationsOf(model, number).own > 0.0;
     default:
       break;
@@ -90,25 +90,25 @@ bool IsInDoubt(const mjModel& model, const PlantNumber& number) {
   return ValueOf(model, number) != 0.0;
 }
 
-std::vector<PlantNumber> References(const mjModel& model) {
-  std::vector<PlantNumber> numbers;
+std::vector<ModelParameter> References(const mjModel& model) {
+  std::vector<ModelParameter> numbers;
   for (int joint = 0; joint < model.njnt; ++joint) {
-    const PlantNumber number{PlantNumberKind::kRef, joint};
+    const ModelParameter number{ModelParameterKind::kRef, joint};
     if (HasNumber(model, number)) numbers.push_back(number);
   }
   return numbers;
 }
 
 /// What an element needs to have such a number.
-const char* Condition(PlantNumberKind kind) {
+const char* Condition(ModelParameterKind kind) {
   switch (kind) {
-    case PlantNumberKind::kGain:
+    case ModelParameterKind::kGain:
       return "an actuator with an affine bias; of others it is gear@";
-    case PlantNumberKind::kKp:
+    case ModelParameterKind::kKp:
       return "an actuator that feeds back its position, biasprm[1] other than 0";
-    case PlantNumberKind::kKv:
+    case ModelParameterKind::kKv:
       return "an actuator that feeds back its velocity, biasprm[2] other than 0";
-    case PlantNumberKind::kRef:
+    case ModelParameterKind::kRef:
       return "a hinge or a slide";
     default:
       return "a body with a mass and an inertia";
@@ -117,19 +117,19 @@ const char* Condition(PlantNumberKind kind) {
 
 }  // namespace
 
-std::string PlantNumberName(const mjModel& model, const PlantNumber& number) {
+std::string ModelParameterName(const mjModel& model, const ModelParameter& number) {
   return std::string(WordOf(number.kind)) + "@" +
          ElementName(model, ElementOf(number.kind), number.element);
 }
 
-PlantNumber FindPlantNumber(const mjModel& model, const std::string& name) {
+ModelParameter FindModelParameter(const mjModel& model, const std::string& name) {
   const auto at = name.find('@');
   const auto kind = FindKind(std::string_view(name).substr(0, at));
   if (!kind || at == std::string::npos) {
     throw InputError("plant number '" + name + "'", "is of no known kind", AllKinds());
   }
-  const PlantNumber number{*kind,
-                           FindElement(model, ElementOf(*kind), name.substr(at + 1))};
+  const ModelParameter number{
+      *kind, FindElement(model, ElementOf(*kind), name.substr(at + 1))};
   if (!HasNumber(model, number)) {
     throw InputError("plant number '" + name + "'", "is none of that element",
                      Condition(*kind));
@@ -137,54 +137,55 @@ PlantNumber FindPlantNumber(const mjModel& model, const std::string& name) {
   return number;
 }
 
-std::vector<PlantNumber> PlantNumbers(const mjModel& model) {
-  std::vector<PlantNumber> numbers;
-  const auto add = [&](PlantNumberKind kind) {
+std::vector<ModelParameter> ModelParameters(const mjModel& model) {
+  std::vector<ModelParameter> numbers;
+  const auto add = [&](ModelParameterKind kind) {
     for (int element = 0; element < CountOf(model, ElementOf(kind)); ++element) {
-      const PlantNumber number{kind, element};
+      const ModelParameter number{kind, element};
       if (IsInDoubt(model, number)) numbers.push_back(number);
     }
   };
-  add(PlantNumberKind::kMass);
-  add(PlantNumberKind::kInertia);
-  add(PlantNumberKind::kStiffness);
-  add(PlantNumberKind::kDamping);
-  add(PlantNumberKind::kFriction);
-  add(PlantNumberKind::kGear);
-  add(PlantNumberKind::kArmature);
-  add(PlantNumberKind::kGain);
-  add(PlantNumberKind::kKp);
-  add(PlantNumberKind::kKv);
-  add(PlantNumberKind::kTendonStiffness);
-  add(PlantNumberKind::kTendonDamping);
-  add(PlantNumberKind::kTendonFriction);
-  add(PlantNumberKind::kRef);
+  add(ModelParameterKind::kMass);
+  add(ModelParameterKind::kInertia);
+  add(ModelParameterKind::kStiffness);
+  add(ModelParameterKind::kDamping);
+  add(ModelParameterKind::kFriction);
+  add(ModelParameterKind::kGear);
+  add(ModelParameterKind::kArmature);
+  add(ModelParameterKind::kGain);
+  add(ModelParameterKind::kKp);
+  add(ModelParameterKind::kKv);
+  add(ModelParameterKind::kTendonStiffness);
+  add(ModelParameterKind::kTendonDamping);
+  add(ModelParameterKind::kTendonFriction);
+  add(ModelParameterKind::kRef);
   return numbers;
 }
 
-std::vector<PlantNumber> CentreNumbers(const mjModel& model) {
-  std::vector<PlantNumber> numbers;
+std::vector<ModelParameter> CentreNumbers(const mjModel& model) {
+  std::vector<ModelParameter> numbers;
   for (int body = 0; body < model.nbody; ++body) {
     if (!Moves(model, body)) continue;
-    for (const auto kind : {PlantNumberKind::kCentreX, PlantNumberKind::kCentreY,
-                            PlantNumberKind::kCentreZ}) {
-      const PlantNumber number{kind, body};
+    for (const auto kind : {ModelParameterKind::kCentreX, ModelParameterKind::kCentreY,
+                            ModelParameterKind::kCentreZ}) {
+      const ModelParameter number{kind, body};
       if (HasNumber(model, number)) numbers.push_back(number);
     }
   }
   return numbers;
 }
 
-std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string& text) {
-  std::vector<PlantNumber> meant = PlantNumbers(model);
+std::vector<ModelParameter> ModelParametersOf(const mjModel& model,
+                                              const std::string& text) {
+  std::vector<ModelParameter> meant = ModelParameters(model);
   std::ranges::copy(CentreNumbers(model), std::back_inserter(meant));
-  std::erase_if(meant, [&](const PlantNumber& number) {
+  std::erase_if(meant, [&](const ModelParameter& number) {
     return text != "all" && text != WordOf(number.kind) &&
-           text != PlantNumberName(model, number);
+           text != ModelParameterName(model, number);
   });
-  if (text == WordOf(PlantNumberKind::kRef)) meant = References(model);
+  if (text == WordOf(ModelParameterKind::kRef)) meant = References(model);
   if (meant.empty() && text.find('@') != std::string::npos) {
-    const PlantNumber number = FindPlantNumber(model, text);
+    const ModelParameter number = FindModelParameter(model, text);
     if (IsAdditive(number.kind) || ValueOf(model, number) != 0.0) return {number};
     throw InputError("number of the plant '" + text + "'", "is 0", "one that is not 0");
   }
@@ -195,12 +196,12 @@ std::vector<PlantNumber> PlantNumbersOf(const mjModel& model, const std::string&
   return meant;
 }
 
-double SpreadOf(const mjModel& model, const PlantNumber& number) {
+double SpreadOf(const mjModel& model, const ModelParameter& number) {
   const double declared = DeclarationsOf(model, number).Closest();
   return declared >= 0.0 ? declared : UsualSpread(number.kind);
 }
 
-double DoubtOf(const mjModel& model, const PlantNumber& number) {
+double DoubtOf(const mjModel& model, const ModelParameter& number) {
   const double declared = DeclarationsOf(model, number).Closest();
   return declared > 0.0 ? declared : UsualDoubt(number.kind);
 }
@@ -219,7 +220,7 @@ void CheckKnownNumbers(const mjModel& model) {
       continue;
     }
     try {
-      SpreadOf(model, FindPlantNumber(model, name.substr(prefix.size())));
+      SpreadOf(model, FindModelParameter(model, name.substr(prefix.size())));
     } catch (const InputError& error) {
       throw InputError("custom numeric " + name + ": " + error.what());
     }
