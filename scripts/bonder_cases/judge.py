@@ -118,7 +118,15 @@ def judge_listed(answer, truth, tolerance):
             faults.append(f"no {cause['effect'].split(':')[0]}")
     for name, number in truth["numbers"].items():
         numbers.discard(name)
-        if not number_near(answer, name, number["factor"], tolerance):
+        by_fault = [one for one in left for form in number.get("forms", [])
+                    if says(one, form)]
+        if by_fault:
+            left.remove(by_fault[0])
+            is_near = values_near(by_fault[0]["parameters"], {"factor": number["factor"]},
+                                  tolerance)
+        else:
+            is_near = number_near(answer, name, number["factor"], tolerance)
+        if not is_near:
             faults.append(f"size of {name}")
     extra = [f"{one['effect']}@{one['site']}" for one in left] + sorted(numbers)
     extra += false_kinds(answer, truth) if not extra else []

@@ -65,6 +65,15 @@ class Judge(unittest.TestCase):
                         [("mass@x_stage", 1.0098, False), ("gear@x_motor", 1.02, False)]):
             self.assertTrue(self.right(answer([motor], numbers), truth([MOTOR], STAGE)))
 
+    def test_a_number_may_be_said_as_the_fault_that_scales_it_alone(self):
+        damper = {"damping@X": {"factor": 1.08, "sites": ["X"], "forms": [
+            {"name": "zeta_x", "site": "", "values": {"factor": 1.08}}]}}
+        for value, right in ((1.079, True), (1.02, False)):
+            found = answer([("zeta_x", "X", 0.9, {"value": value})])
+            self.assertEqual(self.right(found, truth([], damper)), right)
+        found = answer([("zeta_y", "Y", 0.9, {"value": 1.08})])
+        self.assertFalse(self.right(found, truth([], damper)))
+
     def test_a_law_of_no_list_needs_kind_place_and_gain(self):
         kinds = [("compliance", "u1")]
         self.assertTrue(self.right(answer(kinds=kinds), truth([RUBBER])))

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mjdiag/plugin/extension/setup_folder.h"
+#include "mjdiag/plugin/plant/fault.h"
 #include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/error.h"
@@ -15,16 +16,33 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-json ToJson(const TrueCause& cause) {
-  json forms = json::array();
-  for (const TrueForm& form : cause.forms) {
-    forms.push_back(
+json ToJson(const std::vector<TrueForm>& forms) {
+  json array = json::array();
+  for (const TrueForm& form : forms) {
+    array.push_back(
         {{"name", form.name}, {"site", form.site}, {"values", form.values}});
   }
+  return array;
+}
+
+json ToJson(const TrueCause& cause) {
   return {{"kinds", cause.kinds},
           {"sites", cause.sites},
-          {"forms", forms},
+          {"forms", ToJson(cause.forms)},
           {"effect", cause.effect}};
+}
+
+/// A number of the plant may be said as the fault that scales it and nothing else.
+std::vector<TrueForm> FormsOf(const mjModel& plant, const std::string& number,
+                              double factor) {
+  std::vector<TrueForm> forms;
+  for (const FaultParameter& fault : FaultParameters(plant)) {
+    if (fault.elements.size() != 1) continue;
+    const ModelParameter own{fault.kind, fault.elements[0]};
+    if (ModelParameterName(plant, own) == number)
+      forms.push_back({fault.name, "", {{"factor", factor}}});
+  }
+  return forms;
 }
 
 /// Where a number may be said to be: its element, and the joints of a body.
@@ -43,7 +61,9 @@ json ToJson(const CaseTruth& truth, const Machine& machine) {
   for (const TrueCause& cause : truth.causes) causes.push_back(ToJson(cause));
   json numbers = json::object();
   for (const auto& [name, factor] : truth.numbers) {
-    numbers[name] = {{"factor", factor}, {"sites", PlacesOf(machine.plant(), name)}};
+    numbers[name] = {{"factor", factor},
+                     {"sites", PlacesOf(machine.plant(), name)},
+                     {"forms", ToJson(FormsOf(machine.plant(), name, factor))}};
   }
   return {{"schema", "mjdiag.hidden_case/1"},
           {"case", truth.hidden.name},
