@@ -106,7 +106,7 @@ void BindCause(py::module_& module) {
           "words", &FoundCause::unnamed,
           "Of a force that was learned and has no name, what it is; else \"\".")
       .def("__repr__", [](const FoundCause& found) {
-        return "<mjdiag.Cause: " + CauseName(found.cause) + ">";
+        return "<mjdiag.Cause: " + CauseWithValues(found.cause) + ">";
       });
 }
 

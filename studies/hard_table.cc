@@ -15,7 +15,7 @@ namespace {
 std::string ListWithProbabilities(const std::vector<FoundCause>& causes) {
   std::string text;
   for (const FoundCause& found : causes) {
-    text += (text.empty() ? "" : "; ") + CauseName(found.cause) + " (" +
+    text += (text.empty() ? "" : "; ") + CauseWithValues(found.cause) + " (" +
             Cell(found.probability).text + ")";
   }
   return text.empty() ? "nothing" : text;

@@ -201,7 +201,7 @@ std::vector<Cause> DrawEffects(const Machine& machine,
 std::string ListOf(const std::vector<Cause>& causes) {
   std::string text;
   for (const Cause& cause : causes) {
-    text += (text.empty() ? "" : "; ") + CauseName(cause);
+    text += (text.empty() ? "" : "; ") + CauseWithValues(cause);
   }
   return text.empty() ? "nothing" : text;
 }

@@ -15,7 +15,7 @@ namespace {
 std::string ListOf(const std::vector<FoundCause>& causes) {
   std::string text;
   for (const FoundCause& found : causes) {
-    text += (text.empty() ? "" : "; ") + CauseName(found.cause);
+    text += (text.empty() ? "" : "; ") + CauseWithValues(found.cause);
   }
   return text.empty() ? "nothing" : text;
 }

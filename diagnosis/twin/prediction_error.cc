@@ -170,7 +170,7 @@ void PredictionErrorEstimator::Say() noexcept {
   if (said_.drifts) said_.drift.Know(pass_.drift());
   said_.theta = pass_.theta();
   said_.prior = prior_;
-  said_.recent_nis = pass_.innovation().recent() / options_.tolerated;
+  said_.recent_nis = pass_.normalized().recent() / options_.tolerated;
   said_.since = segment_.since;
   said_.until = pass_.seen();
   said_.gain = gain();
@@ -237,7 +237,7 @@ double PredictionErrorEstimator::Bias() const noexcept {
 }
 
 bool PredictionErrorEstimator::RejectsItsInnovations() const noexcept {
-  return (gain() == 0 || following()) && pass_.innovation().NoChance();
+  return (gain() == 0 || following()) && pass_.normalized().NoChance();
 }
 
 }  // namespace mjdiag

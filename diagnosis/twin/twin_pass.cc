@@ -24,7 +24,7 @@ TwinPass::TwinPass(std::unique_ptr<Twin> twin, double tolerated)
     : twin_(std::move(twin)),
       information_(twin_->unknowns(), twin_->outputs()),
       drift_(twin_->unknowns(), twin_->drifting()),
-      innovation_(twin_->outputs(), twin_->block(), tolerated),
+      normalized_(twin_->outputs(), twin_->block(), tolerated),
       block_(twin_->outputs(), twin_->block(), twin_->unknowns(),
              static_cast<Index>(twin_->drifting().size())) {
   theta0_ = theta_ = away_ = VectorXd::Zero(twin_->unknowns());
@@ -86,7 +86,7 @@ void TwinPass::Begin(PassStart& start, const VectorXd& theta0, std::size_t gain,
   theta_ = theta0_;
   away_ = nominal - theta0_;
   information_.Start(twin_->unknowns() - (with_start ? 0 : started), prior, away_);
-  innovation_.Start();
+  normalized_.Start();
   softer_at_ = start.origin;
   block_.Start();
   since_.setZero();
@@ -155,8 +155,8 @@ void TwinPass::Count(const MatrixXd& psi) noexcept {
       information_.NormalizedInnovation(block_.slow_psi(), block_.slow_e());
   ++blocks_;
   squares_ += squares;
-  innovation_.Add(squares);
-  excess_ = std::max(excess_, innovation_.Excess());
+  normalized_.Add(squares);
+  excess_ = std::max(excess_, normalized_.Excess());
   if (gain_ > 0 && squares > kRobust) block_.Discount(squares / kRobust);
   information_.Add(block_.psi(), block_.e());
   if (drifts_) {

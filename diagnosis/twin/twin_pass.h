@@ -103,7 +103,7 @@ class TwinPass {
   bool drifts() const { return drifts_; }
   const Drift& drift() const { return drift_; }
   double drift_time() const { return twin_->drift_time(); }
-  const NormalizedInnovation& innovation() const { return innovation_; }
+  const NormalizedInnovation& normalized() const { return normalized_; }
   /// Of the tick before.
   const Eigen::VectorXd& innovation() const { return innovation_; }
   /// Mean square of the innovations so far over what was expected of them.
@@ -132,7 +132,7 @@ class TwinPass {
   Information information_;
   Drift drift_;
   bool drifts_ = false;
-  NormalizedInnovation innovation_;
+  NormalizedInnovation normalized_;
   Eigen::VectorXd theta0_, theta_, away_;
   WhitenedBlock block_;
 

@@ -81,7 +81,7 @@ void PredictionErrorEstimator::TryFarNumbers() noexcept {
   next_ = far_;
   WidenPrior();
   Begin(0, far_);
-  while (!CaughtUp() && !pass_.innovation().NoChance()) pass_.Step(kept_);
+  while (!CaughtUp() && !pass_.normalized().NoChance()) pass_.Step(kept_);
   // Where it fails something can be told of what would not.
   const Index failed = pass_.seen() - now().origin;
   const Index until = now().origin + std::max(kFarLook, 4 * failed);

@@ -61,20 +61,21 @@ void NoteAlternatives(const Machine& machine, const FoundCause& found,
   constexpr double kCompeting = 0.05;
   for (const Alternative& other : found.alternatives) {
     if (other.indistinguishable) {
-      notes.push_back(CauseName(found.cause) + " and " + CauseName(other.cause) +
+      notes.push_back(CauseWithValues(found.cause) + " and " +
+                      CauseWithValues(other.cause) +
                       " are the same change of the model: no measurement tells them "
                       "apart");
     } else if (other.probability >= kCompeting) {
       notes.push_back(
-          "the record does not tell " + CauseName(found.cause) + " from " +
-          CauseName(other.cause) +
+          "the record does not tell " + CauseWithValues(found.cause) + " from " +
+          CauseWithValues(other.cause) +
           (may_go_on() ? ExperimentText(machine, found.cause, other.cause) : ""));
     }
   }
   for (const FoundCause::NumberInstead& other : found.numbers) {
     if (other.probability < kCompeting) continue;
-    notes.push_back("the record does not tell " + CauseName(found.cause) + " from " +
-                    other.name +
+    notes.push_back("the record does not tell " + CauseWithValues(found.cause) +
+                    " from " + other.name +
                     " being another one than the plant says; measure it, "
                     "or say how well it is known (known." +
                     other.name + ")");

@@ -33,7 +33,7 @@ Changes ChangesOf(const std::vector<Cause>& causes) {
   return changes;
 }
 
-std::string CauseName(const Cause& cause) {
+std::string CauseWithValues(const Cause& cause) {
   if (cause.effect->IsFault()) return cause.name() + " = " + Number(cause.values[0]);
   std::string text = cause.name() + "@" + cause.site;
   if (cause.effect->odds() == kLearned) return text;  // its knots say nothing to people

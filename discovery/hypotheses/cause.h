@@ -17,7 +17,7 @@ using Cause = PlacedEffect;
 Changes ChangesOf(const std::vector<Cause>& causes);
 
 /// "zeta_x = 1.2", "coulomb_friction@load: force = 20.4".
-std::string CauseName(const Cause& cause);
+std::string CauseWithValues(const Cause& cause);
 
 /// True if both are the same effect at the same site, or a fault parameter and an
 /// effect that change the very same attribute of the model and nothing else, so that

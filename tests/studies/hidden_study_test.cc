@@ -25,7 +25,7 @@ TEST_P(HiddenInTheBonder, IsFoundAndNamed) {
   const int run = GetParam();
   const HiddenOutcome outcome =
       RunHidden(machine, TypesOfRun(run, 1), static_cast<std::uint64_t>(run) + 1);
-  EXPECT_TRUE(outcome.right) << "hidden: " << CauseName(outcome.hidden.truth[0])
+  EXPECT_TRUE(outcome.right) << "hidden: " << CauseWithValues(outcome.hidden.truth[0])
                              << ", found: " << Named(outcome.answer);
   EXPECT_LT(outcome.unseen_ratio, 1.2);
 }

@@ -48,7 +48,7 @@ TEST_P(OutsideLaw, MovesTheMachineByMoreThanNoise) {
         changed.At(sensor.channel).samples - healthy.At(sensor.channel).samples;
     most = std::max(most, off.cwiseAbs().maxCoeff() / sensor.noise_sd);
   }
-  EXPECT_GT(most, 20.0) << CauseName(cause);
+  EXPECT_GT(most, 20.0) << CauseWithValues(cause);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, OutsideLaw, ::testing::ValuesIn(OutsideLaws()),
