@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/effects/scales.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
 
 namespace mjdiag {
 
@@ -132,6 +133,11 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
   take(std::move(variation));
 }
 
+bool Resists(Kind kind) {
+  return kind == Kind::kDryFriction || kind == Kind::kLoadFriction ||
+         kind == Kind::kViscousFriction;
+}
+
 /// Resistances of a joint are one curve over its velocity each, however it is called.
 std::string GroupOf(Kind kind, const std::string& name) {
   const std::string site = name.substr(name.find('@') + 1);
@@ -175,6 +181,11 @@ std::vector<Block> BlocksOf(const Machine& machine,
                       .candidate = candidate,
                       .number = std::nullopt,
                       .group = repeats ? "" : GroupOf(candidate.effect->kind(), name)});
+    if (blocks.back().IsResistance()) blocks.back().resists = candidate.site;
+    if (candidate.effect->IsFault() && number && Resists(KindOf(number->kind))) {
+      blocks.back().resists =
+          ElementName(machine.plant(), ElementOf(number->kind), number->element);
+    }
     // A factor of a number is known as well as the number. Sizes follow from the machine's
     // own scales: nine times what is usual would drive it in the place of its motors.
     for (FitParameter& parameter : blocks.back().candidate->parameters) {
@@ -200,6 +211,10 @@ std::vector<Block> BlocksOf(const Machine& machine,
                       .number = number,
                       .doubt = DoubtOf(machine.plant(), number),
                       .group = GroupOf(KindOf(number.kind), name)});
+    if (Resists(KindOf(number.kind))) {
+      blocks.back().resists =
+          ElementName(machine.plant(), ElementOf(number.kind), number.element);
+    }
   }
   return blocks;
 }
@@ -212,9 +227,7 @@ bool Block::HasShape() const {
 
 bool Block::IsResistance() const {
   if (!candidate || candidate->effect->family() != Family::kFriction) return false;
-  const Kind kind = candidate->effect->kind();
-  return kind == Kind::kDryFriction || kind == Kind::kLoadFriction ||
-         kind == Kind::kViscousFriction;
+  return Resists(candidate->effect->kind());
 }
 
 bool Block::IsDryFriction() const {

@@ -45,6 +45,9 @@ struct Block {
   /// Blocks of one group are one thing in several shapes: a model has one of them. Empty:
   /// a group of its own, of which there may be several members.
   std::string group = {};
+  /// The joint whose motion it resists; empty: none. What resists a joint is one curve over its
+  /// velocity, of which dry and viscous friction are parts.
+  std::string resists = {};
   double price = 0.0;
 
   bool HasShape() const;

@@ -170,6 +170,11 @@ class Settling {
   bool is_likeliest_ = false;  // no noise is known that suits it better
 };
 
+const Settling& Best(const std::vector<Settling>& rivals) {
+  return *std::ranges::min_element(
+      rivals, {}, [](const Settling& one) { return one.settled().score(); });
+}
+
 }  // namespace
 
 std::vector<std::optional<ConvergedModel>> SettleRivals(
@@ -192,16 +197,18 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
   };
   each([&](Settling& one) { one.Begin(hopeless); });
   while (!rivals.empty() && !beside.is_over()) {
-    const auto best = std::ranges::min_element(
-        rivals, {}, [](const Settling& one) { return one.settled().score(); });
-    if (best->is_likeliest() || best->IsNowhere()) break;
-    try {
-      best->Alternate();
-    } catch (const NumericalError&) {
-    }
-    const FilterNoise& noise = best->settled().path.noise;
+    const double best = Best(rivals).settled().score();
+    if (Best(rivals).is_likeliest() || Best(rivals).IsNowhere()) break;
+    // Noises gain as much as laws do: whoever may come out best is asked at once.
+    constexpr double kMay = 0.5;  // of what the best gains
     each([&](Settling& one) {
-      if (&one != &*best && !one.IsNowhere()) one.Try(noise);
+      const bool may =
+          one.settled().score() <= best + kMay * std::max(0.0, beat - best);
+      if (may && !one.is_likeliest()) one.Alternate();
+    });
+    const Settling& by_now = Best(rivals);
+    each([&](Settling& one) {
+      if (&one != &by_now && !one.IsNowhere()) one.Try(by_now.settled().path.noise);
     });
   }
   std::vector<std::optional<ConvergedModel>> settled;

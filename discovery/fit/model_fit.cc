@@ -1,13 +1,12 @@
 #include "mjdiag/discovery/fit/model_fit.h"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <limits>
 #include <utility>
 
+#include "mjdiag/plugin/replay/bounded_descent.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -83,57 +82,98 @@ class Innovations {
   double J_of_ = 0.0;  // squared innovations where it was taken
 };
 
-class InnovationCost final : public ceres::CostFunction {
- public:
-  explicit InnovationCost(Innovations& innovations) : innovations_(innovations) {
-    set_num_residuals(static_cast<int>(innovations.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(innovations.size()));
-  }
-  bool Evaluate(const double* const* blocks, double* residuals,
-                double** jacobians) const override {
-    const VectorXd x = VectorXd::Map(blocks[0], innovations_.size());
-    try {
-      VectorXd::Map(residuals, innovations_.rows()) = innovations_.Of(x);
-      if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-      using RowMajor =
-          Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      const MatrixXd& J = innovations_.Jacobian(x);
-      if (!J.allFinite()) return false;
-      if (J.cols() == 1) {
-        VectorXd::Map(jacobians[0], J.rows()) = J.col(0);
-      } else {
-        Eigen::Map<RowMajor>(jacobians[0], J.rows(), J.cols()) = J;
-      }
-      return true;
-    } catch (const NumericalError&) {
-      return false;  // diverged: a step that far is refused
-    } catch (const InputError&) {
-      return false;  // takes away more than there is
-    }
-  }
-
- private:
-  Innovations& innovations_;
+/// What is known beforehand of coordinates, SizePrice(w^T x) of the rows w of R: as a sum of
+/// squares near x.
+struct KnownNear {
+  double price = 0.0;
+  VectorXd slope;  // half of it
+  MatrixXd bend;   // the same
 };
 
-/// What is known beforehand: w^T x has a standard deviation of 1.
-class KnownCost final : public ceres::CostFunction {
- public:
-  explicit KnownCost(VectorXd w) : w_(std::move(w)) {
-    set_num_residuals(1);
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(w_.size()));
+KnownNear KnownAt(const std::vector<Coordinate>& coordinates, const MatrixXd& R,
+                  const VectorXd& x) {
+  KnownNear known{0.0, VectorXd::Zero(x.size()), MatrixXd::Zero(x.size(), x.size())};
+  for (Index i = 0; i < x.size(); ++i) {
+    if (!coordinates[static_cast<std::size_t>(i)].is_known) continue;
+    const VectorXd w = R.row(i).transpose();
+    const double u = w.dot(x);
+    const double weight = 1.0 / (1.0 + u * u / 3.0);
+    known.price += SizePrice(u);
+    known.slope += weight * u * w;
+    known.bend += weight * w * w.transpose();
   }
-  bool Evaluate(const double* const* blocks, double* residuals,
-                double** jacobians) const override {
-    residuals[0] = w_.dot(VectorXd::Map(blocks[0], w_.size()));
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      VectorXd::Map(jacobians[0], w_.size()) = w_;
+  return known;
+}
+
+/// |r(x)|^2 with what is known beforehand, made least by steps of Gauss and Newton within the
+/// bounds of the coordinates, shorter ones [Levenberg, Marquardt] where nothing is gained.
+class Fitting {
+ public:
+  Fitting(Innovations& innovations, const MatrixXd& R)
+      : innovations_(innovations),
+        R_(R),
+        lower_(innovations.size()),
+        upper_(innovations.size()) {
+    for (Index i = 0; i < innovations.size(); ++i) {
+      const Coordinate& one = innovations.coordinates()[static_cast<std::size_t>(i)];
+      lower_[i] = one.lower;
+      upper_[i] = one.upper;
     }
-    return true;
   }
 
+  VectorXd From(VectorXd x, int iterations) {
+    // A step that promises less is not tried: it is a tenth of what counts (kLeastGain).
+    constexpr double kEnd = 0.1;
+    x = x.cwiseMax(lower_).cwiseMin(upper_);
+    double here = CostAt(x);
+    double damping = 0.0;
+    for (int i = 0; i < iterations; ++i) {
+      const MatrixXd& J = innovations_.Jacobian(x);
+      const KnownNear known = KnownAt(innovations_.coordinates(), R_, x);
+      const VectorXd slope = J.transpose() * innovations_.Of(x) + known.slope;
+      MatrixXd H = J.transpose() * J + known.bend;
+      if (!H.allFinite()) throw NumericalError(kDiverges);
+      // What nothing tells stays where it is.
+      H.diagonal().array() += 1e-9 * H.diagonal().maxCoeff();
+      MatrixXd damped = H;
+      damped.diagonal() *= 1.0 + damping;
+      const VectorXd s = LeastWithin(damped, slope, lower_ - x, upper_ - x);
+      const double along = 2.0 * slope.dot(s);
+      const double hoped = -along - s.dot(H * s);
+      if (!(hoped > kEnd)) break;
+      const double there = CostOf(x + s);
+      if (there < here) {
+        x += s;
+        here = there;
+        damping *= 0.1;
+        continue;
+      }
+      damping = (1.0 + damping) / ShorterBy(along, there - here) - 1.0;
+    }
+    return x;
+  }
+
+  static constexpr const char* kDiverges =
+      "fit: the run with the first values diverges";
+
  private:
-  VectorXd w_;
+  double CostAt(const VectorXd& x) {
+    return innovations_.Of(x).squaredNorm() +
+           KnownAt(innovations_.coordinates(), R_, x).price;
+  }
+  /// Infinite where a step is too long.
+  double CostOf(const VectorXd& x) {
+    try {
+      return CostAt(x);
+    } catch (const NumericalError&) {  // diverges
+    } catch (const InputError&) {      // takes away more than there is
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+  Innovations& innovations_;
+  const MatrixXd& R_;
+  VectorXd lower_, upper_;
 };
 
 }  // namespace
@@ -155,45 +195,7 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
   Innovations innovations(machine_with, run, path, gains, start, coordinates);
   VectorXd x = Place(coordinates, start);
   innovations.Of(x);
-  if (x.size() > 0 && iterations > 0) {
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(ownership);
-    InnovationCost cost(innovations);
-    problem.AddResidualBlock(&cost, nullptr, x.data());
-    ceres::CauchyLoss loss(std::sqrt(3.0));  // SizePrice
-    std::vector<std::unique_ptr<KnownCost>> known;
-    for (Index i = 0; i < x.size(); ++i) {
-      if (!coordinates[static_cast<std::size_t>(i)].is_known) continue;
-      known.push_back(std::make_unique<KnownCost>(R.row(i).transpose()));
-      problem.AddResidualBlock(known.back().get(), &loss, x.data());
-    }
-    for (Index i = 0; i < x.size(); ++i) {
-      const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
-      const int index = static_cast<int>(i);
-      if (std::isfinite(one.lower)) {
-        problem.SetParameterLowerBound(x.data(), index, one.lower);
-      }
-      if (std::isfinite(one.upper)) {
-        problem.SetParameterUpperBound(x.data(), index, one.upper);
-      }
-    }
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.max_num_iterations = iterations;
-    // A hundredth of what one innovation tells.
-    solver.function_tolerance = 0.01 / std::max(1.0, innovations.Of(x).squaredNorm());
-    solver.parameter_tolerance = 1e-7;
-    solver.logging_type = ceres::SILENT;
-    solver.line_search_interpolation_type = ceres::QUADRATIC;
-    solver.max_num_line_search_step_size_iterations = 5;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
-    if (!summary.IsSolutionUsable()) {
-      throw NumericalError("fit: the run with the first values diverges");
-    }
-  }
+  if (x.size() > 0) x = Fitting(innovations, R).From(x, iterations);
   ModelFit fit;
   fit.model = At(coordinates, start, x);
   fit.deviance = innovations.Of(x).squaredNorm() + gains.log_determinant;

@@ -4,7 +4,9 @@
 //
 //   |r(x)|^2 + sum of SizePrice(x) of what is known beforehand (block.h),
 //
-// by Levenberg-Marquardt within bounds (Ceres).
+// by steps of Gauss and Newton within bounds, damped where nothing is gained (K. Levenberg 1944,
+// D. W. Marquardt 1963). A run of the machine is what takes time: a step that promises next to
+// nothing is not tried, and slopes are kept as long as innovations change little.
 
 #include <Eigen/Core>
 #include <functional>

@@ -149,8 +149,9 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
 
 // The shape of a resistance shows where the velocity changes its sign, which no filter
 // knows that lacks it: first the simplest comes in, and then, along the motion with that, the
-// others in its place; where nothing simple is left, all of them. What has no shape is in with
-// all that it can be.
+// others in its place, those of other kinds, too: a brake that gives way as it gets faster looks
+// like dry friction at first. Where nothing simple is left, all of them. What has no shape is in
+// with all that it can be.
 bool MoveSearch::MayCome(const Block& block) const {
   const auto any = [&](const auto& is) {
     return std::ranges::any_of(
@@ -165,7 +166,7 @@ bool MoveSearch::MayCome(const Block& block) const {
     if (block.IsSmoothFriction()) return true;
   }
   return looked_.at_every_shape || !block.IsResistance() || block.IsSimplest() ||
-         any([&](const Block& in) { return in.group == block.group; });
+         any([&](const Block& in) { return in.resists == block.resists; });
 }
 
 Change MoveSearch::Completed(Change change) const {

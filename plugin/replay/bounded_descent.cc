@@ -56,13 +56,6 @@ MatrixXd CurvatureAt(const Sloped& start) {
   return start.slope.cwiseAbs().cwiseMax(1.0).asDiagonal();
 }
 
-/// Of a step along which nothing was gained, the part to where the parabola through both ends
-/// is least.
-double ShorterBy(double slope, double lost) {
-  if (!std::isfinite(lost)) return 0.1;
-  return std::clamp(-0.5 * slope / (lost - slope), 0.1, 0.5);
-}
-
 }  // namespace
 
 VectorXd LeastWithin(const MatrixXd& B, const VectorXd& g, const VectorXd& low,
@@ -100,6 +93,11 @@ VectorXd LeastWithin(const MatrixXd& B, const VectorXd& g, const VectorXd& low,
     held[static_cast<std::size_t>(back)] = 0;
   }
   return s.cwiseMax(low).cwiseMin(high);
+}
+
+double ShorterBy(double slope, double lost) {
+  if (!std::isfinite(lost)) return 0.1;
+  return std::clamp(-0.5 * slope / (lost - slope), 0.1, 0.5);
 }
 
 Least DescendWithin(const std::function<Sloped(const VectorXd&)>& of,

@@ -31,6 +31,12 @@ struct Least {
 Eigen::VectorXd LeastWithin(const Eigen::MatrixXd& B, const Eigen::VectorXd& g,
                             const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 
+/// Of a step along which nothing was gained, the part to where the parabola through both of
+/// its ends is least, a tenth to a half.
+/// @param slope  along the whole step, less than 0
+/// @param lost   by it; may be infinite
+double ShorterBy(double slope, double lost);
+
 /// @param start  is moved within the bounds first
 /// @param end    gains of two steps in a row below which it ends
 Least DescendWithin(const std::function<Sloped(const Eigen::VectorXd&)>& of,
