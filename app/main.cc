@@ -1,5 +1,3 @@
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -69,8 +67,6 @@ int Main(int argc, char** argv) {
   KeepFreedMemory();
   RememberCommandLine(argc, argv);
   is_silent = IsSilentRank(argc, argv);
-  // What Ceres says of steps that it gives up is none of ours.
-  FLAGS_minloglevel = google::GLOG_FATAL;
   CLI::App app{"Fault diagnosis and model discovery for machines that move"};
   app.set_version_flag("--version", "mjdiag " MJDIAG_VERSION);
   app.require_subcommand(1);

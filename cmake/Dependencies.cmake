@@ -45,9 +45,6 @@ if("plugin" IN_LIST mjdiag_parts)
   find_dependency(Threads)
   find_dependency(TBB)
 endif()
-if("discovery" IN_LIST mjdiag_parts)
-  find_dependency(Ceres)
-endif()
 # libopencv-*-dev carry no config unless the whole of OpenCV is installed.
 if("studies" IN_LIST mjdiag_parts)
   mjdiag_library(mjdiag::opencv_ml_library BUILD_HEADER opencv2/ml.hpp SUFFIXES opencv4

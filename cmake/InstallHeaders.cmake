@@ -1,7 +1,7 @@
 # Installs the headers that docs/api.md lists, in its rows "| `mjdiag/...` |", and those
 # that these include. Run at install time with `mjdiag_source` set. Fails if one of them
 # shows a parser, a solver or a picture library: programs that link mjdiag need none.
-set(hidden "^(toml|nlohmann|CLI|opencv2|ceres|glog|boost|tbb|oneapi|matio|GL|Clp|Coin)")
+set(hidden "^(toml|nlohmann|CLI|opencv2|boost|tbb|oneapi|matio|GL|Clp|Coin)")
 cmake_policy(VERSION 3.25)
 
 file(STRINGS ${mjdiag_source}/docs/api.md rows REGEX "^\\| `mjdiag/[^`]+`")

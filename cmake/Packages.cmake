@@ -108,7 +108,7 @@ file(WRITE ${documents}/shlibs
 mjdiag_package(libmjdiag-dev SECTION libdevel
   DEPENDS "libmjdiag0 ${same}" libmujoco-dev libeigen3-dev
   # For programs that link the libraries in C++: what Dependencies.cmake asks for.
-  RECOMMENDS libmatio-dev coinor-libclp-dev libtbb-dev libceres-dev libopencv-core-dev
+  RECOMMENDS libmatio-dev coinor-libclp-dev libtbb-dev libopencv-core-dev
              libopencv-ml-dev libopencv-imgproc-dev libpng-dev libhdf5-dev zlib1g-dev
              ${report}
   SUMMARY "control and diagnosis in any MuJoCo program - development"

@@ -1,6 +1,5 @@
 // The module: its exceptions, and all classes.
 
-#include <glog/logging.h>
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
@@ -58,8 +57,6 @@ void BindErrors(py::module_& module) {
 }  // namespace mjdiag::python
 
 PYBIND11_MODULE(_mjdiag, module) {
-  // What Ceres says of steps that it gives up is none of ours.
-  FLAGS_minloglevel = google::GLOG_FATAL;
   module.attr("__version__") = MJDIAG_VERSION;
   mjdiag::python::BindErrors(module);
   mjdiag::python::BindRecord(module);

@@ -159,6 +159,17 @@ bool IsRefuted(const MemberLoss& loss) {
   return loss.unseen < -kLeastGain || loss.Total() < 0.0;
 }
 
+std::string WhyKept(const MemberLoss& loss, bool is_cut_short) {
+  if (!std::isfinite(loss.unseen)) {
+    return is_cut_short ? "kept: no time was left to ask data that no fit saw"
+                        : "kept: no machine without it was found to follow the run";
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "kept: %.1f of it on data that no fit saw",
+                loss.unseen);
+  return text;
+}
+
 class UnseenJudge {
  public:
   UnseenJudge(const AnswerData& data, const Explained& explained,
@@ -376,16 +387,8 @@ UnseenJudgement UnseenJudge::Run() {
   }
   for (std::size_t m = 0; m < judged_.losses.size(); ++m) {
     const MemberLoss& loss = judged_.losses[m];
-    std::string why = "kept: no machine without it was found to follow the run";
-    if (std::isfinite(loss.unseen)) {
-      char text[64];
-      std::snprintf(text, sizeof text, "kept: %.1f of it on data that no fit saw",
-                    loss.unseen);
-      why = text;
-    } else if (judged_.is_cut_short) {
-      why = "kept: no time was left to ask data that no fit saw";
-    }
-    Decide("without " + Names({judged_.answer.fit.model[m]}), loss.Total(), why);
+    Decide("without " + Names({judged_.answer.fit.model[m]}), loss.Total(),
+           WhyKept(loss, judged_.is_cut_short));
   }
   const double gain = judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance;
   if (!judged_.answer.fit.model.empty() && gain < kLeastGain) {

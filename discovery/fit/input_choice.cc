@@ -56,9 +56,9 @@ InputChoice BestOf(const std::vector<double>& widths, const Machine& machine,
 
 MeasuredRun WithInputsOver(const MeasuredRun& run, double width) {
   VectorXd widths = VectorXd::Zero(run.inputs.rows());
-  const Eigen::MatrixXd& all = run.ticks() > 1 ? run.finer_inputs : run.inputs;
   for (Eigen::Index i = 0; i < widths.size(); ++i) {
-    if (IsNoiseWithin(all.row(i).transpose(), run, width)) widths[i] = width;
+    if (IsNoiseWithin(run.EveryInput().row(i).transpose(), run, width))
+      widths[i] = width;
   }
   return WithSmoothedInputs(run, widths);
 }

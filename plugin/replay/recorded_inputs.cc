@@ -8,10 +8,10 @@ RecordedInputs::RecordedInputs(const Machine& machine, const MeasuredRun& run)
     : run_(run),
       ticks_(run.ticks()),
       substeps_(machine.rates().substeps / static_cast<int>(ticks_)) {
-  const Eigen::MatrixXd& inputs = ticks_ > 1 ? run.finer_inputs : run.inputs;
   Index i = 0;
   for (const ActuatorSetup& actuator : machine.channels().actuators) {
-    courses_.emplace_back(actuator.hold, inputs.row(i++).transpose(), substeps_);
+    courses_.emplace_back(actuator.hold, run.EveryInput().row(i++).transpose(),
+                          substeps_);
   }
 }
 

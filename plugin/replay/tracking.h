@@ -62,6 +62,10 @@ struct MeasuredRun {
   Eigen::Index ticks() const {
     return finer_inputs.size() > 0 ? finer_inputs.cols() / samples() : 1;
   }
+  /// Of every tick.
+  const Eigen::MatrixXd& EveryInput() const {
+    return ticks() > 1 ? finer_inputs : inputs;
+  }
   /// Of a record.
   Eigen::Index SamplesOf(std::size_t record) const;
   /// Which record a sample is of.
