@@ -1,5 +1,6 @@
 #include "mjdiag/discovery/answer/simpler_blocks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -79,6 +80,27 @@ std::vector<Instead> SimplerThan(const Member& member, const std::vector<Block>&
     if (const auto values = SimpleValues(blocks[b], *own, member.values)) {
       instead.push_back({b, *values});
     }
+  }
+  return instead;
+}
+
+std::vector<Instead> SimplerResistances(const Member& member,
+                                        const std::vector<Block>& blocks) {
+  constexpr double kSmall = 0.01;  // of what is usual there
+  std::vector<Instead> instead;
+  const Block& own = blocks[member.block];
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Block& other = blocks[b];
+    const bool is_there = !own.resists.empty() && other.resists == own.resists;
+    if (!is_there || !other.candidate || !other.IsSimplest() || b == member.block)
+      continue;
+    if (own.candidate && own.IsSimplest()) continue;
+    const FitParameter& size = other.candidate->parameters.front();
+    const double little =
+        size.role == Role::kFactor
+            ? 1.0
+            : size.nothing + std::max(kSmall * size.spread, 2.0 * size.least_size);
+    instead.push_back({b, VectorXd::Constant(1, little)});
   }
   return instead;
 }

@@ -21,4 +21,9 @@ struct Instead {
 std::vector<Instead> SimplerThan(const Member& member, const std::vector<Block>& blocks,
                                  const mjModel& plant);
 
+/// What resists the joint of a member that resists it, too, in the simplest way of every kind:
+/// with the load, with the velocity, or always. Small, to begin with.
+std::vector<Instead> SimplerResistances(const Member& member,
+                                        const std::vector<Block>& blocks);
+
 }  // namespace mjdiag

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -187,8 +188,13 @@ class UnseenJudge {
   /// Values and noises of some models anew; none of one that the machine cannot be.
   std::vector<std::optional<ModelOnRuns>> RefittedAll(
       const std::vector<Model>& models) const;
-  /// Takes every member out; true if the worst one leaves the model.
+  /// Takes every member out; true if the worst one leaves the model, or another one comes in
+  /// its place.
   bool DropWorst();
+  /// What is simpler in the place of a member, if it is worth more than nothing there: a law of
+  /// the wrong shape may hold where it was found and nowhere else.
+  std::optional<ModelOnRuns> SimplerInPlaceOf(std::size_t place,
+                                              const ModelOnRuns& without) const;
   bool IsFree(std::size_t block, std::size_t place) const;
   std::vector<Instead> InsteadOf(std::size_t place) const;
   /// True if a member is exchanged.
@@ -233,6 +239,35 @@ std::vector<std::optional<ModelOnRuns>> UnseenJudge::RefittedAll(
   return fitted;
 }
 
+std::optional<ModelOnRuns> UnseenJudge::SimplerInPlaceOf(
+    std::size_t place, const ModelOnRuns& without) const {
+  const Model& model = judged_.answer.fit.model;
+  std::vector<Instead> instead =
+      SimplerThan(model[place], data_.blocks, data_.machine.plant());
+  std::ranges::move(SimplerResistances(model[place], data_.blocks),
+                    std::back_inserter(instead));
+  std::vector<Model> others;
+  for (const Instead& one : instead) {
+    if (!IsFree(one.block, place)) continue;
+    others.push_back(model);
+    others.back()[place] = {one.block, one.values};
+  }
+  std::optional<ModelOnRuns> best;
+  for (std::optional<ModelOnRuns>& one : RefittedAll(others)) {
+    if (!one) continue;
+    const Member& member = one->fit.model[place];
+    const MemberLoss loss{without.Score() - one->Score(),
+                          without.unseen_deviance - one->unseen_deviance};
+    if (IsRefuted(loss) || loss.Total() < kLeastGain) continue;
+    if (!IsAllowed(data_.blocks[member.block], member.values)) continue;
+    const auto total = [](const ModelOnRuns& of) {
+      return of.Score() + of.unseen_deviance;
+    };
+    if (!best || total(*one) < total(*best)) best = std::move(one);
+  }
+  return best;
+}
+
 bool UnseenJudge::DropWorst() {
   const ModelOnRuns& answer = judged_.answer;
   const Model& model = answer.fit.model;
@@ -266,6 +301,15 @@ bool UnseenJudge::DropWorst() {
   }
   judged_.is_cut_short = judged_.is_cut_short || is_over_();
   if (!best) return false;
+  if (std::optional<ModelOnRuns> simpler = SimplerInPlaceOf(worst, *best)) {
+    Decide(Names(simpler->fit.model), judged_.losses[worst].unseen,
+           "taken: one exchanged for a simpler one, which holds on data that no fit "
+           "saw, too");
+    judged_.answer = std::move(*simpler);
+    judged_.losses.clear();
+    judged_.exchanges.clear();
+    return true;
+  }
   judged_.refuted.push_back(Names({model[worst]}));
   Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
          IsRefuted(judged_.losses[worst])
