@@ -166,7 +166,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   discovery.substeps = machine.rates().substeps;
 
   time.Say("the machine as given", 0.0);
-  const Explained explained =
+  Explained explained =
       Explain(machine, run.seen, reading_sd, OptionsOfSearch(machine, options, time));
   const Machine looked_at = InTicksOf(machine, explained.ticks);
   const SplitRun looked = Coarser(run, explained.ticks);

@@ -13,8 +13,6 @@
 #include "mjdiag/discovery/answer/simpler_blocks.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/effects/effect.h"
-#include "mjdiag/plugin/replay/kept_gains.h"
-#include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
@@ -25,134 +23,6 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kNeeded = std::numeric_limits<double>::infinity();
-
-/// Latent forces that are no smaller than so much of what others are.
-FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
-  for (Eigen::Index j = 0; j < noise.size.size(); ++j) {
-    if (noise.size[j] >= part * others.size[j]) continue;
-    noise.size[j] = part * others.size[j];
-    noise.memory[j] = others.memory[j];
-  }
-  return noise;
-}
-
-/// What fits did not see as a filter follows it, where it is likelier than what is known.
-void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& followed,
-                ModelOnRuns& one) {
-  try {
-    FilterPath path = followed();
-    double deviance = path.deviance;
-    if (data.run.GoesOn()) {
-      // Up to there it is what the filter does in what fits saw.
-      deviance -= RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
-                                 path.starts, path.noise)
-                      .deviance;
-    }
-    if (!(deviance < one.unseen_deviance)) return;
-    one.unseen_deviance = deviance;
-    one.unseen = std::move(path);
-  } catch (const NumericalError&) {
-  }
-}
-
-/// The same behind the likeliest noise, from one and from one that follows anything.
-void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
-                      const IsTimeOver& is_over, ModelOnRuns& one) {
-  TakeUnseen(
-      data,
-      [&] {
-        return FilterLikeliestFrom(data.With(one.fit.model), data.run.unseen,
-                                   data.reading_sd, one.seen.dofs, {near}, is_over);
-      },
-      one);
-}
-
-/// Along what fits did not see, behind the noise that is likeliest there: another motion asks
-/// other things of what a model lacks, and whose values are right is the question, not whose
-/// noise is. Begun from the noise of what fits saw, and from one with a hundredth of the
-/// latent forces of the machine as given: a model that is all but exact has next to none,
-/// and a filter that is so sure of itself does not come back from where a joint sticks a
-/// moment longer.
-/// @param given  noise of the machine as given
-void FollowUnseen(const AnswerData& data, const FilterNoise& given,
-                  const std::function<bool()>& is_over, ModelOnRuns& one) {
-  const Machine machine = data.With(one.fit.model);
-  const MeasuredRun& run = data.run.unseen;
-  const std::vector<FilterStart> starts =
-      data.run.GoesOn() ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
-  one.unseen_deviance = std::numeric_limits<double>::infinity();
-  for (const double part : {0.0, 1e-2}) {
-    const FilterNoise noise = AtLeast(one.seen.noise, part, given);
-    if (part > 0.0 && noise.size == one.seen.noise.size) continue;
-    if (std::isfinite(one.unseen_deviance) && is_over()) break;
-    TakeUnseen(
-        data,
-        [&] { return RunForceFilter(machine, run, one.seen.dofs, starts, noise); },
-        one);
-  }
-  if (std::isfinite(one.unseen_deviance) && !is_over()) {
-    FollowUnseenFrom(data, one.unseen.noise, is_over, one);
-  }
-  if (!std::isfinite(one.unseen_deviance)) {
-    throw NumericalError("replay: diverges on unseen data");
-  }
-}
-
-/// Values and noise of a model anew.
-ModelOnRuns Refitted(const AnswerData& data, const Model& model,
-                     const std::vector<Eigen::Index>& dofs,
-                     const std::vector<FilterNoise>& near, const FilterNoise& given,
-                     const std::function<bool()>& is_over) {
-  constexpr int kIterations = 4;
-  ModelOnRuns one;
-  const FilterPath path = FilterLikeliestFrom(data.With(model), data.run.seen,
-                                              data.reading_sd, dofs, near, is_over);
-  one.fit =
-      FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
-               data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
-  one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
-                            path.starts, path.noise);
-  FollowUnseen(data, given, is_over, one);
-  return one;
-}
-
-ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
-                      const std::function<bool()>& is_over) {
-  ModelOnRuns nothing;
-  // Of an empty model the search has it with the physics steps that it chose.
-  const bool as_given = data.steps && explained.input_width == 0.0;
-  nothing.seen = explained.fit.model.empty() ? explained.path
-                 : as_given
-                     ? explained.nothing
-                     : FilterLikeliestFrom(data.With({}), data.run.seen,
-                                           data.reading_sd, explained.nothing.dofs,
-                                           {explained.nothing.noise}, is_over);
-  try {
-    FollowUnseen(data, nothing.seen.noise, is_over, nothing);
-  } catch (const NumericalError&) {
-    // Behind the noise of what fits saw it does not stay with the rest.
-    nothing.seen.noise =
-        FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd, is_over).noise;
-    nothing.seen = RunForceFilter(data.With({}), data.run.seen, nothing.seen.dofs,
-                                  nothing.seen.starts, nothing.seen.noise);
-    FollowUnseen(data, nothing.seen.noise, is_over, nothing);
-  }
-  return nothing;
-}
-
-/// Where the search for the noise of one model ended is not where that of another did: what
-/// suits the other may suit it as well.
-void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
-                       const IsTimeOver& is_over, ModelOnRuns& one) {
-  FollowUnseenFrom(data, other.unseen.noise, is_over, one);
-  try {
-    FilterPath path =
-        FilterLikeliestNear(data.With(one.fit.model), data.run.seen, data.reading_sd,
-                            one.seen.dofs, other.seen.noise, is_over);
-    if (path.deviance < one.seen.deviance) one.seen = std::move(path);
-  } catch (const NumericalError&) {
-  }
-}
 
 /// That unseen data speak against it by more than fits are off, or that it is not worth its
 /// price.
@@ -173,7 +43,7 @@ std::string WhyKept(const MemberLoss& loss, bool is_cut_short) {
 
 class UnseenJudge {
  public:
-  UnseenJudge(const AnswerData& data, const Explained& explained,
+  UnseenJudge(const AnswerData& data, Explained& explained,
               const std::function<bool()>& is_over)
       : data_(data), explained_(explained), is_over_(is_over) {}
 
@@ -185,6 +55,10 @@ class UnseenJudge {
   }
   std::string Names(const Model& model) const { return ModelText(data_.blocks, model); }
   void LeaveNothing();
+  /// The model of the search is the answer, with all its members.
+  void TakeExplained(ModelOnRuns answer);
+  /// To where the search was when its model still held on what no fit saw.
+  void GoBack();
   /// Values and noises of some models anew; none of one that the machine cannot be.
   std::vector<std::optional<ModelOnRuns>> RefittedAll(
       const std::vector<Model>& models) const;
@@ -208,7 +82,7 @@ class UnseenJudge {
   }
 
   const AnswerData& data_;
-  const Explained& explained_;
+  Explained& explained_;
   const std::function<bool()>& is_over_;
   UnseenJudgement judged_;
 };
@@ -260,10 +134,7 @@ std::optional<ModelOnRuns> UnseenJudge::SimplerInPlaceOf(
                           without.unseen_deviance - one->unseen_deviance};
     if (IsRefuted(loss) || loss.Total() < kLeastGain) continue;
     if (!IsAllowed(data_.blocks[member.block], member.values)) continue;
-    const auto total = [](const ModelOnRuns& of) {
-      return of.Score() + of.unseen_deviance;
-    };
-    if (!best || total(*one) < total(*best)) best = std::move(one);
+    if (!best || one->Total() < best->Total()) best = std::move(one);
   }
   return best;
 }
@@ -404,11 +275,45 @@ bool UnseenJudge::ExchangeOne() {
   return true;
 }
 
-UnseenJudgement UnseenJudge::Run() {
-  judged_.nothing = NothingOf(data_, explained_, is_over_);
-  judged_.answer = {explained_.fit, explained_.path, {}, 0.0};
+void UnseenJudge::TakeExplained(ModelOnRuns answer) {
+  judged_.answer = std::move(answer);
   judged_.places.resize(explained_.fit.model.size());
   std::iota(judged_.places.begin(), judged_.places.end(), std::size_t{0});
+}
+
+void UnseenJudge::GoBack() {
+  std::optional<ModelOnRuns> best;
+  for (auto step = explained_.steps_taken.rbegin();
+       step != explained_.steps_taken.rend(); ++step) {
+    if (step->fit.model.size() >= explained_.fit.model.size()) continue;
+    try {
+      ModelOnRuns one{step->fit,
+                      RunForceFilter(data_.With(step->fit.model), data_.run.seen,
+                                     judged_.nothing.seen.dofs, explained_.path.starts,
+                                     step->noise),
+                      {},
+                      0.0};
+      FollowUnseen(data_, judged_.nothing.seen.noise, is_over_, one);
+      if (one.Total() < (best ? best->Total() : judged_.answer.Total())) {
+        best = std::move(one);
+      }
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+    if (is_over_()) break;
+  }
+  if (!best) return;
+  Decide(Names(best->fit.model), best->Total() - judged_.answer.Total(),
+         "taken: what the search added to it does not hold on data that no fit saw");
+  explained_.fit = best->fit;
+  explained_.path = best->seen;
+  explained_.rivals.clear();
+  TakeExplained(std::move(*best));
+}
+
+UnseenJudgement UnseenJudge::Run() {
+  judged_.nothing = NothingOf(data_, explained_, is_over_);
+  TakeExplained({explained_.fit, explained_.path, {}, 0.0});
   if (explained_.fit.model.empty()) {
     judged_.answer.unseen = judged_.nothing.unseen;
     judged_.answer.unseen_deviance = judged_.nothing.unseen_deviance;
@@ -421,6 +326,9 @@ UnseenJudgement UnseenJudge::Run() {
            "left out: the machine with it diverges on unseen data");
     LeaveNothing();
     return std::move(judged_);
+  }
+  if (judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance < kLeastGain) {
+    GoBack();
   }
   // Each exchange gains; what went round would be noise of fits.
   for (int exchanges = 0;; ++exchanges) {
@@ -446,7 +354,7 @@ UnseenJudgement UnseenJudge::Run() {
 
 }  // namespace
 
-UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
+UnseenJudgement JudgeUnseen(const AnswerData& data, Explained& explained,
                             const std::function<bool()>& is_over) {
   return UnseenJudge(data, explained, is_over).Run();
 }

@@ -6,29 +6,19 @@
 // data speak against, or that is not worth its price on both together, leaves the model, the
 // worst first, and so does one whose force nobody would miss (member_forces.h). What could be
 // in the place of a member is fitted there, too: by first order the likeliest, and the
-// simplest laws of its kind; one that is better takes the place. A model that predicts unseen
-// data no better than the machine as given is none.
+// simplest laws of its kind; one that is better takes the place. Before a member leaves, what is
+// simpler is asked there, and where all of a model predicts unseen data no better than the machine
+// as given, the models are that the search had before; if none of them does it is none.
 
 #include <functional>
 #include <vector>
 
 #include "mjdiag/discovery/answer/answer_data.h"
+#include "mjdiag/discovery/answer/model_on_runs.h"
 #include "mjdiag/discovery/fit/decision.h"
 #include "mjdiag/discovery/fit/explain.h"
-#include "mjdiag/discovery/fit/model_fit.h"
-#include "mjdiag/plugin/replay/force_filter.h"
 
 namespace mjdiag {
-
-/// A model along what fits saw and along what they did not, behind the noise that suits it.
-struct ModelOnRuns {
-  ModelFit fit;
-  FilterPath seen;
-  FilterPath unseen;             ///< of SplitRun::unseen
-  double unseen_deviance = 0.0;  ///< -2 ln L of what fits did not see of it
-
-  double Score() const { return seen.deviance + fit.prior + fit.occam; }
-};
 
 /// What is lost without a member, in -2 ln.
 struct MemberLoss {
@@ -55,8 +45,10 @@ struct UnseenJudgement {
   bool is_cut_short = false;         ///< not every member was taken out
 };
 
-/// @param is_over  whether nothing further may be tried
-UnseenJudgement JudgeUnseen(const AnswerData& data, const Explained& explained,
+/// @param explained  goes back to a model before, where what the search added to it does not
+///                   hold on unseen data
+/// @param is_over    whether nothing further may be tried
+UnseenJudgement JudgeUnseen(const AnswerData& data, Explained& explained,
                             const std::function<bool()>& is_over);
 
 }  // namespace mjdiag

@@ -38,6 +38,12 @@ struct ExplainOptions {
   std::function<bool()> stop = {};
 };
 
+/// A model that the search had for a while, behind the noise that suited it.
+struct StepTaken {
+  ModelFit fit;
+  FilterNoise noise;
+};
+
 struct Explained {
   std::vector<Block> blocks;
   ModelFit fit;
@@ -51,6 +57,7 @@ struct Explained {
   /// What could be in the place of members (Moves::near), where the search came to its end:
   /// by how much worse each is stands in ModelMove::score.
   std::vector<ModelMove> rivals;
+  std::vector<StepTaken> steps_taken;  ///< the model as it grew, by all of the run
   bool is_cut_short = false;  ///< by its seconds or because it was asked to end
 };
 

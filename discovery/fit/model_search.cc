@@ -70,6 +70,7 @@ void ModelSearch::Adopt(Proposal proposal) {
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
   ChooseSteps();
+  found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
 
 /// The model as it is behind the noise that suits it by now; none if nothing is gained.
@@ -413,6 +414,7 @@ void ModelSearch::LookAtAll() {
   found_.input_width *= before / ticks;
   LookAt(whole_, ticks);
   found_.rivals.clear();
+  found_.steps_taken.clear();
   hopeless_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {

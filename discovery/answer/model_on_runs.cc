@@ -1,0 +1,134 @@
+#include "mjdiag/discovery/answer/model_on_runs.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "mjdiag/plugin/replay/kept_gains.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+namespace {
+
+/// Latent forces that are no smaller than so much of what others are.
+FilterNoise AtLeast(FilterNoise noise, double part, const FilterNoise& others) {
+  for (Eigen::Index j = 0; j < noise.size.size(); ++j) {
+    if (noise.size[j] >= part * others.size[j]) continue;
+    noise.size[j] = part * others.size[j];
+    noise.memory[j] = others.memory[j];
+  }
+  return noise;
+}
+
+/// What fits did not see as a filter follows it, where it is likelier than what is known.
+void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& followed,
+                ModelOnRuns& one) {
+  try {
+    FilterPath path = followed();
+    double deviance = path.deviance;
+    if (data.run.GoesOn()) {
+      // Up to there it is what the filter does in what fits saw.
+      deviance -= RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
+                                 path.starts, path.noise)
+                      .deviance;
+    }
+    if (!(deviance < one.unseen_deviance)) return;
+    one.unseen_deviance = deviance;
+    one.unseen = std::move(path);
+  } catch (const NumericalError&) {
+  }
+}
+
+/// The same behind the likeliest noise, from one and from one that follows anything.
+void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
+                      const IsTimeOver& is_over, ModelOnRuns& one) {
+  TakeUnseen(
+      data,
+      [&] {
+        return FilterLikeliestFrom(data.With(one.fit.model), data.run.unseen,
+                                   data.reading_sd, one.seen.dofs, {near}, is_over);
+      },
+      one);
+}
+
+}  // namespace
+
+void FollowUnseen(const AnswerData& data, const FilterNoise& given,
+                  const std::function<bool()>& is_over, ModelOnRuns& one) {
+  const Machine machine = data.With(one.fit.model);
+  const MeasuredRun& run = data.run.unseen;
+  const std::vector<FilterStart> starts =
+      data.run.GoesOn() ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
+  one.unseen_deviance = std::numeric_limits<double>::infinity();
+  for (const double part : {0.0, 1e-2}) {
+    const FilterNoise noise = AtLeast(one.seen.noise, part, given);
+    if (part > 0.0 && noise.size == one.seen.noise.size) continue;
+    if (std::isfinite(one.unseen_deviance) && is_over()) break;
+    TakeUnseen(
+        data,
+        [&] { return RunForceFilter(machine, run, one.seen.dofs, starts, noise); },
+        one);
+  }
+  if (std::isfinite(one.unseen_deviance) && !is_over()) {
+    FollowUnseenFrom(data, one.unseen.noise, is_over, one);
+  }
+  if (!std::isfinite(one.unseen_deviance)) {
+    throw NumericalError("replay: diverges on unseen data");
+  }
+}
+
+ModelOnRuns Refitted(const AnswerData& data, const Model& model,
+                     const std::vector<Eigen::Index>& dofs,
+                     const std::vector<FilterNoise>& near, const FilterNoise& given,
+                     const std::function<bool()>& is_over) {
+  constexpr int kIterations = 4;
+  ModelOnRuns one;
+  const FilterPath path = FilterLikeliestFrom(data.With(model), data.run.seen,
+                                              data.reading_sd, dofs, near, is_over);
+  one.fit =
+      FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
+               data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
+  one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
+                            path.starts, path.noise);
+  FollowUnseen(data, given, is_over, one);
+  return one;
+}
+
+ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
+                      const std::function<bool()>& is_over) {
+  ModelOnRuns nothing;
+  // Of an empty model the search has it with the physics steps that it chose.
+  const bool as_given = data.steps && explained.input_width == 0.0;
+  nothing.seen = explained.fit.model.empty() ? explained.path
+                 : as_given
+                     ? explained.nothing
+                     : FilterLikeliestFrom(data.With({}), data.run.seen,
+                                           data.reading_sd, explained.nothing.dofs,
+                                           {explained.nothing.noise}, is_over);
+  try {
+    FollowUnseen(data, nothing.seen.noise, is_over, nothing);
+  } catch (const NumericalError&) {
+    // Behind the noise of what fits saw it does not stay with the rest.
+    nothing.seen.noise =
+        FilterLikeliest(data.With({}), data.run.unseen, data.reading_sd, is_over).noise;
+    nothing.seen = RunForceFilter(data.With({}), data.run.seen, nothing.seen.dofs,
+                                  nothing.seen.starts, nothing.seen.noise);
+    FollowUnseen(data, nothing.seen.noise, is_over, nothing);
+  }
+  return nothing;
+}
+
+void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
+                       const IsTimeOver& is_over, ModelOnRuns& one) {
+  FollowUnseenFrom(data, other.unseen.noise, is_over, one);
+  try {
+    FilterPath path =
+        FilterLikeliestNear(data.With(one.fit.model), data.run.seen, data.reading_sd,
+                            one.seen.dofs, other.seen.noise, is_over);
+    if (path.deviance < one.seen.deviance) one.seen = std::move(path);
+  } catch (const NumericalError&) {
+  }
+}
+
+}  // namespace mjdiag

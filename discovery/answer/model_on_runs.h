@@ -1,0 +1,52 @@
+#pragma once
+// A model along what fits saw and along what they did not, behind the noise that suits it there:
+// what an answer is judged by (unseen_judgement.h).
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "mjdiag/discovery/answer/answer_data.h"
+#include "mjdiag/discovery/fit/explain.h"
+#include "mjdiag/discovery/fit/model_fit.h"
+#include "mjdiag/plugin/replay/force_filter.h"
+#include "mjdiag/plugin/replay/noise_fit.h"
+
+namespace mjdiag {
+
+struct ModelOnRuns {
+  ModelFit fit;
+  FilterPath seen;
+  FilterPath unseen;             ///< of SplitRun::unseen
+  double unseen_deviance = 0.0;  ///< -2 ln L of what fits did not see of it
+
+  double Score() const { return seen.deviance + fit.prior + fit.occam; }
+  /// By all that was measured.
+  double Total() const { return Score() + unseen_deviance; }
+};
+
+/// Along what fits did not see, behind the noise that is likeliest there: another motion asks
+/// other things of what a model lacks, and whose values are right is the question, not whose
+/// noise is. Begun from the noise of what fits saw, and from one with a hundredth of the
+/// latent forces of the machine as given: a model that is all but exact has next to none,
+/// and a filter that is so sure of itself does not come back from where a joint sticks a
+/// moment longer.
+/// @param given  noise of the machine as given
+void FollowUnseen(const AnswerData& data, const FilterNoise& given,
+                  const std::function<bool()>& is_over, ModelOnRuns& one);
+
+/// Values and noise of a model anew.
+ModelOnRuns Refitted(const AnswerData& data, const Model& model,
+                     const std::vector<Eigen::Index>& dofs,
+                     const std::vector<FilterNoise>& near, const FilterNoise& given,
+                     const std::function<bool()>& is_over);
+
+ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
+                      const std::function<bool()>& is_over);
+
+/// Where the search for the noise of one model ended is not where that of another did: what
+/// suits the other may suit it as well.
+void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
+                       const IsTimeOver& is_over, ModelOnRuns& one);
+
+}  // namespace mjdiag
