@@ -18,8 +18,13 @@ namespace {
 
 class Settling {
  public:
-  Settling(const ConvergedBeside& beside, ModelFit fit, std::vector<FilterNoise> near)
-      : beside_(beside), near_(std::move(near)), settled_{std::move(fit), {}} {
+  /// @param beat  a score
+  Settling(const ConvergedBeside& beside, ModelFit fit, std::vector<FilterNoise> near,
+           double beat)
+      : beside_(beside),
+        near_(std::move(near)),
+        beat_(beat),
+        settled_{std::move(fit), {}} {
     settled_.path.deviance = std::numeric_limits<double>::infinity();
   }
 
@@ -56,7 +61,7 @@ class Settling {
       Gains(noise, false);
     } catch (const NumericalError&) {
     }
-    if (settled_.score() < before.score() - kLeastGain) {
+    if (settled_.score() < before.score() - LeastGain()) {
       is_likeliest_ = false;
     } else {
       settled_ = std::move(before);
@@ -72,7 +77,10 @@ class Settling {
     Relax();
     for (int round = 0; round < kRounds && !IsDone(); ++round) {
       const std::vector<FilterNoise> noises = NoisesFrom(settled_.path.noise);
-      if (!Gains(noises.front(), true) && !Gains(noises[kSmaller], true)) return;
+      if (!Gains(noises.front(), true) &&
+          !(beside_.is_last && Gains(noises[kSmaller], true))) {
+        return;
+      }
       if (!beside_.is_over()) Relax();
     }
   }
@@ -92,6 +100,14 @@ class Settling {
 
  private:
   static constexpr int kRounds = 6;
+
+  /// A round that gains less is the last.
+  double LeastGain() const {
+    constexpr double kShare = 0.01;
+    constexpr double kMost = 10.0;  // e^-5 as likely
+    if (beside_.is_last || !std::isfinite(settled_.path.deviance)) return kLeastGain;
+    return std::clamp(kShare * (beat_ - settled_.score()), kLeastGain, kMost);
+  }
 
   bool IsDone() const { return settled_.fit.model.empty() || beside_.is_over(); }
 
@@ -157,15 +173,16 @@ class Settling {
     // takes longer, need not be asked.
     const double before =
         gains.left.squaredNorm() + gains.log_determinant + settled_.fit.prior;
-    if (is_same && before - next.deviance - next.prior < kLeastGain) return false;
+    if (is_same && before - next.deviance - next.prior < LeastGain()) return false;
     const double score = settled_.score();
     Follow(next, of_path);
     if (!is_own) Follow(next, noise);
-    return settled_.score() < score - kLeastGain;
+    return settled_.score() < score - LeastGain();
   }
 
   const ConvergedBeside& beside_;
   std::vector<FilterNoise> near_;  // until they have been asked
+  double beat_;
   ConvergedModel settled_;
   bool is_likeliest_ = false;  // no noise is known that suits it better
 };
@@ -185,7 +202,7 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
   constexpr double kNonsense = 300.0;
   const double hopeless = beat + kNonsense * std::max(hoped, kLeastGain);
   std::vector<Settling> rivals;
-  for (ModelFit& fit : fits) rivals.emplace_back(beside, std::move(fit), near);
+  for (ModelFit& fit : fits) rivals.emplace_back(beside, std::move(fit), near, beat);
   const auto each = [&](const auto& work) {
     ParallelForAll(static_cast<int>(rivals.size()), [&](int number) {
       try {
@@ -221,7 +238,8 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
 
 ConvergedModel SettleNear(const ConvergedBeside& beside, ModelFit fit,
                           FilterPath path) {
-  Settling one(beside, std::move(fit), {});
+  const double beat = ConvergedModel{fit, path}.score();
+  Settling one(beside, std::move(fit), {}, beat);
   one.BeginWith(std::move(path));
   one.Relax();
   return one.settled();

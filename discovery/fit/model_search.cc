@@ -51,6 +51,7 @@ ConvergedBeside ModelSearch::Beside(bool steps) const {
           found_.path.dofs,
           found_.blocks,
           IsFirstLook(),
+          is_last_,
           [this] { return IsOver(); }};
 }
 
@@ -73,16 +74,21 @@ void ModelSearch::Adopt(Proposal proposal) {
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
 
-/// The model as it is behind the noise that suits it by now; none if nothing is gained.
+/// The model as it is behind the noise that suits it by now; none if nothing is gained, or a
+/// tenth of what a move promises: it is settled then with that.
 std::optional<ConvergedModel> ModelSearch::Resettled(const Whitenings& whitenings,
-                                                     std::size_t noise,
+                                                     const Moves& moves,
                                                      const ModelFit& as_it_is) const {
+  constexpr double kShare = 0.1;
+  const double promised =
+      moves.best.empty() ? 0.0 : moves.score - moves.best.front().score;
+  const double least = std::max(kLeastGain, kShare * promised);
   const KeptGains& own = whitenings.behind.front().gains();
   const double before = own.left.squaredNorm() + own.log_determinant +
                         found_.fit.prior + found_.fit.occam;
-  if (as_it_is.score() > before - kLeastGain) return std::nullopt;
+  if (as_it_is.score() > before - least) return std::nullopt;
   ConvergedModel settled =
-      Settle(Beside(steps_), as_it_is, NoisesBeside(whitenings.noises[noise]),
+      Settle(Beside(steps_), as_it_is, NoisesBeside(whitenings.noises[moves.noise]),
              found_.score, before - as_it_is.score());
   if (settled.score() > found_.score - kLeastGain) return std::nullopt;
   Say("settled: " + Difference(settled.score()));
@@ -112,7 +118,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whi
   KeepRivals(moves);
   AsFitted as_it_is;
   const ModelFit& own = IncumbentBehind({moves.noise, false}, whitenings, as_it_is);
-  if (auto settled = Resettled(whitenings, moves.noise, own)) {
+  if (auto settled = Resettled(whitenings, moves, own)) {
     return Proposal{std::move(*settled), steps_, found_.input_width, run_};
   }
   Say(std::to_string(moves.variations) + " shapes, " +
@@ -451,6 +457,7 @@ Explained ModelSearch::Run() {
   try {
     LookAtAll();
     StepOn();
+    is_last_ = true;
     if (!IsOver()) {
       may_be_at_ends_ = true;
       looks_at_forces_ = true;

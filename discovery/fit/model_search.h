@@ -56,7 +56,7 @@ class ModelSearch {
   /// What a rival is worth once it has been fitted. @param score  less that of the model
   void Rate(const Model& rival, double score);
   std::optional<ConvergedModel> Resettled(const Whitenings& whitenings,
-                                          std::size_t noise,
+                                          const Moves& moves,
                                           const ModelFit& as_it_is) const;
   std::string Difference(double score) const {
     char text[40];
@@ -165,6 +165,8 @@ class ModelSearch {
   bool at_every_shape_ = false;
   /// And what makes up for another thing comes last.
   bool may_be_at_ends_ = false;
+  /// Values and noises are asked to the end.
+  bool is_last_ = false;
   /// Models that were tried in the place of this one and are far from it.
   std::vector<Model> hopeless_;
   Explained found_;
