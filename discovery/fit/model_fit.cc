@@ -127,7 +127,10 @@ class Fitting {
     x = x.cwiseMax(lower_).cwiseMin(upper_);
     double here = CostAt(x);
     double damping = 0.0;
-    for (int i = 0; i < iterations; ++i) {
+    // A step that gains nothing takes one run, one that does as many as there are coordinates.
+    constexpr int kTries = 3;
+    int taken = 0;
+    for (int i = 0; i < kTries * iterations && taken < iterations; ++i) {
       const MatrixXd& J = innovations_.Jacobian(x);
       const KnownNear known = KnownAt(innovations_.coordinates(), R_, x);
       const VectorXd slope = J.transpose() * innovations_.Of(x) + known.slope;
@@ -146,6 +149,7 @@ class Fitting {
         x += s;
         here = there;
         damping *= 0.1;
+        ++taken;
         continue;
       }
       damping = (1.0 + damping) / ShorterBy(along, there - here) - 1.0;

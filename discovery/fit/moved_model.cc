@@ -65,6 +65,30 @@ Model Creeping(const std::vector<Block>& blocks, Model model) {
   return model;
 }
 
+namespace {
+
+/// The one that leaves the fewest members, of those that gain at least half as much as the
+/// best: first order knows gains to a factor of two.
+const ModelMove* SimplestOf(const Moves& moves,
+                            const std::function<bool(const ModelMove&)>& may_be) {
+  constexpr double kPart = 0.5;
+  const auto more = [](const ModelMove& move) {
+    return std::ssize(move.added) - std::ssize(move.removed);
+  };
+  const ModelMove* simplest = nullptr;
+  double most = 0.0;
+  for (const ModelMove& move : moves.best) {
+    if (!may_be(move)) continue;
+    const double gain = moves.score - move.score;
+    most = std::max(most, gain);
+    if (gain < kLeastGain || gain < kPart * most) break;
+    if (simplest == nullptr || more(move) < more(*simplest)) simplest = &move;
+  }
+  return simplest;
+}
+
+}  // namespace
+
 std::vector<const ModelMove*> ToBeFitted(
     const Moves& moves, std::size_t most,
     const std::function<bool(const ModelMove&)>& may_be) {
@@ -85,6 +109,10 @@ std::vector<const ModelMove*> ToBeFitted(
     chosen.push_back(&move);
     for (const Added& added : move.added) ++with_block[added.variation.block];
     has_single = has_single || is_single;
+  }
+  const ModelMove* simplest = SimplestOf(moves, may_be);
+  if (simplest != nullptr && std::ranges::find(chosen, simplest) == chosen.end()) {
+    chosen.push_back(simplest);
   }
   return chosen;
 }
