@@ -63,26 +63,34 @@ class Settling {
     }
     if (settled_.score() < before.score() - LeastGain()) {
       is_likeliest_ = false;
+      round_ = 0;
     } else {
       settled_ = std::move(before);
     }
   }
 
-  /// Fits and noises in turn, as long as either gains.
-  void Alternate() {
-    is_likeliest_ = true;
+  /// A fit and then a noise, and before the first a noise; it is likeliest where the fit gains
+  /// nothing.
+  void Round() {
     // Values that are off make latent forces large, behind which values are hardly seen:
     // where fits behind the noise of the last filter gain no more, one behind a smaller may.
     constexpr std::size_t kSmaller = 2;  // of NoisesFrom
-    Relax();
-    for (int round = 0; round < kRounds && !IsDone(); ++round) {
-      const std::vector<FilterNoise> noises = NoisesFrom(settled_.path.noise);
-      if (!Gains(noises.front(), true) &&
-          !(beside_.is_last && Gains(noises[kSmaller], true))) {
-        return;
-      }
-      if (!beside_.is_over()) Relax();
-    }
+    const double before = settled_.score();
+    is_likeliest_ = true;
+    if (round_ == 0) Relax();
+    if (IsDone() || ++round_ > kRounds) return;
+    const std::vector<FilterNoise> noises = NoisesFrom(settled_.path.noise);
+    is_likeliest_ = !Gains(noises.front(), true) &&
+                    !(beside_.is_last && Gains(noises[kSmaller], true));
+    if (!is_likeliest_ && !beside_.is_over()) Relax();
+    gained_ = before - settled_.score();
+  }
+
+  /// Whether it may come out better than another: by two rounds like the last.
+  /// @param hoped  of the first
+  bool MayReach(double score, double hoped) const {
+    const double gain = round_ == 0 ? hoped : 2.0 * gained_;
+    return !is_likeliest_ && settled_.score() - gain <= score;
   }
 
   /// The noise that suits the model by now.
@@ -185,6 +193,8 @@ class Settling {
   double beat_;
   ConvergedModel settled_;
   bool is_likeliest_ = false;  // no noise is known that suits it better
+  int round_ = 0;
+  double gained_ = 0.0;  // by the last round
 };
 
 const Settling& Best(const std::vector<Settling>& rivals) {
@@ -214,19 +224,22 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
   };
   each([&](Settling& one) { one.Begin(hopeless); });
   while (!rivals.empty() && !beside.is_over()) {
-    const double best = Best(rivals).settled().score();
-    if (Best(rivals).is_likeliest() || Best(rivals).IsNowhere()) break;
-    // Noises gain as much as laws do: whoever may come out best is asked at once.
-    constexpr double kMay = 0.5;  // of what the best gains
+    const Settling& best = Best(rivals);
+    if (best.IsNowhere()) break;
+    if (!best.is_likeliest()) {
+      // Noises gain as much as laws do: whoever may come out best is asked at once.
+      constexpr double kMay = 0.5;  // of what the best gains
+      const double score = best.settled().score();
+      const double may = kMay * std::max(0.0, beat - score);
+      each([&](Settling& one) {
+        if (one.MayReach(score, may)) one.Round();
+      });
+      continue;
+    }
     each([&](Settling& one) {
-      const bool may =
-          one.settled().score() <= best + kMay * std::max(0.0, beat - best);
-      if (may && !one.is_likeliest()) one.Alternate();
+      if (&one != &best && !one.IsNowhere()) one.Try(best.settled().path.noise);
     });
-    const Settling& by_now = Best(rivals);
-    each([&](Settling& one) {
-      if (&one != &by_now && !one.IsNowhere()) one.Try(by_now.settled().path.noise);
-    });
+    if (Best(rivals).is_likeliest()) break;
   }
   std::vector<std::optional<ConvergedModel>> settled;
   for (const Settling& one : rivals) {

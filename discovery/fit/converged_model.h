@@ -31,8 +31,9 @@ struct ConvergedBeside {
 };
 
 /// Models that may be in each other's place. Behind noises of their own each would be as
-/// likely as the luck of its search for a noise: the best of them is given the noise that
-/// suits it, the others are tried behind that, and the best then, until it stays the best.
+/// likely as the luck of its search for a noise: the best of them, and those that may reach it by
+/// what they gain, are given the noises that suit them, round by round; the others are tried behind
+/// that of the best, until it stays the best.
 /// @param near   noises to begin with, that of the model so far the last
 /// @param beat   a score: of what is nowhere near it nothing is fitted
 /// @param hoped  what they are to gain by first order

@@ -35,8 +35,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Of fits behind the gains of another model, which the best are fitted anew behind their own.
-constexpr int kIterations = 3;
+// Of fits behind the gains of another model, which the best are fitted anew behind their own: as
+// many as two laws take that say nearly the same, of which one leaves.
+constexpr int kIterations = 6;
 
 bool SameBlocks(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
