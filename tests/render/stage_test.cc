@@ -39,18 +39,22 @@ TEST(Stage, WorksWhileTheCallerGoesOn) {
 }
 
 TEST(Stage, HandsTheMemoryOfDoneItemsBack) {
+  // What is done before the second comes in is handed back with that.
+  std::promise<void> second_waits;
   std::promise<void> first_is_done;
   std::promise<void> go_on;
+  const std::string first(1000, 'a');
   Stage<std::string> stage(2, [&](std::string& item) {
+    if (item == first) second_waits.get_future().wait();
     if (item != "second") return;
     first_is_done.set_value();
     go_on.get_future().wait();
   });
-  const std::string first(1000, 'a');
   std::string item = first;
   stage.Push(item);
   item = "second";
   stage.Push(item);
+  second_waits.set_value();
   first_is_done.get_future().wait();
   item = "third";
   stage.Push(item);
