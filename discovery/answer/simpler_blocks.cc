@@ -89,12 +89,11 @@ std::vector<Instead> SimplerResistances(const Member& member,
   constexpr double kSmall = 0.01;  // of what is usual there
   std::vector<Instead> instead;
   const Block& own = blocks[member.block];
+  if (own.resists.empty() || (own.candidate && own.IsSimplest())) return instead;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Block& other = blocks[b];
-    const bool is_there = !own.resists.empty() && other.resists == own.resists;
-    if (!is_there || !other.candidate || !other.IsSimplest() || b == member.block)
-      continue;
-    if (own.candidate && own.IsSimplest()) continue;
+    const bool is_there = other.resists == own.resists && b != member.block;
+    if (!is_there || !other.candidate || !other.IsSimplest()) continue;
     const FitParameter& size = other.candidate->parameters.front();
     const double little =
         size.role == Role::kFactor

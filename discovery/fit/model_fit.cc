@@ -124,32 +124,27 @@ class Fitting {
   VectorXd From(VectorXd x, int iterations) {
     // A step that promises less is not tried: it is a tenth of what counts (kLeastGain).
     constexpr double kEnd = 0.1;
-    x = x.cwiseMax(lower_).cwiseMin(upper_);
-    double here = CostAt(x);
-    double damping = 0.0;
     // A step that gains nothing takes one run, one that does as many as there are coordinates.
     constexpr int kTries = 3;
+    x = x.cwiseMax(lower_).cwiseMin(upper_);
+    double here = CostAt(x);
+    Near near = NearTo(x);
+    double damping = 0.0;
     int taken = 0;
-    for (int i = 0; i < kTries * iterations && taken < iterations; ++i) {
-      const MatrixXd& J = innovations_.Jacobian(x);
-      const KnownNear known = KnownAt(innovations_.coordinates(), R_, x);
-      const VectorXd slope = J.transpose() * innovations_.Of(x) + known.slope;
-      MatrixXd H = J.transpose() * J + known.bend;
-      if (!H.allFinite()) throw NumericalError(kDiverges);
-      // What nothing tells stays where it is.
-      H.diagonal().array() += 1e-9 * H.diagonal().maxCoeff();
-      MatrixXd damped = H;
+    for (int i = 0; i < kTries * iterations; ++i) {
+      MatrixXd damped = near.bend;
       damped.diagonal() *= 1.0 + damping;
-      const VectorXd s = LeastWithin(damped, slope, lower_ - x, upper_ - x);
-      const double along = 2.0 * slope.dot(s);
-      const double hoped = -along - s.dot(H * s);
+      const VectorXd s = LeastWithin(damped, near.slope, lower_ - x, upper_ - x);
+      const double along = 2.0 * near.slope.dot(s);
+      const double hoped = -along - s.dot(near.bend * s);
       if (!(hoped > kEnd)) break;
       const double there = CostOf(x + s);
       if (there < here) {
         x += s;
         here = there;
         damping *= 0.1;
-        ++taken;
+        if (++taken == iterations) break;
+        near = NearTo(x);
         continue;
       }
       damping = (1.0 + damping) / ShorterBy(along, there - here) - 1.0;
@@ -157,10 +152,26 @@ class Fitting {
     return x;
   }
 
-  static constexpr const char* kDiverges =
-      "fit: the run with the first values diverges";
-
  private:
+  /// The parabola near a point: half of its slope and of how it bends.
+  struct Near {
+    VectorXd slope;
+    MatrixXd bend;
+  };
+
+  Near NearTo(const VectorXd& x) {
+    const MatrixXd& J = innovations_.Jacobian(x);
+    const KnownNear known = KnownAt(innovations_.coordinates(), R_, x);
+    Near near{J.transpose() * innovations_.Of(x) + known.slope,
+              J.transpose() * J + known.bend};
+    if (!near.bend.allFinite()) {
+      throw NumericalError("fit: the run with the first values diverges");
+    }
+    // What nothing tells stays where it is.
+    near.bend.diagonal().array() += 1e-9 * near.bend.diagonal().maxCoeff();
+    return near;
+  }
+
   double CostAt(const VectorXd& x) {
     return innovations_.Of(x).squaredNorm() +
            KnownAt(innovations_.coordinates(), R_, x).price;
@@ -199,7 +210,7 @@ ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
   Innovations innovations(machine_with, run, path, gains, start, coordinates);
   VectorXd x = Place(coordinates, start);
   innovations.Of(x);
-  if (x.size() > 0) x = Fitting(innovations, R).From(x, iterations);
+  if (x.size() > 0 && iterations > 0) x = Fitting(innovations, R).From(x, iterations);
   ModelFit fit;
   fit.model = At(coordinates, start, x);
   fit.deviance = innovations.Of(x).squaredNorm() + gains.log_determinant;
