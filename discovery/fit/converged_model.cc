@@ -86,10 +86,11 @@ class Settling {
     gained_ = before - settled_.score();
   }
 
-  /// Whether it may come out better than another: by two rounds like the last.
+  /// Whether it may come out better than another: by two rounds like the last. The best one
+  /// may, also where its last round lost: how well values are known is told anew by each.
   /// @param hoped  of the first
   bool MayReach(double score, double hoped) const {
-    const double gain = round_ == 0 ? hoped : 2.0 * gained_;
+    const double gain = round_ == 0 ? hoped : 2.0 * std::max(0.0, gained_);
     return !is_likeliest_ && settled_.score() - gain <= score;
   }
 
