@@ -2,7 +2,6 @@
 // no fit saw, and the answer with its figures.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -26,6 +25,7 @@
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/sensor_noise.h"
+#include "mjdiag/plugin/runtime/work_time.h"
 #include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
@@ -35,8 +35,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Of the budget, what the search may use; the rest is for the judgement.
 constexpr double kShareOfSearch = 0.7;
@@ -48,9 +46,7 @@ class RunningTime {
  public:
   explicit RunningTime(const DiscoverOptions& options) : options_(options) {}
 
-  double Used() const {
-    return std::chrono::duration<double>(Clock::now() - begin_).count();
-  }
+  double Used() const { return time_.Seconds(); }
   bool IsStopped() const { return options_.stop && options_.stop(); }
   bool IsOver(double share = 1.0) const {
     return IsStopped() || Used() > share * options_.budget;
@@ -67,7 +63,7 @@ class RunningTime {
  private:
   const DiscoverOptions& options_;
   std::string best_;
-  Clock::time_point begin_ = Clock::now();
+  WorkTime time_;
 };
 
 std::vector<ModelParameter> UncertainParameters(const Machine& machine,

@@ -9,6 +9,7 @@
 #include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/scales.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 
@@ -232,6 +233,10 @@ bool Block::IsResistance() const {
 
 bool Block::IsDryFriction() const {
   return IsResistance() && candidate->effect->kind() == Kind::kDryFriction;
+}
+
+bool Block::GivesWay() const {
+  return candidate && candidate->effect.get() == &Frictionloss();
 }
 
 bool Block::IsSmoothFriction() const {

@@ -54,6 +54,8 @@ struct Block {
   /// Of a joint, whatever it is proportional to.
   bool IsResistance() const;
   bool IsDryFriction() const;
+  /// Dry friction of a joint that gives way at rest as MuJoCo's does by default.
+  bool GivesWay() const;
   /// Dry friction that comes within a speed: a size and that.
   bool IsSmoothFriction() const;
   /// Changes what an actuator makes of its input.

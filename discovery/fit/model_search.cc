@@ -1,7 +1,6 @@
 #include "mjdiag/discovery/fit/model_search.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -24,6 +23,7 @@
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
+#include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/signals/error.h"
 
@@ -72,6 +72,7 @@ void ModelSearch::Adopt(Proposal proposal) {
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
   ChooseSteps();
+  ChooseFriction();
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
 
@@ -316,6 +317,29 @@ bool ModelSearch::ChooseSteps() {
   found_.fit = std::move(settled.fit);
   found_.path = std::move(settled.path);
   return true;
+}
+
+void ModelSearch::ChooseFriction() {
+  for (const Model& other : {GivingWay(found_.blocks, found_.fit.model),
+                             Abrupt(found_.blocks, found_.fit.model)}) {
+    if (SameBlocks(other, found_.fit.model) || IsOver()) continue;
+    try {
+      FilterPath path = RunForceFilter(With(other), run_, found_.path.dofs,
+                                       found_.path.starts, found_.path.noise);
+      ModelFit fit = FitModel([this](const Model& model) { return With(model); }, run_,
+                              path, KeepGains(path), found_.blocks, other, 0);
+      if (ConvergedModel{fit, path}.score() > found_.score - kLeastGain) continue;
+      ConvergedModel settled =
+          SettleNear(Beside(steps_), std::move(fit), std::move(path));
+      Say("joints that stand: " + Difference(settled.score()) + "  " +
+          ModelText(found_.blocks, settled.fit.model));
+      found_.score = settled.score();
+      found_.fit = std::move(settled.fit);
+      found_.path = std::move(settled.path);
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  }
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {

@@ -4,7 +4,6 @@
 // predicts the run better than its price.
 
 #include <Eigen/Core>
-#include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <map>
@@ -18,6 +17,7 @@
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/moved_model.h"
 #include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/plugin/runtime/work_time.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -37,8 +37,6 @@ class ModelSearch {
   Explained Run();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   /// What models are settled beside.
   /// @param steps  with the physics steps of the model
   ConvergedBeside Beside(bool steps) const;
@@ -127,8 +125,7 @@ class ModelSearch {
   bool IsFirstLook() const { return is_part_ || found_.ticks > 1; }
   bool IsStopped() const { return options_.stop && options_.stop(); }
   bool IsOver() const {
-    return std::chrono::duration<double>(Clock::now() - begin_).count() > seconds_ ||
-           IsStopped();
+    return time_.Seconds() > seconds_ || IsStopped();
   }
   void Say(const std::string& text) const {
     if (options_.progress) options_.progress(text);
@@ -146,6 +143,8 @@ class ModelSearch {
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, or of one that has none?
   bool ChooseSteps();
+  /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.
+  void ChooseFriction();
 
   const Machine& given_;
   Machine machine_;  // as given, in the ticks that are looked at
@@ -156,7 +155,7 @@ class ModelSearch {
   MeasuredRun run_;  // with its inputs smoothed
   const Eigen::VectorXd& reading_sd_;
   const ExplainOptions& options_;
-  Clock::time_point begin_ = Clock::now();
+  WorkTime time_;
   double seconds_ = options_.seconds;  // allowed by now
   std::vector<Candidate> candidates_;
   /// What is large comes first.

@@ -33,7 +33,7 @@ std::optional<std::size_t> InPlaceOf(const std::vector<Block>& blocks,
 }
 
 bool IsAbrupt(const Block& block) {
-  return block.IsDryFriction() && block.IsSimplest();
+  return block.IsDryFriction() && block.IsSimplest() && !block.GivesWay();
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ bool IsAbrupt(const Block& block) {
 Model Abrupt(const std::vector<Block>& blocks, Model model) {
   for (Member& member : model) {
     const Block& block = blocks[member.block];
-    if (!block.IsSmoothFriction()) continue;
+    if (!block.IsSmoothFriction() && !block.GivesWay()) continue;
     const auto other = InPlaceOf(blocks, block, IsAbrupt);
     if (other) member = {*other, member.values.head(1)};
   }
@@ -61,6 +61,17 @@ Model Creeping(const std::vector<Block>& blocks, Model model) {
     const double fastest = 0.5 * blocks[*other].candidate->parameters[1].upper;
     if (!(fastest > 0.0)) continue;
     member = {*other, Eigen::Vector2d(member.values[0], kOfFastest * fastest)};
+  }
+  return model;
+}
+
+Model GivingWay(const std::vector<Block>& blocks, Model model) {
+  for (Member& member : model) {
+    const Block& block = blocks[member.block];
+    if (!block.candidate || (!IsAbrupt(block) && !block.IsSmoothFriction())) continue;
+    const auto other =
+        InPlaceOf(blocks, block, [](const Block& one) { return one.GivesWay(); });
+    if (other) member = {*other, member.values.head(1)};
   }
   return model;
 }

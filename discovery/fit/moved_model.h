@@ -12,11 +12,13 @@ namespace mjdiag {
 
 Model After(const ModelMove& move, const Model& model);
 
-/// The same, friction that comes within a speed as one that is there at once.
+/// The same, friction that comes within a speed, or gives way, as one that is there at once.
 Model Abrupt(const std::vector<Block>& blocks, Model model);
 /// The same, friction that is there at once as one that comes within a hundredth of the
 /// fastest speed.
 Model Creeping(const std::vector<Block>& blocks, Model model);
+/// The same, both as friction of a joint that gives way at rest.
+Model GivingWay(const std::vector<Block>& blocks, Model model);
 
 /// The best of all that may be, of which no block comes in with more than two, and the best that
 /// brings one block and nothing else: the fewer come at once, the nearer is first order to what

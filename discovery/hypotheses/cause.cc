@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/fault_effect.h"
+#include "mjdiag/plugin/effects/registry.h"
 
 namespace mjdiag {
 namespace {
@@ -36,7 +37,7 @@ Changes ChangesOf(const std::vector<Cause>& causes) {
 std::string CauseWithValues(const Cause& cause) {
   if (cause.effect->IsFault()) return cause.name() + " = " + Number(cause.values[0]);
   std::string text = cause.name() + "@" + cause.site;
-  if (cause.effect->odds() == kLearned) return text;  // its knots say nothing to people
+  if (cause.effect.get() == &ForceCurve()) return text;  // knots say nothing to people
   const char* separator = ": ";
   Eigen::Index i = 0;
   for (const EffectParameter& parameter : cause.effect->parameters()) {

@@ -1,9 +1,9 @@
 // What one regression along the filtered motion says that a machine lacks, of any setup and
 // records: lacks SETUP RECORD... [EFFECT@SITE:VALUES]...
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -14,10 +14,8 @@
 namespace mjdiag {
 namespace {
 
-double Now() {
-  using Clock = std::chrono::steady_clock;
-  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
+/// Of the processor, which does not depend on what else runs.
+double Now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 int Main(int argc, char** argv) {
   const std::string setup = argv[1];

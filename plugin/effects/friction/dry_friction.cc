@@ -9,7 +9,7 @@ namespace mjdiag {
 void AddDryFriction(mjModel& model, int joint, double force) {
   const int dof = model.jnt_dofadr[joint];
   model.dof_frictionloss[dof] += force;
-  StiffenFriction(model, dof);
+  if (!HasOwnFrictionSolver(model, dof)) StiffenFriction(model, dof);
 }
 
 void TakeDryFriction(mjModel& model, int joint, double force) {
@@ -17,6 +17,13 @@ void TakeDryFriction(mjModel& model, int joint, double force) {
   // What adding it would add, digit for digit.
   const mjtNum added = (friction + force) - friction;
   friction = std::max(0.0, friction - added);
+}
+
+bool HasOwnFrictionSolver(const mjModel& model, int dof) {
+  mjtNum solref[mjNREF], solimp[mjNIMP];
+  mj_defaultSolRefImp(solref, solimp);
+  return !std::equal(solref, solref + mjNREF, RowOf(model.dof_solref, mjNREF, dof)) ||
+         !std::equal(solimp, solimp + mjNIMP, RowOf(model.dof_solimp, mjNIMP, dof));
 }
 
 void StiffenFriction(mjModel& model, int dof) {

@@ -13,12 +13,15 @@
 
 namespace mjdiag {
 
-/// Adds to the bound of a joint [N, N m], with solver parameters as stiff as the time
-/// step allows.
+/// Adds to the bound of a joint [N, N m], with the solver parameters that the model has for
+/// it, or as stiff as the time step allows where it has those of MuJoCo.
 void AddDryFriction(mjModel& model, int joint, double force);
 /// Takes such a bound off again; what was there before it stays.
 void TakeDryFriction(mjModel& model, int joint, double force);
 
+/// Whether solreffriction or solimpfriction is not what MuJoCo sets by default: somebody has
+/// said how that joint sticks.
+bool HasOwnFrictionSolver(const mjModel& model, int dof);
 /// Solver parameters that make a friction constraint behave as exact dry friction. The
 /// default ones are far too soft for a precision stage: it creeps.
 void StiffenFriction(mjModel& model, int dof);
