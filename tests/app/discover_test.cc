@@ -30,7 +30,7 @@ class DiscoverCommand : public ::testing::Test {
  protected:
   void SetUp() override {
     const CommandResult measured = RunCommand(
-        "simulate --setup mjcf/ab383 --duration 0.4 "
+        "simulate --setup mjcf/ab383 --duration 0.2 "
         "--effect coulomb_friction@X:force=4 "
         "--effect force_ripple@Y:amplitude=0.5,period=0.024 --out '" +
         folder_.path().string() + "'");
@@ -71,7 +71,7 @@ class DiscoverCommand : public ::testing::Test {
 TEST_F(DiscoverCommand, TellsEveryFewSecondsHowFarItIs) {
   const pid_t child = Begin("--budget 100000");
   WaitForLines(2);
-  kill(child, SIGTERM);
+  kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   const std::string told = ReadAll(Path("err"));
   const std::regex line(R"(\d+ s: [^;\n]+; so far: [^\n]+\n)");
