@@ -12,7 +12,7 @@ namespace {
 
 /// Of the friction laws, what is found for that one.
 void ExpectFound(const std::string& spec) {
-  const test::Stage stage;
+  const test::Stage stage(2000.0);  // bristles are short
   const PlacedEffect truth = ParseEffect(spec);
   DiscoverOptions options;
   options.choice.only = {"friction"};

@@ -224,7 +224,7 @@ TEST(DiscoveryOutsideTheList, ExplainsNoDampingThatNoListHolds) {
 }
 
 TEST(DiscoveryOutsideTheList, DoesNotNameAForceThatComesAndGoesWithTime) {
-  const test::Stage stage;
+  const test::Stage stage(2000.0);
   const Record record = WithForce(
       stage, [](double, double, double t) { return t > 1.2 && t < 1.9 ? 4.0 : 0.0; });
   const Discovery answer = Discover(stage.machine, record, nullptr, CausesOnly());
@@ -254,7 +254,7 @@ TEST(DiscoveryInDoubt, TakesAWrongMassAsANumberOfThePlantAndNotAsACause) {
 }
 
 TEST(DiscoveryInDoubt, SaysWhichNumberIsOffWhereTheOthersAreKnown) {
-  const test::Stage stage;
+  const test::Stage stage(2000.0);
   DiscoverOptions options = CausesOnly();
   options.doubt = true;
   options.known = {"gear@drive", "damping"};

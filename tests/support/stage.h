@@ -13,8 +13,10 @@
 namespace mjdiag::test {
 
 struct Stage {
-  Machine machine = Load();
+  Machine machine;
 
+  /// @param rate  of its control [Hz]: what looks at fewer ticks is done earlier
+  explicit Stage(double rate = 1000.0) : machine(Load(rate)) {}
   const Setup& setup() const { return machine.setup(); }
   Excitation Motion() const {
     return FollowTrajectory(setup(), setup().trajectories.Find("default"));
@@ -29,10 +31,11 @@ struct Stage {
 
  private:
   // The stage of mjcf/emps in fewer and longer steps than its file has.
-  static Machine Load() {
-    const Setup setup = ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps",
-                                  {"sensors.q.noise_sd=1e-8", "rates.substeps=2",
-                                   "rates.control=2000.0", "compare.skip_samples=0"});
+  static Machine Load(double rate) {
+    const Setup setup =
+        ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps",
+                  {"sensors.q.noise_sd=1e-8", "rates.substeps=2",
+                   "rates.control=" + std::to_string(rate), "compare.skip_samples=0"});
     const ModelPtr plant = LoadModel(setup.plant);
     plant->opt.timestep = setup.rates.step();
     PreparePlant(setup.physics, *plant);
