@@ -8,12 +8,13 @@
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/runtime/simulation.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
 
 TEST(WrongNominal, OfTheBonderIsItsNumbersAndNothingElse) {
-  const Machine model{ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383", {})};
+  const Machine model = test::Bonder().WithSubsteps(2);
   const std::map<std::string, double> truth{{"mass@x_stage", 1.01},
                                             {"damping@X", 1.08}};
   NumberFactors off;
@@ -21,7 +22,7 @@ TEST(WrongNominal, OfTheBonderIsItsNumbersAndNothingElse) {
     off.emplace_back(FindModelParameter(model.plant(), name), factor);
   }
   Trajectory motion = model.setup().trajectories.Find("multi");
-  motion.duration = 0.5;
+  motion.duration = 0.25;
   const Record record =
       Simulate(model.WithNumbers(off), FollowTrajectory(model.setup(), motion), {});
   DiscoverOptions options;
