@@ -120,11 +120,11 @@ void Excite(ExciteCommand& command) {
 
 }  // namespace
 
-std::function<bool()> StopOf(double budget) {
+std::function<bool()> StopOf(std::optional<double> budget) {
   return [budget, begin = std::chrono::steady_clock::now()] {
     const std::chrono::duration<double> taken =
         std::chrono::steady_clock::now() - begin;
-    return Interrupt::IsWished() || taken.count() > budget;
+    return Interrupt::IsWished() || (budget && taken.count() > *budget);
   };
 }
 
@@ -158,7 +158,7 @@ void AddExcite(CLI::App& app) {
                       "Name of the trajectory, or of its file");
   command
       ->add_option("--budget", options->budget,
-                   "Seconds after which no further motion is tried")
+                   "Seconds after which no further motion is tried; all are without it")
       ->check(Within(1e-3, 1e6));
   command->callback([options] { Excite(*options); });
 }

@@ -2,6 +2,7 @@
 // mjdiag excite: what its two kinds of machines share.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,15 +17,15 @@ struct ExciteCommand {
   OutputOptions output;
   std::string record;
   std::vector<std::string> limits;  ///< as they were typed
-  double budget = 60.0;             ///< [s]
+  std::optional<double> budget;     ///< [s]
   MotionDesignOptions design;
 };
 
 inline constexpr const char* kStoppedText =
     "ended before everything was tried: by a signal, or by --budget\n";
 
-/// Whether the time is over, or an end is wished.
-std::function<bool()> StopOf(double budget);
+/// Whether the time is over, if there is a budget, or an end is wished.
+std::function<bool()> StopOf(std::optional<double> budget);
 
 /// Of a machine without controllers, beside a measured motion.
 void ExciteJoints(const Machine& machine, const ExciteCommand& command);

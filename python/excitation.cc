@@ -99,7 +99,7 @@ void RequirePositive(const char* what, double value, const char* unit) {
 MotionDesignObject ExciteMachine(const MachineObject& object, const py::object& wanted,
                                  const py::object& limits,
                                  std::optional<double> max_frequency,
-                                 const std::string& name, double budget,
+                                 const std::string& name, std::optional<double> budget,
                                  const py::object& progress) {
   object.RequireQuiet("excite");
   MotionDesignOptions options;
@@ -108,7 +108,7 @@ MotionDesignObject ExciteMachine(const MachineObject& object, const py::object& 
   if (max_frequency) RequirePositive("max_frequency", *max_frequency, "Hz");
   options.highest_frequency = max_frequency.value_or(0.0);
   options.name = name;
-  RequirePositive("budget", budget, "s");
+  if (budget) RequirePositive("budget", *budget, "s");
   for (const Trajectory& trajectory : object.setup().trajectories.all) {
     if (trajectory.name != name) continue;
     throw InputError("name", "there is a trajectory '" + name + "' already",

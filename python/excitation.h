@@ -29,12 +29,12 @@ void RequirePositive(const char* what, double value, const char* unit);
 /// @param wanted         a name, or several
 /// @param limits         axis -> name -> number, or None
 /// @param max_frequency  [Hz]; none: a quarter of the control rate
-/// @param budget         [s]
+/// @param budget         [s]; none: all motions are tried
 MotionDesignObject ExciteMachine(const MachineObject& machine,
                                  const pybind11::object& wanted,
                                  const pybind11::object& limits,
                                  std::optional<double> max_frequency,
-                                 const std::string& name, double budget,
+                                 const std::string& name, std::optional<double> budget,
                                  const pybind11::object& progress);
 
 }  // namespace mjdiag::python

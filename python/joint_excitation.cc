@@ -23,14 +23,15 @@ namespace py = pybind11;
 
 JointMotionObject ExciteJoints(const MachineObject& object, const py::object& record,
                                const py::object& limits,
-                               std::optional<double> max_frequency, double budget,
+                               std::optional<double> max_frequency,
+                               std::optional<double> budget,
                                const py::object& progress) {
   object.RequireQuiet("excite_joints");
   JointMotionOptions options;
   options.limits = LimitsByAxis(limits);
   if (max_frequency) RequirePositive("max_frequency", *max_frequency, "Hz");
   options.highest_frequency = max_frequency.value_or(0.0);
-  RequirePositive("budget", budget, "s");
+  if (budget) RequirePositive("budget", *budget, "s");
   const MeasuredFile measured = MeasuredOf(object.setup(), record, "excite_joints");
   JointMotionObject made{object, {}, measured.notes};
   RunLong(progress, true, [&](LongCall& call) {

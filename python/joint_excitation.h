@@ -21,11 +21,12 @@ struct JointMotionObject {
 /// @param record         a Record, or the path of one
 /// @param limits         joint -> name -> number, or None
 /// @param max_frequency  [Hz]; none: what suits the measured motion
-/// @param budget         [s]
+/// @param budget         [s]; none: all motions are tried
 JointMotionObject ExciteJoints(const MachineObject& machine,
                                const pybind11::object& record,
                                const pybind11::object& limits,
-                               std::optional<double> max_frequency, double budget,
+                               std::optional<double> max_frequency,
+                               std::optional<double> budget,
                                const pybind11::object& progress);
 
 }  // namespace mjdiag::python

@@ -68,11 +68,11 @@ std::function<void(double)> LongCall::Teller(std::string what) {
   };
 }
 
-std::function<bool()> LongCall::StopAfter(double seconds) const {
+std::function<bool()> LongCall::StopAfter(std::optional<double> seconds) const {
   return [this, seconds, begin = std::chrono::steady_clock::now()] {
     const std::chrono::duration<double> taken =
         std::chrono::steady_clock::now() - begin;
-    return IsStopped() || taken.count() > seconds;
+    return IsStopped() || (seconds && taken.count() > *seconds);
   };
 }
 

@@ -29,8 +29,8 @@ class LongCall {
   void Tell(double fraction, const std::string& what);
   bool IsStopped() const { return stopped_; }
   /// For options that take a function: whether to end, by then or because that many
-  /// seconds are over. The call must outlive it.
-  std::function<bool()> StopAfter(double seconds) const;
+  /// seconds, if there are any, are over. The call must outlive it.
+  std::function<bool()> StopAfter(std::optional<double> seconds) const;
 
  private:
   friend void RunLong(const pybind11::object& progress, bool has_answer,

@@ -66,8 +66,8 @@ void BindCompare(MachineClass& machine) {
 void BindExcite(MachineClass& machine) {
   machine.def("excite", &ExciteMachine, py::arg("wanted") = py::tuple(), py::kw_only(),
               py::arg("limits") = py::none(), py::arg("max_frequency") = py::none(),
-              py::arg("name") = MotionDesignOptions{}.name, py::arg("budget") = 60.0,
-              py::arg("progress") = py::none(),
+              py::arg("name") = MotionDesignOptions{}.name,
+              py::arg("budget") = py::none(), py::arg("progress") = py::none(),
               R"(
               A motion within the limits of the axes, as long as the default one, whose
               run tells most of what is wanted: a MotionDesign (docs/excite.md).
@@ -79,8 +79,8 @@ void BindExcite(MachineClass& machine) {
               does: {"x": {"velocity": 0.3}}.
               max_frequency: of a tone [Hz]; None: a quarter of the control rate.
               name: of the trajectory.
-              budget: seconds after which no further motion is tried; then, and at
-              Ctrl-C, the best motion so far is given (MotionDesign.stopped).
+              budget: seconds after which no further motion is tried, None: all are; then,
+              and at Ctrl-C, the best motion so far is given (MotionDesign.stopped).
               progress: as of simulate.
 
               InputError: a machine without controllers or trajectory, names that there
@@ -88,7 +88,7 @@ void BindExcite(MachineClass& machine) {
               NumericalError if the default motion does not tell the unknowns apart.)");
   machine.def("excite_joints", &ExciteJoints, py::arg("record"), py::kw_only(),
               py::arg("limits") = py::none(), py::arg("max_frequency") = py::none(),
-              py::arg("budget") = 60.0, py::arg("progress") = py::none(),
+              py::arg("budget") = py::none(), py::arg("progress") = py::none(),
               R"(
               Of a machine whose controllers are not known, an arm: a motion of its joints
               within the limits of a measured one and as long as that, along which the
@@ -99,8 +99,8 @@ void BindExcite(MachineClass& machine) {
               limits: joint -> dict of lowest, highest [m or rad], velocity, acceleration
               and force [N or N m], in the place of what the measured motion does.
               max_frequency: of the Fourier series [Hz]; None: what suits that motion.
-              budget: seconds after which no further motion is tried; then, and at
-              Ctrl-C, the best motion so far is given (JointMotionDesign.stopped).
+              budget: seconds after which no further motion is tried, None: all are; then,
+              and at Ctrl-C, the best motion so far is given (JointMotionDesign.stopped).
               progress: as of simulate.
 
               InputError: joints that there are not, limits that cannot be kept, a record

@@ -575,7 +575,7 @@ class Machine:
         limits: Optional[Mapping[str, Mapping[str, float]]] = None,
         max_frequency: Optional[float] = None,
         name: str = "excite",
-        budget: float = 60.0,
+        budget: Optional[float] = None,
         progress: _Progress = None,
     ) -> MotionDesign: ...
     def excite_joints(
@@ -584,7 +584,7 @@ class Machine:
         *,
         limits: Optional[Mapping[str, Mapping[str, float]]] = None,
         max_frequency: Optional[float] = None,
-        budget: float = 60.0,
+        budget: Optional[float] = None,
         progress: _Progress = None,
     ) -> JointMotionDesign: ...
     def design(

@@ -33,7 +33,7 @@ struct JointMotionOptions {
   /// Of the series [Hz]; 0: where a sine that keeps the limit of velocity comes to that of
   /// acceleration, of the joint with the lowest.
   double highest_frequency = 0.0;
-  int rounds = 4000;  ///< of eight motions each
+  int rounds = 2000;  ///< of eight motions each
   std::uint64_t seed = 1;
   /// @param condition  of the best motion so far
   std::function<void(double fraction, double condition)> progress;

@@ -203,8 +203,8 @@ class ExciteTest(Test):
 
     @unittest.skipUnless(COMMAND, "needs the command, $MJDIAG_COMMAND")
     def test_is_the_design_of_the_command(self):
-        found = mjdiag.Machine(servo()).excite(budget=100).to_dict()
-        told = said("excite", "--setup", "servo", "--budget", "100")
+        found = mjdiag.Machine(servo()).excite().to_dict()
+        told = said("excite", "--setup", "servo")
         self.assertEqual({key: told[key] for key in found}, found)
         self.assertFalse(found["stopped"])
 
