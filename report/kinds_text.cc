@@ -15,17 +15,22 @@ std::string PartText(double share) {
   return FormatNumber(100.0 * share, 3) + " %";
 }
 
+std::string SureText(double probability) {
+  constexpr double kCertain = 0.99;
+  constexpr double kLikely = 0.8;
+  if (probability >= kCertain) return "all but certain";
+  return probability >= kLikely ? "likely" : "possible";
+}
+
 }  // namespace
 
 std::string KindAt(const FoundKind& found) {
   return KindName(found.kind) + " at " + found.site;
 }
 
-std::string SureText(double probability) {
-  constexpr double kCertain = 0.99;
-  constexpr double kLikely = 0.8;
-  if (probability >= kCertain) return "all but certain";
-  return probability >= kLikely ? "likely" : "possible";
+std::string KindWords(const FoundKind& found) {
+  return KindAt(found) + ", " + KindMeaning(found.kind) + ": " +
+         SureText(found.probability);
 }
 
 std::string KindsSentence(const Discovery& discovery) {

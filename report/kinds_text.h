@@ -10,8 +10,8 @@ namespace mjdiag {
 
 /// "load friction at shaft".
 std::string KindAt(const FoundKind& found);
-/// "all but certain", "likely", "possible".
-std::string SureText(double probability);
+/// The same with what that is and how sure: "all but certain", "likely", "possible".
+std::string KindWords(const FoundKind& found);
 /// One sentence with those that are rather there than not: "The model is wrong about load
 /// friction at shaft (a resistance that grows with the load). "; empty without any.
 std::string KindsSentence(const Discovery& discovery);
