@@ -130,14 +130,14 @@ void RunCalibration(CalibrateCommand& command) {
   {
     ProgressBar bar("calibrating");
     command.calibration.linear = command.runs.linear;
-    command.calibration.progress = [&bar](double part) { bar.Show(part); };
+    command.calibration.progress = bar.Shower();
     report = Calibrate(machine, records, command.calibration);
   }
   setup.calibration = report.calibration;
   const Machine calibrated(setup);
   {
     ProgressBar bar("healthy runs");
-    command.runs.progress = [&bar](double part) { bar.Show(part); };
+    command.runs.progress = bar.Shower();
     design = CalibratedFilters(calibrated, records, command.runs);
   }
   HoldFiles();

@@ -11,8 +11,10 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/discovery/comparison/comparison.h"
+#include "mjdiag/report/comparison_fields.h"
 #include "mjdiag/report/comparison_json.h"
 #include "mjdiag/report/comparison_page.h"
+#include "mjdiag/report/field_reference.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag::app {
@@ -91,7 +93,7 @@ void Compare(CompareOptions& options) {
   Comparison comparison;
   {
     ProgressBar bar("comparing");
-    subject.options.progress = [&bar](double fraction) { bar.Show(fraction); };
+    subject.options.progress = bar.Shower();
     comparison = Compare(subject.machine, measured, subject.options);
   }
 
@@ -131,6 +133,7 @@ void AddCompare(CLI::App& app) {
   AddSeedOption(*command, options->seed, "Seed of the noise floor's simulation");
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);
+  AddFieldsOption(*command, &FieldReference<Comparison>);
   command->callback([options] { Compare(*options); });
 }
 

@@ -49,7 +49,7 @@ void AddDiagnosisOptions(CLI::App& command, DiagnosisSource& source) {
 PreparedDiagnosis Prepare(const Machine& machine, DiagnosisSource source,
                           const Excitation& motion) {
   ProgressBar bar("healthy runs");
-  source.nominal.progress = [&bar](double fraction) { bar.Show(fraction); };
+  source.nominal.progress = bar.Shower();
   return PrepareDiagnosis(machine, source, motion);
 }
 

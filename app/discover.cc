@@ -18,8 +18,10 @@
 #include "app/subject.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/plugin/plant/model_parameter.h"
+#include "mjdiag/report/discovery_fields.h"
 #include "mjdiag/report/discovery_json.h"
 #include "mjdiag/report/discovery_page.h"
+#include "mjdiag/report/field_reference.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
@@ -57,16 +59,12 @@ std::string AtMost(double seconds) {
 Discovery RunDiscovery(const Machine& machine, const DiscoverCommand& command,
                        const Measurements& measurements) {
   ProgressBar bar("discovering");
-  ProgressLog log;
   DiscoverOptions options = command.search;
   options.doubt = command.doubt.value_or(!IsExact(machine.plant()));
   options.stop = [] { return Interrupt::IsWished(); };
-  options.progress = [&bar, &log](const DiscoveryProgress& progress) {
-    if (bar.is_on_terminal()) {
-      bar.Show(progress.what, progress.fraction);
-    } else {
-      log.Show(progress.what + AtMost(progress.most_seconds), progress.best);
-    }
+  options.progress = [&bar](const DiscoveryProgress& progress) {
+    bar.Show(progress.what, progress.fraction);
+    bar.Say(progress.what + AtMost(progress.most_seconds), progress.best);
   };
   return Discover(machine, measurements, options);
 }
@@ -167,6 +165,7 @@ void AddDiscover(CLI::App& app) {
   AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);
   AddReportOption(*command, options->output);
+  AddFieldsOption(*command, &FieldReference<Discovery>);
   command->callback([options] { Discover(*options); });
 }
 

@@ -76,15 +76,10 @@ void ExciteAxes(const Machine& machine, ExciteCommand& command) {
   MotionDesign design;
   {
     ProgressBar bar("motions");
-    ProgressLog log;
-    command.design.progress = [&](double fraction, double gain) {
-      if (bar.is_on_terminal()) {
-        bar.Show(fraction);
-      } else {
-        log.Show("motions, " + Short(std::round(100.0 * fraction)) + " %",
-                 gain > 1.0 ? "sd " + FormatNumber(gain, 3) + " times smaller"
-                            : "the default motion");
-      }
+    command.design.progress = [&bar](double fraction, double gain) {
+      bar.ShowAndSay(fraction, gain > 1.0
+                                   ? "sd " + FormatNumber(gain, 3) + " times smaller"
+                                   : "the default motion");
     };
     command.design.stop = StopOf(command.budget);
     design = DesignMotion(machine, command.design);

@@ -1,6 +1,5 @@
 // mjdiag excite, of a machine whose controllers are not known: beside a measured motion.
 
-#include <cmath>
 #include <filesystem>
 
 #include "app/command.h"
@@ -50,19 +49,14 @@ void ExciteJoints(const Machine& machine, const ExciteCommand& command) {
   JointMotionDesign design;
   {
     ProgressBar bar("motions");
-    ProgressLog log;
     design = DesignJointMotion(
         machine, ToMeasuredRun(machine.setup(), measured),
         {.limits = command.design.limits,
          .highest_frequency = command.design.highest_frequency,
          .progress =
-             [&](double fraction, double condition) {
-               if (bar.is_on_terminal()) {
-                 bar.Show(fraction);
-               } else {
-                 log.Show("motions, " + Short(std::round(100.0 * fraction)) + " %",
-                          "condition number " + FormatNumber(condition, 3));
-               }
+             [&bar](double fraction, double condition) {
+               bar.ShowAndSay(fraction,
+                              "condition number " + FormatNumber(condition, 3));
              },
          .stop = StopOf(command.budget)});
   }

@@ -28,6 +28,17 @@ void AddReportOption(CLI::App& command, OutputOptions& options) {
       ->needs("--out");
 }
 
+void AddFieldsOption(CLI::App& command, std::string (*reference)()) {
+  command.add_flag_callback(
+      "--fields",
+      [reference] {
+        std::fputs(reference().c_str(), stdout);
+        throw CLI::Success();
+      },
+      "Print what the JSON document has, a line each: name, unit and what it is; "
+      "nothing else is done");
+}
+
 namespace {
 
 /// What PrepareOutput made, the outermost folder first.

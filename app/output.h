@@ -31,6 +31,10 @@ void AddOutputOptions(CLI::App& command, OutputOptions& options, bool folder_req
 /// `--report`, for commands that have a page. Call after AddOutputOptions.
 void AddReportOption(CLI::App& command, OutputOptions& options);
 
+/// `--fields`, which prints what the document of the command has and ends.
+/// @param reference  FieldReference (field_reference.h) of its result
+void AddFieldsOption(CLI::App& command, std::string (*reference)());
+
 /// Makes the folder, if one is asked for, before any work is done. InputError if it
 /// cannot be written to, or a report is wanted and the plot library is not installed.
 void PrepareOutput(const OutputOptions& options);

@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "app/format.h"
 
 namespace mjdiag::app {
 namespace {
@@ -50,11 +53,18 @@ void ProgressBar::Show(const std::string& label, double fraction) {
   Show(fraction);
 }
 
-ProgressLog::ProgressLog() : start_(Clock::now()), last_(start_) {}
+std::function<void(double)> ProgressBar::Shower() {
+  return [this](double fraction) { Show(fraction); };
+}
 
-void ProgressLog::Show(const std::string& what, const std::string& so_far) {
+void ProgressBar::ShowAndSay(double fraction, const std::string& so_far) {
+  Show(fraction);
+  Say(label_ + ", " + Short(std::round(100.0 * fraction)) + " %", so_far);
+}
+
+void ProgressBar::Say(const std::string& what, const std::string& so_far) {
   const auto now = Clock::now();
-  if (now - last_ < kBetweenLines) return;
+  if (terminal_ || now - last_ < kBetweenLines) return;
   last_ = now;
   const auto elapsed = std::chrono::duration_cast<std::chrono::seconds>(now - start_);
   std::fprintf(stderr, "%lld s: %s; so far: %s\n",

@@ -227,7 +227,7 @@ Record Run(const Machine& machine, const MotionOptions& motion,
            const std::string& label) {
   ProgressBar bar(label);
   RunOptions with_bar = options;
-  with_bar.progress = [&bar](double fraction) { bar.Show(fraction); };
+  with_bar.progress = bar.Shower();
   return motion.linear ? SimulateLinear(machine, excitation, with_bar)
                        : Simulate(machine, excitation, with_bar);
 }

@@ -53,27 +53,24 @@ double NumberOf(py::handle value, const std::string& what, const std::string& na
 
 }  // namespace
 
-py::array View(const Eigen::VectorXd& values, py::handle owner) {
+py::array_t<double> View(const Eigen::VectorXd& values, py::handle owner) {
   return ReadOnly(py::array(py::dtype::of<double>(), {values.size()}, {sizeof(double)},
                             values.data(), owner));
 }
 
-py::array View(const Eigen::MatrixXd& values, py::handle owner) {
+py::array_t<double> View(const Eigen::MatrixXd& values, py::handle owner) {
   const auto size = static_cast<py::ssize_t>(sizeof(double));
   return ReadOnly(py::array(py::dtype::of<double>(), {values.rows(), values.cols()},
                             {size, size * values.rows()}, values.data(), owner));
 }
 
-py::array Copy(const Eigen::VectorXd& values) {
-  return {py::dtype::of<double>(), {values.size()}, values.data()};
+py::array_t<double> Copy(const Eigen::VectorXd& values) {
+  return py::array_t<double>(values.size(), values.data());
 }
 
-py::array Copy(const Eigen::MatrixXd& values) {
+py::array_t<double> Copy(const Eigen::MatrixXd& values) {
   const auto size = static_cast<py::ssize_t>(sizeof(double));
-  return {py::dtype::of<double>(),
-          {values.rows(), values.cols()},
-          {size, size * values.rows()},
-          values.data()};
+  return {{values.rows(), values.cols()}, {size, size * values.rows()}, values.data()};
 }
 
 py::array Copy(const SampleMask& values) {

@@ -17,11 +17,11 @@ namespace mjdiag::python {
 
 /// A read-only view, of shape (n,) or (rows, columns).
 /// @param owner  the Python object that holds the values
-pybind11::array View(const Eigen::VectorXd& values, pybind11::handle owner);
-pybind11::array View(const Eigen::MatrixXd& values, pybind11::handle owner);
+pybind11::array_t<double> View(const Eigen::VectorXd& values, pybind11::handle owner);
+pybind11::array_t<double> View(const Eigen::MatrixXd& values, pybind11::handle owner);
 /// An array of its own.
-pybind11::array Copy(const Eigen::VectorXd& values);
-pybind11::array Copy(const Eigen::MatrixXd& values);
+pybind11::array_t<double> Copy(const Eigen::VectorXd& values);
+pybind11::array_t<double> Copy(const Eigen::MatrixXd& values);
 pybind11::array Copy(const SampleMask& values);
 
 /// The finite numbers of a one-dimensional array. InputError begins with `what`.

@@ -32,7 +32,7 @@ inline constexpr auto kFields<ChannelMismatch> = std::tuple{
                [](const ChannelMismatch& channel) { return channel.noise_floor.rms; }),
     Everywhere("exceeds_noise", "", "Whether there is more than noise.",
                &ChannelMismatch::exceeds_noise),
-    Everywhere("p_value", "1", "Chance that noise alone reaches this rms.",
+    Everywhere("p_value", "", "Chance that noise alone reaches this rms.",
                &ChannelMismatch::p_value),
     InJson("worst_window", "", "Where it is largest.", &ChannelMismatch::worst),
     InPython("worst_window", "",
@@ -83,16 +83,16 @@ inline constexpr auto kFields<Comparison> = std::tuple{
         "Whether the measured reference was followed; else the inputs were applied.",
         &Comparison::closed_loop),
     Everywhere(
-        "samples", "1", "Of the record.",
+        "samples", "", "Of the record.",
         [](const Comparison& comparison) { return comparison.measured.samples(); }),
     Everywhere(
-        "sample_time", "s", "Between two of them.",
+        "sample_time", "s", "Between two samples.",
         [](const Comparison& comparison) { return comparison.measured.sample_time(); }),
-    Everywhere("skip_samples", "1", "Left out of all figures at the start.",
+    Everywhere("skip_samples", "", "Left out of all figures at the start.",
                [](const Comparison& comparison) -> std::int64_t {
                  return comparison.options.skip_samples;
                }),
-    Everywhere("level", "1", "Chance to call plain noise a mismatch, per channel.",
+    Everywhere("level", "", "Chance to call plain noise a mismatch, per channel.",
                [](const Comparison& comparison) { return comparison.options.level; }),
     Everywhere("exceeds_noise", "", "Whether any channel has more than noise.",
                &Comparison::exceeds_noise),
@@ -151,7 +151,7 @@ inline constexpr auto kFields<Comparison> = std::tuple{
                               std::identity());
              }),
     Everywhere(
-        "deviance", "1",
+        "deviance", "",
         "-2 ln L of the filter that follows the motion: of two models of one record "
         "the one with the lower is more probable. None where the record lacks sensors "
         "or commands; prediction and missing_force are then empty.",

@@ -53,7 +53,7 @@ inline constexpr auto kFields<CauseParameter> = std::tuple{
 template <>
 inline constexpr auto kFields<Alternative> = std::tuple_cat(
     IdentityFields(&Alternative::cause),
-    std::tuple{InJson("probability", "1", "Of it, in the place of the cause.",
+    std::tuple{InJson("probability", "", "Of it, in the place of the cause.",
                       &Alternative::probability),
                InJson("indistinguishable", "", "No measurement tells them apart.",
                       &Alternative::indistinguishable)});
@@ -61,7 +61,7 @@ inline constexpr auto kFields<Alternative> = std::tuple_cat(
 template <>
 inline constexpr auto kFields<FoundCause::NumberInstead> =
     std::tuple{InJson("name", "", "Of the number.", &FoundCause::NumberInstead::name),
-               InJson("probability", "1", "Of it, in the place of the cause.",
+               InJson("probability", "", "Of it, in the place of the cause.",
                       &FoundCause::NumberInstead::probability)};
 
 template <>
@@ -73,7 +73,7 @@ inline constexpr auto kFields<FoundCause> = std::tuple_cat(
                      return NamedBy(found.parameters, &CauseParameter::name,
                                     std::identity());
                    }),
-        Everywhere("probability", "1", "Among all that could be in its place.",
+        Everywhere("probability", "", "Among all that could be in its place.",
                    &FoundCause::probability),
         InJson("alternatives", "",
                "What else could be in its place, 1 % or more, likeliest first.",
@@ -91,7 +91,7 @@ inline constexpr auto kFields<FoundCause> = std::tuple_cat(
             }),
         InJson("numbers_instead", "", "Numbers of the plant that could be.",
                &FoundCause::numbers),
-        Everywhere("nothing_instead", "1", "Probability that nothing is in its place.",
+        Everywhere("nothing_instead", "", "Probability that nothing is in its place.",
                    &FoundCause::none),
         InJson("unnamed", "",
                "Of a force that was learned and has no name, what it is.",
@@ -102,7 +102,7 @@ inline constexpr auto kFields<FoundCause> = std::tuple_cat(
 
 template <>
 inline constexpr auto kFields<CauseSet> = std::tuple{
-    InJson("probability", "1", "Of these and no others.", &CauseSet::probability),
+    InJson("probability", "", "Of these and no others.", &CauseSet::probability),
     InJson("causes", "", "All of them.", &CauseSet::causes)};
 
 template <>
@@ -113,10 +113,10 @@ inline constexpr auto kFields<FoundKind> = std::tuple{
              [](const FoundKind& found) { return KindName(found.kind); }),
     Everywhere("site", "", "The joint, actuator or sensor at which it acts.",
                &FoundKind::site),
-    Everywhere("probability", "1", "By what data that no fit saw lose without it.",
+    Everywhere("probability", "", "By what data that no fit saw lose without it.",
                &FoundKind::probability),
     Everywhere(
-        "share", "1",
+        "share", "",
         "Of the unseen mismatch that the answer takes away, what is back without it; "
         "0 of a number of the plant.",
         &FoundKind::share),
@@ -194,25 +194,23 @@ inline constexpr auto kFields<RecordReplay> = std::tuple{
            [](const RecordReplay& replay) { return ReplayFigures(replay.after); })};
 
 template <>
-inline constexpr auto kFields<LadderStep> =
-    std::tuple{InJson("added", "", R"("nothing", "coulomb_friction@load", ...)",
-                      &LadderStep::added),
-               InJson("train", "1",
-                      "Innovations over sensor noise, rms; 1: noise is all there is.",
-                      &LadderStep::train),
-               InJson("held_out", "1", "The same on parts that no fit saw.",
-                      &LadderStep::held_out),
-               InJson("error_percent", "%", "Relative error of a replay, by signal.",
-                      &LadderStep::error_percent),
-               InJson("validation_percent", "%", "The same of the validation record.",
-                      &LadderStep::validation_percent)};
+inline constexpr auto kFields<LadderStep> = std::tuple{
+    InJson("added", "", R"("nothing", "coulomb_friction@load", ...)",
+           &LadderStep::added),
+    InJson("train", "", "Innovations over sensor noise, rms; 1: noise is all there is.",
+           &LadderStep::train),
+    InJson("held_out", "", "The same on parts that no fit saw.", &LadderStep::held_out),
+    InJson("error_percent", "%", "Relative error of a replay, by signal.",
+           &LadderStep::error_percent),
+    InJson("validation_percent", "%", "The same of the validation record.",
+           &LadderStep::validation_percent)};
 
 template <>
 inline constexpr auto kFields<FaultLimit> = std::tuple{
     InJson("fault", "", "The fault parameter.", &FaultLimit::fault),
-    InJson("before", "1", "Smallest change that is seen with the plant as given.",
+    InJson("before", "", "Smallest change that is seen with the plant as given.",
            &FaultLimit::before),
-    InJson("after", "1", "The same with the extended plant.", &FaultLimit::after)};
+    InJson("after", "", "The same with the extended plant.", &FaultLimit::after)};
 
 template <>
 inline constexpr auto kFields<Budget> = std::tuple{
@@ -224,7 +222,7 @@ inline constexpr auto kFields<Budget> = std::tuple{
 template <>
 inline constexpr auto kFields<Decision> = std::tuple{
     InJson("tried", "", "A model, or what was done to one.", &Decision::tried),
-    InJson("score", "1", "-2 ln of how much more probable the model before was.",
+    InJson("score", "", "-2 ln of how much more probable the model before was.",
            &Decision::score),
     InJson("why", "", "What came of it.", &Decision::why)};
 
@@ -267,15 +265,15 @@ inline constexpr auto kFields<Remainder> =
                       IfLeft(&ResidualDependence::factor)),
                InJson("shape", "", R"("linear", "fourth power", ...)",
                       IfLeft(&ResidualDependence::shape)),
-               InJson("explained_share", "1", "What that explains of unseen parts.",
+               InJson("explained_share", "", "What that explains of unseen parts.",
                       IfLeft(&ResidualDependence::explained_share)),
                InJson("period", "unit", "Of a periodic shape, else 0.",
                       IfLeft(&ResidualDependence::period)),
-               InJson("exponent", "1", "Of a power, else 0.",
+               InJson("exponent", "", "Of a power, else 0.",
                       IfLeft(&ResidualDependence::exponent)),
                InJson("runner_up", "", "The next best variable.",
                       IfLeft(&ResidualDependence::runner_up)),
-               InJson("runner_up_share", "1", "What that explains alone.",
+               InJson("runner_up_share", "", "What that explains alone.",
                       IfLeft(&ResidualDependence::runner_up_share))};
 
 inline Eigen::Index FittedSamples(const Discovery& discovery) {
@@ -308,7 +306,7 @@ inline constexpr auto kFields<Discovery> = std::tuple{
                R"("no_discrepancy", "explained", "partly_explained" or "unexplained".)",
                [](const Discovery& found) { return VerdictName(found.verdict); }),
     InPython("answer", "", "The answer in a sentence or two.", &DiscoveryAnswer),
-    Everywhere("force_left", "1",
+    Everywhere("force_left", "",
                "Share of the missing force that is left on data which no fit saw; none "
                "where noise is all there is.",
                &Discovery::force_left),
@@ -350,30 +348,28 @@ inline constexpr auto kFields<Discovery> = std::tuple{
                &Discovery::noise_floor),
     Everywhere("units", "", "Of mismatch and noise floor, by channel.",
                &Discovery::unit),
-    InJson("gain", "1", "1 - after / before, by train and validation.",
+    InJson("gain", "", "1 - after / before, by train and validation.",
            [](const Discovery& found) {
              return Named<double>{{"train", found.gain_train},
                                   {"validation", found.gain_validation}};
            }),
-    InPython("gain", "1",
+    InPython("gain", "",
              "1 - after / before, on what fits saw and on what they did not see.",
              [](const Discovery& found) {
                return std::pair{found.gain_train, found.gain_validation};
              }),
-    Everywhere("whiteness", "1",
+    Everywhere("whiteness", "",
                "Share of the innovations' power that is white, before and after.",
                [](const Discovery& found) {
                  return Named<double>{{"before", 1.0 - found.colour_before},
                                       {"after", 1.0 - found.colour_after}};
                }),
-    InJson("unexplained", "", "What is left.",
-           [](const Discovery& found) { return Remainder{&found}; }),
-    Everywhere("train_share", "1", "Of the record, what fits saw.",
+    Everywhere("train_share", "", "Of the record, what fits saw.",
                &Discovery::train_share),
     Everywhere("sample_time", "s", "Between two samples.", &Discovery::sample_time),
-    Everywhere("substeps", "1", "Steps of the physics in a control tick.",
+    Everywhere("substeps", "", "Steps of the physics in a control tick.",
                &Discovery::substeps),
-    Everywhere("samples", "1", "Of the first record that fits saw.", &FittedSamples),
+    Everywhere("samples", "", "Of the first record that fits saw.", &FittedSamples),
     InJson(
         "derived", "%",
         "Relative error of velocities, accelerations and forces, by before and after, "

@@ -16,6 +16,7 @@
 // an optional or Named.
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -87,6 +88,19 @@ template <typename T>
 struct IfAny : std::optional<T> {
   using std::optional<T>::optional;
 };
+
+/// What these are to whoever goes through a result.
+template <typename T>
+constexpr bool kIsNamed = false;
+template <typename T>
+constexpr bool kIsNamed<Named<T>> = true;
+template <typename T>
+constexpr bool kIsNamed<std::map<std::string, T>> = true;
+
+template <typename T>
+constexpr bool kIsLeftOut = false;
+template <typename T>
+constexpr bool kIsLeftOut<IfAny<T>> = true;
 
 /// null in JSON where there is no text.
 inline std::optional<std::string> TextOrNone(const std::string& text) {

@@ -5,24 +5,11 @@
 #include <cmath>
 #include <concepts>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "mjdiag/report/fields.h"
 
 namespace mjdiag {
-
-template <typename T>
-constexpr bool kIsNamed = false;
-template <typename T>
-constexpr bool kIsNamed<Named<T>> = true;
-template <typename T>
-constexpr bool kIsNamed<std::map<std::string, T>> = true;
-
-template <typename T>
-constexpr bool kIsLeftOut = false;
-template <typename T>
-constexpr bool kIsLeftOut<IfAny<T>> = true;
 
 template <typename T>
 nlohmann::json JsonOf(const T& value) {

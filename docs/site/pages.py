@@ -1,5 +1,5 @@
 """Makes the pages that Sphinx builds the site from: the README as the first one, the texts of
-docs/, every command from its --help, every Python name from its stub and docstring, the
+docs/, every command from its --help and --fields, every Python name from its stub and docstring, the
 sources that the theory names, the notebooks with what they put out, and a gallery.
 
 Checks the commands in the texts, too.
@@ -167,9 +167,22 @@ def commands(site, program):
             shown = ", ".join(option.names) + (f" {option.value}" if option.value else "")
             words = option.words or "(no description)"
             lines.append(f"`````{{option}} {shown}\n{escape(words)}\n`````\n")
+        if "--fields" in command.names():
+            lines += fields(program, name)
         lines.append(command.ends)
         site.write(f"commands/{name}.md",
                    f"```{{program}} mjdiag {name}\n```\n" + "\n".join(lines))
+
+
+def fields(program, name):
+    """A table of what `mjdiag <name> --fields` says of the JSON document."""
+    said = subprocess.run([program, name, "--fields"], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+    rows = [re.fullmatch(r"(\S+)(?: \[(.*?)\])?: (.*)", line).groups("")
+            for line in said.splitlines()]
+    return ["## What `--json` has\n", "| field | unit | |", "|---|---|---|",
+            *(f"| `{field}` | {escape(unit)} | {escape(text).replace('|', chr(92) + '|')} |"
+              for field, unit, text in rows), ""]
 
 
 def escape(words):
@@ -188,7 +201,7 @@ def docstring(thing):
 def python_reference(site, folder):
     sys.path.insert(0, str(folder))
     import mjdiag
-    tree = ast.parse((ROOT / "python/mjdiag/__init__.pyi").read_text())
+    tree = ast.parse((folder / "mjdiag/__init__.pyi").read_text())
     lines = ["# Python reference\n",
              "Names and types from the stubs, words from the docstrings.\n"]
     lines += [f"- `{node.targets[0].id}` stands for `{ast.unparse(node.value)}`"

@@ -101,12 +101,14 @@ const std::map<std::string, Rows>& Table() {
                                     {"--linear", Same("--linear=false")}}},
       {"compare", kMachine + kOutput + kReport +
                       Rows{{"--plant", kNothing},
+                           {"--fields", kNothing},
                            {"--record", kRequired},
                            {"--open-loop", Same("--open-loop=false")},
                            {"--seed", Same("--seed 1")}}},
       // Without --doubt and --no-doubt the plant says whether it is exact (below).
       {"discover", kMachine + kReport +
                        Rows{{"--plant", kNothing},
+                            {"--fields", kNothing},
                             {"--out", kRequired},
                             {"--json", kNothing},
                             {"--record", kRequired},

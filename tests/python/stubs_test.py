@@ -4,9 +4,11 @@ import ast
 import inspect
 import os
 import re
+import subprocess
 import unittest
 
 import mjdiag
+from support import COMMAND
 
 STUB = os.path.join(os.path.dirname(mjdiag.__file__), "__init__.pyi")
 
@@ -59,6 +61,23 @@ class StubsTest(unittest.TestCase):
                 self.assertNotIn("::", doc.split("\n")[0])
                 self.assertEqual(arguments_of(members[key]), bound_arguments(getattr(bound, key), doc),
                                  f"{name}.{key}")
+
+    @unittest.skipUnless(COMMAND, "needs the command, $MJDIAG_COMMAND")
+    def test_have_the_figures_of_an_answer_as_the_command_describes_them(self):
+        for command, path, name in [("compare", "channels.<name>.", "Mismatch"),
+                                    ("discover", "causes[].parameters.<name>.", "Parameter")]:
+            said = subprocess.run([COMMAND, command, "--fields"], check=True,
+                                  capture_output=True, text=True).stdout
+            stub = {node.name: ast.unparse(node.returns) for node in stub_classes()[name].body}
+            rows = [row.removeprefix(path) for row in said.splitlines() if row.startswith(path)]
+            described = [row for row in rows if "." not in row.split(" ")[0].rstrip(":")]
+            self.assertGreater(len(described), 3)
+            for row in described:
+                field, unit, words = re.fullmatch(r"(\w+)( \[.*?\])?: (.*)", row).groups("")
+                self.assertIn(field, stub)
+                if field != "worst_window":  # a tuple in Python
+                    doc = getattr(mjdiag, name).__dict__[field].__doc__
+                    self.assertEqual(" ".join(doc.split()), words + unit)
 
     def test_properties_are_documented(self):
         for name in mjdiag.__all__:
