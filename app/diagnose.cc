@@ -6,7 +6,9 @@
 #include "app/command.h"
 #include "app/diagnosis_output.h"
 #include "app/output.h"
+#include "mjdiag/diagnosis/diagnosis_fields.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
+#include "mjdiag/report/field_reference.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag::app {
@@ -49,6 +51,7 @@ void AddDiagnose(CLI::App& app) {
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);
+  AddFieldsOption(*command, &FieldReference<DiagnosisResult>);
   AddDiagnosisOptions(*command, options->source);
   command->add_option("--record", options->record, "Record to be diagnosed")
       ->required();

@@ -1,6 +1,6 @@
 #pragma once
-// diagnosis.json: the answer of a diagnosis for other programs, schema
-// "mjdiag.diagnosis/1".
+// diagnosis.json: the answer of a diagnosis for other programs, what diagnosis_fields.h
+// describes.
 
 #include <string>
 

@@ -2,10 +2,9 @@
 
 #include "python/diagnosis.h"
 
-#include <pybind11/stl.h>
-
 #include <utility>
 
+#include "mjdiag/diagnosis/diagnosis_fields.h"
 #include "mjdiag/diagnosis/diagnosis_json.h"
 #include "mjdiag/diagnosis/diagnosis_verdict.h"
 #include "mjdiag/report/diagnosis_page.h"
@@ -17,6 +16,7 @@
 #include "mjdiag/signals/text_file.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/fields.h"
 #include "python/record.h"
 
 namespace mjdiag::python {
@@ -81,14 +81,6 @@ py::object ParsedJson(const std::string& text) {
 
 namespace {
 
-py::dict FaultsOf(const DiagnosisObject& object) {
-  py::dict faults;
-  for (const FaultVerdict& fault : object.diagnosis.result.faults) {
-    faults[fault.name.c_str()] = fault;
-  }
-  return faults;
-}
-
 std::string DiagnosisHtml(const DiagnosisObject& object) {
   const DiagnosisResult& result = object.diagnosis.result;
   Page page(result.setup);
@@ -119,65 +111,27 @@ void ReportDiagnosis(const DiagnosisObject& object, const py::object& path) {
       path);
 }
 
-py::tuple PairOf(const Interval& interval) {
-  return py::make_tuple(interval.min, interval.max);
-}
-
-void BindFault(py::module_& module) {
-  py::class_<FaultVerdict>(module, "Fault",
-                           R"(
-                           A fault parameter as a diagnosis found it: 1 is healthy; of a
-                           disturbance it is the magnitude, and 0 is healthy.)")
-      .def_readonly("name", &FaultVerdict::name, "Of the fault parameter.")
-      .def_readonly("value", &FaultVerdict::value, "The fault parameter.")
-      .def_readonly("deviation", &FaultVerdict::deviation, "value less healthy.")
-      .def_readonly("sd", &FaultVerdict::sd, "Standard deviation of value.")
-      .def_property_readonly(
-          "ci95", [](const FaultVerdict& fault) { return PairOf(fault.ci95); },
-          "Interval (low, high) that holds the true value in 95 of 100 records.")
-      .def_readonly("detected", &FaultVerdict::detected,
-                    "Whether it is named as a fault.")
-      .def("__repr__", [](const FaultVerdict& fault) {
-        return "<mjdiag.Fault: " + fault.name + " = " + Digits(fault.value) + ", sd " +
-               FormatNumber(fault.sd) + (fault.detected ? ", detected>" : ">");
-      });
-}
-
 }  // namespace
 
 void BindDiagnosis(py::module_& module) {
-  BindFault(module);
-  py::class_<DiagnosisObject>(module, "Diagnosis",
-                              R"(
+  py::class_<FaultVerdict> fault(module, "Fault",
+                                 R"(
+                           A fault parameter as a diagnosis found it: 1 is healthy; of a
+                           disturbance it is the magnitude, and 0 is healthy.)");
+  BindFields<FaultVerdict>(fault).def("__repr__", [](const FaultVerdict& one) {
+    return "<mjdiag.Fault: " + one.name + " = " + Digits(one.value) + ", sd " +
+           FormatNumber(one.sd) + (one.detected ? ", detected>" : ">");
+  });
+  py::class_<DiagnosisObject> diagnosis(module, "Diagnosis",
+                                        R"(
                               The answer of Machine.diagnose: is something wrong, since
                               when, which fault and how large. In a notebook it shows
-                              its verdict and table.)")
-      .def_property_readonly(
-          "detected",
-          [](const DiagnosisObject& object) {
-            return object.diagnosis.result.detected;
-          },
-          "Whether anything is wrong.")
-      .def_property_readonly("faults", &FaultsOf,
-                             R"(
-                             Name -> Fault of every fault parameter of the plant and
-                             every disturbance of the setup.)")
-      .def_property_readonly(
-          "first_detection",
-          [](const DiagnosisObject& object) {
-            return object.diagnosis.result.first_detection;
-          },
-          "When the residual first left its limits, since the first sample [s]; None.")
-      .def_property_readonly(
-          "lasting",
-          [](const DiagnosisObject& object) { return object.diagnosis.result.lasting; },
-          "When its mean magnitude did, which no passing disturbance does [s]; None.")
-      .def_property_readonly(
-          "misfit",
-          [](const DiagnosisObject& object) { return object.diagnosis.result.nis; },
-          R"(
-          Squared innovations of the twin over what is expected: 1 where it explains all
-          that it sees.)")
+                              its verdict and table.)");
+  BindFields<DiagnosisResult>(
+      diagnosis,
+      [](const DiagnosisObject& object) -> const DiagnosisResult& {
+        return object.diagnosis.result;
+      })
       .def_property_readonly(
           "residual",
           [](const py::object& self) {
@@ -185,18 +139,6 @@ void BindDiagnosis(py::module_& module) {
             return View(object.diagnosis.log.residual, self);
           },
           "The residual of every sample, (samples,), in units of its own noise.")
-      .def_property_readonly(
-          "limits",
-          [](const DiagnosisObject& object) {
-            return PairOf(object.diagnosis.result.limits);
-          },
-          "Limits (low, high) of the residual.")
-      .def_property_readonly(
-          "verdict",
-          [](const DiagnosisObject& object) {
-            return DiagnosisVerdict(object.diagnosis.result);
-          },
-          "The answer in one sentence.")
       .def_readonly("notes", &DiagnosisObject::notes,
                     "What one should know of how a file became the record.")
       .def(

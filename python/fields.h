@@ -1,5 +1,5 @@
 #pragma once
-// The attributes of a result, from the description of its fields (report/fields.h): names,
+// The attributes of a result, from the description of its fields (signals/fields.h): names,
 // docstrings, and types, which the stub is made from (stub.py).
 
 #include <pybind11/pybind11.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "mjdiag/report/fields.h"
+#include "mjdiag/signals/fields.h"
 #include "python/arrays.h"
 
 namespace pybind11::detail {

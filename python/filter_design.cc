@@ -110,7 +110,7 @@ void BindLimits(FilterClass& design) {
           "limits",
           [](const FilterDesignObject& object) {
             const Interval& limits = object.design().limits.residual.limits;
-            return py::make_tuple(limits.min, limits.max);
+            return std::pair{limits.min, limits.max};
           },
           "Limits (low, high) of the residual, in units of its own noise.")
       .def_property_readonly(

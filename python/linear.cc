@@ -36,7 +36,7 @@ py::list ModesOf(const LinearObject& linear) {
 
 /// A property that is a view of a matrix of the model.
 template <Eigen::MatrixXd MechanicalModel::*Matrix>
-py::array MatrixOf(const py::object& self) {
+py::array_t<double> MatrixOf(const py::object& self) {
   return View(py::cast<const LinearObject&>(self).model.*Matrix, self);
 }
 

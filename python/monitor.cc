@@ -1,11 +1,11 @@
 // Monitor: a diagnosis at work, tick by tick.
 
 #include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +17,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/diagnosis.h"
+#include "python/fields.h"
 #include "python/record.h"
 
 namespace mjdiag::python {
@@ -146,7 +147,7 @@ std::optional<double> TimeOf(const MonitorObject& object,
   return static_cast<double>(*tick) * object.design().sample_time();
 }
 
-py::array EstimatesOf(const MonitorObject& object) {
+py::array_t<double> EstimatesOf(const MonitorObject& object) {
   Eigen::VectorXd values = object.monitor().estimate();
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     values[i] += object.design().Healthy(i);
@@ -154,12 +155,8 @@ py::array EstimatesOf(const MonitorObject& object) {
   return Copy(values);
 }
 
-py::dict JudgedFaults(const MonitorObject& object) {
-  py::dict faults;
-  for (const FaultVerdict& fault : JudgeFaults(object.monitor())) {
-    faults[fault.name.c_str()] = fault;
-  }
-  return faults;
+Named<FaultVerdict> JudgedFaults(const MonitorObject& object) {
+  return NamedBy(JudgeFaults(object.monitor()), &FaultVerdict::name, std::identity());
 }
 
 void BindReadings(py::class_<MonitorObject>& monitor) {
@@ -176,7 +173,7 @@ void BindReadings(py::class_<MonitorObject>& monitor) {
           "limits",
           [](const MonitorObject& object) {
             const Interval& limits = object.design().limits.residual.limits;
-            return py::make_tuple(limits.min, limits.max);
+            return std::pair{limits.min, limits.max};
           },
           "Limits (low, high) of the residual.")
       .def_property_readonly(

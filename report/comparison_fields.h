@@ -3,7 +3,7 @@
 
 #include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/report/comparison_page.h"
-#include "mjdiag/report/fields.h"
+#include "mjdiag/signals/fields.h"
 
 namespace mjdiag {
 

@@ -1,7 +1,7 @@
 #include "mjdiag/report/comparison_json.h"
 
 #include "mjdiag/report/comparison_fields.h"
-#include "mjdiag/report/fields_json.h"
+#include "mjdiag/signals/fields_json.h"
 
 namespace mjdiag {
 

@@ -11,8 +11,8 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/discovery_text.h"
-#include "mjdiag/report/fields.h"
 #include "mjdiag/report/kinds_text.h"
+#include "mjdiag/signals/fields.h"
 
 namespace mjdiag {
 
@@ -364,6 +364,11 @@ inline constexpr auto kFields<Discovery> = std::tuple{
                  return Named<double>{{"before", 1.0 - found.colour_before},
                                       {"after", 1.0 - found.colour_after}};
                }),
+    // Where it is written, the command knows: ToJson.
+    InJson("extended_plant", "", "Path of its MJCF file; null: none was written.",
+           [](const Discovery&) { return std::optional<std::string>(); }),
+    InJson("unexplained", "", "What is left; where nothing is, signature alone.",
+           [](const Discovery& found) { return Remainder{&found}; }),
     Everywhere("train_share", "", "Of the record, what fits saw.",
                &Discovery::train_share),
     Everywhere("sample_time", "s", "Between two samples.", &Discovery::sample_time),

@@ -1,13 +1,13 @@
 #include "mjdiag/report/discovery_json.h"
 
 #include "mjdiag/report/discovery_fields.h"
-#include "mjdiag/report/fields_json.h"
+#include "mjdiag/signals/fields_json.h"
 
 namespace mjdiag {
 
 nlohmann::json ToJson(const Discovery& discovery, const std::string& extended_plant) {
   nlohmann::json document = JsonOf(discovery);
-  document["extended_plant"] = JsonOf(TextOrNone(extended_plant));
+  if (!extended_plant.empty()) document["extended_plant"] = extended_plant;
   return document;
 }
 

@@ -8,8 +8,8 @@
 
 namespace mjdiag {
 
-/// What discovery_fields.h describes, and `extended_plant`.
-/// @param extended_plant  path of its MJCF file; empty, and null: none was written
+/// What discovery_fields.h describes.
+/// @param extended_plant  path of its MJCF file; empty: none was written
 nlohmann::json ToJson(const Discovery& discovery, const std::string& extended_plant);
 
 }  // namespace mjdiag

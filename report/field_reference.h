@@ -6,7 +6,7 @@
 #include <string>
 #include <type_traits>
 
-#include "mjdiag/report/fields.h"
+#include "mjdiag/signals/fields.h"
 
 namespace mjdiag {
 

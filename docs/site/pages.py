@@ -1,6 +1,7 @@
 """Makes the pages that Sphinx builds the site from: the README as the first one, the texts of
-docs/, every command from its --help and --fields, every Python name from its stub and docstring, the
-sources that the theory names, the notebooks with what they put out, and a gallery.
+docs/, every command from its --help and --fields, every Python name from its stub and
+docstring, the sources that the theory names, the notebooks with what they put out, and a
+gallery.
 
 Checks the commands in the texts, too.
 

@@ -92,9 +92,10 @@ const std::map<std::string, Rows>& Table() {
       {"design", kMachine + kDiagnosis + kOutput + kReport +
                      Rows{{"--linear", Same("--linear=false")},
                           {"--method", Same("--method svd")}}},
-      {"diagnose",
-       kMachine + kDiagnosis + kOutput + kReport +
-           Rows{{"--record", kRequired}, {"--linear", Same("--linear=false")}}},
+      {"diagnose", kMachine + kDiagnosis + kOutput + kReport +
+                       Rows{{"--record", kRequired},
+                            {"--fields", kNothing},
+                            {"--linear", Same("--linear=false")}}},
       {"calibrate", kMachine + Rows{{"--out", kRequired},
                                     {"--json", kNothing},
                                     {"--record", kRequired},

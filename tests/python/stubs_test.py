@@ -65,7 +65,8 @@ class StubsTest(unittest.TestCase):
     @unittest.skipUnless(COMMAND, "needs the command, $MJDIAG_COMMAND")
     def test_have_the_figures_of_an_answer_as_the_command_describes_them(self):
         for command, path, name in [("compare", "channels.<name>.", "Mismatch"),
-                                    ("discover", "causes[].parameters.<name>.", "Parameter")]:
+                                    ("discover", "causes[].parameters.<name>.", "Parameter"),
+                                    ("diagnose", "faults[].", "Fault")]:
             said = subprocess.run([COMMAND, command, "--fields"], check=True,
                                   capture_output=True, text=True).stdout
             stub = {node.name: ast.unparse(node.returns) for node in stub_classes()[name].body}

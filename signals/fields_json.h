@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "mjdiag/report/fields.h"
+#include "mjdiag/signals/fields.h"
 
 namespace mjdiag {
 

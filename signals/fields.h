@@ -3,14 +3,14 @@
 // text and how it is got; from that are made
 //
 //   JSON, `--json` and files                      fields_json.h
-//   `--fields`, and the reference of the site     field_reference.h
+//   `--fields`, and the reference of the site     report/field_reference.h
 //   attributes in Python, with their docstrings   python/fields.h
 //   and their types in the stub                   python/stub.py
 //
 //   template <>
 //   inline constexpr auto kFields<FaultLimit> = std::tuple{
 //       Everywhere("fault", "", "The fault parameter.", &FaultLimit::fault),
-//       InJson("before", "1", "With the plant as given.", &FaultLimit::before)};
+//       InJson("before", "", "With the plant as given.", &FaultLimit::before)};
 //
 // A type whose fields are described may be the value of a field itself, alone, in a vector,
 // an optional or Named.

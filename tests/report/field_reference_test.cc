@@ -1,11 +1,11 @@
-#include "mjdiag/report/fields.h"
+#include "mjdiag/report/field_reference.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "mjdiag/report/field_reference.h"
-#include "mjdiag/report/fields_json.h"
+#include "mjdiag/signals/fields.h"
+#include "mjdiag/signals/fields_json.h"
 
 namespace mjdiag {
 
