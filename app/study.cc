@@ -8,13 +8,13 @@
 
 #include "app/command.h"
 #include "app/output.h"
+#include "app/study_answer.h"
 #include "app/study_log.h"
 #include "app/study_plan.h"
 #include "app/subject.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
-#include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/calibration_study.h"
 #include "mjdiag/studies/classification_study.h"
 #include "mjdiag/studies/detection_study.h"
@@ -23,6 +23,7 @@
 #include "mjdiag/studies/estimation_study.h"
 #include "mjdiag/studies/hard_table.h"
 #include "mjdiag/studies/hidden_table.h"
+#include "mjdiag/studies/preset/preset_plan.h"
 #include "mjdiag/studies/random_fault_study.h"
 #include "mjdiag/studies/tolerance_study.h"
 
@@ -84,7 +85,6 @@ const std::map<std::string, Study>& Studies() {
       {"random-faults", {RandomFaultStudy, Choice::kPlant}},
       {"calibration", {CalibrationStudy, Choice::kPlant}},
       {"disturbance", {DisturbanceStudy}},
-      {"bound", {BoundStudy}},
       {"tolerance", {ToleranceStudy}},
       {"hidden", {HiddenEffects<1>}},
       {"hidden_none", {HiddenEffects<0>}},
@@ -138,12 +138,19 @@ void CheckAlone(const CLI::App& app) {
   }
 }
 
+void RunPreset(const StudyCommand& command) {
+  const Machine machine = LoadSubject(command.machine).nominal;
+  LoadedPlan loaded = ReadPreset(command.preset, machine);
+  CheckChoices(command, Choice::kNone);
+  loaded.plan.SetRuns(command.runs);
+  loaded.plan.seed = command.seed;
+  AnswerPlan(loaded, {"preset", command.preset, command.runs, command.linear},
+             command.output);
+}
+
 void RunStudy(const CLI::App& app, const StudyCommand& command) {
   if (!command.plan.file.empty()) {
     CheckAlone(app);
-    if (command.output.folder.empty()) {
-      throw InputError("--out", "is missing", "a folder for the runs of the plan");
-    }
     RunPlanFile(command.plan, command.output);
     return;
   }
@@ -152,6 +159,10 @@ void RunStudy(const CLI::App& app, const StudyCommand& command) {
   }
   if (command.machine.setup.empty()) {
     throw InputError("--setup", "is missing", "a folder with setup.toml and the plant");
+  }
+  if (!Studies().contains(command.preset)) {
+    RunPreset(command);
+    return;
   }
   const Study& study = Studies().at(command.preset);
   CheckChoices(command, study.choice);
@@ -188,7 +199,7 @@ void AddStudy(CLI::App& app) {
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);
-  std::vector<std::string> presets;
+  std::vector<std::string> presets = PresetNames();
   for (const auto& [name, study] : Studies()) presets.push_back(name);
   command->get_option("--setup")->required(false);
   command->add_option(

@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "app/interrupt.h"
 #include "app/plan_log.h"
+#include "app/study_answer.h"
 #include "app/study_log.h"
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
@@ -75,6 +76,17 @@ void RunPlanFile(const PlanCommand& command, const OutputOptions& output) {
     return;
   }
   const LoadedPlan loaded = ReadPlan(command.file);
+  if (loaded.plan.ask) {
+    if (team) {
+      throw InputError(command.file, "asks what one process answers", "no other ranks");
+    }
+    const auto runs = static_cast<int>(loaded.plan.Runs());
+    AnswerPlan(loaded, {"plan", loaded.plan.name, runs, loaded.plan.linear}, output);
+    return;
+  }
+  if (output.folder.empty()) {
+    throw InputError("--out", "is missing", "a folder for the runs of the plan");
+  }
   PrepareOutput(output);
   const Interrupt interrupt;
   PlanLog log(output.folder);

@@ -8,6 +8,7 @@
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/listed.h"
+#include "mjdiag/studies/plan/run_machine.h"
 
 namespace mjdiag {
 namespace {
@@ -150,17 +151,19 @@ std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault) {
   return found - names.begin();
 }
 
-std::vector<StudyTable> BoundStudy(const Machine& machine,
-                                   const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
+std::vector<StudyTable> AnswerTo(const AskBound&, const LoadedPlan& loaded,
+                                 const StudyOptions&) {
+  const Machine& machine = loaded.machine;
+  const RunMaker maker(loaded);
+  const Excitation& motion = maker.motions().front();
   const InformationBound bound = FaultBound(machine, motion);
   RunOptions run;
-  run.seed = options.seed;
+  run.seed = loaded.plan.seed;
   const Record record = SimulateLinear(machine, motion, run);
   const VectorXd one = EstimatorSd(machine, record, 1);
   const VectorXd all = EstimatorSd(machine, record, 0);
   StudyTable table{
-      "Information bound of trajectory " + machine.setup().trajectories.fallback,
+      "Information bound of trajectory " + loaded.plan.motions.front().name,
       {"fault", "bound alone", "bound together", "sd, one residual", "times bound",
        "sd, all residuals", "times bound"},
       {},

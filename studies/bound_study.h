@@ -3,6 +3,7 @@
 
 #include "mjdiag/diagnosis/residuals/cramer_rao.h"
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {
@@ -27,7 +28,8 @@ double MagnitudeBound(const Eigen::VectorXd& parts);
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault);
 
 /// Bound alone and together, the standard deviation of the estimators with one residual
-/// and with all of them, and their multiples of the bound; of the default trajectory.
-std::vector<StudyTable> BoundStudy(const Machine& machine, const StudyOptions& options);
+/// and with all of them, and their multiples of the bound; of the plan's first motion.
+std::vector<StudyTable> AnswerTo(const AskBound& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options);
 
 }  // namespace mjdiag

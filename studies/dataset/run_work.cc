@@ -12,7 +12,11 @@ RunWork::RunWork(const LoadedPlan& loaded)
     : loaded_(loaded),
       planner_(loaded.plan),
       maker_(loaded),
-      layout_(LayoutOf(loaded, maker_)) {}
+      layout_(LayoutOf(loaded, maker_)) {
+  if (!loaded.plan.ask) return;
+  throw InputError("plan '" + loaded.plan.name + "'", "asks something",
+                   "a plan that keeps something of its runs");
+}
 
 void RunWork::Prepare(const std::function<void(double fraction)>& progress) {
   if (!loaded_.plan.keep.Diagnoses() || prepared_) return;

@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/setup/declared_names.h"
+#include "mjdiag/signals/listed.h"
 #include "mjdiag/studies/plan/run_machine.h"
 
 namespace mjdiag {
@@ -28,12 +29,21 @@ std::vector<std::string> FaultNames(const Machine& machine) {
   return names;
 }
 
-void ReadFault(const TomlTable& table, const Machine& machine, PlanAxis& axis) {
-  axis.name = DeclaredName(table, "fault", "fault parameter or disturbance",
-                           FaultNames(machine));
-  const bool disturbance = IsDisturbance(machine.setup(), axis.name);
+PlanAxis AxisOf(const Setup& setup, const std::string& fault) {
+  const bool disturbance = IsDisturbance(setup, fault);
+  PlanAxis axis;
   axis.kind = disturbance ? AxisKind::kDisturbance : AxisKind::kFault;
+  axis.name = fault;
+  axis.unit = "1";
   axis.healthy = disturbance ? 0.0 : 1.0;
+  return axis;
+}
+
+void ReadFault(const TomlTable& table, const Machine& machine, PlanAxis& axis) {
+  axis = AxisOf(machine.setup(),
+                DeclaredName(table, "fault", "fault parameter or disturbance",
+                             FaultNames(machine)));
+  const bool disturbance = axis.kind == AxisKind::kDisturbance;
   if (table.Has("appears")) {
     const double from = table.Number("appears", kNonNegative);
     const double to = table.Number("appears_until", kNonNegative, from);
@@ -80,14 +90,19 @@ void ReadEffect(const TomlTable& table, const AxisSurroundings& around,
   });
 }
 
+void RequireAll(const TomlTable& table, const char* key, const char* what) {
+  if (table.Text(key) == "all") return;
+  table.Fail(key, "is another word", std::string("\"all\": ") + what);
+}
+
 /// The kind of an axis is the one of these keys that it has.
 void ReadKind(const TomlTable& table, const AxisSurroundings& around, PlanAxis& axis) {
-  constexpr std::array kKinds = {"fault", "effect", "key", "noise"};
+  constexpr std::array kKinds = {"fault", "effect", "key", "noise", "disturbance"};
   const auto given =
       std::ranges::count_if(kKinds, [&](const char* kind) { return table.Has(kind); });
   if (given != 1) {
     table.Fail(given == 0 ? "says nothing of what it moves" : "moves two things",
-               "one of the keys fault, effect, key and noise");
+               "one of the keys fault, disturbance, effect, key and noise");
   }
   axis.unit = "1";
   if (table.Has("fault")) return ReadFault(table, around.machine, axis);
@@ -98,12 +113,15 @@ void ReadKind(const TomlTable& table, const AxisSurroundings& around, PlanAxis& 
     axis.healthy = 0.0;  // nothing is wrong at any value
     return;
   }
+  if (table.Has("disturbance")) {
+    axis.kind = AxisKind::kDisturbance;
+    axis.healthy = 0.0;
+    RequireAll(table, "disturbance", "every one of the setup, or fault for one");
+    return;
+  }
   axis.kind = AxisKind::kNoise;
   axis.name = "noise";
-  if (table.Text("noise") != "all") {
-    table.Fail("noise", "is another word",
-               "\"all\": a factor of the noise of all sensors");
-  }
+  RequireAll(table, "noise", "a factor of the noise of all sensors");
 }
 
 ValueRange ReadRange(const TomlTable& table) {
@@ -175,6 +193,33 @@ void CheckValues(const TomlTable& table, const AxisSurroundings& around,
   }
 }
 
+/// Of a fault, which is nearest to healthy in the first table, the ranges to where it is
+/// farthest in the others.
+std::vector<ValueRange> RangesTo(const Setup& setup, double healthy,
+                                 const std::vector<std::string>& tables,
+                                 const std::string& fault, double nearest) {
+  std::vector<ValueRange> ranges;
+  const double least = std::abs(nearest - healthy);
+  for (std::size_t i = 1; i < tables.size(); ++i) {
+    const auto& values = setup.Study(tables[i]).values;
+    const auto found =
+        std::ranges::find(values, fault, &std::pair<std::string, double>::first);
+    if (found == values.end()) {
+      throw InputError("studies." + tables[i], "lacks '" + fault + "'",
+                       "the faults of " + tables.front());
+    }
+    const double away = found->second - healthy;
+    if (least > 0.0 && std::abs(away) > least) {
+      ranges.push_back({healthy + std::copysign(least, away), found->second});
+    }
+  }
+  if (!ranges.empty()) return ranges;
+  const std::vector<std::string> others(tables.begin() + 1, tables.end());
+  throw InputError("studies." + tables.front() + "." + fault,
+                   "leaves nothing to be drawn",
+                   "a value between healthy and " + Listed(others, " or "));
+}
+
 /// Names in the order in which records have them.
 std::vector<std::string> RecordChannels(const Machine& machine) {
   const Setup& setup = machine.setup();
@@ -216,12 +261,42 @@ std::vector<std::string> ReadNames(const TomlTable& table, const char* key,
 
 }  // namespace
 
-PlanAxis ReadAxis(const TomlTable& table, const AxisSurroundings& around) {
+std::vector<PlanAxis> ReadAxis(const TomlTable& table, const AxisSurroundings& around) {
   PlanAxis axis;
   ReadKind(table, around, axis);
   ReadValues(table, axis);
   CheckValues(table, around, axis);
-  return axis;
+  if (!table.Has("disturbance")) return {axis};
+  std::vector<PlanAxis> axes;
+  for (const MultisineSetup& source : around.machine.setup().disturbances) {
+    axes.push_back(axis);
+    axes.back().name = source.name;
+  }
+  return axes;
+}
+
+std::vector<PlanAxis> ReadSizes(const TomlTable& table, const Machine& machine) {
+  const std::vector<std::string> tables = table.Texts("sizes", {});
+  std::vector<PlanAxis> axes;
+  if (tables.empty()) return axes;
+  WithPlace(table, "sizes", [&] {
+    const Setup& setup = machine.setup();
+    for (const auto& [fault, value] : setup.Study(tables.front()).values) {
+      axes.push_back(AxisOf(setup, fault));
+      PlanAxis& axis = axes.back();
+      if (tables.size() == 1) {
+        axis.values = {value};
+      } else {
+        axis.logarithmic = true;
+        axis.points = 2;
+        axis.ranges = RangesTo(setup, axis.healthy, tables, fault, value);
+      }
+      if (axis.kind == AxisKind::kDisturbance) continue;
+      for (const double extreme : Extremes(axis))
+        machine.With({{{fault, extreme}}, {}});
+    }
+  });
+  return axes;
 }
 
 PlanKeep ReadKeep(const TomlTable& root, const Machine& machine) {

@@ -16,8 +16,14 @@ struct AxisSurroundings {
   const Machine& machine;
 };
 
-/// One [[axis]]; every value that it can have is one that machine and setup take.
-PlanAxis ReadAxis(const TomlTable& table, const AxisSurroundings& around);
+/// One [[axis]], or of every disturbance of the setup one; every value that it can have is
+/// one that machine and setup take.
+std::vector<PlanAxis> ReadAxis(const TomlTable& table, const AxisSurroundings& around);
+
+/// The axes of the key `sizes`: names of tables [studies.<name>] of the setup. The faults of
+/// one table are at its values. Of several the first has the value of a fault that is
+/// nearest to healthy, and the others farthest ones, on either side.
+std::vector<PlanAxis> ReadSizes(const TomlTable& table, const Machine& machine);
 
 /// [keep]
 PlanKeep ReadKeep(const TomlTable& root, const Machine& machine);

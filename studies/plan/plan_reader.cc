@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/setup/toml_table.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/text_file.h"
+#include "mjdiag/studies/plan/ask_reader.h"
 #include "mjdiag/studies/plan/axis_reader.h"
 #include "mjdiag/studies/plan/plan_check.h"
 #include "mjdiag/studies/plan/study_plan.h"
@@ -39,7 +40,9 @@ std::uint64_t ReadSeed(const TomlTable& root) {
       root.Integer("seed", 0, std::numeric_limits<int>::max(), 1));
 }
 
-Machine ReadMachine(const TomlTable& root, const StudyPlan& plan) {
+Machine ReadMachine(const TomlTable& root, const StudyPlan& plan,
+                    const Machine* machine) {
+  if (machine != nullptr) return *machine;
   try {
     return Machine(ReadSetup(plan.setup, plan.overrides));
   } catch (const InputError& error) {
@@ -127,25 +130,32 @@ PlanMachines ReadMachines(const TomlTable& root, const Machine& machine) {
   return machines;
 }
 
+/// Its points are the values of its axes, and no draws.
+bool IsListed(PlanMethod method) {
+  return method == PlanMethod::kGrid || method == PlanMethod::kOneAtATime;
+}
+
 PlanMethod ReadMethod(const TomlTable& table, PlanMethod fallback) {
   if (!table.Has("method")) return fallback;
   const std::string method = table.Text("method");
+  if (method == "one at a time") return PlanMethod::kOneAtATime;
   if (method == "random") return PlanMethod::kRandom;
   if (method == "sobol") return PlanMethod::kSobol;
   if (method != "grid") {
-    table.Fail("method", "is '" + method + "'", R"("grid", "random" or "sobol")");
+    table.Fail("method", "is '" + method + "'",
+               R"("grid", "one at a time", "random" or "sobol")");
   }
   return PlanMethod::kGrid;
 }
 
 std::vector<PlanAxis> ReadAxes(const TomlTable& table, const AxisSurroundings& around) {
-  std::vector<PlanAxis> axes;
+  std::vector<PlanAxis> axes = ReadSizes(table, around.machine);
   for (const TomlTable& axis : table.TableArray("axis")) {
-    axes.push_back(ReadAxis(axis, around));
-    for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
-      if (axes[i].name == axes.back().name) {
-        axis.Fail("moves '" + axes[i].name + "', as another axis does", "one of them");
+    for (PlanAxis& one : ReadAxis(axis, around)) {
+      if (std::ranges::find(axes, one.name, &PlanAxis::name) != axes.end()) {
+        axis.Fail("moves '" + one.name + "', as another axis does", "one of them");
       }
+      axes.push_back(std::move(one));
     }
   }
   return axes;
@@ -154,21 +164,23 @@ std::vector<PlanAxis> ReadAxes(const TomlTable& table, const AxisSurroundings& a
 /// How many points a case has, once its axes are there.
 void ReadPoints(const TomlTable& table, const std::optional<int>& common,
                 PlanCase& one) {
-  if (one.method == PlanMethod::kGrid) {
+  if (IsListed(one.method)) {
     if (table.Has("points")) {
       table.Fail("points", "a grid has those of its axes", "points of an axis");
     }
-    std::int64_t points = 1;
+    const bool alone = one.method == PlanMethod::kOneAtATime;
+    std::int64_t points = alone ? 0 : 1;
     for (const PlanAxis& axis : one.axes) {
       const bool varying_time = axis.appears && axis.appears->from != axis.appears->to;
       if (varying_time) {
         table.Fail("axis " + axis.name + " appears at any of many times, on a grid",
                    "appears without appears_until, or another method");
       }
-      points *= static_cast<std::int64_t>(
+      const auto values = static_cast<std::int64_t>(
           axis.values.empty()
               ? axis.ranges.size() * static_cast<std::size_t>(axis.points)
               : axis.values.size());
+      points = alone ? points + values : points * values;
       if (points > kMost) table.Fail("the grid has too many points", "a million");
     }
     one.points = static_cast<int>(points);
@@ -192,7 +204,7 @@ void ReadChoose(const TomlTable& table, PlanCase& one) {
                "[least, most] of the " + std::to_string(static_cast<int>(own)) +
                    " axes of the case");
   }
-  if (one.method == PlanMethod::kGrid) {
+  if (IsListed(one.method)) {
     table.Fail("choose", "on a grid", R"(method = "random" or "sobol")");
   }
   one.choose = {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
@@ -204,7 +216,7 @@ std::vector<PlanCase> ReadCases(const TomlTable& root, const AxisSurroundings& a
   std::vector<PlanCase> cases;
   std::optional<int> points;
   const std::vector<TomlTable> tables = root.TableArray("case");
-  if (method != PlanMethod::kGrid && !tables.empty() && root.Has("points")) {
+  if (!IsListed(method) && !tables.empty() && root.Has("points")) {
     points = root.Integer("points", 1, kMost);
   }
   for (const TomlTable& table : tables) {
@@ -232,6 +244,17 @@ std::vector<PlanCase> ReadCases(const TomlTable& root, const AxisSurroundings& a
   return {all};
 }
 
+/// A key is one of the setup that the plan names.
+void RefuseKeys(const TomlTable& root, const StudyPlan& plan) {
+  for (const PlanCase& one : plan.cases) {
+    for (const PlanAxis& axis : one.axes) {
+      if (axis.kind != AxisKind::kKey) continue;
+      root.Fail("varies " + axis.name + ", a key of its own setup",
+                "other axes, in a plan for any machine");
+    }
+  }
+}
+
 StudyPlan ReadHead(const TomlTable& root, const std::filesystem::path& folder) {
   root.RequireSchema(kSchema);
   StudyPlan plan;
@@ -246,16 +269,23 @@ StudyPlan ReadHead(const TomlTable& root, const std::filesystem::path& folder) {
   return plan;
 }
 
+/// @param given  in the place of the machine that the plan names; none: that one
 LoadedPlan Read(const TomlDocument& document, const std::string& text,
-                const std::filesystem::path& folder) {
+                const std::filesystem::path& folder, const Machine* given) {
   const TomlTable root = document.Root();
   StudyPlan plan = ReadHead(root, folder);
   plan.text = text;
-  Machine machine = ReadMachine(root, plan);
+  Machine machine = ReadMachine(root, plan, given);
+  if (given != nullptr) plan.setup = given->setup().folder;
   plan.motions = ReadMotions(root, machine.setup(), folder);
   plan.machines = ReadMachines(root, machine);
   plan.cases = ReadCases(root, {plan, machine});
-  plan.keep = ReadKeep(root, machine);
+  if (given != nullptr) RefuseKeys(root, plan);
+  if (root.Has("ask")) {
+    plan.ask = ReadAsk(root.Table("ask"));
+  } else {
+    plan.keep = ReadKeep(root, machine);
+  }
   document.RefuseUnknownKeys();
   if (plan.machines.count >
       kMostRuns / std::max<std::int64_t>(plan.RunsOfAMachine(), 1)) {
@@ -272,8 +302,14 @@ LoadedPlan ReadPlan(const std::filesystem::path& file) {
 
 LoadedPlan ParsePlan(const std::string& text, const std::filesystem::path& folder,
                      const std::string& where) {
-  const TomlDocument document(where, text);
-  LoadedPlan loaded = Read(document, text, folder);
+  LoadedPlan loaded = Read(TomlDocument(where, text), text, folder, nullptr);
+  CheckPlan(loaded, where);
+  return loaded;
+}
+
+LoadedPlan ParsePlanFor(const Machine& machine, const std::string& text,
+                        const std::string& where) {
+  LoadedPlan loaded = Read(TomlDocument(where, text), text, {}, &machine);
   CheckPlan(loaded, where);
   return loaded;
 }

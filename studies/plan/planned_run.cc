@@ -194,7 +194,6 @@ PlannedRun RunPlanner::Run(std::int64_t index) const {
   run.machine = static_cast<int>(index / plan_.RunsOfAMachine());
   run.split = SplitOf(run.machine);
   run.numbers = NumbersOf(run.machine);
-  run.seed = SeedFor(plan_.seed, {kNoise, static_cast<std::uint64_t>(index)});
 
   std::int64_t rest = index % plan_.RunsOfAMachine();
   run.replication = static_cast<int>(rest % plan_.replications);
@@ -210,13 +209,26 @@ PlannedRun RunPlanner::Run(std::int64_t index) const {
   run.in_case = static_cast<int>(in_case);
 
   const PlanCase& one = plan_.cases[in_case];
+  const std::int64_t drawn_before = one.method == PlanMethod::kRandom ? rest : 0;
+  run.seed = plan_.ask
+                 ? plan_.seed + static_cast<std::uint64_t>(
+                                    drawn_before * plan_.replications + run.replication)
+                 : SeedFor(plan_.seed, {kNoise, static_cast<std::uint64_t>(index)});
   const std::vector<double> u =
       Coordinates(in_case, run.machine, static_cast<int>(rest));
   std::size_t next = 0;
   std::int64_t digits = rest;
   for (const PlanAxis& axis : one.axes) {
     DrawnAxis drawn{&axis};
-    if (one.method == PlanMethod::kGrid) {
+    if (one.method == PlanMethod::kOneAtATime) {
+      const std::vector<double> values = GridValues(axis);
+      const auto count = static_cast<std::int64_t>(values.size());
+      drawn.varies = digits >= 0 && digits < count;
+      drawn.value =
+          drawn.varies ? values[static_cast<std::size_t>(digits)] : axis.healthy;
+      digits -= count;
+      ++next;
+    } else if (one.method == PlanMethod::kGrid) {
       const std::vector<double> values = GridValues(axis);
       const auto count = static_cast<std::int64_t>(values.size());
       drawn.value = values[static_cast<std::size_t>(digits % count)];

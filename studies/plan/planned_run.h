@@ -11,6 +11,10 @@
 // so that runs at the same point differ in their noise only, and no run depends on
 // another. A Sobol sequence goes on from machine to machine; it is shifted by numbers
 // drawn from (seed of the plan, case), modulo 1, which keeps its evenness.
+//
+// In a plan that asks something ([ask]) noise has the seed of the plan for the first
+// replication, that plus one for the second and so on, so that what is compared has the same
+// noise; of points that are drawn each has seeds of its own.
 
 #include <cstdint>
 #include <string>

@@ -25,6 +25,17 @@ std::string SplitName(Split split) {
   }
 }
 
+void StudyPlan::SetRuns(int runs) {
+  bool random = false;
+  for (PlanCase& one : cases) {
+    if (!machines.numbers.empty() || one.method != PlanMethod::kRandom) continue;
+    one.points = runs;
+    random = true;
+  }
+  if (random) return;
+  (machines.numbers.empty() ? replications : machines.count) = runs;
+}
+
 std::int64_t StudyPlan::RunsOfAMachine() const {
   std::int64_t points = 0;
   for (const PlanCase& one : cases) points += one.points;

@@ -16,6 +16,7 @@
 #include "mjdiag/controllers/axis_controller.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/studies/plan/plan_ask.h"
 
 namespace mjdiag {
 
@@ -58,9 +59,10 @@ struct PlanAxis {
 
 /// How values are chosen.
 enum class PlanMethod {
-  kGrid,    ///< every value with every other
-  kRandom,  ///< independent draws
-  kSobol    ///< a low-discrepancy sequence, which fills the axes evenly
+  kGrid,        ///< every value with every other
+  kOneAtATime,  ///< every value of an axis, with all others healthy, axis by axis
+  kRandom,      ///< independent draws
+  kSobol        ///< a low-discrepancy sequence, which fills the axes evenly
 };
 
 /// [[case]]: runs of one kind, for example those with one fault.
@@ -125,7 +127,11 @@ struct StudyPlan {
   PlanMachines machines;
   std::vector<PlanCase> cases;
   PlanKeep keep;
+  std::optional<PlanAsk> ask{};  ///< none: a data set
 
+  /// Asks for so many where it says how many: machines where these are drawn, points where
+  /// values are, else replications.
+  void SetRuns(int runs);
   std::int64_t RunsOfAMachine() const;
   std::int64_t Runs() const { return machines.count * RunsOfAMachine(); }
 };
@@ -143,6 +149,11 @@ LoadedPlan ReadPlan(const std::filesystem::path& file);
 /// Of a text. @param folder  that its setup is relative to
 LoadedPlan ParsePlan(const std::string& text, const std::filesystem::path& folder,
                      const std::string& where = "plan");
+
+/// Of a text, for this machine in the place of the one that it names. InputError also if
+/// the plan varies keys of the setup.
+LoadedPlan ParsePlanFor(const Machine& machine, const std::string& text,
+                        const std::string& where);
 
 /// The most runs that a plan may have.
 inline constexpr std::int64_t kMostRuns = 10'000'000;
