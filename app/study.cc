@@ -15,17 +15,9 @@
 #include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
-#include "mjdiag/studies/calibration_study.h"
-#include "mjdiag/studies/classification_study.h"
-#include "mjdiag/studies/detection_study.h"
-#include "mjdiag/studies/disturbance_study.h"
-#include "mjdiag/studies/endurance_study.h"
-#include "mjdiag/studies/estimation_study.h"
 #include "mjdiag/studies/hard_table.h"
 #include "mjdiag/studies/hidden_table.h"
 #include "mjdiag/studies/preset/preset_plan.h"
-#include "mjdiag/studies/random_fault_study.h"
-#include "mjdiag/studies/tolerance_study.h"
 
 namespace mjdiag::app {
 namespace {
@@ -47,13 +39,8 @@ struct StudyCommand {
   std::vector<std::string> wear;
 };
 
-/// What a study lets one choose.
-enum class Choice { kNone, kPlant, kPlantAndTime };
-
-struct Study {
-  std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)> run;
-  Choice choice = Choice::kNone;
-};
+using Study =
+    std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)>;
 
 template <int causes>
 std::vector<StudyTable> HiddenEffects(const Machine& machine,
@@ -67,31 +54,13 @@ std::vector<StudyTable> HardEffects(const Machine& machine,
   return HardStudy(machine, nothing, options);
 }
 
-/// Table 5 subtracts the baseline of the motion, Table 3 does not.
-template <bool baseline>
-std::vector<StudyTable> Nonlinear(const Machine& machine, const StudyOptions& options) {
-  return NonlinearDetectionStudy(machine, baseline ? "table5" : "table3", baseline,
-                                 options);
-}
-
-/// Preset -> study, and what it is for.
 const std::map<std::string, Study>& Studies() {
   static const std::map<std::string, Study> studies{
-      {"table2", {LinearDetectionStudy}},
-      {"table3", {Nonlinear<false>}},
-      {"table4", {ClassificationStudy}},
-      {"table5", {Nonlinear<true>}},
-      {"estimation", {EstimationStudy}},
-      {"random-faults", {RandomFaultStudy, Choice::kPlant}},
-      {"calibration", {CalibrationStudy, Choice::kPlant}},
-      {"disturbance", {DisturbanceStudy}},
-      {"tolerance", {ToleranceStudy}},
-      {"hidden", {HiddenEffects<1>}},
-      {"hidden_none", {HiddenEffects<0>}},
-      {"hidden_two", {HiddenEffects<2>}},
-      {"hidden_hard", {HardEffects<false>}},
-      {"hidden_hard_none", {HardEffects<true>}},
-      {"endurance", {EnduranceStudy, Choice::kPlantAndTime}}};
+      {"hidden", HiddenEffects<1>},
+      {"hidden_none", HiddenEffects<0>},
+      {"hidden_two", HiddenEffects<2>},
+      {"hidden_hard", HardEffects<false>},
+      {"hidden_hard_none", HardEffects<true>}};
   return studies;
 }
 
@@ -103,7 +72,7 @@ NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
 }
 
 /// <name>=<value>
-SizedFault ParseWear(const std::string& text) {
+std::pair<std::string, double> ParseWear(const std::string& text) {
   const std::size_t equals = std::min(text.find('='), text.size());
   const auto growth =
       ParseNumber(std::string_view(text).substr(std::min(equals + 1, text.size())));
@@ -114,12 +83,26 @@ SizedFault ParseWear(const std::string& text) {
   return {text.substr(0, equals), *growth};
 }
 
-void CheckChoices(const StudyCommand& command, Choice choice) {
-  if (command.linear && choice == Choice::kNone) {
+/// Whether a study has a meaning on the linear plant and on the nonlinear one.
+bool TakesEitherPlant(const PlanAsk& ask) {
+  return std::holds_alternative<AskNames>(ask) ||
+         std::holds_alternative<AskCalibration>(ask) ||
+         std::holds_alternative<AskEndurance>(ask);
+}
+
+/// What the options say in the place of the plan.
+void Override(const StudyCommand& command, StudyPlan& plan) {
+  plan.SetRuns(command.runs);
+  plan.seed = command.seed;
+  if (command.linear && !TakesEitherPlant(*plan.ask)) {
     throw InputError("--linear", command.preset + " has its own plant", "none");
   }
-  if (choice != Choice::kPlantAndTime &&
-      (command.duration > 0.0 || !command.wear.empty())) {
+  plan.linear = plan.linear || command.linear;
+  if (auto* const ask = std::get_if<AskEndurance>(&*plan.ask)) {
+    if (command.duration > 0.0) ask->duration = command.duration;
+    ask->every = command.every;
+    for (const std::string& text : command.wear) ask->wear.push_back(ParseWear(text));
+  } else if (command.duration > 0.0 || !command.wear.empty()) {
     throw InputError("--duration, --wear", command.preset + " is no long run",
                      "--preset endurance");
   }
@@ -141,9 +124,7 @@ void CheckAlone(const CLI::App& app) {
 void RunPreset(const StudyCommand& command) {
   const Machine machine = LoadSubject(command.machine).nominal;
   LoadedPlan loaded = ReadPreset(command.preset, machine);
-  CheckChoices(command, Choice::kNone);
-  loaded.plan.SetRuns(command.runs);
-  loaded.plan.seed = command.seed;
+  Override(command, loaded.plan);
   AnswerPlan(loaded, {"preset", command.preset, command.runs, command.linear},
              command.output);
 }
@@ -165,7 +146,9 @@ void RunStudy(const CLI::App& app, const StudyCommand& command) {
     return;
   }
   const Study& study = Studies().at(command.preset);
-  CheckChoices(command, study.choice);
+  if (command.linear) {
+    throw InputError("--linear", command.preset + " has its own plant", "none");
+  }
   const Machine machine = LoadSubject(command.machine).nominal;
   PrepareOutput(command.output);
   StudyLog log(command.output,
@@ -180,13 +163,9 @@ void RunStudy(const CLI::App& app, const StudyCommand& command) {
   StudyOptions options;
   options.runs = command.runs;
   options.seed = command.seed;
-  options.linear = command.linear;
-  if (command.duration > 0.0) options.duration = command.duration;
-  options.every = command.every;
-  for (const std::string& text : command.wear) options.wear.push_back(ParseWear(text));
   options.progress = [&log](double fraction) { log.Progress(fraction); };
   options.row = [&log](const StudyTable& table) { log.Show(table); };
-  const std::vector<StudyTable> tables = study.run(machine, options);
+  const std::vector<StudyTable> tables = study(machine, options);
   Publish(command.output, "study", log.Document(tables, true), log.RestOf(tables),
           [&] { return StudyPageOf(command, machine.setup().name, tables); });
 }

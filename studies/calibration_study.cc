@@ -17,11 +17,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kLearnedFrom = 3;  // healthy runs
-constexpr int kJudged = 20;      // that are judged
-/// Size of a fault over that from which on it is named if it is the only one: two or three
-/// standard deviations beyond, which noise takes back once in a hundred times.
-constexpr double kPromised = 1.5;
 /// Machines have seeds of runs that are theirs.
 constexpr std::uint64_t kSeedsOfAMachine = 1000;
 
@@ -42,23 +37,24 @@ struct MachineOutcome {
 /// What one machine and the twin that has learned it go through.
 class DrawnMachine {
  public:
-  DrawnMachine(const Machine& nominal, const StudyOptions& options, int place)
-      : nominal_(nominal),
-        motion_(DefaultMotion(nominal.setup())),
-        linear_(options.linear),
-        seed_(options.seed + kSeedsOfAMachine * static_cast<std::uint64_t>(place)),
-        factors_(Draw()),
-        real_(nominal.WithNumbers(factors_)) {}
+  DrawnMachine(const AskCalibration& ask, const LoadedPlan& loaded,
+               const RunMaker& maker, int place)
+      : ask_(ask),
+        nominal_(loaded.machine),
+        maker_(maker),
+        linear_(loaded.plan.linear),
+        seed_(loaded.plan.seed + kSeedsOfAMachine * static_cast<std::uint64_t>(place)),
+        factors_(Draw()) {}
 
   MachineOutcome Run() {
     std::vector<Record> healthy;
-    for (int i = 0; i < kLearnedFrom; ++i) healthy.push_back(RecordWith({}));
+    for (int i = 0; i < ask_.learned_from; ++i) healthy.push_back(RecordWith({}));
     const Calibration learned =
         Calibrate(nominal_, healthy, {.linear = linear_, .progress = {}}).calibration;
     CompareNumbers(learned);
     const Machine calibrated = CalibratedMachine(nominal_, learned);
     TwinReading reading;
-    for (int i = 0; i < kJudged; ++i) {
+    for (int i = 0; i < ask_.judged; ++i) {
       reading = Listen(calibrated, RecordWith({}), linear_);
       if (std::ranges::count(reading.named, true) > 0) ++outcome_.false_alarms;
     }
@@ -76,8 +72,12 @@ class DrawnMachine {
   }
 
   /// Another run.
-  Record RecordWith(const std::vector<SizedFault>& faults) {
-    return RunOf(motion_, WithFaults(real_, faults, ++seed_), linear_);
+  Record RecordWith(const std::vector<DrawnAxis>& faults) {
+    PlannedRun run;
+    run.seed = ++seed_;
+    run.axes = faults;
+    run.numbers = factors_;
+    return maker_.Simulate(run);
   }
 
   /// All together: what the record tells of their common scale is nothing, so that by
@@ -109,11 +109,13 @@ class DrawnMachine {
       const double least = alarm[static_cast<Index>(i)];
       if (!std::isfinite(least)) continue;  // of a disturbance
       if (outcome_.faults == 0 || least < outcome_.alarm) outcome_.alarm = least;
-      const double factor = 1.0 + kPromised * least;
+      const double factor = 1.0 + ask_.promised * least;
       // Every second one becomes smaller.
       const double value = i % 2 == 0 ? factor : 1.0 / factor;
+      PlanAxis axis;
+      axis.name = names[i];
       const TwinReading reading =
-          Listen(calibrated, RecordWith({{names[i], value}}), linear_);
+          Listen(calibrated, RecordWith({{&axis, value}}), linear_);
       ++outcome_.faults;
       std::vector<bool> expected(names.size(), false);
       expected[i] = true;
@@ -125,26 +127,26 @@ class DrawnMachine {
     }
   }
 
+  const AskCalibration& ask_;
   const Machine& nominal_;
-  Excitation motion_;
+  const RunMaker& maker_;
   bool linear_;
   std::uint64_t seed_;
   NumberFactors factors_;
-  Machine real_;
   MachineOutcome outcome_;
 };
 
-std::vector<Cell> RowOfMachine(int place, const MachineOutcome& outcome) {
+std::vector<Cell> RowOfMachine(int place, int judged, const MachineOutcome& outcome) {
   return {static_cast<double>(place + 1),
           outcome.farthest + " " + Cell(100.0 * (outcome.factor - 1.0)).text + " %",
           Cell(outcome.distance),
-          CountText(outcome.false_alarms, kJudged),
+          CountText(outcome.false_alarms, judged),
           Cell(100.0 * outcome.alarm),
           CountText(outcome.named, outcome.faults),
           outcome.missed.empty() ? "-" : Listed(outcome.missed)};
 }
 
-StudyTable CountsOfMachines(const std::vector<MachineOutcome>& outcomes) {
+StudyTable CountsOfMachines(const std::vector<MachineOutcome>& outcomes, int judged) {
   StudyTable table{"All machines",
                    {"what", "count", "[%]", "95 % interval [%]"},
                    {},
@@ -161,7 +163,7 @@ StudyTable CountsOfMachines(const std::vector<MachineOutcome>& outcomes) {
   add(
       "healthy runs in which a fault is named",
       [](const MachineOutcome& outcome) { return outcome.false_alarms; },
-      [](const MachineOutcome&) { return kJudged; });
+      [judged](const MachineOutcome&) { return judged; });
   add(
       "faults of a size that is promised, named with no other",
       [](const MachineOutcome& outcome) { return outcome.named; },
@@ -175,17 +177,18 @@ StudyTable CountsOfMachines(const std::vector<MachineOutcome>& outcomes) {
 
 }  // namespace
 
-std::vector<StudyTable> CalibrationStudy(const Machine& machine,
-                                         const StudyOptions& options) {
+std::vector<StudyTable> AnswerTo(const AskCalibration& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const int machines = loaded.plan.replications;
+  const RunMaker maker(loaded);
   GrowingTable table(
-      {std::string("Machines drawn at random, ") + (options.linear ? "" : "non") +
-           "linear plant",
+      {"Machines drawn at random, " + PlantName(loaded.plan.linear),
        {"machine", "farthest from the plant", "distance of the numbers", "false alarms",
         "best known from [%]", "faults named", "not named, or with another"},
        {},
-       {"Each is calibrated on " + std::to_string(kLearnedFrom) + " healthy runs and " +
-            "judged in " + std::to_string(kJudged) +
-            " others. A fault of every kind, " + Cell(kPromised).text +
+       {"Each is calibrated on " + std::to_string(ask.learned_from) +
+            " healthy runs and " + "judged in " + std::to_string(ask.judged) +
+            " others. A fault of every kind, " + Cell(ask.promised).text +
             " times as large as the diagnosis says that it has to be, has to be named "
             "and no other beside it.",
         "The distance is that of what was learned from what was drawn, squared, in "
@@ -194,16 +197,16 @@ std::vector<StudyTable> CalibrationStudy(const Machine& machine,
         "measuring: masses and motor constants 1 %, inertias 3 %, mounts 5 %, damping "
         "and dry friction 20 %."}},
       options.row);
-  std::vector<MachineOutcome> outcomes(static_cast<std::size_t>(options.runs));
+  std::vector<MachineOutcome> outcomes(static_cast<std::size_t>(machines));
   ParallelInOrder(
-      options.runs,
+      machines,
       [&](int i) {
         MachineOutcome& outcome = outcomes[static_cast<std::size_t>(i)];
-        outcome = DrawnMachine(machine, options, i).Run();
-        table.Put(static_cast<std::size_t>(i), RowOfMachine(i, outcome));
+        outcome = DrawnMachine(ask, loaded, maker, i).Run();
+        table.Put(static_cast<std::size_t>(i), RowOfMachine(i, ask.judged, outcome));
       },
       options.progress);
-  return {table.table(), CountsOfMachines(outcomes)};
+  return {table.table(), CountsOfMachines(outcomes, ask.judged)};
 }
 
 }  // namespace mjdiag

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {
 
-/// `options.runs` machines, on the plant of `options.linear`. Logarithms of all numbers are
-/// drawn with the standard deviations that they have without measuring (UsualSpread).
-std::vector<StudyTable> CalibrationStudy(const Machine& machine,
-                                         const StudyOptions& options);
+/// A machine for every replication of the plan. Logarithms of all numbers are drawn with the
+/// standard deviations that they have without measuring (UsualSpread).
+std::vector<StudyTable> AnswerTo(const AskCalibration& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options);
 
 }  // namespace mjdiag

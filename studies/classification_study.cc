@@ -6,7 +6,6 @@
 
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/runtime/parallel.h"
-#include "mjdiag/signals/error.h"
 #include "mjdiag/studies/features.h"
 #include "mjdiag/studies/svm_classifier.h"
 #include "mjdiag/studies/twin_listening.h"
@@ -20,8 +19,8 @@ using Eigen::MatrixXd;
 constexpr int kHealthy = 0;
 
 struct Case {
-  int label = kHealthy;  ///< 0 healthy, else 1 + number of the fault
-  std::vector<SizedFault> faults;
+  int label = kHealthy;  ///< 0 healthy, else 1 + number of the axis
+  PlannedRun run;
 };
 
 /// What the two methods need of a run.
@@ -33,58 +32,33 @@ struct Sample {
   int twin_named = kHealthy;  ///< by the twin, if it is one alone
 };
 
-/// What may be wrong: [studies.<from>] and [studies.<to>].
-struct Ranges {
-  std::string title;
-  const std::vector<std::pair<std::string, double>>& from;
-  const std::vector<std::pair<std::string, double>>& to;
-};
-
-Ranges RangesOf(const Setup& setup, const std::string& title, const std::string& name) {
-  const auto& from = setup.Study(name + "_from").values;
-  const auto& to = setup.Study(name + "_to").values;
-  const auto same_name = [](const auto& a, const auto& b) {
-    return a.first == b.first;
-  };
-  if (!std::equal(from.begin(), from.end(), to.begin(), to.end(), same_name)) {
-    throw InputError("studies." + name + "_to", "other faults than " + name + "_from",
-                     "the same in the same order");
-  }
-  return {title, from, to};
-}
-
-std::vector<Case> DrawCases(const Setup& setup, const Ranges& ranges, int runs,
-                            std::uint64_t seed) {
-  const auto& [title, from, to] = ranges;
+std::vector<Case> DrawCases(const PlanCase& drawn, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> uniform;
-  const auto kinds = static_cast<int>(from.size());
-  std::vector<Case> cases;
-  for (int i = 0; i < runs; ++i) {
-    if (i % 2 == 0) {
-      cases.push_back({});
-      continue;
-    }
-    const int kind = (i / 2) % kinds;
-    const auto& [name, low] = from[static_cast<std::size_t>(kind)];
-    const double healthy = HealthyValue(setup, name);
-    const double first = std::log(std::abs(low - healthy));
-    const double last =
-        std::log(std::abs(to[static_cast<std::size_t>(kind)].second - healthy));
+  std::vector<Case> cases(static_cast<std::size_t>(drawn.points));
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    cases[i].run.seed = seed + i;
+    if (i % 2 == 0) continue;
+    const std::size_t kind = (i / 2) % drawn.axes.size();
+    const PlanAxis& axis = drawn.axes[kind];
+    const auto [from, to] = axis.ranges.front();
+    const double first = std::log(std::abs(from - axis.healthy));
+    const double last = std::log(std::abs(to - axis.healthy));
     const double size = std::exp(first + (last - first) * uniform(generator));
-    cases.push_back({1 + kind, {{name, healthy + std::copysign(size, low - healthy)}}});
+    cases[i].label = 1 + static_cast<int>(kind);
+    cases[i].run.axes = {
+        {&axis, axis.healthy + std::copysign(size, from - axis.healthy)}};
   }
   return cases;
 }
 
 /// The fault that deviates most in its own standard deviations.
-int MostSignificant(const DiagnosisResult& result,
-                    const std::vector<std::pair<std::string, double>>& kinds) {
+int MostSignificant(const DiagnosisResult& result, const std::vector<PlanAxis>& kinds) {
   int named = kHealthy;
   double most = 0.0;
   for (const FaultVerdict& fault : result.faults) {
     for (std::size_t i = 0; i < kinds.size(); ++i) {
-      if (kinds[i].first != fault.name) continue;
+      if (kinds[i].name != fault.name) continue;
       const double significance = std::abs(fault.deviation) / fault.sd;
       if (significance > most) {
         most = significance;
@@ -97,37 +71,36 @@ int MostSignificant(const DiagnosisResult& result,
 
 /// The fault that the twin names, if it names one.
 int NamedAlone(const TwinReading& reading, const std::vector<std::string>& names,
-               const std::vector<std::pair<std::string, double>>& kinds) {
+               const std::vector<PlanAxis>& kinds) {
   if (std::ranges::count(reading.named, true) != 1) return kHealthy;
   const auto at = std::ranges::find(reading.named, true) - reading.named.begin();
   for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (kinds[i].first == names[static_cast<std::size_t>(at)]) {
+    if (kinds[i].name == names[static_cast<std::size_t>(at)]) {
       return 1 + static_cast<int>(i);
     }
   }
   return kHealthy;
 }
 
-std::vector<Sample> RunCases(const Machine& machine, const Ranges& ranges,
+std::vector<Sample> RunCases(const LoadedPlan& loaded,
+                             const std::vector<PlanAxis>& kinds,
                              const std::vector<Case>& cases,
                              const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
-  const DiagnosisDesign design = LinearDiagnosis(machine).design;
+  const StudyPlan& plan = loaded.plan;
+  const Machine& machine = loaded.machine;
+  const RunMaker maker(loaded);
+  const DiagnosisDesign design = DiagnosisOn(machine, plan.linear).design;
   std::vector<std::string> channels = design.outputs;
   channels.insert(channels.end(), design.inputs.begin(), design.inputs.end());
-  const auto& kinds = ranges.from;
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
 
   std::vector<Sample> samples(cases.size());
   ParallelFor(
       static_cast<int>(cases.size()),
       [&](int i) {
-        const Case& drawn = cases[static_cast<std::size_t>(i)];
-        const Record record =
-            RunLinear(motion, WithFaults(machine, drawn.faults,
-                                         options.seed + static_cast<std::uint64_t>(i)));
+        const Record record = maker.Simulate(cases[static_cast<std::size_t>(i)].run);
         const DiagnosisResult result = Conclude(RecordDiagnosis(design, record));
-        const TwinReading reading = Listen(machine, record, true);
+        const TwinReading reading = Listen(machine, record, plan.linear);
         samples[static_cast<std::size_t>(i)] = {
             Features(record, channels),
             result.first_detection.has_value() || result.disturbance.disturbed,
@@ -171,14 +144,13 @@ std::vector<Cell> Row(const std::string& method, const Confusion& detection,
           100.0 * isolation.accuracy()};
 }
 
-std::vector<StudyTable> Classify(const Machine& machine, const Ranges& ranges,
+std::vector<StudyTable> Classify(const LoadedPlan& loaded, const PlanCase& drawn,
                                  const StudyOptions& options) {
-  const std::vector<Case> cases =
-      DrawCases(machine.setup(), ranges, options.runs, options.seed);
-  const std::vector<Sample> samples = RunCases(machine, ranges, cases, options);
+  const std::vector<Case> cases = DrawCases(drawn, loaded.plan.seed);
+  const std::vector<Sample> samples = RunCases(loaded, drawn.axes, cases, options);
   // Pairs of a healthy and a faulty run go to training and test in turn, a round of all
   // faults at a time.
-  const std::size_t round = 2 * ranges.from.size();
+  const std::size_t round = 2 * drawn.axes.size();
   const auto in_training = [&](std::size_t i) { return (i / round) % 2 == 0; };
   const auto in_test = [&](std::size_t i) { return !in_training(i); };
   const auto faulty = [&](std::size_t i) { return cases[i].label != kHealthy; };
@@ -207,7 +179,7 @@ std::vector<StudyTable> Classify(const Machine& machine, const Ranges& ranges,
   }
   const std::vector<int> truth = FaultyOrNot(test_labels);
   StudyTable table{
-      "Residual-based and data-driven diagnosis on the same runs, " + ranges.title,
+      "Residual-based and data-driven diagnosis on the same runs, " + drawn.name,
       {"method", "detection [%]", "false alarms [%]", "missed [%]", "isolation [%]"},
       {},
       {std::to_string(train.rows()) +
@@ -225,31 +197,22 @@ std::vector<StudyTable> Classify(const Machine& machine, const Ranges& ranges,
           CountConfusion(faulty_test_labels, isolator.PredictRows(faulty_test))));
 
   StudyTable sizes{
-      "Ranges of the faults, " + ranges.title, {"fault", "from", "to"}, {}, {}};
-  for (std::size_t i = 0; i < ranges.from.size(); ++i) {
-    sizes.rows.push_back(
-        {ranges.from[i].first, ranges.from[i].second, ranges.to[i].second});
+      "Ranges of the faults, " + drawn.name, {"fault", "from", "to"}, {}, {}};
+  for (const PlanAxis& axis : drawn.axes) {
+    sizes.rows.push_back({axis.name, axis.ranges.front().from, axis.ranges.front().to});
   }
   return {table, sizes};
 }
 
 }  // namespace
 
-std::vector<StudyTable> ClassificationStudy(const Machine& machine,
-                                            const StudyOptions& options) {
-  const Setup& setup = machine.setup();
-  const std::vector<Ranges> cases = {
-      RangesOf(setup, "per cent of the largest force", "table4"),
-      RangesOf(setup, "gamma as printed", "table4_printed")};
+std::vector<StudyTable> AnswerTo(const AskClasses&, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const std::vector<PlanCase>& cases = loaded.plan.cases;
   std::vector<StudyTable> tables;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    StudyOptions part = options;
-    part.progress = [&, i](double fraction) {
-      if (!options.progress) return;
-      options.progress((static_cast<double>(i) + fraction) /
-                       static_cast<double>(cases.size()));
-    };
-    for (StudyTable& table : Classify(machine, cases[i], part)) {
+    for (StudyTable& table :
+         Classify(loaded, cases[i], options.PartOf(i, cases.size()))) {
       tables.push_back(std::move(table));
       if (options.row) options.row(tables.back());
     }

@@ -20,63 +20,57 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kSeeds = 40;
-constexpr double kResolution = 1.1;
-constexpr double kCoarseResolution = 1.2;  // a nonlinear run takes longer
 /// Seeds of healthy runs are others than those of faulty ones.
 constexpr std::uint64_t kHealthySeeds = 10000;
 /// A fault of so many standard deviations of its bound is about to be seen.
 constexpr double kAboutSeen = 6.0;
 
-constexpr const char* kTwinSees =
-    "The twin sees a fault that it names, and no other beside it.";
-
 /// What is looked for, and by whom.
-struct Plan {
-  const Machine& machine;
-  Excitation motion;
-  bool linear;
-  std::string study;  ///< [studies.<study>]: sizes of the thesis
+struct Search {
+  const AskSmallestSize& ask;
+  const LoadedPlan& loaded;
+  const RunMaker& maker;
   SeedsOfASize seeds;
   std::vector<Detector> detectors;
   VectorXd bound;  ///< of the healthy machine, standard deviations
 
-  Record Run(const std::vector<SizedFault>& faults, std::uint64_t seed) const {
-    const FaultyMachine faulty = WithFaults(machine, faults, seed);
-    return RunOf(motion, faulty, linear);
+  const Machine& machine() const { return loaded.machine; }
+  bool linear() const { return loaded.plan.linear; }
+  Record Healthy(std::uint64_t seed) const {
+    PlannedRun run;
+    run.seed = seed;
+    return maker.Simulate(run);
   }
 };
 
-std::optional<double> PublishedDeviation(const Machine& machine,
-                                         const FaultSizes& sizes,
+std::optional<double> PublishedDeviation(const StudyPlan& plan,
                                          const std::string& fault) {
-  for (const auto& [name, value] : sizes.values) {
-    if (name == fault) return value - HealthyValue(machine.setup(), fault);
+  for (const PlanAxis& axis : CaseOf(plan, "published").axes) {
+    if (axis.name == fault) return axis.values.front() - axis.healthy;
   }
   return std::nullopt;
 }
 
 /// A deviation as people write it: +0.5 %; of a disturbance its magnitude.
-Cell DeviationCell(const Setup& setup, const std::string& fault, double deviation) {
+Cell DeviationCell(const PlanAxis& fault, double deviation) {
   Cell cell(deviation);
-  if (IsDisturbance(setup, fault)) return cell;
+  if (fault.kind == AxisKind::kDisturbance) return cell;
   cell.text = (deviation > 0.0 ? "+" : "") + Cell(100.0 * deviation).text + " %";
   return cell;
 }
 
-StudyTable EmptySizes(const Plan& plan, const std::string& title) {
+StudyTable EmptySizes(const Search& search, const std::string& title) {
   return {
       title,
       {"fault", "seen by", "thesis", "seen there [%]", "95 % see", "seen there [%]",
        "at half of it [%]", "times better than the thesis", "over the bound"},
       {},
-      {"Seen by " + std::to_string(plan.seeds.count) +
+      {"Seen by " + std::to_string(search.seeds.count) +
            " seeds a size; a size that 95 % see is accurate to " +
-           Cell(100.0 * ((plan.linear ? kResolution : kCoarseResolution) - 1.0)).text +
-           " %.",
+           Cell(100.0 * (search.ask.resolution - 1.0)).text + " %.",
        "The bound is the standard deviation that no estimate can be better than, all "
        "faults" +
-           std::string(plan.linear ? "" : ", dry friction") +
+           std::string(search.linear() ? "" : ", dry friction") +
            " and phases of disturbances unknown. That of a fault that is known to be "
            "alone is lower."}};
 }
@@ -89,20 +83,19 @@ struct Sight {
 
 /// Looking at a run takes a twin longer than making it: what it sees is asked only where
 /// that is wanted. The others share runs.
-std::vector<Sight> SightsOf(const Plan& plan, const std::string& fault) {
-  const double healthy = HealthyValue(plan.machine.setup(), fault);
-  const auto run = [&plan, fault, healthy](double deviation, std::uint64_t seed) {
-    return plan.Run({{fault, healthy + deviation}}, seed);
+std::vector<Sight> SightsOf(const Search& search, const PlanAxis& fault) {
+  const auto run = [&search, &fault](double deviation, std::uint64_t seed) {
+    return search.maker.Simulate(RunWith(fault, fault.healthy + deviation, seed));
   };
   const auto look = [&fault](const Detector& detector) -> LookedAtRuns::Sees {
-    return [&detector, fault](const Record& record) {
-      return detector.sees(record, fault);
+    return [&detector, &fault](const Record& record) {
+      return detector.sees(record, fault.name);
     };
   };
   std::vector<Sight> sights;
   std::vector<LookedAtRuns::Sees> shared;
-  for (const Detector& detector : plan.detectors) {
-    if (detector.meant_for && !detector.meant_for(fault)) continue;
+  for (const Detector& detector : search.detectors) {
+    if (detector.meant_for && !detector.meant_for(fault.name)) continue;
     sights.push_back({detector, {}});
     if (!detector.at_bound) shared.push_back(look(detector));
   }
@@ -121,163 +114,178 @@ std::vector<Sight> SightsOf(const Plan& plan, const std::string& fault) {
 }
 
 /// How one detector sees one fault.
-/// @param published  the size of the thesis, if it has one
-std::vector<Cell> RowOf(const Plan& plan, const Sight& sight, const std::string& fault,
-                        double largest, std::optional<double> published) {
+std::vector<Cell> RowOf(const Search& search, const Sight& sight,
+                        const PlanAxis& fault) {
   const auto& [detector, sees] = sight;
-  const Setup& setup = plan.machine.setup();
-  const double sd = plan.bound[BoundIndex(plan.machine, fault)];
+  const double largest = fault.values.front() - fault.healthy;
+  const auto published = PublishedDeviation(search.loaded.plan, fault.name);
+  const double sd = search.bound[BoundIndex(search.machine(), fault.name)];
   std::optional<double> guess;
   if (detector.at_bound) guess = std::copysign(kAboutSeen * sd, largest);
-  const SizeGrid grid(largest, plan.linear ? kResolution : kCoarseResolution);
-  const auto seen = SurelySeenSize(grid, guess, plan.seeds, sees);
-  const int seeds = plan.seeds.count;
+  const SizeGrid grid(largest, search.ask.resolution);
+  const auto seen = SurelySeenSize(grid, guess, search.seeds, sees);
+  const int seeds = search.seeds.count;
   std::vector<Cell> row{
-      fault, detector.name,
-      published ? DeviationCell(setup, fault, *published) : Cell("undetectable"),
-      published ? PerCent(CountSeen(*published, plan.seeds, sees), seeds) : Cell("-")};
+      fault.name, detector.name,
+      published ? DeviationCell(fault, *published) : Cell("undetectable"),
+      published ? PerCent(CountSeen(*published, search.seeds, sees), seeds)
+                : Cell("-")};
   if (!seen) {
     row.insert(row.end(), {"nothing", "-", "-", "-", "-"});
     return row;
   }
   row.insert(row.end(),
-             {DeviationCell(setup, fault, seen->deviation), PerCent(seen->seeds, seeds),
-              PerCent(CountSeen(0.5 * seen->deviation, plan.seeds, sees), seeds),
+             {DeviationCell(fault, seen->deviation), PerCent(seen->seeds, seeds),
+              PerCent(CountSeen(0.5 * seen->deviation, search.seeds, sees), seeds),
               published ? Cell(*published / seen->deviation) : Cell("seen now"),
               Cell(std::abs(seen->deviation) / sd)});
   return row;
 }
 
-StudyTable FalseAlarms(const Plan& plan, const StudyOptions& options) {
-  std::vector<std::atomic<int>> alarms(plan.detectors.size());
+StudyTable FalseAlarms(const Search& search, const StudyOptions& options) {
+  const int runs = search.loaded.plan.replications;
+  std::vector<std::atomic<int>> alarms(search.detectors.size());
   ParallelFor(
-      options.runs,
+      runs,
       [&](int i) {
-        const Record record =
-            plan.Run({}, options.seed + kHealthySeeds + static_cast<std::uint64_t>(i));
+        const Record record = search.Healthy(search.loaded.plan.seed + kHealthySeeds +
+                                             static_cast<std::uint64_t>(i));
         for (std::size_t k = 0; k < alarms.size(); ++k) {
-          if (plan.detectors[k].alarms(record)) ++alarms[k];
+          if (search.detectors[k].alarms(record)) ++alarms[k];
         }
       },
       options.progress);
-  GrowingTable table(
-      {"False alarms in " + std::to_string(options.runs) + " healthy runs, " +
-           (plan.linear ? "" : "non") + "linear plant",
-       {"by", "alarms", "[%]", "95 % interval [%]"},
-       {},
-       {}},
-      options.row);
+  GrowingTable table({"False alarms in " + std::to_string(runs) + " healthy runs, " +
+                          PlantName(search.linear()),
+                      {"by", "alarms", "[%]", "95 % interval [%]"},
+                      {},
+                      {}},
+                     options.row);
   for (std::size_t k = 0; k < alarms.size(); ++k) {
     const int count = alarms[k];
-    table.Add({plan.detectors[k].name, static_cast<double>(count),
-               PerCent(count, options.runs), IntervalCell(count, options.runs)});
+    table.Add({search.detectors[k].name, static_cast<double>(count),
+               PerCent(count, runs), IntervalCell(count, runs)});
   }
   return table.table();
 }
 
-/// Sizes, then false alarms.
-std::vector<StudyTable> Detect(const Plan& plan, const std::string& title,
-                               const StudyOptions& options) {
-  const Setup& setup = plan.machine.setup();
-  const auto& largest = setup.Study("largest").values;
-  GrowingTable sizes(EmptySizes(plan, title), options.row);
-  const auto parts = static_cast<double>(largest.size() + 1);
-  double done = 0.0;
-  for (const auto& [fault, value] : largest) {
-    const auto published =
-        PublishedDeviation(plan.machine, setup.Study(plan.study), fault);
-    for (const Sight& sight : SightsOf(plan, fault)) {
-      sizes.Add(
-          RowOf(plan, sight, fault, value - HealthyValue(setup, fault), published));
-    }
-    done += 1.0 / parts;
-    if (options.progress) options.progress(done);
-  }
-  StudyOptions last = options;
-  last.progress = [&](double fraction) {
-    if (options.progress) options.progress(done + fraction / parts);
-  };
-  return {sizes.table(), FalseAlarms(plan, last)};
-}
-
-Plan PlanFor(const Machine& machine, const std::string& study, bool linear,
-             const StudyOptions& options) {
-  Plan plan{machine, DefaultMotion(machine.setup()), linear, study, {}, {}, {}};
-  plan.seeds = {std::min(kSeeds, options.runs), options.seed};
-  const auto faults = static_cast<Index>(MakeFaultFamily(machine).Names().size());
-  plan.bound =
-      RunBound(machine, VectorXd::Zero(faults), plan.Run({}, options.seed), 0, linear);
-  return plan;
-}
-
-/// When the residual leaves its limits at the sizes of the thesis.
-StudyTable Delays(const Plan& plan, const PreparedDiagnosis& detector,
-                  const StudyOptions& options) {
+/// When the residual leaves its limits at the published sizes.
+StudyTable Delays(const Search& search, const PreparedDiagnosis& prepared) {
   StudyTable table{
       "Delay of the residual at the sizes of the thesis",
       {"fault", "thesis", "at time [s]"},
       {},
       {"The faults are there from the start: most of it is the wait for the "
        "first move of that axis."}};
-  for (const auto& [fault, value] : plan.machine.setup().Study(plan.study).values) {
-    const Detection seen =
-        Look(detector, plan.Run({{fault, value}}, options.seed), fault);
+  for (const PlanAxis& fault : CaseOf(search.loaded.plan, "published").axes) {
+    const double value = fault.values.front();
+    const Detection seen = Look(
+        prepared, search.maker.Simulate(RunWith(fault, value, search.loaded.plan.seed)),
+        fault.name);
     table.rows.push_back(
-        {fault, value, seen.residual ? Cell(*seen.residual) : Cell("-")});
+        {fault.name, value, seen.residual ? Cell(*seen.residual) : Cell("-")});
   }
   return table;
 }
 
-}  // namespace
-
-std::vector<StudyTable> LinearDetectionStudy(const Machine& machine,
-                                             const StudyOptions& options) {
-  Plan plan = PlanFor(machine, "table2", true, options);
-  const PreparedDiagnosis prepared = LinearDiagnosis(machine);
-  plan.detectors = {ByResidual("residual", prepared),
-                    BySpectrum(machine.setup(), prepared), ByEstimate(prepared),
-                    ByTwin(machine, true)};
-  std::vector<StudyTable> tables =
-      Detect(plan, "Smallest detectable faults, linear plant", options);
-  tables.front().notes.emplace_back(kTwinSees);
-  tables.push_back(Delays(plan, prepared, options));
-  return tables;
+/// Filters, with limits from healthy runs of that plant.
+DiagnosisSource SourceOf(const AskSmallestSize& ask, bool linear) {
+  DiagnosisSource source;
+  source.nominal.linear = linear;
+  source.baseline = ask.baseline;
+  if (ask.limits_from > 0) source.nominal.runs = ask.limits_from;
+  return source;
 }
 
-std::vector<StudyTable> NonlinearDetectionStudy(const Machine& machine,
-                                                const std::string& study, bool baseline,
-                                                const StudyOptions& options) {
-  Plan plan = PlanFor(machine, study, false, options);
-  DiagnosisSource source;
-  source.baseline = baseline;
-  source.nominal.runs = 8;
-  const PreparedDiagnosis common = PrepareDiagnosis(machine, source, plan.motion);
-  plan.detectors = {ByResidual("residual", common), BySpectrum(machine.setup(), common),
-                    ByEstimate(common)};
-  for (const auto& [fault, value] : machine.setup().Study("largest").values) {
-    source.robust = fault;
-    plan.detectors.push_back(ByResidual(
-        "robust residual of " + fault, PrepareDiagnosis(machine, source, plan.motion)));
-    plan.detectors.back().meant_for = [meant = fault](const std::string& other) {
-      return other == meant;
-    };
+/// Those that the plan names.
+std::vector<Detector> DetectorsOf(const AskSmallestSize& ask, const LoadedPlan& loaded,
+                                  const Excitation& motion,
+                                  const PreparedDiagnosis& prepared) {
+  std::vector<Detector> detectors;
+  for (const Judge judge : ask.judges) {
+    if (judge == Judge::kResidual) {
+      detectors.push_back(ByResidual("residual", prepared));
+    } else if (judge == Judge::kSpectrum) {
+      detectors.push_back(BySpectrum(loaded.machine.setup(), prepared));
+    } else if (judge == Judge::kEstimate) {
+      detectors.push_back(ByEstimate(prepared));
+    } else if (judge == Judge::kTwin) {
+      detectors.push_back(ByTwin(loaded.machine, loaded.plan.linear));
+    } else {
+      DiagnosisSource source = SourceOf(ask, loaded.plan.linear);
+      for (const PlanAxis& fault : CaseOf(loaded.plan, "largest").axes) {
+        source.robust = fault.name;
+        detectors.push_back(
+            ByResidual("robust residual of " + fault.name,
+                       PrepareDiagnosis(loaded.machine, source, motion)));
+        detectors.back().meant_for = [meant = fault.name](const std::string& other) {
+          return other == meant;
+        };
+      }
+    }
   }
-  // It takes most of the time, and knows nothing of baselines.
-  if (!baseline) plan.detectors.push_back(ByTwin(machine, false));
-  std::vector<StudyTable> tables =
-      Detect(plan,
-             std::string("Smallest detectable faults, nonlinear plant") +
-                 (baseline ? ", baseline subtracted" : ""),
-             options);
-  tables.front().notes.emplace_back(
-      "The robust residual is, of all residuals of the robust degree, the one that "
-      "nominal runs excite least while the fault is seen; its limits come from nominal "
-      "runs, too. An estimate counts when it is outside what nominal runs of this "
-      "motion "
-      "gave.");
-  tables.front().notes.emplace_back(
-      baseline ? "The twin takes no residuals: that of Table 3 is that of this one."
-               : kTwinSees);
+  return detectors;
+}
+
+std::vector<std::string> NotesOn(const AskSmallestSize& ask) {
+  const auto has = [&](Judge judge) {
+    return std::ranges::find(ask.judges, judge) != ask.judges.end();
+  };
+  std::vector<std::string> notes;
+  if (has(Judge::kRobustResidual)) {
+    notes.emplace_back(
+        "The robust residual is, of all residuals of the robust degree, the one that "
+        "nominal runs excite least while the fault is seen; its limits come from "
+        "nominal "
+        "runs, too. An estimate counts when it is outside what nominal runs of this "
+        "motion gave.");
+  }
+  if (has(Judge::kTwin)) {
+    notes.emplace_back("The twin sees a fault that it names, and no other beside it.");
+  } else if (ask.baseline) {
+    notes.emplace_back(
+        "The twin takes no residuals: that of Table 3 is that of this one.");
+  }
+  return notes;
+}
+
+}  // namespace
+
+std::vector<StudyTable> AnswerTo(const AskSmallestSize& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const StudyPlan& plan = loaded.plan;
+  const RunMaker maker(loaded);
+  const Excitation& motion = maker.motions().front();
+  Search search{ask, loaded, maker, {std::min(ask.seeds, plan.replications), plan.seed},
+                {},  {}};
+  const auto faults =
+      static_cast<Index>(MakeFaultFamily(loaded.machine).Names().size());
+  search.bound = RunBound(loaded.machine, VectorXd::Zero(faults),
+                          search.Healthy(plan.seed), 0, plan.linear);
+  const DiagnosisSource source = SourceOf(ask, plan.linear);
+  const PreparedDiagnosis prepared =
+      plan.linear ? PrepareDiagnosis(loaded.machine, source)
+                  : PrepareDiagnosis(loaded.machine, source, motion);
+  search.detectors = DetectorsOf(ask, loaded, motion, prepared);
+
+  GrowingTable sizes(
+      EmptySizes(search, "Smallest detectable faults, " + PlantName(plan.linear) +
+                             (ask.baseline ? ", baseline subtracted" : "")),
+      options.row);
+  const std::vector<PlanAxis>& largest = CaseOf(plan, "largest").axes;
+  const std::size_t parts = largest.size() + 1;
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    for (const Sight& sight : SightsOf(search, largest[i])) {
+      sizes.Add(RowOf(search, sight, largest[i]));
+    }
+    if (options.progress) options.PartOf(i, parts).progress(1.0);
+  }
+  std::vector<StudyTable> tables{sizes.table(),
+                                 FalseAlarms(search, options.PartOf(parts - 1, parts))};
+  for (std::string& note : NotesOn(ask)) {
+    tables.front().notes.push_back(std::move(note));
+  }
+  if (ask.delays) tables.push_back(Delays(search, prepared));
   return tables;
 }
 

@@ -8,25 +8,26 @@
 namespace mjdiag {
 namespace {
 
-struct Scenario {
+/// The disturbances of a run: "gamma = 0.01"; of one without, the name of its case.
+std::string WhatOf(const StudyPlan& plan, const PlannedRun& run) {
   std::string what;
-  std::vector<SizedFault> faults;
-  std::vector<double> frequencies;  ///< that are there [Hz]
-  double noise = 1.0;
-};
+  for (const auto& [name, value] : FaultsOf(run)) {
+    what += (what.empty() ? "" : ", ") + name + " = " + Cell(value).text;
+  }
+  return what.empty() ? plan.cases[static_cast<std::size_t>(run.in_case)].name : what;
+}
 
-std::vector<Scenario> Scenarios(const Setup& setup) {
-  std::vector<Scenario> scenarios{{"healthy", {}, {}, 1.0},
-                                  {"tenfold noise", {}, {}, 10.0}};
-  for (const MultisineSetup& source : setup.disturbances) {
-    for (const double magnitude : {0.01, 0.001}) {
-      scenarios.push_back({source.name + " = " + Cell(magnitude).text,
-                           {{source.name, magnitude}},
-                           source.frequencies,
-                           1.0});
+/// That are there [Hz].
+std::vector<double> FrequenciesOf(const Setup& setup, const PlannedRun& run) {
+  std::vector<double> frequencies;
+  for (const SizedFault& fault : FaultsOf(run)) {
+    for (const MultisineSetup& source : setup.disturbances) {
+      if (source.name != fault.name) continue;
+      frequencies.insert(frequencies.end(), source.frequencies.begin(),
+                         source.frequencies.end());
     }
   }
-  return scenarios;
+  return frequencies;
 }
 
 /// How many runs show a tone within a resolution cell of the frequency.
@@ -43,34 +44,37 @@ int Found(const std::vector<DiagnosisResult>& results, double frequency, double 
 
 }  // namespace
 
-std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
-                                         const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
-  const DiagnosisDesign design = LinearDiagnosis(machine).design;
+std::vector<StudyTable> AnswerTo(const AskDisturbances&, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const StudyPlan& plan = loaded.plan;
+  const Machine& machine = loaded.machine;
+  const RunPlanner planner(plan);
+  const RunMaker maker(loaded);
+  const DiagnosisDesign design = DiagnosisOn(machine, plan.linear).design;
   const double cell = design.limits.disturbance.nominal.resolution();
 
-  StudyTable table{"Disturbances and noise, " + std::to_string(options.runs) +
-                       " runs each, linear plant",
+  StudyTable table{"Disturbances and noise, " + std::to_string(plan.replications) +
+                       " runs each, " + PlantName(plan.linear),
                    {"what", "tones found in", "other tones in", "noise raised in",
                     "noise ratio", "magnitude", "sd claimed", "sd found"},
                    {},
                    {"A tone counts as found within one cell of the spectrum, " +
                     Cell(cell).text + " Hz."}};
-  for (const Scenario& scenario : Scenarios(machine.setup())) {
-    std::vector<DiagnosisResult> results(static_cast<std::size_t>(options.runs));
+  for (const PointRuns& point : RunsByPoint(planner)) {
+    const std::vector<double> frequencies =
+        FrequenciesOf(machine.setup(), point.front());
+    const std::vector<SizedFault> faults = FaultsOf(point.front());
+    const double truth = faults.empty() ? 0.0 : faults.front().value;
+    std::vector<DiagnosisResult> results(point.size());
     ParallelFor(
-        options.runs,
+        static_cast<int>(point.size()),
         [&](int i) {
-          FaultyMachine run = WithFaults(machine, scenario.faults,
-                                         options.seed + static_cast<std::uint64_t>(i));
-          run.options.noise_scale = scenario.noise;
-          const Record record = RunLinear(motion, run);
-          results[static_cast<std::size_t>(i)] =
-              Conclude(RecordDiagnosis(design, record));
+          const auto run = static_cast<std::size_t>(i);
+          results[run] = Conclude(RecordDiagnosis(design, maker.Simulate(point[run])));
         },
         options.progress);
     std::string found;
-    for (const double frequency : scenario.frequencies) {
+    for (const double frequency : frequencies) {
       found += (found.empty() ? "" : ", ") + Cell(frequency).text +
                " Hz: " + std::to_string(Found(results, frequency, cell));
     }
@@ -84,16 +88,14 @@ std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
       const auto& tones = result.disturbance.tones;
       others +=
           std::any_of(tones.begin(), tones.end(), [&](const DisturbanceTone& tone) {
-            return std::none_of(scenario.frequencies.begin(),
-                                scenario.frequencies.end(), [&](double frequency) {
+            return std::none_of(frequencies.begin(), frequencies.end(),
+                                [&](double frequency) {
                                   return std::abs(tone.frequency - frequency) < cell;
                                 });
           });
       raised += result.disturbance.noise_raised ? 1 : 0;
-      const auto runs = static_cast<double>(options.runs);
+      const auto runs = static_cast<double>(point.size());
       ratio += result.disturbance.noise_ratio / runs;
-      const double truth =
-          scenario.faults.empty() ? 0.0 : scenario.faults.front().value;
       for (const FaultVerdict& fault : result.faults) {
         if (machine.setup().disturbances.empty() ||
             fault.name != machine.setup().disturbances.front().name) {
@@ -104,9 +106,10 @@ std::vector<StudyTable> DisturbanceStudy(const Machine& machine,
         claimed += fault.sd / runs;
       }
     }
-    table.rows.push_back(
-        {scenario.what, found.empty() ? "-" : found, Cell(static_cast<double>(others)),
-         Cell(static_cast<double>(raised)), ratio, mean, claimed, std::sqrt(square)});
+    table.rows.push_back({WhatOf(plan, point.front()), found.empty() ? "-" : found,
+                          Cell(static_cast<double>(others)),
+                          Cell(static_cast<double>(raised)), ratio, mean, claimed,
+                          std::sqrt(square)});
   }
   return {table};
 }

@@ -47,8 +47,7 @@ double Seconds(Clock::time_point from) {
 class Watcher final : public TickObserver {
  public:
   Watcher(const Machine& machine, bool linear)
-      : monitor_(
-            (linear ? LinearDiagnosis(machine) : PrepareDiagnosis(machine)).design) {
+      : monitor_(DiagnosisOn(machine, linear).design) {
     auto twin = MakeTwinEstimator(machine, linear);
     if (!twin) {
       throw InputError("setup '" + machine.setup().name + "'",
@@ -76,8 +75,10 @@ class Watcher final : public TickObserver {
 /// The truth of a machine that wears.
 class Wear {
  public:
-  Wear(const Machine& machine, std::vector<SizedFault> an_hour)
-      : machine_(machine), an_hour_(std::move(an_hour)) {
+  Wear(const Machine& machine,
+       const std::vector<std::pair<std::string, double>>& an_hour)
+      : machine_(machine) {
+    for (const auto& [name, growth] : an_hour) an_hour_.push_back({name, growth});
     At(kChord);  // complains of names and values
   }
 
@@ -87,7 +88,11 @@ class Wear {
     return values;
   }
   Machine At(double time) const {
-    return WithFaults(machine_, ValuesAt(time), 0).machine;
+    Changes changes;
+    for (const auto& [name, value] : ValuesAt(time)) {
+      changes.faults.push_back({name, value});
+    }
+    return machine_.With(changes);
   }
   bool any() const { return !an_hour_.empty(); }
 
@@ -138,11 +143,10 @@ std::string NamesOf(const std::set<std::size_t>& faults,
   return text.empty() ? "-" : text;
 }
 
-StudyTable EmptyRows(const Machine& machine, const StudyOptions& options,
-                     const std::vector<std::string>& names) {
+StudyTable EmptyRows(const LoadedPlan& loaded, const std::vector<std::string>& names) {
   StudyTable table{
-      "Endurance of " + machine.setup().name + ", " +
-          (options.linear ? "linear plant" : "nonlinear plant"),
+      "Endurance of " + loaded.machine.setup().name + ", " +
+          PlantName(loaded.plan.linear),
       {"time [s]", "named", "looks", "with names", "false", "alarms [ticks]",
        "since [s]", "passes", "NIS", "error / sd", "memory [MB]", "wall [s/s]"},
       {},
@@ -159,28 +163,31 @@ StudyTable EmptyRows(const Machine& machine, const StudyOptions& options,
 
 class LongRun {
  public:
-  LongRun(const Machine& machine, const StudyOptions& options)
-      : machine_(machine),
+  LongRun(const AskEndurance& ask, const LoadedPlan& loaded,
+          const StudyOptions& options)
+      : ask_(ask),
+        machine_(loaded.machine),
         options_(options),
-        names_(MakeFaultFamily(machine).Names()),
-        wear_(machine, options.wear),
-        watcher_(machine, options.linear),
+        names_(MakeFaultFamily(machine_).Names()),
+        wear_(machine_, ask.wear),
+        watcher_(machine_, loaded.plan.linear),
         whole_(static_cast<Index>(names_.size())),
         recent_(whole_),
-        rows_(EmptyRows(machine, options, names_), options.row) {
+        rows_(EmptyRows(loaded, names_), options.row) {
     RunOptions run;
-    run.seed = options.seed;
+    run.seed = loaded.plan.seed;
     run.repeat = true;
     run.observer = &watcher_;
-    const Excitation motion = DefaultMotion(machine.setup());
-    running_ = options.linear ? StartLinear(machine, motion, run)
-                              : StartNonlinear(machine, motion, run);
+    const RunMaker maker(loaded);
+    const Excitation& motion = maker.motions().front();
+    running_ = loaded.plan.linear ? StartLinear(machine_, motion, run)
+                                  : StartNonlinear(machine_, motion, run);
   }
 
   std::vector<StudyTable> Run() {
-    const Index ticks = TicksOf(options_.duration);
+    const Index ticks = TicksOf(ask_.duration);
     const Index look = TicksOf(kLook);
-    const Index row = std::max(look, TicksOf(options_.every) / look * look);
+    const Index row = std::max(look, TicksOf(ask_.every) / look * look);
     const Index chord = TicksOf(kChord);
     memory_ = ResidentMemory();
     row_start_ = Clock::now();
@@ -273,6 +280,7 @@ class LongRun {
     return table;
   }
 
+  const AskEndurance& ask_;
   const Machine& machine_;
   const StudyOptions& options_;
   std::vector<std::string> names_;
@@ -291,14 +299,14 @@ class LongRun {
 
 }  // namespace
 
-std::vector<StudyTable> EnduranceStudy(const Machine& machine,
-                                       const StudyOptions& options) {
-  for (const SizedFault& fault : options.wear) {
-    if (!IsDisturbance(machine.setup(), fault.name)) continue;
-    throw InputError("wear of " + fault.name, "it is a disturbance",
+std::vector<StudyTable> AnswerTo(const AskEndurance& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  for (const auto& [name, growth] : ask.wear) {
+    if (!IsDisturbance(loaded.machine.setup(), name)) continue;
+    throw InputError("wear of " + name, "it is a disturbance",
                      "a fault parameter of the plant");
   }
-  return LongRun(machine, options).Run();
+  return LongRun(ask, loaded, options).Run();
 }
 
 }  // namespace mjdiag

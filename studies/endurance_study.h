@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {
 
-/// The run of `options.duration` on the plant of `options.linear`, a row every
-/// `options.every`; faults of `options.wear` grow evenly from healthy. What the twin says
-/// is looked at every tenth of a second, and a row says all that it said since the last
-/// one. InputError on a wear of what is no fault parameter of the plant.
-std::vector<StudyTable> EnduranceStudy(const Machine& machine,
-                                       const StudyOptions& options);
+/// The run of `duration` on the plan's plant, a row for every `every`; faults of `wear`
+/// grow evenly from healthy. What the twin says is looked at every tenth of a second, and a
+/// row says all that it said since the last one. InputError on a wear of what is no fault
+/// parameter of the plant.
+std::vector<StudyTable> AnswerTo(const AskEndurance& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options);
 
 }  // namespace mjdiag

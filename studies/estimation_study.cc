@@ -15,29 +15,28 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-StudyTable Repeat(const Machine& machine, const FaultSizes& sizes,
-                  const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
-  std::vector<SizedFault> faults;
-  for (const auto& [name, value] : sizes.values) faults.push_back({name, value});
-
-  std::vector<TwinReading> readings(static_cast<std::size_t>(options.runs));
+StudyTable Repeat(const LoadedPlan& loaded, const RunMaker& maker,
+                  const PointRuns& point, const StudyOptions& options) {
+  const StudyPlan& plan = loaded.plan;
+  const Machine& machine = loaded.machine;
+  const auto count = static_cast<int>(point.size());
+  std::vector<TwinReading> readings(point.size());
   ParallelFor(
-      options.runs,
+      count,
       [&](int i) {
-        const Record record = RunLinear(
-            motion,
-            WithFaults(machine, faults, options.seed + static_cast<std::uint64_t>(i)));
-        readings[static_cast<std::size_t>(i)] = Listen(machine, record, true);
+        const auto run = static_cast<std::size_t>(i);
+        readings[run] = Listen(machine, maker.Simulate(point[run]), plan.linear);
       },
       options.progress);
 
+  const std::string& name_of_case =
+      plan.cases[static_cast<std::size_t>(point.front().in_case)].name;
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
-  const VectorXd truth = DeviationsOf(machine.setup(), names, faults);
-  const VectorXd bound = FaultBoundAt(machine, motion, truth);
-  const auto band = BinomialInterval(options.runs, 0.95, 0.99);
+  const VectorXd truth = DeviationsOf(machine.setup(), names, FaultsOf(point.front()));
+  const VectorXd bound = FaultBoundAt(machine, maker.motions().front(), truth);
+  const auto band = BinomialInterval(count, 0.95, 0.99);
   GrowingTable table(
-      {"All at once: " + sizes.name + ", " + std::to_string(options.runs) + " runs",
+      {"All at once: " + name_of_case + ", " + std::to_string(count) + " runs",
        {"fault", "deviation", "mean estimate", "largest error [%]", "sd claimed",
         "rms error", "inside 95 % interval [%]", "99 % band [%]", "sd / bound",
         "rms error / bound"},
@@ -50,7 +49,7 @@ StudyTable Repeat(const Machine& machine, const FaultSizes& sizes,
         "alone "
         "(diagnosis/statistics/magnitude_interval.h): it may hold more than 95 %."}},
       options.row);
-  const auto runs = static_cast<double>(options.runs);
+  const auto runs = static_cast<double>(count);
   for (Index i = 0; i < truth.size(); ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
     double mean = 0.0;
@@ -80,21 +79,15 @@ StudyTable Repeat(const Machine& machine, const FaultSizes& sizes,
 
 }  // namespace
 
-std::vector<StudyTable> EstimationStudy(const Machine& machine,
-                                        const StudyOptions& options) {
-  const std::vector<FaultSizes> cases = {machine.setup().Study("estimation_large"),
-                                         machine.setup().Study("estimation_small"),
-                                         machine.setup().Study("estimation_faint"),
-                                         {"healthy", {}}};
+std::vector<StudyTable> AnswerTo(const AskEstimates&, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const RunPlanner planner(loaded.plan);
+  const RunMaker maker(loaded);
+  const std::vector<PointRuns> points = RunsByPoint(planner);
   std::vector<StudyTable> tables;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    StudyOptions part = options;
-    part.progress = [&, i](double fraction) {
-      if (!options.progress) return;
-      options.progress((static_cast<double>(i) + fraction) /
-                       static_cast<double>(cases.size()));
-    };
-    tables.push_back(Repeat(machine, cases[i], part));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    tables.push_back(
+        Repeat(loaded, maker, points[i], options.PartOf(i, points.size())));
   }
   return tables;
 }

@@ -3,18 +3,17 @@
 // section 5.5, with intervals whose coverage is counted.
 
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {
 
-/// For the sizes under [studies.estimation_large], [studies.estimation_small] and
-/// [studies.estimation_faint], all faults of a table present at once on the linear plant,
-/// and for the healthy one: mean estimate over `options.runs` runs, largest error as a
+/// For every point of the plan: mean estimate over its replications, largest error as a
 /// share of the deviation, standard deviation claimed and found, how often the 95 %
 /// interval held the truth with the binomial 99 % band of that count, and the multiple of
 /// the information bound. Every fault parameter and disturbance is estimated, by the twin
 /// of the machine (twin_estimator.h).
-std::vector<StudyTable> EstimationStudy(const Machine& machine,
-                                        const StudyOptions& options);
+std::vector<StudyTable> AnswerTo(const AskEstimates& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options);
 
 }  // namespace mjdiag

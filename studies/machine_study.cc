@@ -1,37 +1,64 @@
 #include "mjdiag/studies/machine_study.h"
 
+#include <algorithm>
+
+#include "mjdiag/signals/error.h"
+
 namespace mjdiag {
-FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
-                         std::uint64_t seed) {
-  RunOptions options;
-  options.seed = seed;
-  Changes changes;
-  for (const SizedFault& fault : faults) {
-    if (IsDisturbance(machine.setup(), fault.name)) {
-      options.disturbances[fault.name] = fault.value;
-    } else {
-      changes.faults.push_back({fault.name, fault.value});
-    }
+
+StudyOptions StudyOptions::PartOf(std::size_t part, std::size_t count) const {
+  StudyOptions options = *this;
+  options.progress = [this, part, count](double fraction) {
+    if (!progress) return;
+    progress((static_cast<double>(part) + fraction) / static_cast<double>(count));
+  };
+  return options;
+}
+
+std::vector<PointRuns> RunsByPoint(const RunPlanner& planner) {
+  std::vector<PointRuns> points;
+  for (std::int64_t i = 0; i < planner.runs(); ++i) {
+    PlannedRun run = planner.Run(i);
+    if (points.empty() || points.back().front().point != run.point)
+      points.push_back({});
+    points.back().push_back(std::move(run));
   }
-  return {machine.With(changes), options};
+  return points;
 }
 
-Record RunLinear(const Excitation& motion, const FaultyMachine& faulty) {
-  return SimulateLinear(faulty.machine, motion, faulty.options);
+PlannedRun RunWith(const PlanAxis& fault, double value, std::uint64_t seed) {
+  PlannedRun run;
+  run.seed = seed;
+  run.axes = {{&fault, value}};
+  return run;
 }
 
-Record RunOf(const Excitation& motion, const FaultyMachine& faulty, bool linear) {
-  return linear ? RunLinear(motion, faulty)
-                : Simulate(faulty.machine, motion, faulty.options);
+const PlanCase& CaseOf(const StudyPlan& plan, const std::string& name) {
+  const auto found = std::ranges::find(plan.cases, name, &PlanCase::name);
+  if (found != plan.cases.end()) return *found;
+  throw InputError("plan '" + plan.name + "'", "lacks the case '" + name + "'",
+                   "a [[case]] of that name");
+}
+
+std::vector<SizedFault> FaultsOf(const PlannedRun& run) {
+  std::vector<SizedFault> faults;
+  for (const DrawnAxis& drawn : run.axes) {
+    if (drawn.present()) faults.push_back({drawn.axis->name, drawn.value});
+  }
+  return faults;
+}
+
+std::string PlantName(bool linear) {
+  return linear ? "linear plant" : "nonlinear plant";
 }
 
 double HealthyValue(const Setup& setup, const std::string& fault) {
   return IsDisturbance(setup, fault) ? 0.0 : 1.0;
 }
 
-PreparedDiagnosis LinearDiagnosis(const Machine& machine) {
+PreparedDiagnosis DiagnosisOn(const Machine& machine, bool linear) {
   DiagnosisSource source;
-  source.nominal.linear = true;
+  source.nominal.linear = linear;
   return PrepareDiagnosis(machine, source);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What all studies share: the machine, its diagnosis, runs with a fault, and what is
-// seen in them.
+// What all studies share: runs of a plan, the diagnosis of its machine, and what is seen in
+// them.
 
 #include <functional>
 #include <optional>
@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/design/diagnosis.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/studies/growing_table.h"
+#include "mjdiag/studies/plan/run_machine.h"
 
 namespace mjdiag {
 
@@ -19,37 +20,36 @@ struct SizedFault {
   double value = 1.0;
 };
 
+/// How one hears of a study while it runs.
 struct StudyOptions {
-  int runs = 200;          ///< Monte-Carlo runs where a study has any
-  std::uint64_t seed = 1;  ///< of the first run
   std::function<void(double fraction)> progress;
-  RowSink row;          ///< sees tables grow; may be called from any thread
-  bool linear = false;  ///< the linear plant, where a study has either
-  // Of one long run:
-  double duration = 60.0;        ///< [s]
-  double every = 60.0;           ///< a row [s]
-  std::vector<SizedFault> wear;  ///< by how much these faults grow an hour
+  RowSink row;  ///< sees tables grow; may be called from any thread
+  int runs = 200;
+  std::uint64_t seed = 1;
+
+  /// Of part `part` of `count` equal ones; this must outlive it.
+  StudyOptions PartOf(std::size_t part, std::size_t count) const;
 };
 
-/// A machine with faults of its plant, and how it is run with those of the outside.
-struct FaultyMachine {
-  Machine machine;
-  RunOptions options;
-};
+/// Runs of a plan that differ in their noise only.
+using PointRuns = std::vector<PlannedRun>;
+/// All of them, point by point.
+std::vector<PointRuns> RunsByPoint(const RunPlanner& planner);
 
-/// Disturbances of the setup go where they belong. InputError on a name that neither
-/// the plant nor the setup has.
-FaultyMachine WithFaults(const Machine& machine, const std::vector<SizedFault>& faults,
-                         std::uint64_t seed);
-Record RunLinear(const Excitation& motion, const FaultyMachine& faulty);
-/// Of the linear plant, or the nonlinear one.
-Record RunOf(const Excitation& motion, const FaultyMachine& faulty, bool linear);
+/// A run with that fault alone, on the machine of the setup.
+PlannedRun RunWith(const PlanAxis& fault, double value, std::uint64_t seed);
+/// The case of that name; InputError if there is none.
+const PlanCase& CaseOf(const StudyPlan& plan, const std::string& name);
+
+/// What is wrong in a run.
+std::vector<SizedFault> FaultsOf(const PlannedRun& run);
+std::string PlantName(bool linear);  ///< "linear plant"
 
 /// 0 for a disturbance of the setup, else 1.
 double HealthyValue(const Setup& setup, const std::string& fault);
 
-/// The setup's filters with limits from nominal runs of the linear plant.
-PreparedDiagnosis LinearDiagnosis(const Machine& machine);
+/// The setup's filters with limits from nominal runs of that plant.
+PreparedDiagnosis DiagnosisOn(const Machine& machine, bool linear);
 
 /// What a diagnosis sees.
 struct Detection {

@@ -7,74 +7,55 @@
 #include <numeric>
 
 #include "mjdiag/plugin/effects/draw.h"
-#include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 namespace {
 
-constexpr double kHealthyShare = 0.2;
-constexpr double kFromRest = 0.25;
-constexpr std::size_t kMostFaults = 3;
 /// So that draws are not the numbers that the noise is made of.
 constexpr std::uint64_t kOwnStream = 0x9e3779b97f4a7c15ULL;
 
-const std::string& NameOf(const std::pair<std::string, double>& fault) {
-  return fault.first;
+/// Deviations that are drawn of a fault: from `least` to the farthest on either side; 0:
+/// it has none on that side.
+struct Sides {
+  double least = 0.0;
+  double below = 0.0;
+  double above = 0.0;
+};
+
+Sides SidesOf(const PlanAxis& axis) {
+  Sides sides;
+  for (const auto& [from, to] : axis.ranges) {
+    (to < axis.healthy ? sides.below : sides.above) = std::abs(to - axis.healthy);
+  }
+  sides.least = std::abs(axis.ranges.front().from - axis.healthy);
+  return sides;
 }
 
 }  // namespace
 
-std::vector<DrawRange> DrawRanges(const Setup& setup) {
-  const auto& least = setup.Study("random_least").values;
-  std::vector<DrawRange> ranges;
-  for (const auto& [name, value] : least) {
-    const double healthy = HealthyValue(setup, name);
-    ranges.push_back({name, healthy, std::abs(value - healthy), 0.0, 0.0});
-  }
-  for (const char* side : {"random_low", "random_high"}) {
-    const auto& values = setup.Study(side).values;
-    for (DrawRange& range : ranges) {
-      const auto found = std::ranges::find(values, range.name, NameOf);
-      if (found == values.end()) {
-        throw InputError(std::string("studies.") + side, "lacks '" + range.name + "'",
-                         "the faults of random_least");
-      }
-      const double away = found->second - range.healthy;
-      range.below = std::max(range.below, -away);
-      range.above = std::max(range.above, away);
-    }
-  }
-  for (const DrawRange& range : ranges) {
-    if (range.least > 0.0 && range.least < std::max(range.below, range.above)) continue;
-    throw InputError("studies.random_least." + range.name, "leaves nothing to be drawn",
-                     "a value between healthy and random_low or random_high");
-  }
-  return ranges;
-}
-
-RandomDraw DrawFaults(const std::vector<DrawRange>& ranges, Eigen::Index samples,
-                      std::uint64_t seed) {
+RandomDraw DrawFaults(const AskNames& ask, const std::vector<PlanAxis>& axes,
+                      Eigen::Index samples, std::uint64_t seed) {
   Random random(seed ^ kOwnStream);
   RandomDraw draw;
   draw.seed = seed;
-  const bool healthy = random.Uniform(0.0, 1.0) < kHealthyShare;
-  const std::size_t count =
-      healthy ? 0 : 1 + random.Index(std::min(kMostFaults, ranges.size()));
-  std::vector<std::size_t> places(ranges.size());
+  const bool healthy = random.Uniform(0.0, 1.0) < ask.healthy;
+  const auto most = std::min(static_cast<std::size_t>(ask.most), axes.size());
+  const std::size_t count = healthy ? 0 : 1 + random.Index(most);
+  std::vector<std::size_t> places(axes.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
   for (std::size_t i = 0; i < count; ++i) {
-    std::swap(places[i], places[i + random.Index(ranges.size() - i)]);
+    std::swap(places[i], places[i + random.Index(axes.size() - i)]);
   }
   std::sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t i = 0; i < count; ++i) {
-    const DrawRange& range = ranges[places[i]];
-    const bool down = range.below > range.least;
-    const bool up = range.above > range.least;
-    const double sign = down && up ? random.Sign() : up ? 1.0 : -1.0;
-    const double size = random.Log(range.least, sign > 0.0 ? range.above : range.below);
-    draw.faults.push_back({range.name, range.healthy + sign * size});
+    const PlanAxis& axis = axes[places[i]];
+    const auto [least, below, above] = SidesOf(axis);
+    const bool either = below > 0.0 && above > 0.0;
+    const double sign = either ? random.Sign() : above > 0.0 ? 1.0 : -1.0;
+    const double size = random.Log(least, sign > 0.0 ? above : below);
+    draw.faults.push_back({&axis, axis.healthy + sign * size});
   }
-  if (random.Uniform(0.0, 1.0) >= kFromRest) {
+  if (random.Uniform(0.0, 1.0) >= ask.from_rest) {
     const Eigen::Index half = samples / 2;
     draw.from = static_cast<Eigen::Index>(
         random.Index(static_cast<std::size_t>(std::max<Eigen::Index>(1, half))));
@@ -82,13 +63,13 @@ RandomDraw DrawFaults(const std::vector<DrawRange>& ranges, Eigen::Index samples
   return draw;
 }
 
-std::string ListFaults(const Setup& setup, const std::vector<SizedFault>& faults) {
+std::string ListFaults(const std::vector<DrawnAxis>& faults) {
   std::string text;
-  for (const SizedFault& fault : faults) {
+  for (const DrawnAxis& fault : faults) {
     std::array<char, 32> size{};
     std::snprintf(size.data(), size.size(), " %+.3g",
-                  fault.value - HealthyValue(setup, fault.name));
-    text += (text.empty() ? "" : ", ") + fault.name + size.data();
+                  fault.value - fault.axis->healthy);
+    text += (text.empty() ? "" : ", ") + fault.axis->name + size.data();
   }
   return text.empty() ? "none" : text;
 }

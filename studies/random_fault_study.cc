@@ -52,12 +52,12 @@ std::string NamesWhere(const RandomOutcome& run, const std::vector<std::string>&
 
 /// "zeta_x +0.2 (4e+05)": with its multiple of the bound.
 std::string DrawnWithMultiples(const RandomOutcome& run,
-                               const std::vector<std::string>& names,
-                               const Setup& setup) {
+                               const std::vector<std::string>& names) {
   std::string text;
-  for (const SizedFault& fault : run.draw.faults) {
-    const Index at = std::find(names.begin(), names.end(), fault.name) - names.begin();
-    text += (text.empty() ? "" : ", ") + ListFaults(setup, {fault}) + " (" +
+  for (const DrawnAxis& fault : run.draw.faults) {
+    const Index at =
+        std::find(names.begin(), names.end(), fault.axis->name) - names.begin();
+    text += (text.empty() ? "" : ", ") + ListFaults({fault}) + " (" +
             Cell(std::round(std::abs(run.truth[at]) / run.bound[at])).text + ")";
   }
   return text.empty() ? "none" : text;
@@ -68,11 +68,8 @@ std::vector<Cell> RowOf(const RandomOutcome& run, const std::vector<std::string>
   const double from = static_cast<double>(run.draw.from) * machine.rates().tick();
   const std::string seed = std::to_string(run.draw.seed);
   if (run.diverged) {
-    return {seed,       Cell(from),
-            "diverged", "-",
-            "-",        "-",
-            "-",        "-",
-            "-",        ListFaults(machine.setup(), run.draw.faults)};
+    return {seed, Cell(from), "diverged", "-", "-",
+            "-",  "-",        "-",        "-", ListFaults(run.draw.faults)};
   }
   const auto parameters =
       static_cast<Index>(names.size() - machine.setup().disturbances.size());
@@ -95,13 +92,12 @@ std::vector<Cell> RowOf(const RandomOutcome& run, const std::vector<std::string>
           NamesWhere(run, names, named),
           NamesWhere(run, names, [&](Index i) { return run.Missed(i); }),
           NamesWhere(run, names, [&](Index i) { return run.False(i); }),
-          DrawnWithMultiples(run, names, machine.setup())};
+          DrawnWithMultiples(run, names)};
 }
 
 StudyTable EmptyRuns(const Machine& machine, bool linear) {
   return {
-      "Random faults of " + machine.setup().name + ", " +
-          (linear ? "linear plant" : "nonlinear plant"),
+      "Random faults of " + machine.setup().name + ", " + PlantName(linear),
       {"seed", "from [s]", "names", "NIS", "error / sd", "error / bound", "named",
        "missed", "false", "drawn (multiple of the bound)"},
       {},
@@ -252,42 +248,49 @@ bool RandomOutcome::Right() const {
   });
 }
 
-RandomOutcome TryDraw(const Machine& machine, const Excitation& motion,
-                      const RandomDraw& draw, bool linear) {
-  const std::vector<std::string> names = MakeFaultFamily(machine).Names();
+RandomOutcome TryDraw(const LoadedPlan& loaded, const RunMaker& maker,
+                      const RandomDraw& draw) {
+  const StudyPlan& plan = loaded.plan;
+  const Machine& machine = loaded.machine;
+  PlannedRun run;
+  run.seed = draw.seed;
+  run.axes = draw.faults;
   RandomOutcome outcome;
   outcome.draw = draw;
-  outcome.truth = DeviationsOf(machine.setup(), names, draw.faults);
-  const FaultyMachine faulty = WithFaults(machine, draw.faults, draw.seed);
+  outcome.truth =
+      DeviationsOf(machine.setup(), MakeFaultFamily(machine).Names(), FaultsOf(run));
   Record record;
   try {
-    record = RunOf(motion, faulty, linear);
+    record = maker.Simulate(run);
   } catch (const NumericalError&) {
     outcome.diverged = true;
     return outcome;
   }
-  outcome.bound = RunBound(machine, outcome.truth, record, draw.from, linear);
-  outcome.reading =
-      Listen(machine, record.Slice(draw.from, record.samples() - draw.from), linear);
+  outcome.bound = RunBound(machine, outcome.truth, record, draw.from, plan.linear);
+  outcome.reading = Listen(
+      machine, record.Slice(draw.from, record.samples() - draw.from), plan.linear);
   return outcome;
 }
 
-std::vector<StudyTable> RandomFaultStudy(const Machine& machine,
-                                         const StudyOptions& options) {
-  const Excitation motion = DefaultMotion(machine.setup());
-  const std::vector<DrawRange> ranges = DrawRanges(machine.setup());
+std::vector<StudyTable> AnswerTo(const AskNames& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const StudyPlan& plan = loaded.plan;
+  const Machine& machine = loaded.machine;
+  const RunMaker maker(loaded);
+  const PlanCase& drawn = plan.cases.front();
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   const auto parameters =
       static_cast<Index>(names.size() - machine.setup().disturbances.size());
-  std::vector<RandomOutcome> outcomes(static_cast<std::size_t>(options.runs));
-  GrowingTable runs(EmptyRuns(machine, options.linear), options.row);
+  std::vector<RandomOutcome> outcomes(static_cast<std::size_t>(drawn.points));
+  GrowingTable runs(EmptyRuns(machine, plan.linear), options.row);
   ParallelInOrder(
-      options.runs,
+      drawn.points,
       [&](int run) {
         const auto i = static_cast<std::size_t>(run);
-        outcomes[i] = TryDraw(machine, motion,
-                              DrawFaults(ranges, motion.samples(), options.seed + i),
-                              options.linear);
+        outcomes[i] =
+            TryDraw(loaded, maker,
+                    DrawFaults(ask, drawn.axes, maker.motions().front().samples(),
+                               plan.seed + i));
         runs.Put(i, RowOf(outcomes[i], names, machine));
       },
       options.progress);

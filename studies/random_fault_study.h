@@ -4,6 +4,7 @@
 
 #include "mjdiag/diagnosis/twin/twin_estimator.h"
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/random_fault.h"
 #include "mjdiag/studies/study_table.h"
 
@@ -32,14 +33,14 @@ struct RandomOutcome {
   bool Right() const;
 };
 
-/// One run: on the plant of `linear`, diagnosed by the healthy machine's twin.
-RandomOutcome TryDraw(const Machine& machine, const Excitation& motion,
-                      const RandomDraw& draw, bool linear);
+/// One run of the plan's plant, diagnosed by the healthy machine's twin.
+RandomOutcome TryDraw(const LoadedPlan& loaded, const RunMaker& maker,
+                      const RandomDraw& draw);
 
-/// `options.runs` draws with the seeds from `options.seed` on: every run, how often the
-/// names were right with the interval of that probability, false alarms, and errors over
-/// the standard deviations that were claimed and over the bound.
-std::vector<StudyTable> RandomFaultStudy(const Machine& machine,
-                                         const StudyOptions& options);
+/// Draws (random_fault.h) of the plan's case, as many as it has points: every run, how often
+/// the names were right with the interval of that probability, false alarms, and errors
+/// over the standard deviations that were claimed and over the bound.
+std::vector<StudyTable> AnswerTo(const AskNames& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options);
 
 }  // namespace mjdiag

@@ -149,8 +149,9 @@ VectorXd GainsFor(const TolerancePlan& plan, const FaultRemedy& remedy,
   return gains;
 }
 
-StudyTable SweepTable(const Machine& machine, const TolerancePlan& plan, double time,
+StudyTable SweepTable(const LoadedPlan& loaded, const TolerancePlan& plan, double time,
                       const StudyOptions& options) {
+  const Machine& machine = loaded.machine;
   const FaultFamily family = MakeFaultFamily(machine);
   const auto parameters = static_cast<Index>(family.parameters.size());
   const VectorXd as_made = VectorXd::Ones(static_cast<Index>(plan.axes.size()));
@@ -171,8 +172,9 @@ StudyTable SweepTable(const Machine& machine, const TolerancePlan& plan, double 
       VectorXd values = VectorXd::Ones(parameters);
       if (at < parameters) values[at] = value;
       const VectorXd gains = GainsFor(plan, remedy, value - 1.0);
-      const ToleratedRun run = TryTolerance(machine, plan, {{remedy.fault, value}},
-                                            time, Teller::kKnown, true, options.seed);
+      const ToleratedRun run =
+          TryTolerance(machine, plan, {{remedy.fault, value}}, time, Teller::kKnown,
+                       true, loaded.plan.seed);
       table.rows.push_back(
           {remedy.fault, value, LoopRadius(machine, family, values, as_made),
            LoopRadius(machine, family, values, gains),
@@ -187,8 +189,23 @@ StudyTable SweepTable(const Machine& machine, const TolerancePlan& plan, double 
   return table;
 }
 
-StudyTable MidwayTable(const Machine& machine, const TolerancePlan& plan, double time,
+/// What is wrong, one after another, at the points of the plan.
+std::vector<std::vector<SizedFault>> CasesOf(const StudyPlan& plan) {
+  std::vector<std::vector<SizedFault>> cases;
+  std::vector<std::string> names;
+  for (const PointRuns& point : RunsByPoint(RunPlanner(plan))) {
+    std::vector<SizedFault> faults = FaultsOf(point.front());
+    const std::string name = NamesOf(faults);
+    if (std::ranges::find(names, name) != names.end()) continue;
+    names.push_back(name);
+    cases.push_back(std::move(faults));
+  }
+  return cases;
+}
+
+StudyTable MidwayTable(const LoadedPlan& loaded, const TolerancePlan& plan, double time,
                        const StudyOptions& options) {
+  const Machine& machine = loaded.machine;
   StudyTable table{
       "Faults that appear midway",
       {"plant", "estimates", "faults", "error uncorrected", "corrected",
@@ -198,19 +215,13 @@ StudyTable MidwayTable(const Machine& machine, const TolerancePlan& plan, double
        "worst axis. Times count from the fault; \"-\" did not come.",
        "Bump: how much larger than with and without the fault the tracking error is at "
        "any time, in standard deviations of the sensor noise; below 0 it never is."}};
-  std::vector<std::vector<SizedFault>> cases;
-  std::vector<SizedFault> all;
-  for (const auto& [name, value] : machine.setup().Study("tolerance").values) {
-    cases.push_back({{name, value}});
-    all.push_back({name, value});
-  }
-  if (all.size() > 1) cases.push_back(all);
+  const std::vector<std::vector<SizedFault>> cases = CasesOf(loaded.plan);
   int done = 0;
   for (const bool linear : {true, false}) {
     for (const Teller teller : {Teller::kKnown, Teller::kTwin}) {
       for (const std::vector<SizedFault>& faults : cases) {
         const ToleratedRun run =
-            TryTolerance(machine, plan, faults, time, teller, linear, options.seed);
+            TryTolerance(machine, plan, faults, time, teller, linear, loaded.plan.seed);
         table.rows.push_back({linear ? "linear" : "nonlinear",
                               teller == Teller::kKnown ? "known" : "twin",
                               NamesOf(faults), run.uncorrected, run.corrected,
@@ -286,14 +297,15 @@ ToleratedRun TryTolerance(const Machine& machine, const TolerancePlan& plan,
   return result;
 }
 
-std::vector<StudyTable> ToleranceStudy(const Machine& machine,
-                                       const StudyOptions& options) {
+std::vector<StudyTable> AnswerTo(const AskTolerance&, const LoadedPlan& loaded,
+                                 const StudyOptions& options) {
+  const Machine& machine = loaded.machine;
   const TolerancePlan plan = PlanTolerance(machine);
   const double time = kMidway *
                       static_cast<double>(DefaultMotion(machine.setup()).samples()) *
                       machine.rates().tick();
-  return {MarginTable(machine, plan), SweepTable(machine, plan, time, options),
-          MidwayTable(machine, plan, time, options)};
+  return {MarginTable(machine, plan), SweepTable(loaded, plan, time, options),
+          MidwayTable(loaded, plan, time, options)};
 }
 
 }  // namespace mjdiag

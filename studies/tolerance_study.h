@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/design/fault_tolerance.h"
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {
@@ -36,9 +37,9 @@ ToleratedRun TryTolerance(const Machine& machine, const TolerancePlan& plan,
                           const std::vector<SizedFault>& faults, double time,
                           Teller teller, bool linear, std::uint64_t seed);
 
-/// Faults of the table [studies.tolerance] of the setup, each and all of them, at a
-/// third of the default trajectory.
-std::vector<StudyTable> ToleranceStudy(const Machine& machine,
-                                       const StudyOptions& options);
+/// What is wrong at every point of the plan, from a third of the motion on, on either
+/// plant; what is wrong at an earlier point, too, counts once.
+std::vector<StudyTable> AnswerTo(const AskTolerance& ask, const LoadedPlan& loaded,
+                                 const StudyOptions& options);
 
 }  // namespace mjdiag

@@ -26,14 +26,13 @@ std::string SplitName(Split split) {
 }
 
 void StudyPlan::SetRuns(int runs) {
-  bool random = false;
+  bool drawn = false;
   for (PlanCase& one : cases) {
-    if (!machines.numbers.empty() || one.method != PlanMethod::kRandom) continue;
+    if (one.method != PlanMethod::kRandom) continue;
     one.points = runs;
-    random = true;
+    drawn = true;
   }
-  if (random) return;
-  (machines.numbers.empty() ? replications : machines.count) = runs;
+  if (!drawn) replications = runs;
 }
 
 std::int64_t StudyPlan::RunsOfAMachine() const {

@@ -129,8 +129,7 @@ struct StudyPlan {
   PlanKeep keep;
   std::optional<PlanAsk> ask{};  ///< none: a data set
 
-  /// Asks for so many where it says how many: machines where these are drawn, points where
-  /// values are, else replications.
+  /// Asks for so many: of points where these are drawn, else of replications.
   void SetRuns(int runs);
   std::int64_t RunsOfAMachine() const;
   std::int64_t Runs() const { return machines.count * RunsOfAMachine(); }

@@ -1,10 +1,9 @@
-#include "mjdiag/studies/calibration_study.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "mjdiag/plugin/setup/setup.h"
+#include "mjdiag/studies/answer.h"
+#include "mjdiag/studies/preset/preset_plan.h"
 
 namespace mjdiag {
 namespace {
@@ -19,12 +18,13 @@ TEST(CalibrationStudy, JudgesMachinesThatNobodyKnowsExactly) {
   const Machine stage(
       ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps", {"sensors.q.noise_power=1e-15"}));
   constexpr int kMachines = 5;
+  LoadedPlan plan = ReadPreset("calibration", stage);
+  plan.plan.SetRuns(kMachines);
+  plan.plan.linear = true;
   StudyOptions options;
-  options.runs = kMachines;
-  options.linear = true;
   std::size_t shown = 0;
   options.row = [&](const StudyTable& table) { shown = table.rows.size(); };
-  const std::vector<StudyTable> tables = CalibrationStudy(stage, options);
+  const std::vector<StudyTable> tables = AnswerTo(plan, options);
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].rows.size(), kMachines);
   EXPECT_EQ(shown, kMachines);

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "mjdiag/studies/estimation_study.h"
+#include "mjdiag/studies/answer.h"
+#include "mjdiag/studies/preset/preset_plan.h"
 #include "support/bonder.h"
 
 namespace mjdiag {
@@ -23,10 +24,10 @@ TEST(Cell, ShowsFourDigitsAndKeepsTheNumber) {
 // of it over all 3 x 30 (chi-squared with 90 degrees of freedom: with a probability of
 // 0.999).
 TEST(EstimationStudy, FindsAllEightFaultsAtOnceAtTheBound) {
-  const Machine machine = test::Bonder({"trajectories.multi.duration=1"});
-  StudyOptions options;
-  options.runs = 3;
-  const std::vector<StudyTable> tables = EstimationStudy(machine, options);
+  LoadedPlan plan =
+      ReadPreset("estimation", test::Bonder({"trajectories.multi.duration=1"}));
+  plan.plan.SetRuns(3);
+  const std::vector<StudyTable> tables = AnswerTo(plan, {});
   ASSERT_EQ(tables.size(), 4u);
   double square = 0.0;
   int count = 0;

@@ -5,7 +5,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "mjdiag/studies/detection_study.h"
+#include "mjdiag/studies/answer.h"
+#include "mjdiag/studies/preset/preset_plan.h"
 #include "support/bonder.h"
 
 namespace mjdiag {
@@ -82,7 +83,7 @@ TEST(SurelySeenSize, EndsAsSoonAsItIsDecided) {
 }
 
 // One fault, two seeds a size, half a second, limits of one motion.
-TEST(LinearDetectionStudy, PutsTheTwinBesideTheResidualOfTheThesis) {
+TEST(SmallestSize, PutsTheTwinBesideTheResidualOfTheThesis) {
   const Machine bonder = test::Bonder(
       {"trajectories.multi.duration=0.5", "diagnosis.thresholds.trajectories=[\"x\"]"});
   mjdiag::Setup setup = bonder.setup();
@@ -90,9 +91,9 @@ TEST(LinearDetectionStudy, PutsTheTwinBesideTheResidualOfTheThesis) {
     if (sizes.name == "largest") sizes.values = {{"eta_x", 0.5}};
     if (sizes.name == "table2") sizes.values = {{"eta_x", 0.995}};
   }
-  StudyOptions options;
-  options.runs = 2;
-  const auto tables = LinearDetectionStudy(bonder.WithSetup(setup), options);
+  LoadedPlan plan = ReadPreset("table2", bonder.WithSetup(setup));
+  plan.plan.SetRuns(2);
+  const auto tables = AnswerTo(plan, {});
   ASSERT_EQ(tables.size(), 3u);
   ASSERT_EQ(tables[0].rows.size(), 3u);
   const auto& residual = tables[0].rows[0];
