@@ -1,22 +1,16 @@
-// mjdiag study: sweeps and Monte-Carlo studies with their tables.
+// mjdiag study: plans, those of one's own and those that ship.
 
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <memory>
 #include <string_view>
 
 #include "app/command.h"
 #include "app/output.h"
 #include "app/study_answer.h"
-#include "app/study_log.h"
 #include "app/study_plan.h"
 #include "app/subject.h"
-#include "mjdiag/report/study_page.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/number_text.h"
-#include "mjdiag/studies/hard_table.h"
-#include "mjdiag/studies/hidden_table.h"
 #include "mjdiag/studies/preset/preset_plan.h"
 
 namespace mjdiag::app {
@@ -38,38 +32,6 @@ struct StudyCommand {
   double every = 60.0;
   std::vector<std::string> wear;
 };
-
-using Study =
-    std::function<std::vector<StudyTable>(const Machine&, const StudyOptions&)>;
-
-template <int causes>
-std::vector<StudyTable> HiddenEffects(const Machine& machine,
-                                      const StudyOptions& options) {
-  return HiddenStudy(machine, causes, options);
-}
-
-template <bool nothing>
-std::vector<StudyTable> HardEffects(const Machine& machine,
-                                    const StudyOptions& options) {
-  return HardStudy(machine, nothing, options);
-}
-
-const std::map<std::string, Study>& Studies() {
-  static const std::map<std::string, Study> studies{
-      {"hidden", HiddenEffects<1>},
-      {"hidden_none", HiddenEffects<0>},
-      {"hidden_two", HiddenEffects<2>},
-      {"hidden_hard", HardEffects<false>},
-      {"hidden_hard_none", HardEffects<true>}};
-  return studies;
-}
-
-NamedPage StudyPageOf(const StudyCommand& command, const std::string& setup,
-                      const std::vector<StudyTable>& tables) {
-  const StudyFacts facts{setup, command.preset, command.runs, command.seed};
-  const RunDescription run{CommandLine(), "", {{"mjdiag", MJDIAG_VERSION}}};
-  return {"study", StudyPage(facts, tables, run)};
-}
 
 /// <name>=<value>
 std::pair<std::string, double> ParseWear(const std::string& text) {
@@ -121,14 +83,6 @@ void CheckAlone(const CLI::App& app) {
   }
 }
 
-void RunPreset(const StudyCommand& command) {
-  const Machine machine = LoadSubject(command.machine).nominal;
-  LoadedPlan loaded = ReadPreset(command.preset, machine);
-  Override(command, loaded.plan);
-  AnswerPlan(loaded, {"preset", command.preset, command.runs, command.linear},
-             command.output);
-}
-
 void RunStudy(const CLI::App& app, const StudyCommand& command) {
   if (!command.plan.file.empty()) {
     CheckAlone(app);
@@ -141,33 +95,10 @@ void RunStudy(const CLI::App& app, const StudyCommand& command) {
   if (command.machine.setup.empty()) {
     throw InputError("--setup", "is missing", "a folder with setup.toml and the plant");
   }
-  if (!Studies().contains(command.preset)) {
-    RunPreset(command);
-    return;
-  }
-  const Study& study = Studies().at(command.preset);
-  if (command.linear) {
-    throw InputError("--linear", command.preset + " has its own plant", "none");
-  }
-  const Machine machine = LoadSubject(command.machine).nominal;
-  PrepareOutput(command.output);
-  StudyLog log(command.output,
-               {{"schema", "mjdiag.study/1"},
-                {"setup", machine.setup().name},
-                {"preset", command.preset},
-                {"runs", command.runs},
-                {"seed", command.seed},
-                {"linear", command.linear},
-                {"command", CommandLine()}},
-               "study " + command.preset);
-  StudyOptions options;
-  options.runs = command.runs;
-  options.seed = command.seed;
-  options.progress = [&log](double fraction) { log.Progress(fraction); };
-  options.row = [&log](const StudyTable& table) { log.Show(table); };
-  const std::vector<StudyTable> tables = study(machine, options);
-  Publish(command.output, "study", log.Document(tables, true), log.RestOf(tables),
-          [&] { return StudyPageOf(command, machine.setup().name, tables); });
+  LoadedPlan loaded = ReadPreset(command.preset, LoadSubject(command.machine).nominal);
+  Override(command, loaded.plan);
+  AnswerPlan(loaded, {"preset", command.preset, command.runs, command.linear},
+             command.output);
 }
 
 }  // namespace
@@ -178,8 +109,6 @@ void AddStudy(CLI::App& app) {
   AddMachineOptions(*command, options->machine);
   AddOutputOptions(*command, options->output, false);
   AddReportOption(*command, options->output);
-  std::vector<std::string> presets = PresetNames();
-  for (const auto& [name, study] : Studies()) presets.push_back(name);
   command->get_option("--setup")->required(false);
   command->add_option(
       "--plan", options->plan.file,
@@ -204,7 +133,7 @@ void AddStudy(CLI::App& app) {
       ->check(Within(kLeastPatience, kLongestEndurance))
       ->needs("--plan");
   command->add_option("--preset", options->preset, "Which study")
-      ->check(CLI::IsMember(presets));
+      ->check(CLI::IsMember(PresetNames()));
   command->add_option("--runs", options->runs, "Monte-Carlo runs")
       ->check(CLI::Range(2, 1000000));
   AddSeedOption(*command, options->seed, "Seed of the first run");

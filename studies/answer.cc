@@ -1,15 +1,6 @@
 #include "mjdiag/studies/answer.h"
 
 #include "mjdiag/signals/error.h"
-#include "mjdiag/studies/bound_study.h"
-#include "mjdiag/studies/calibration_study.h"
-#include "mjdiag/studies/classification_study.h"
-#include "mjdiag/studies/detection_study.h"
-#include "mjdiag/studies/disturbance_study.h"
-#include "mjdiag/studies/endurance_study.h"
-#include "mjdiag/studies/estimation_study.h"
-#include "mjdiag/studies/random_fault_study.h"
-#include "mjdiag/studies/tolerance_study.h"
 
 namespace mjdiag {
 

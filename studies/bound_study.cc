@@ -8,6 +8,7 @@
 #include "mjdiag/plugin/design/filter_design.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/listed.h"
+#include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/plan/run_machine.h"
 
 namespace mjdiag {

@@ -27,9 +27,4 @@ double MagnitudeBound(const Eigen::VectorXd& parts);
 /// Place of a fault in that order; InputError on an unknown one.
 std::ptrdiff_t BoundIndex(const Machine& machine, const std::string& fault);
 
-/// Bound alone and together, the standard deviation of the estimators with one residual
-/// and with all of them, and their multiples of the bound; of the plan's first motion.
-std::vector<StudyTable> AnswerTo(const AskBound& ask, const LoadedPlan& loaded,
-                                 const StudyOptions& options);
-
 }  // namespace mjdiag

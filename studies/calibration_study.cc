@@ -1,4 +1,6 @@
-#include "mjdiag/studies/calibration_study.h"
+// Machines that nobody knows exactly: the numbers of each are drawn about those of the plant,
+// it is calibrated on a few healthy runs, and the twin of what was learned is asked about
+// healthy runs that it has not seen, and about faults of sizes that it promises to name.
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +10,9 @@
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/listed.h"
+#include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/count_cells.h"
-#include "mjdiag/studies/hard_case.h"
+#include "mjdiag/studies/hidden_case.h"
 #include "mjdiag/studies/twin_listening.h"
 
 namespace mjdiag {

@@ -1,4 +1,5 @@
-#include "mjdiag/studies/classification_study.h"
+// The residual-based diagnosis, the twin and a data-driven diagnosis on the same runs:
+// [AB383], Table 4.
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +7,7 @@
 
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/features.h"
 #include "mjdiag/studies/svm_classifier.h"
 #include "mjdiag/studies/twin_listening.h"
@@ -146,6 +148,7 @@ std::vector<Cell> Row(const std::string& method, const Confusion& detection,
 
 std::vector<StudyTable> Classify(const LoadedPlan& loaded, const PlanCase& drawn,
                                  const StudyOptions& options) {
+  RequireFaults(drawn, AxisValues::kDrawn);
   const std::vector<Case> cases = DrawCases(drawn, loaded.plan.seed);
   const std::vector<Sample> samples = RunCases(loaded, drawn.axes, cases, options);
   // Pairs of a healthy and a faulty run go to training and test in turn, a round of all

@@ -1,9 +1,10 @@
-#include "mjdiag/studies/disturbance_study.h"
+// Tones and noise in the disturbance residual: [AB383], section 5.6.
 
 #include <algorithm>
 #include <cmath>
 
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/studies/answer.h"
 
 namespace mjdiag {
 namespace {

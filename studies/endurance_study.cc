@@ -1,4 +1,7 @@
-#include "mjdiag/studies/endurance_study.h"
+// One long run: the machine repeats its default motion for hours, with the diagnosis and
+// its twin in the control callback, and nothing is kept of it but a row now and then. A
+// healthy machine must not be named faulty, what wears evenly must be followed, and
+// neither memory nor the time of a tick may grow.
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +17,7 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/runtime/running_machine.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/machine_study.h"
 #include "mjdiag/studies/twin_listening.h"
 

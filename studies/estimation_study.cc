@@ -1,4 +1,5 @@
-#include "mjdiag/studies/estimation_study.h"
+// How well all faults are estimated when they are present at once: [AB383],
+// section 5.5, with intervals whose coverage is counted.
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +7,7 @@
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/fault_family.h"
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/bound_study.h"
 #include "mjdiag/studies/twin_listening.h"
 

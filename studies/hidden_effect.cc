@@ -18,6 +18,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+// Squared innovations.
+constexpr double kLeastSize = 200.0;
+constexpr double kMostSize = 1e8;
 // DrawEffect meets the size that it draws to a fifth.
 constexpr double kOwnShare = 0.8;
 
@@ -110,12 +113,26 @@ Cause DrawNoise(const Channels& channels, Random& random) {
           noise.Draw({.noise = sensor.noise_sd}, random)(1.0)};
 }
 
+std::vector<std::string> TypesOfRun(int run, int causes) {
+  std::vector<const Effect*> drawn = Effects();
+  std::erase_if(drawn, [](const Effect* effect) { return effect->odds() == kLearned; });
+  const int size = static_cast<int>(drawn.size());
+  std::vector<std::string> types;
+  // A second effect is another type, and another pair every time round.
+  for (int i = 0; i < causes; ++i) {
+    const int number = (run + i * (7 + run / size)) % size;
+    types.push_back(drawn[static_cast<std::size_t>(number)]->name());
+  }
+  return types;
+}
+
 HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
                     std::uint64_t seed) {
   HiddenCase hidden;
   hidden.truth = truth;
-  hidden.record =
-      RunWithCauses(machine, truth, NominalMotion(machine.setup()), seed, 1.0);
+  hidden.measurements = MeasurementsOf(
+      machine, RunWithCauses(machine, truth, NominalMotion(machine.setup()), seed, 1.0),
+      nullptr);
   const Excitation other =
       FollowTrajectory(machine.setup(), UnseenTrajectory(machine.setup()));
   hidden.unseen = RunWithCauses(machine, truth, other, seed + 1, 1.0);
@@ -123,8 +140,10 @@ HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
   return hidden;
 }
 
-Cause DrawEffect(const Machine& machine, const std::string& type,
-                 const HiddenSize& size, std::uint64_t seed) {
+namespace {
+
+/// One effect of that type.
+Cause DrawEffect(const Machine& machine, const std::string& type, std::uint64_t seed) {
   Random random(seed);
   RunOptions quiet;
   quiet.noise_scale = 0.0;
@@ -147,7 +166,7 @@ Cause DrawEffect(const Machine& machine, const std::string& type,
   const auto shows = [&](double scale) {
     return runs.InnovationsOf(ChangesOf({at(scale)})).squaredNorm();
   };
-  const double target = random.Log(size.least, size.most);
+  const double target = random.Log(kLeastSize, kMostSize);
   double scale = 1.0;
   double shown = shows(scale);
   if (shown <= target) return at(scale);
@@ -171,15 +190,16 @@ Cause DrawEffect(const Machine& machine, const std::string& type,
   return at(scale);
 }
 
+}  // namespace
+
 std::vector<Cause> DrawEffects(const Machine& machine,
                                const std::vector<std::string>& types,
-                               const HiddenSize& size, std::uint64_t seed) {
+                               std::uint64_t seed) {
   constexpr std::uint64_t kDraws = 50;
   for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
     std::vector<Cause> causes;
     for (std::size_t i = 0; i < types.size(); ++i) {
-      causes.push_back(
-          DrawEffect(machine, types[i], size, 1000 * seed + 10 * draw + i));
+      causes.push_back(DrawEffect(machine, types[i], 1000 * seed + 10 * draw + i));
     }
     if (causes.size() < 2) return causes;
     const ObservedRuns runs(machine, NominalMotion(machine.setup()));
@@ -193,7 +213,7 @@ std::vector<Cause> DrawEffects(const Machine& machine,
     for (Index i = 0; i < columns.cols(); ++i) {
       columns.col(i) = shown[static_cast<std::size_t>(i)];
     }
-    if (LeastOwnShare(columns) >= kOwnShare * size.least) return causes;
+    if (LeastOwnShare(columns) >= kOwnShare * kLeastSize) return causes;
   }
   throw NumericalError("hidden effects: no draw of these types tells them apart");
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Effects to be found: drawn at random, put into a simulated measurement, sealed. What
-// has to find them sees the record and the nominal setup only.
+// Effects to be found: drawn at random, and put into a simulated measurement of a machine
+// that is its model otherwise.
 
 #include <mujoco/mujoco.h>
 
@@ -13,26 +13,14 @@
 #include "mjdiag/plugin/effects/draw.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
+#include "mjdiag/studies/hidden_case.h"
 
 namespace mjdiag {
 
-/// A measurement with something hidden in it.
-struct HiddenCase {
-  std::vector<Cause> truth;
-  Record record;        ///< of the default trajectory, with sensor noise
-  Record unseen;        ///< of another trajectory, with noise
-  Record unseen_clean;  ///< the same without noise
-};
+/// The types of run number `run`: one after the other of the registry.
+std::vector<std::string> TypesOfRun(int run, int causes);
 
-/// How large hidden effects are: the sum of squares that an effect adds to the scaled
-/// innovations of a run, drawn evenly in its logarithm. Ten standard deviations are
-/// 100.
-struct HiddenSize {
-  double least = 200.0;
-  double most = 1e8;
-};
-
-/// A case with these causes; `seed` draws the noise.
+/// A case with these causes, of which nothing else is unknown; `seed` draws the noise.
 HiddenCase MakeCase(const Machine& machine, const std::vector<Cause>& truth,
                     std::uint64_t seed);
 
@@ -45,18 +33,15 @@ std::vector<Candidate> SitesOf(const Machine& machine, const std::string& type);
 /// Noise of one of the sensors.
 Cause DrawNoise(const Channels& channels, Random& random);
 
-/// One effect of that type (its name, or "fault" for a fault parameter) at a random
-/// site, with random shape and a size drawn from `size`. The same seed, the same
-/// effect.
-Cause DrawEffect(const Machine& machine, const std::string& type,
-                 const HiddenSize& size, std::uint64_t seed);
-
-/// Several effects at once, each drawn as above, and drawn again until each adds at
-/// least `size.least` that no amplitudes of the others explain: two that cancel, or are
-/// each other's image on this motion, are one.
+/// Effects of those types (their names, or "fault" for a fault parameter) at random sites,
+/// with random shapes. Each adds a sum of squares to the scaled innovations of a run that is
+/// drawn evenly in its logarithm, from 200 (14 standard deviations) to 1e8. They are drawn
+/// again until each adds about the least that no amplitudes of the others explain: two that
+/// cancel, or are each other's image on this motion, are one. The same seed, the same
+/// effects.
 std::vector<Cause> DrawEffects(const Machine& machine,
                                const std::vector<std::string>& types,
-                               const HiddenSize& size, std::uint64_t seed);
+                               std::uint64_t seed);
 
 /// "coulomb_friction@X: force = 2; zeta_x = 1.2", "nothing".
 std::string ListOf(const std::vector<Cause>& causes);

@@ -1,48 +1,50 @@
 #pragma once
-// How often discovery is right: effects are hidden in simulated measurements
-// (hidden_effect.h) and looked for. Every run is one seed; its draw, its noise and its
-// answer follow from it.
-
-#include <mujoco/mujoco.h>
+// A case of the benchmark of discovery (hidden_case.h), looked for. Where the model is not
+// exact it is done as the command does it by default: numbers of the plant in doubt, a
+// minute of work.
 
 #include <cstdint>
-#include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "mjdiag/discovery/discovery.h"
-#include "mjdiag/plugin/machine/machine.h"
-#include "mjdiag/studies/hidden_effect.h"
+#include "mjdiag/studies/coverage.h"
+#include "mjdiag/studies/hidden_case.h"
+#include "mjdiag/studies/hidden_verdict.h"
 
 namespace mjdiag {
 
-/// What came of one run.
 struct HiddenOutcome {
-  HiddenCase hidden;  ///< without its records
+  HiddenPlan plan;
+  std::vector<Cause> truth;
+  std::size_t fitted = 1;  ///< records
+  std::size_t unseen = 0;  ///< of which nothing is fitted to
   Discovery answer;
-  int named = 0;       ///< of the truth, effect (or an indistinguishable one) and site
-  bool claim = false;  ///< that anything is there, with or without a name
-  bool right = false;  ///< all named, and nothing else
-  /// Of the truth, named, or given as what the record does not tell from what is named.
-  int considered = 0;
-  /// Not right, but all considered, and nothing else named.
-  bool undecided = false;
-  int parameters = 0;  ///< of those that were named
-  int covered = 0;     ///< of them inside their 95 % interval
-  /// Mismatch of the extended plant on the unseen motion over its noise floor, the
-  /// worst channel.
-  double unseen_ratio = 0.0;
+  HiddenVerdict verdict = HiddenVerdict::kRight;  ///< of the catalogue, or of nothing
+  OutsideVerdict outside = OutsideVerdict::kNothing;  ///< of an outside law
+  std::vector<Claim> claims;
+  std::vector<Claim> kind_claims;
+  bool kinds_are_there = false;  ///< HasKindsOf
+  /// Root mean square of what free simulation of a motion that no fit saw is off, over
+  /// noise, all sensors: beside the model and beside the extended one.
+  double before = 0.0;
+  double after = 0.0;
+  double after_worst = 0.0;  ///< the same of the worst sensor
+  Coverage coverage;         ///< of the values, where the model is exact
+  double seconds = 0.0;      ///< of the discovery, on this machine
+
+  /// That anything is there, with or without a name.
+  bool IsClaim() const;
+  /// All is named and nothing else, nor is anything else claimed.
+  bool IsRight() const {
+    return verdict == HiddenVerdict::kRight && IsClaim() == !truth.empty();
+  }
+  /// Something is named with that probability that is not there.
+  bool IsWrongAbove(double probability) const;
 };
 
-/// @param causes  how many effects are hidden: 0, 1 or 2
-/// @param types   of the effects, as many as causes (see DrawEffect)
-HiddenOutcome RunHidden(const Machine& machine, const std::vector<std::string>& types,
+/// Files of a case are kept nowhere: the same seed is the same case.
+HiddenOutcome RunHidden(const Machine& model, const HiddenPlan& plan,
                         std::uint64_t seed);
-
-/// The types of run number `run`: one after the other of the registry.
-std::vector<std::string> TypesOfRun(int run, int causes);
-
-/// True if the answer names that cause, or one that no measurement tells from it.
-bool Names(const FoundCause& found, const Cause& truth);
 
 }  // namespace mjdiag

@@ -1,19 +1,18 @@
 #pragma once
-// The tables of `mjdiag study --preset hidden`, `hidden_none` and `hidden_two`.
-
-#include <mujoco/mujoco.h>
+// The benchmark of discovery in tables: one row a case, what became of them, and, where the
+// model is not exact, how reliable the probabilities are.
 
 #include <vector>
 
-#include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/studies/hidden_study.h"
 #include "mjdiag/studies/machine_study.h"
+#include "mjdiag/studies/plan/study_plan.h"
 #include "mjdiag/studies/study_table.h"
 
 namespace mjdiag {
 
-/// options.runs runs with `causes` hidden effects each (0, 1 or 2), seeds from
-/// options.seed on: one row a run, and how many were right.
-std::vector<StudyTable> HiddenStudy(const Machine& machine, int causes,
-                                    const StudyOptions& options);
+/// What became of cases of a model that is not exact, and the reliability of their
+/// probabilities.
+std::vector<StudyTable> SummariesOf(const std::vector<HiddenOutcome>& outcomes);
 
 }  // namespace mjdiag

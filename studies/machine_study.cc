@@ -40,6 +40,18 @@ const PlanCase& CaseOf(const StudyPlan& plan, const std::string& name) {
                    "a [[case]] of that name");
 }
 
+void RequireFaults(const PlanCase& one, AxisValues values) {
+  const bool fits =
+      !one.axes.empty() && std::ranges::all_of(one.axes, [&](const PlanAxis& axis) {
+        return (axis.kind == AxisKind::kFault || axis.kind == AxisKind::kDisturbance) &&
+               axis.values.empty() == (values == AxisValues::kDrawn);
+      });
+  if (fits) return;
+  throw InputError("case '" + one.name + "'", "is none of what this plan asks",
+                   values == AxisValues::kDrawn ? "faults or disturbances with ranges"
+                                                : "faults or disturbances with values");
+}
+
 std::vector<SizedFault> FaultsOf(const PlannedRun& run) {
   std::vector<SizedFault> faults;
   for (const DrawnAxis& drawn : run.axes) {
@@ -52,27 +64,10 @@ std::string PlantName(bool linear) {
   return linear ? "linear plant" : "nonlinear plant";
 }
 
-double HealthyValue(const Setup& setup, const std::string& fault) {
-  return IsDisturbance(setup, fault) ? 0.0 : 1.0;
-}
-
 PreparedDiagnosis DiagnosisOn(const Machine& machine, bool linear) {
   DiagnosisSource source;
   source.nominal.linear = linear;
   return PrepareDiagnosis(machine, source);
-}
-
-Detection Look(const PreparedDiagnosis& prepared, const Record& record,
-               const std::string& fault) {
-  const DiagnosisResult result =
-      Conclude(RecordDiagnosis(prepared.design, record, prepared.baseline));
-  Detection detection{result.first_detection, result.disturbance.disturbed, false, 0.0};
-  for (const FaultVerdict& verdict : result.faults) {
-    if (verdict.name != fault) continue;
-    detection.estimate = verdict.detected;
-    detection.value = verdict.value;
-  }
-  return detection;
 }
 
 }  // namespace mjdiag

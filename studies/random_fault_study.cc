@@ -1,13 +1,17 @@
 #include "mjdiag/studies/random_fault_study.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <numeric>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
 #include "mjdiag/plugin/design/fault_family.h"
+#include "mjdiag/plugin/effects/draw.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/count_cells.h"
 #include "mjdiag/studies/run_bound.h"
 #include "mjdiag/studies/twin_listening.h"
@@ -17,6 +21,38 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+
+/// So that draws are not the numbers that the noise is made of.
+constexpr std::uint64_t kOwnStream = 0x9e3779b97f4a7c15ULL;
+
+/// Deviations that are drawn of a fault: from `least` to the farthest on either side; 0:
+/// it has none on that side.
+struct Sides {
+  double least = 0.0;
+  double below = 0.0;
+  double above = 0.0;
+};
+
+Sides SidesOf(const PlanAxis& axis) {
+  Sides sides;
+  for (const auto& [from, to] : axis.ranges) {
+    (to < axis.healthy ? sides.below : sides.above) = std::abs(to - axis.healthy);
+  }
+  sides.least = std::abs(axis.ranges.front().from - axis.healthy);
+  return sides;
+}
+
+/// Deviations from healthy: "zeta_x +0.2, gamma +0.01"; "none".
+std::string ListFaults(const std::vector<DrawnAxis>& faults) {
+  std::string text;
+  for (const DrawnAxis& fault : faults) {
+    std::array<char, 32> size{};
+    std::snprintf(size.data(), size.size(), " %+.3g",
+                  fault.value - fault.axis->healthy);
+    text += (text.empty() ? "" : ", ") + fault.axis->name + size.data();
+  }
+  return text.empty() ? "none" : text;
+}
 
 bool AnyFault(const RandomOutcome& run,
               const std::function<bool(const RandomOutcome&, Index)>& holds) {
@@ -230,6 +266,36 @@ StudyTable ErrorTable(const std::vector<RandomOutcome>& runs,
 
 }  // namespace
 
+RandomDraw DrawFaults(const AskNames& ask, const std::vector<PlanAxis>& axes,
+                      Eigen::Index samples, std::uint64_t seed) {
+  Random random(seed ^ kOwnStream);
+  RandomDraw draw;
+  draw.seed = seed;
+  const bool healthy = random.Uniform(0.0, 1.0) < ask.healthy;
+  const auto most = std::min(static_cast<std::size_t>(ask.most), axes.size());
+  const std::size_t count = healthy ? 0 : 1 + random.Index(most);
+  std::vector<std::size_t> places(axes.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(places[i], places[i + random.Index(axes.size() - i)]);
+  }
+  std::sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlanAxis& axis = axes[places[i]];
+    const auto [least, below, above] = SidesOf(axis);
+    const bool either = below > 0.0 && above > 0.0;
+    const double sign = either ? random.Sign() : above > 0.0 ? 1.0 : -1.0;
+    const double size = random.Log(least, sign > 0.0 ? above : below);
+    draw.faults.push_back({&axis, axis.healthy + sign * size});
+  }
+  if (random.Uniform(0.0, 1.0) >= ask.from_rest) {
+    const Eigen::Index half = samples / 2;
+    draw.from = static_cast<Eigen::Index>(
+        random.Index(static_cast<std::size_t>(std::max<Eigen::Index>(1, half))));
+  }
+  return draw;
+}
+
 bool RandomOutcome::Nameable(Index fault) const {
   return std::abs(truth[fault]) > kNameable * bound[fault];
 }
@@ -278,6 +344,7 @@ std::vector<StudyTable> AnswerTo(const AskNames& ask, const LoadedPlan& loaded,
   const Machine& machine = loaded.machine;
   const RunMaker maker(loaded);
   const PlanCase& drawn = plan.cases.front();
+  RequireFaults(drawn, AxisValues::kDrawn);
   const std::vector<std::string> names = MakeFaultFamily(machine).Names();
   const auto parameters =
       static_cast<Index>(names.size() - machine.setup().disturbances.size());

@@ -10,6 +10,7 @@
 #include "mjdiag/plugin/design/machine_twin.h"
 #include "mjdiag/plugin/design/monitor_observer.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/studies/answer.h"
 
 namespace mjdiag {
 namespace {

@@ -37,9 +37,4 @@ ToleratedRun TryTolerance(const Machine& machine, const TolerancePlan& plan,
                           const std::vector<SizedFault>& faults, double time,
                           Teller teller, bool linear, std::uint64_t seed);
 
-/// What is wrong at every point of the plan, from a third of the motion on, on either
-/// plant; what is wrong at an earlier point, too, counts once.
-std::vector<StudyTable> AnswerTo(const AskTolerance& ask, const LoadedPlan& loaded,
-                                 const StudyOptions& options);
-
 }  // namespace mjdiag

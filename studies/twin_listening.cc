@@ -27,8 +27,9 @@ Eigen::VectorXd DeviationsOf(const Setup& setup, const std::vector<std::string>&
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
   for (const SizedFault& fault : faults) {
     const auto found = std::find(names.begin(), names.end(), fault.name);
-    if (found == names.end()) continue;  // WithFaults says so
-    deviations[found - names.begin()] = fault.value - HealthyValue(setup, fault.name);
+    if (found == names.end()) continue;  // who makes the run says so
+    deviations[found - names.begin()] =
+        fault.value - (IsDisturbance(setup, fault.name) ? 0.0 : 1.0);
   }
   return deviations;
 }

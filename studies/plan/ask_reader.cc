@@ -1,7 +1,5 @@
 #include "mjdiag/studies/plan/ask_reader.h"
 
-#include <algorithm>
-
 #include "mjdiag/plugin/setup/declared_names.h"
 #include "mjdiag/signals/listed.h"
 
@@ -11,33 +9,10 @@ namespace {
 constexpr int kMostAsked = 1'000'000;
 constexpr double kLongest = 1e7;  // [s]
 constexpr NumberRule kFraction{[](double x) { return x >= 0.0 && x <= 1.0; },
-                           "a share from 0 to 1"};
+                               "a share from 0 to 1"};
 constexpr NumberRule kAboveOne{[](double x) { return x > 1.0; }, "a factor > 1"};
 constexpr NumberRule kTime{[](double x) { return x > 0.0 && x <= kLongest; },
                            "seconds above 0, at most 1e7"};
-
-const std::vector<std::pair<std::string, Judge>>& Judges() {
-  static const std::vector<std::pair<std::string, Judge>> judges{
-      {"residual", Judge::kResidual},
-      {"robust residual", Judge::kRobustResidual},
-      {"spectrum", Judge::kSpectrum},
-      {"estimate", Judge::kEstimate},
-      {"twin", Judge::kTwin}};
-  return judges;
-}
-
-std::vector<Judge> ReadJudges(const TomlTable& table) {
-  std::vector<std::string> known;
-  for (const auto& [name, judge] : Judges()) known.push_back(name);
-  std::vector<Judge> judges;
-  for (const std::string& name : table.Texts("judges", known)) {
-    RequireDeclared(table, "judges", name, "judge", known);
-    judges.push_back(
-        std::ranges::find(Judges(), name, &std::pair<std::string, Judge>::first)
-            ->second);
-  }
-  return judges;
-}
 
 // Every question reads the keys that it has.
 
@@ -46,7 +21,10 @@ void ReadKeys(const TomlTable&, Ask&) {}
 
 template <>
 void ReadKeys(const TomlTable& table, AskSmallestSize& ask) {
-  ask.judges = ReadJudges(table);
+  ask.judges = table.Texts("judges", ask.judges);
+  for (const std::string& name : ask.judges) {
+    RequireDeclared(table, "judges", name, "judge", kJudges);
+  }
   ask.baseline = table.Flag("baseline", ask.baseline);
   ask.limits_from = table.Integer("limits_from", 0, kMostAsked, ask.limits_from);
   ask.seeds = table.Integer("seeds", 1, kMostAsked, ask.seeds);
@@ -73,6 +51,15 @@ void ReadKeys(const TomlTable& table, AskEndurance& ask) {
   ask.duration = table.Number("duration", kTime, ask.duration);
   ask.every = table.Number("every", kTime, ask.every);
   ask.wear = table.TextNumbers("wear");
+}
+
+template <>
+void ReadKeys(const TomlTable& table, AskHidden& ask) {
+  ask.exact = table.Flag("exact", ask.exact);
+  constexpr int kMostCauses = 3;
+  if (ask.exact || table.Has("causes")) {
+    ask.causes = table.Integer("causes", 0, kMostCauses);
+  }
 }
 
 /// The question of that name out of those from `next` on.

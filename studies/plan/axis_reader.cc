@@ -102,7 +102,7 @@ void ReadKind(const TomlTable& table, const AxisSurroundings& around, PlanAxis& 
       std::ranges::count_if(kKinds, [&](const char* kind) { return table.Has(kind); });
   if (given != 1) {
     table.Fail(given == 0 ? "says nothing of what it moves" : "moves two things",
-               "one of the keys fault, disturbance, effect, key and noise");
+               "one of the keys fault, effect, key, noise and disturbance");
   }
   axis.unit = "1";
   if (table.Has("fault")) return ReadFault(table, around.machine, axis);

@@ -1,8 +1,9 @@
 #pragma once
 // [ask]: what is asked of the runs of a plan. The answer is tables (studies/answer.h), where
-// a plan that asks nothing becomes a data set. What each question means, and how it is
-// answered, the header of its study says.
+// a plan that asks nothing becomes a data set. What each question
+// means, answer.h says.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -10,28 +11,26 @@
 
 namespace mjdiag {
 
-/// bound_study.h
 struct AskBound {
   static constexpr const char* kQuestion = "information bound";
 };
 
-/// disturbance_study.h
 struct AskDisturbances {
   static constexpr const char* kQuestion = "disturbances";
 };
 
-/// estimation_study.h
 struct AskEstimates {
   static constexpr const char* kQuestion = "estimates";
 };
 
-/// Who looks at a run (detector.h).
-enum class Judge { kResidual, kRobustResidual, kSpectrum, kEstimate, kTwin };
+/// Who may look at a run (detector.h).
+inline const std::vector<std::string> kJudges = {"residual", "robust residual",
+                                                 "spectrum", "estimate", "twin"};
 
-/// detection_study.h, of a plan with the cases "largest" and "published".
+/// Of a plan with the cases "largest" and "published".
 struct AskSmallestSize {
   static constexpr const char* kQuestion = "smallest size";
-  std::vector<Judge> judges;
+  std::vector<std::string> judges = kJudges;
   bool baseline = false;    ///< that of the motion is subtracted from residuals
   int limits_from = 0;      ///< healthy runs of the motion; 0: as the setup says
   int seeds = 40;           ///< of a size, at most
@@ -39,7 +38,7 @@ struct AskSmallestSize {
   bool delays = false;      ///< of the residual, at the published sizes
 };
 
-/// random_fault_study.h, of a plan with one case.
+/// Of a plan with one case.
 struct AskNames {
   static constexpr const char* kQuestion = "names";
   double healthy = 0.2;     ///< share of the runs
@@ -47,12 +46,10 @@ struct AskNames {
   double from_rest = 0.25;  ///< share of the runs; others begin in the motion
 };
 
-/// classification_study.h
 struct AskClasses {
   static constexpr const char* kQuestion = "classes";
 };
 
-/// calibration_study.h
 struct AskCalibration {
   static constexpr const char* kQuestion = "calibration";
   int learned_from = 3;   ///< healthy runs
@@ -60,12 +57,10 @@ struct AskCalibration {
   double promised = 1.5;  ///< size of a fault over that from which on it is named
 };
 
-/// tolerance_study.h
 struct AskTolerance {
   static constexpr const char* kQuestion = "tolerance";
 };
 
-/// endurance_study.h
 struct AskEndurance {
   static constexpr const char* kQuestion = "endurance";
   double duration = 60.0;  ///< [s]
@@ -74,8 +69,14 @@ struct AskEndurance {
   std::vector<std::pair<std::string, double>> wear;
 };
 
+struct AskHidden {
+  static constexpr const char* kQuestion = "hidden causes";
+  bool exact = false;         ///< the model is, but for what is hidden
+  std::optional<int> causes;  ///< in every case; none: as HiddenPlan PlanOf(seed)
+};
+
 using PlanAsk =
     std::variant<AskBound, AskDisturbances, AskEstimates, AskSmallestSize, AskNames,
-                 AskClasses, AskCalibration, AskTolerance, AskEndurance>;
+                 AskClasses, AskCalibration, AskTolerance, AskEndurance, AskHidden>;
 
 }  // namespace mjdiag

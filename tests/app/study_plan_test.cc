@@ -97,6 +97,16 @@ TEST(StudyPlanCommand, GoesOnAfterThreeKillsWithTheSameBits) {
   EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
 }
 
+TEST(StudyPlanCommand, AnswersAPlanThatAsksSomethingAsThePresetDoes) {
+  const auto tables = [](const std::string& of) {
+    const CommandResult result = RunCommand("study " + of + " --json");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out)["tables"];
+  };
+  EXPECT_EQ(tables("--plan mjcf/ab383/plans/bound.toml"),
+            tables("--setup mjcf/ab383 --preset bound"));
+}
+
 TEST(StudyPlanCommand, SaysWhereAPlanIsWrong) {
   const TemporaryFolder folder;
   const std::string out = " --out " + (folder / "out").string();

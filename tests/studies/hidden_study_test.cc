@@ -7,7 +7,7 @@
 namespace mjdiag {
 namespace {
 
-std::string Named(const Discovery& discovery) {
+std::string NamesIn(const Discovery& discovery) {
   std::string names;
   for (const FoundCause& found : discovery.causes) {
     names += (names.empty() ? "" : ", ") + found.cause.name() + "@" + found.cause.site;
@@ -22,11 +22,12 @@ TEST(HiddenInTheBonder, IsFoundAndNamed) {
   constexpr int kOffset = 7;  // of the runs
   const Machine machine =
       test::Bonder({"trajectories.multi.duration=0.26"}).WithSubsteps(2);
-  const HiddenOutcome outcome = RunHidden(machine, TypesOfRun(kOffset, 1), kOffset + 1);
-  EXPECT_EQ(outcome.hidden.truth.at(0).name(), "force_offset");
-  EXPECT_TRUE(outcome.right) << "hidden: " << CauseWithValues(outcome.hidden.truth[0])
-                             << ", found: " << Named(outcome.answer);
-  EXPECT_LT(outcome.unseen_ratio, 1.2);
+  const HiddenOutcome outcome =
+      RunHidden(machine, {.causes = 1, .exact = true}, kOffset + 1);
+  EXPECT_EQ(outcome.truth.at(0).name(), "force_offset");
+  EXPECT_TRUE(outcome.IsRight()) << "hidden: " << CauseWithValues(outcome.truth[0])
+                                 << ", found: " << NamesIn(outcome.answer);
+  EXPECT_LT(outcome.after_worst, 1.2);
 }
 
 }  // namespace

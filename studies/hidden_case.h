@@ -1,6 +1,7 @@
 #pragma once
-// Cases of the hard benchmark: a simulated measurement of a machine that is not quite its
-// model and has something hidden in it.
+// Cases of the benchmark of discovery: simulated measurements of a machine with something
+// hidden in them. What has to find it sees the records and the model only. Either the model
+// is exact (hidden_effect.h), or the machine is not quite its model:
 //
 // - Every number of the plant is what the model says times exp(s n), n standard normal
 //   and s what is not known of it beforehand (DoubtOf); nothing is exact.
@@ -26,16 +27,17 @@
 namespace mjdiag {
 
 /// What is hidden.
-struct HardPlan {
+struct HiddenPlan {
   int causes = 1;        ///< 0 to 3, from the catalogue
   bool outside = false;  ///< one law that is in no list instead
+  bool exact = false;    ///< the machine is its model but for that; then no outside law
 };
 
-/// Of the case with that seed: outside laws in every fifth, of the others one cause in
-/// 60 %, two in 25 %, three in 15 %.
-HardPlan PlanOf(std::uint64_t seed);
+/// Of the case with that seed and a model that is not exact: outside laws in every fifth, of
+/// the others one cause in 60 %, two in 25 %, three in 15 %.
+HiddenPlan PlanOf(std::uint64_t seed);
 
-struct HardCase {
+struct HiddenCase {
   std::vector<Cause> truth;
   /// Joint that an outside law acts on; none: the truth is from the catalogue.
   std::optional<Eigen::Index> outside_joint;
@@ -57,8 +59,10 @@ NumberFactors DrawNumbers(const mjModel& plant, Random& random,
                           double (*spread)(const mjModel& plant,
                                            const ModelParameter& number) = DoubtOf);
 
-/// The same seed, the same case. InputError on a machine without a controller, which
+/// An exact model has one record of the default motion to be looked at, and causes of types
+/// that follow one another from seed to seed. The same seed, the same case. InputError on a machine without a controller, which
 /// follows no motion.
-HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t seed);
+HiddenCase DrawHiddenCase(const Machine& model, const HiddenPlan& plan,
+                          std::uint64_t seed);
 
 }  // namespace mjdiag

@@ -1,4 +1,4 @@
-#include "mjdiag/studies/random_fault.h"
+#include "mjdiag/studies/random_fault_study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 #include "mjdiag/signals/error.h"
 #include "mjdiag/studies/answer.h"
 #include "mjdiag/studies/preset/preset_plan.h"
-#include "mjdiag/studies/random_fault_study.h"
 #include "support/bonder.h"
 #include "support/message_of.h"
 

@@ -1,4 +1,4 @@
-#include "mjdiag/studies/hard_case.h"
+#include "mjdiag/studies/hidden_case.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr double kLeastScale = 0.005;
 /// The default motion, as long as a record may be.
 Trajectory DefaultTrajectory(const Setup& setup) {
   if (setup.control.axes.empty()) {
-    throw InputError("hidden_hard", "'" + setup.name + "' has no controlled axes",
+    throw InputError("hidden causes", "'" + setup.name + "' has no controlled axes",
                      "a machine that follows a trajectory");
   }
   Trajectory trajectory = setup.trajectories.Find(setup.trajectories.fallback);
@@ -171,7 +171,7 @@ auto DrawUntilThere(const Draw& draw) {
 
 }  // namespace
 
-HardPlan PlanOf(std::uint64_t seed) {
+HiddenPlan PlanOf(std::uint64_t seed) {
   constexpr double kOne = 0.6;
   constexpr double kTwo = 0.25;
   if (seed % kEveryOutside == 0) return {.causes = 0, .outside = true};
@@ -189,33 +189,38 @@ NumberFactors DrawNumbers(const mjModel& plant, Random& random,
   return factors;
 }
 
-HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t seed) {
+HiddenCase DrawHiddenCase(const Machine& model, const HiddenPlan& plan,
+                          std::uint64_t seed) {
+  if (plan.exact) {
+    const auto types = TypesOfRun(static_cast<int>(seed - 1), plan.causes);
+    return MakeCase(model, DrawEffects(model, types, seed), seed);
+  }
   Random random(seed ^ kDrawStream);
   const Setup& setup = model.setup();
   const Trajectory trajectory = DefaultTrajectory(setup);
   const int substeps = kFiner * setup.rates.substeps;
   const Excitation motion = FollowTrajectory(setup, trajectory);
-  HardCase hard;
+  HiddenCase hidden;
   const auto visible = DrawUntilThere([&]() -> std::optional<VisibleSize> {
-    hard.numbers = DrawNumbers(model.plant(), random);
-    return VisibleSize(model.WithNumbers(hard.numbers), substeps, motion);
+    hidden.numbers = DrawNumbers(model.plant(), random);
+    return VisibleSize(model.WithNumbers(hidden.numbers), substeps, motion);
   });
   if (plan.outside) {
     constexpr std::size_t kSites = 5;  // that are tried of a law
     std::size_t tried = 0;
-    hard.truth = {DrawUntilThere([&] {
+    hidden.truth = {DrawUntilThere([&] {
       const std::size_t number = seed / kEveryOutside + tried++ / kSites;
-      return DrawOutside(model, visible, number, random, hard.outside_joint);
+      return DrawOutside(model, visible, number, random, hidden.outside_joint);
     })};
   }
   for (int i = 0; i < plan.causes; ++i) {
-    hard.truth.push_back(DrawUntilThere(
-        [&] { return DrawOneMore(model, visible, hard.truth, random); }));
+    hidden.truth.push_back(DrawUntilThere(
+        [&] { return DrawOneMore(model, visible, hidden.truth, random); }));
   }
 
   const Machine machine = model.WithSubsteps(substeps)
-                              .WithNumbers(hard.numbers)
-                              .With(ChangesOf(hard.truth));
+                              .WithNumbers(hidden.numbers)
+                              .With(ChangesOf(hidden.truth));
   std::uint64_t noise = 1000 * seed;
   const auto measure = [&](const Excitation& moved) {
     RunOptions options;
@@ -227,17 +232,17 @@ HardCase DrawHardCase(const Machine& model, const HardPlan& plan, std::uint64_t 
   };
   const bool two = random.Uniform(0.0, 1.0) < 0.5;
   const bool validated = random.Uniform(0.0, 1.0) < 0.5;
-  hard.measurements.fit.push_back({measure(motion), model, "default"});
-  if (two) hard.measurements.fit.push_back({measure(other()), model, "other"});
+  hidden.measurements.fit.push_back({measure(motion), model, "default"});
+  if (two) hidden.measurements.fit.push_back({measure(other()), model, "other"});
   if (validated) {
-    hard.measurements.unseen.push_back({measure(other()), model, "validation"});
+    hidden.measurements.unseen.push_back({measure(other()), model, "validation"});
   }
   const Excitation last = other();
-  hard.unseen = measure(last);
+  hidden.unseen = measure(last);
   RunOptions quiet;
   quiet.noise_scale = 0.0;
-  hard.unseen_clean = Simulate(machine, last, quiet);
-  return hard;
+  hidden.unseen_clean = Simulate(machine, last, quiet);
+  return hidden;
 }
 
 }  // namespace mjdiag

@@ -20,11 +20,11 @@ namespace mjdiag {
 
 // A force without a name (FoundCause::unnamed) is no name, right or wrong: beside the right
 // names the answer is undecided, in the place of one silent.
-enum class HardVerdict { kRight, kUndecided, kWrong, kSilent };
-const char* WordOf(HardVerdict verdict);
+enum class HiddenVerdict { kRight, kUndecided, kWrong, kSilent };
+const char* WordOf(HiddenVerdict verdict);
 
-HardVerdict VerdictOf(const std::vector<Cause>& truth,
-                      const std::vector<FoundCause>& found);
+HiddenVerdict VerdictOf(const std::vector<Cause>& truth,
+                        const std::vector<FoundCause>& found);
 
 enum class OutsideVerdict {
   kNothing,  ///< no name above 0.5; a force without one is none

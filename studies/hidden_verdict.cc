@@ -1,4 +1,4 @@
-#include "mjdiag/studies/hard_outcome.h"
+#include "mjdiag/studies/hidden_verdict.h"
 
 #include <algorithm>
 #include <array>
@@ -32,15 +32,15 @@ bool TakeOut(std::vector<Cause>& causes, const Matches& matches) {
 
 }  // namespace
 
-const char* WordOf(HardVerdict verdict) {
+const char* WordOf(HiddenVerdict verdict) {
   switch (verdict) {
-    case HardVerdict::kRight:
+    case HiddenVerdict::kRight:
       return "right";
-    case HardVerdict::kUndecided:
+    case HiddenVerdict::kUndecided:
       return "undecided";
-    case HardVerdict::kWrong:
+    case HiddenVerdict::kWrong:
       return "wrong";
-    case HardVerdict::kSilent:
+    case HiddenVerdict::kSilent:
       return "silent";
   }
   return "";
@@ -59,8 +59,8 @@ const char* WordOf(OutsideVerdict verdict) {
 }
 
 // Every cause of the truth excuses one that is named.
-HardVerdict VerdictOf(const std::vector<Cause>& truth,
-                      const std::vector<FoundCause>& found) {
+HiddenVerdict VerdictOf(const std::vector<Cause>& truth,
+                        const std::vector<FoundCause>& found) {
   std::vector<Cause> missing = truth;
   std::vector<const FoundCause*> others;
   bool has_unnamed = false;
@@ -73,14 +73,14 @@ HardVerdict VerdictOf(const std::vector<Cause>& truth,
     if (!named) others.push_back(&one);
   }
   if (missing.empty() && others.empty()) {
-    return has_unnamed ? HardVerdict::kUndecided : HardVerdict::kRight;
+    return has_unnamed ? HiddenVerdict::kUndecided : HiddenVerdict::kRight;
   }
   for (const FoundCause* one : others) {
     if (!TakeOut(missing, [&](const Cause& cause) { return MayBe(*one, cause); })) {
-      return HardVerdict::kWrong;
+      return HiddenVerdict::kWrong;
     }
   }
-  return missing.empty() ? HardVerdict::kUndecided : HardVerdict::kSilent;
+  return missing.empty() ? HiddenVerdict::kUndecided : HiddenVerdict::kSilent;
 }
 
 OutsideVerdict VerdictOf(const Effect& law, Eigen::Index joint,

@@ -1,4 +1,4 @@
-#include "mjdiag/studies/hard_outcome.h"
+#include "mjdiag/studies/hidden_verdict.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "mjdiag/plugin/effects/registry.h"
-#include "mjdiag/studies/hard_table.h"
+#include "mjdiag/studies/hidden_table.h"
 #include "mjdiag/studies/outside_law.h"
 
 namespace mjdiag {
@@ -61,46 +61,46 @@ std::vector<FoundCause> AllNamed(std::vector<Cause> causes, std::mt19937_64& ran
 }
 
 // Whatever is hidden: what each verdict means, of answers that are made up.
-TEST(HardVerdict, FollowsFromWhatIsNamedWhateverTheTruth) {
+TEST(HiddenVerdict, FollowsFromWhatIsNamedWhateverTheTruth) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 200; ++i) {
     const auto [truth, others] = DrawTruth(random);
     std::vector<FoundCause> found = AllNamed(truth, random);
-    EXPECT_EQ(VerdictOf(truth, found), HardVerdict::kRight);
-    EXPECT_EQ(VerdictOf(truth, {}), HardVerdict::kSilent);
+    EXPECT_EQ(VerdictOf(truth, found), HiddenVerdict::kRight);
+    EXPECT_EQ(VerdictOf(truth, {}), HiddenVerdict::kSilent);
 
     std::vector<FoundCause> more = found;
     more.push_back(Named(others[0]));
-    EXPECT_EQ(VerdictOf(truth, more), HardVerdict::kWrong);
+    EXPECT_EQ(VerdictOf(truth, more), HiddenVerdict::kWrong);
 
     // A false name is excused by what it may be instead, once.
     const Cause last = found.back().cause;
     found.back() = Named(others[0], last, 0.06);
-    EXPECT_EQ(VerdictOf(truth, found), HardVerdict::kUndecided);
+    EXPECT_EQ(VerdictOf(truth, found), HiddenVerdict::kUndecided);
     more = found;
     more.push_back(Named(others[1], last, 0.06));
-    EXPECT_EQ(VerdictOf(truth, more), HardVerdict::kWrong);
+    EXPECT_EQ(VerdictOf(truth, more), HiddenVerdict::kWrong);
     more.back() = Named(last);
-    EXPECT_EQ(VerdictOf(truth, more), HardVerdict::kWrong);
+    EXPECT_EQ(VerdictOf(truth, more), HiddenVerdict::kWrong);
     found.back() = Named(others[0], last, 0.04);
-    EXPECT_EQ(VerdictOf(truth, found), HardVerdict::kWrong);
+    EXPECT_EQ(VerdictOf(truth, found), HiddenVerdict::kWrong);
 
     found.pop_back();
-    EXPECT_EQ(VerdictOf(truth, found), HardVerdict::kSilent);
+    EXPECT_EQ(VerdictOf(truth, found), HiddenVerdict::kSilent);
   }
 }
 
-TEST(HardVerdict, CountsWhatNoMeasurementTellsApartAsOne) {
+TEST(HiddenVerdict, CountsWhatNoMeasurementTellsApartAsOne) {
   const Machine bonder(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383"));
   const Cause motor = ParseEffect("motor_constant@x_motor:factor=0.7");
   const std::vector<Cause> twins = EquivalentCauses(bonder.plant(), motor);
   ASSERT_EQ(twins.size(), 1u);
-  EXPECT_EQ(VerdictOf({motor}, {Named(twins[0])}), HardVerdict::kRight);
+  EXPECT_EQ(VerdictOf({motor}, {Named(twins[0])}), HiddenVerdict::kRight);
 }
 
-TEST(HardVerdict, OfNothingIsWrongWithAnyName) {
-  EXPECT_EQ(VerdictOf({}, {}), HardVerdict::kRight);
-  EXPECT_EQ(VerdictOf({}, {Named(Catalogue()[0], 0.1)}), HardVerdict::kWrong);
+TEST(HiddenVerdict, OfNothingIsWrongWithAnyName) {
+  EXPECT_EQ(VerdictOf({}, {}), HiddenVerdict::kRight);
+  EXPECT_EQ(VerdictOf({}, {Named(Catalogue()[0], 0.1)}), HiddenVerdict::kWrong);
 }
 
 TEST(OutsideVerdict, AcceptsTheFamilyAtTheJointAndNoOtherNameAboveOneHalf) {
@@ -155,21 +155,21 @@ std::string CountOf(const StudyTable& table, const std::string& figure) {
   return "";
 }
 
-TEST(HardSummary, CountsEveryKindOfCaseByItself) {
-  HardOutcome right;
+TEST(HiddenSummary, CountsEveryKindOfCaseByItself) {
+  HiddenOutcome right;
   right.truth = {Catalogue()[0]};
   right.claims = {{0.95, true}};
   right.answer.budget = {50.0, 120.0, false, {}};
-  HardOutcome wrong = right;
-  wrong.verdict = HardVerdict::kWrong;
+  HiddenOutcome wrong = right;
+  wrong.verdict = HiddenVerdict::kWrong;
   wrong.claims = {{0.95, false}};
   wrong.answer.budget.used = 130.0;
-  HardOutcome outside = right;
+  HiddenOutcome outside = right;
   outside.plan.outside = true;
   outside.truth = {{Lasting(RootFriction()), "X", ValuesOf({1.0, 1.0})}};
   outside.outside = OutsideVerdict::kFalse;
   outside.claims = {{0.95, false}};
-  HardOutcome nothing;
+  HiddenOutcome nothing;
   nothing.answer.budget = {10.0, 120.0, false, {}};
   const auto tables = SummariesOf({right, wrong, right, outside, nothing});
   EXPECT_EQ(CountOf(tables[0], "catalogue, right"), "2 of 3");
@@ -187,7 +187,7 @@ TEST(HardSummary, CountsEveryKindOfCaseByItself) {
   EXPECT_NEAR(tables[1].plot->points[0].y, 2.0 / 3.0, 1e-12);
 }
 
-TEST(HardKinds, AreThereWhateverTheirLaws) {
+TEST(HiddenKinds, AreThereWhateverTheirLaws) {
   const Cause friction{Lasting(CoulombFriction()), "X", ValuesOf({1.0})};
   const Cause law{Lasting(RootFriction()), "Y", ValuesOf({1.0, 1.0})};
   const std::vector<Cause> truth = {friction, law};
@@ -205,16 +205,16 @@ TEST(HardKinds, AreThereWhateverTheirLaws) {
   EXPECT_FALSE(claims[1].holds);
 }
 
-TEST(HardVerdict, TakesAForceWithoutANameForNoName) {
+TEST(HiddenVerdict, TakesAForceWithoutANameForNoName) {
   const Cause hidden = Catalogue().front();
   FoundCause curve = Named({Lasting(ForceCurve()), "X", {}}, 1.0);
   curve.unnamed = "1 N rms at X that follow Y velocity";
-  EXPECT_EQ(VerdictOf({hidden}, {curve}), HardVerdict::kSilent);
-  EXPECT_EQ(VerdictOf({hidden}, {Named(hidden), curve}), HardVerdict::kUndecided);
+  EXPECT_EQ(VerdictOf({hidden}, {curve}), HiddenVerdict::kSilent);
+  EXPECT_EQ(VerdictOf({hidden}, {Named(hidden), curve}), HiddenVerdict::kUndecided);
   EXPECT_TRUE(ClaimsOf({hidden}, std::vector<FoundCause>{curve}).empty());
   EXPECT_EQ(VerdictOf(CoulombFriction(), 0, {curve}, {1}), OutsideVerdict::kNothing);
   curve.unnamed.clear();
-  EXPECT_EQ(VerdictOf({hidden}, {curve}), HardVerdict::kWrong);
+  EXPECT_EQ(VerdictOf({hidden}, {curve}), HiddenVerdict::kWrong);
 }
 
 }  // namespace

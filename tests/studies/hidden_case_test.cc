@@ -1,4 +1,4 @@
-#include "mjdiag/studies/hard_case.h"
+#include "mjdiag/studies/hidden_case.h"
 
 #include <gtest/gtest.h>
 
@@ -19,15 +19,15 @@ Machine Emps() {
                 {"sensors.q.noise_power=1e-15", "trajectories.default.duration=2.5"}));
 }
 
-const Eigen::VectorXd& PositionsOf(const HardCase& hard) {
-  return hard.measurements.fit.front().record.At("q").samples;
+const Eigen::VectorXd& PositionsOf(const HiddenCase& hidden) {
+  return hidden.measurements.fit.front().record.At("q").samples;
 }
 
-TEST(HardCase, IsTheSameForTheSameSeedAndAnotherForAnother) {
+TEST(HiddenCase, IsTheSameForTheSameSeedAndAnotherForAnother) {
   const Machine model = Emps();
-  const HardCase one = DrawHardCase(model, {.causes = 2}, 3);
-  const HardCase again = DrawHardCase(model, {.causes = 2}, 3);
-  const HardCase other = DrawHardCase(model, {.causes = 2}, 4);
+  const HiddenCase one = DrawHiddenCase(model, {.causes = 2}, 3);
+  const HiddenCase again = DrawHiddenCase(model, {.causes = 2}, 3);
+  const HiddenCase other = DrawHiddenCase(model, {.causes = 2}, 4);
   ASSERT_EQ(one.truth.size(), 2u);
   EXPECT_EQ(one.truth, again.truth);
   EXPECT_EQ(one.numbers, again.numbers);
@@ -38,7 +38,7 @@ TEST(HardCase, IsTheSameForTheSameSeedAndAnotherForAnother) {
   EXPECT_NE(PositionsOf(one), PositionsOf(other));
 }
 
-TEST(HardCase, NumbersAreOffByAsMuchAsIsNotKnownOfThem) {
+TEST(HiddenCase, NumbersAreOffByAsMuchAsIsNotKnownOfThem) {
   const Machine model = Emps();
   Random random(1);
   double sum = 0.0;
@@ -57,11 +57,11 @@ TEST(HardCase, NumbersAreOffByAsMuchAsIsNotKnownOfThem) {
   EXPECT_NEAR(squares / count, 1.0, 0.15);
 }
 
-TEST(HardCase, IsMeasuredOnAnotherMachineThanTheModelThatIsGiven) {
+TEST(HiddenCase, IsMeasuredOnAnotherMachineThanTheModelThatIsGiven) {
   const Machine model = Emps();
-  const HardCase hard = DrawHardCase(model, {.causes = 0}, 1);
-  EXPECT_TRUE(hard.truth.empty());
-  const Machine& given = hard.measurements.fit.front().machine;
+  const HiddenCase hidden = DrawHiddenCase(model, {.causes = 0}, 1);
+  EXPECT_TRUE(hidden.truth.empty());
+  const Machine& given = hidden.measurements.fit.front().machine;
   EXPECT_EQ(given.plant().body_mass[1], model.plant().body_mass[1]);
   EXPECT_EQ(given.rates().substeps, model.rates().substeps);
   EXPECT_EQ(given.changes(), Changes{});
@@ -70,18 +70,18 @@ TEST(HardCase, IsMeasuredOnAnotherMachineThanTheModelThatIsGiven) {
     RunOptions quiet;
     quiet.noise_scale = 0.0;
     const Record record =
-        Simulate(machine, Replay(machine.setup(), hard.unseen_clean), quiet);
-    return (record.At("q").samples - hard.unseen_clean.At("q").samples).norm();
+        Simulate(machine, Replay(machine.setup(), hidden.unseen_clean), quiet);
+    return (record.At("q").samples - hidden.unseen_clean.At("q").samples).norm();
   };
-  EXPECT_GT(off(model), 20.0 * off(model.WithNumbers(hard.numbers)));
-  EXPECT_GT(off(model.WithNumbers(hard.numbers)), 0.0);
+  EXPECT_GT(off(model), 20.0 * off(model.WithNumbers(hidden.numbers)));
+  EXPECT_GT(off(model.WithNumbers(hidden.numbers)), 0.0);
 }
 
-TEST(HardCase, HidesALawThatIsInNoListInEveryFifth) {
+TEST(HiddenCase, HidesALawThatIsInNoListInEveryFifth) {
   int outside = 0;
   std::array<int, 4> of_causes{};
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
-    const HardPlan plan = PlanOf(seed);
+    const HiddenPlan plan = PlanOf(seed);
     outside += plan.outside ? 1 : 0;
     if (!plan.outside) ++of_causes[static_cast<std::size_t>(plan.causes)];
   }
@@ -91,19 +91,19 @@ TEST(HardCase, HidesALawThatIsInNoListInEveryFifth) {
   EXPECT_NEAR(of_causes[3], 240, 50);
 }
 
-TEST(HardCase, HasAnOutsideLawOnADrivenJoint) {
-  const HardCase hard = DrawHardCase(Emps(), PlanOf(10), 10);
-  ASSERT_EQ(hard.truth.size(), 1u);
-  EXPECT_EQ(hard.outside_joint, 0);
+TEST(HiddenCase, HasAnOutsideLawOnADrivenJoint) {
+  const HiddenCase hidden = DrawHiddenCase(Emps(), PlanOf(10), 10);
+  ASSERT_EQ(hidden.truth.size(), 1u);
+  EXPECT_EQ(hidden.outside_joint, 0);
   EXPECT_TRUE(std::ranges::any_of(OutsideLaws(), [&](const Effect* law) {
-    return law == hard.truth.front().effect.get();
+    return law == hidden.truth.front().effect.get();
   }));
 }
 
-TEST(HardCase, NeedsAMachineThatFollowsTrajectories) {
+TEST(HiddenCase, NeedsAMachineThatFollowsTrajectories) {
   const Machine open(ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/voice_coil"));
   EXPECT_NE(test::MessageOf<InputError>([&] {
-              DrawHardCase(open, {}, 1);
+              DrawHiddenCase(open, {}, 1);
             }).find("has no controlled axes"),
             std::string::npos);
 }
