@@ -158,9 +158,10 @@ void AddDiscover(CLI::App& app) {
       ->allow_extra_args(false);
   options->search.budget = kUsualBudget;
   command
-      ->add_option("--budget", options->search.budget,
-                   "Seconds of work, 60 if not given, after which the best answer so far "
-                   "is given, if it has not settled before")
+      ->add_option(
+          "--budget", options->search.budget,
+          "Seconds of work, 60 if not given, after which the best answer so far "
+          "is given, if it has not settled before")
       ->check(Within(kLeastBudget, kMostBudget));
   AddSeedOption(*command, options->search.seed, "Seed of the noise floor");
   AddOutputOptions(*command, options->output, true);

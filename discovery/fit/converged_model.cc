@@ -97,7 +97,7 @@ class Settling {
   /// The noise that suits the model by now.
   void Relax() {
     const Machine machine = beside_.machine_with(settled_.fit.model);
-    const bool is_near = near_.empty() || (!beside_.is_far && !IsNowhere());
+    const bool is_near = near_.empty() || !IsNowhere();
     FilterPath path =
         is_near ? FilterLikelier(machine, beside_.run, beside_.reading_sd,
                                  settled_.path, beside_.is_over)

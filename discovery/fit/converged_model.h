@@ -23,7 +23,6 @@ struct ConvergedBeside {
   const Eigen::VectorXd& reading_sd;
   const std::vector<Eigen::Index>& dofs;  ///< with a latent force
   const std::vector<Block>& blocks;
-  bool is_far = false;  ///< whether noises may be far from what suits
   /// Whether values and noises are asked as long as anything is gained; else, for models that
   /// further moves will change, until a round gains less than a hundredth of what all did.
   bool is_last = false;

@@ -51,7 +51,6 @@ ConvergedBeside ModelSearch::Beside(bool steps) const {
           reading_sd_,
           found_.path.dofs,
           found_.blocks,
-          IsFirstLook(),
           is_last_,
           [this] { return IsOver(); }};
 }
@@ -64,6 +63,7 @@ std::vector<FilterNoise> ModelSearch::NoisesBeside(const FilterNoise& near) cons
 
 void ModelSearch::Adopt(Proposal proposal) {
   if (!SameBlocks(found_.fit.model, proposal.settled.fit.model)) hopeless_.clear();
+  worthless_.clear();
   found_.score = proposal.settled.score();
   found_.fit = std::move(proposal.settled.fit);
   found_.path = std::move(proposal.settled.path);
@@ -159,6 +159,13 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   };
   std::vector<Tried> tried;
   const auto try_one = [&](const Model& model, const ModelMove& move) {
+    if (iterations > 0 && std::ranges::any_of(worthless_, [&](const Model& other) {
+          return std::ranges::equal(other, model, [](const Member& a, const Member& b) {
+            return a.block == b.block && a.values == b.values;
+          });
+        })) {
+      return;
+    }
     try {
       const Judged judged{std::min(move.noise, whitenings.behind.size() - 1),
                           move.other_steps};
@@ -189,6 +196,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
       Rate(model, -gain);
       if (gain < kLeastGain) {
         Decide(fit.model, -gain, "fitted, it is worth less than it costs");
+        if (iterations > 0) worthless_.push_back(model);
       }
       tried.push_back({std::move(fit), judged, gain});
     } catch (const NumericalError&) {
@@ -402,11 +410,7 @@ void ModelSearch::Prepare() {
   found_.path = FilterLikeliest(machine_, run_, reading_sd_, is_over);
   const FilterPath nothing = found_.path;
   found_.score = found_.path.deviance;
-  if (ChooseSteps()) {
-    found_.path = FilterLikeliestFrom(With({}), run_, reading_sd_, found_.path.dofs,
-                                      {found_.path.noise}, is_over);
-    found_.score = found_.path.deviance;
-  }
+  ChooseSteps();
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
   found_.nothing = nothing;
   const MeasuredRun all = is_part_ ? Coarser(whole_, found_.ticks) : as_measured_;
@@ -447,6 +451,7 @@ void ModelSearch::LookAtAll() {
   found_.rivals.clear();
   found_.steps_taken.clear();
   hopeless_.clear();
+  worthless_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {
     if (block.candidate) WidenFrequencies(*block.candidate, as_measured_.sample_time);

@@ -124,9 +124,7 @@ class ModelSearch {
   }
   bool IsFirstLook() const { return is_part_ || found_.ticks > 1; }
   bool IsStopped() const { return options_.stop && options_.stop(); }
-  bool IsOver() const {
-    return time_.Seconds() > seconds_ || IsStopped();
-  }
+  bool IsOver() const { return time_.Seconds() > seconds_ || IsStopped(); }
   void Say(const std::string& text) const {
     if (options_.progress) options_.progress(text);
   }
@@ -168,6 +166,8 @@ class ModelSearch {
   bool is_last_ = false;
   /// Models that were tried in the place of this one and are far from it.
   std::vector<Model> hopeless_;
+  /// What moves made of this one along this path, and fits behind kept gains found no better.
+  std::vector<Model> worthless_;
   Explained found_;
 };
 

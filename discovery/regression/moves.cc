@@ -71,6 +71,9 @@ class MoveSearch {
   /// Terms that may leave for one that comes in.
   std::vector<std::vector<std::size_t>> LeavingTogether() const;
   std::vector<Variation> Promising(const Scored& here) const;
+  /// Behind one of the noises.
+  /// @param least  what they have to gain there, beside their prices
+  std::vector<Variation> PromisingBehind(std::size_t noise, double least) const;
   /// What comes in with its amplitudes, the last first.
   /// @param amplitudes  of all columns, those of what comes in last
   std::vector<std::pair<const Variation&, VectorXd>> AddedOf(
@@ -343,9 +346,29 @@ std::vector<std::vector<std::size_t>> MoveSearch::LeavingTogether() const {
   return sets;
 }
 
+// Behind the latent forces that a model needs which lacks something they do what is missing:
+// what would make them needless is seen behind smaller ones.
 std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
-  const RowMap& map = *maps_[here.noise];
+  constexpr std::size_t kSmaller = 2;  // of NoisesFrom
+  std::vector<Variation> kept = PromisingBehind(here.noise, 0.0);
+  const std::size_t smaller = here.noise + kSmaller;
+  if (looked_.at_forces || smaller >= grams_.size()) return kept;
+  const double lost = FitSet(grams_[smaller], ColumnsOf({})).unseen -
+                      FitSet(grams_[here.noise], ColumnsOf({})).unseen;
+  for (Variation& one : PromisingBehind(smaller, lost)) {
+    const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
+      return other.block == one.block && other.shape == one.shape;
+    });
+    if (!is_known) kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+std::vector<Variation> MoveSearch::PromisingBehind(std::size_t noise,
+                                                   double least) const {
+  const RowMap& map = *maps_[noise];
   const SetOfColumns set = ColumnsOf({});
+  const SetFit fit = FitSet(grams_[noise], set);
   std::vector<const Column*> columns;
   std::vector<std::size_t> of_term;
   for (std::size_t t = 0; t < terms_.size(); ++t) {
@@ -367,7 +390,7 @@ std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
       (is_out ? model.removed : model.in).push_back(static_cast<Index>(i));
     }
     // What stays in does what it can.
-    if (removed.empty() && W.cols() > 0) model.left -= W * here.fit.amplitudes;
+    if (removed.empty() && W.cols() > 0) model.left -= W * fit.amplitudes;
     if (!removed.empty() && !model.in.empty()) {
       const MatrixXd in = W(Eigen::indexing::all, model.in);
       MatrixXd H = G(model.in, model.in);
@@ -380,7 +403,7 @@ std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
   for (const std::vector<std::size_t>& removed : LeavingTogether()) {
     models.push_back(model_without(removed));
   }
-  return PromisingVariations(machine_, along_, map, W, set.sd, models, blocks_,
+  return PromisingVariations(machine_, along_, map, W, set.sd, models, least, blocks_,
                              [this](const Block& block) { return MayCome(block); });
 }
 

@@ -20,8 +20,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// White noises that measure how large a column is: to a quarter of it.
-constexpr Index kProbes = 32;
+// White noises that measure how large a column is: to a third of it.
+constexpr Index kProbes = 16;
+constexpr double kUncertain = 1.5;
 constexpr std::size_t kOfBlock = 3;
 // Of a group, which are alike.
 constexpr std::size_t kOfGroup = 4;
@@ -163,7 +164,8 @@ class BestOfBlock {
 std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along, const RowMap& map,
     const MatrixXd& W, const VectorXd& sd, const std::vector<WhitenedModel>& models,
-    std::vector<Block>& blocks, const std::function<bool(const Block&)>& may_come) {
+    double least, std::vector<Block>& blocks,
+    const std::function<bool(const Block&)>& may_come) {
   const Products products(map, W, models);
   std::vector<PromiseBeside> beside;
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -230,8 +232,10 @@ std::vector<Variation> PromisingVariations(
     std::vector<Promise> all;
     for (std::size_t place = 0; place < promises.size(); ++place) {
       for (Promise& one : promises[place][i].best) {
-        const double least = std::max(0.5 * blocks[place].price, beside[i].least());
-        if (one.gain > least) all.push_back(std::move(one));
+        const double of_model = std::max(0.5 * blocks[place].price, beside[i].least());
+        if (one.gain > of_model && kUncertain * one.gain > least) {
+          all.push_back(std::move(one));
+        }
       }
     }
     std::ranges::stable_sort(all, std::greater<>(), &Promise::gain);

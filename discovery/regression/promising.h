@@ -21,12 +21,13 @@ struct WhitenedModel {
 /// @param W         whitened columns of the model, rows x k
 /// @param sd        of their amplitudes beforehand
 /// @param models    the first is the model itself
+/// @param least     what they have to gain, beside their prices
 /// @param may_come  which blocks are looked at
 /// @param blocks    receive the prices of their shapes
 std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along, const RowMap& map,
     const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
-    const std::vector<WhitenedModel>& models, std::vector<Block>& blocks,
+    const std::vector<WhitenedModel>& models, double least, std::vector<Block>& blocks,
     const std::function<bool(const Block&)>& may_come);
 
 }  // namespace mjdiag

@@ -49,7 +49,7 @@ class RecordFilter {
         start_(path.starts[record]),
         path_(path),
         map_(machine_),
-        course_(machine_, map_, path.dofs),
+        course_(machine_, map_),
         inputs_(machine_, run),
         kalman_(path.dofs, path.noise, path.sample_time),
         applied_(VectorXd::Zero(machine.plant().nv)) {}

@@ -83,10 +83,10 @@ std::vector<Index> DofsThatRub(const mjModel& model) {
 
 }  // namespace
 
-TangentCourse::TangentCourse(const Machine& machine, TickMap& map,
-                             const std::vector<Index>& dofs)
+TangentCourse::TangentCourse(const Machine& machine, TickMap& map)
     : map_(map),
-      differences_(map, machine.rates().tick(), dofs),
+      // What is missing may push where nothing drives and nothing is measured, too.
+      differences_(map, machine.rates().tick(), AllDofs(machine.plant())),
       with_effects_(DofsWithEffects(machine)),
       rubbing_(DofsThatRub(machine.plant())),
       shortest_(std::max<std::int64_t>(

@@ -16,10 +16,8 @@ namespace mjdiag {
 
 class TangentCourse {
  public:
-  /// @param map   has to outlive it
-  /// @param dofs  those with latent forces
-  TangentCourse(const Machine& machine, TickMap& map,
-                const std::vector<Eigen::Index>& dofs);
+  /// @param map  has to outlive it
+  TangentCourse(const Machine& machine, TickMap& map);
 
   /// Place in `tangents` of the tangent of the map's last Run.
   /// @param sd        of the state there, ns

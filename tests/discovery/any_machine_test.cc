@@ -96,6 +96,15 @@ TEST(DiscoverAnyMachine, FindsFrictionBehindAValveThatLags) {
   EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.15, 0.003);
 }
 
+// As most simulations have it: where it stands the joint gives way.
+TEST(DiscoverAnyMachine, FindsFrictionAsASimulationHasIt) {
+  const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
+  const Machine rubs = valve.With({{}, {ParseEffect("frictionloss@j:force=0.3")}});
+  const Discovery answer = Asked(valve, Measure(rubs, TwoSines, 1e-5));
+  ASSERT_THAT(NamesOf(answer), ElementsAre("frictionloss@j"));
+  EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.3, 0.003);
+}
+
 constexpr char kHovers[] =
     R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body name="craft">
        <freejoint name="free"/>
@@ -114,6 +123,25 @@ TEST(DiscoverAnyMachine, FindsAWeakMotorOfWhatFlies) {
   const CalibratedNumber& number = answer.calibration.at(0);
   EXPECT_NEAR(number.name == "gear@u" ? number.factor : 1.0 / number.factor, 0.9,
               0.005);
+}
+
+constexpr char kMounted[] =
+    R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body>
+       <joint name="mount" type="slide" axis="1 0 0" stiffness="2e4" damping="60"/>
+       <inertial pos="0 0 0" mass="6" diaginertia="1 1 1"/><body>
+       <joint name="j" type="slide" axis="1 0 0" damping="4" stiffness="300"/>
+       <inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body></body></worldbody>
+       <actuator><motor name="u" joint="j" gear="30"/></actuator>
+       <sensor><jointpos name="y" joint="j"/></sensor>)";
+
+// Nothing drives it and nothing measures it.
+TEST(DiscoverAnyMachine, FindsASoftMountThatNoSensorSees) {
+  const Machine stiff = MachineOf(kMounted, "element = \"y\"\nunit = \"m\"");
+  const ModelParameter spring = FindModelParameter(stiff.plant(), "stiffness@mount");
+  const Record record = Measure(stiff.WithNumbers({{spring, 0.8}}), TwoSines, 1e-6);
+  const Discovery answer = Asked(stiff, record);
+  ASSERT_THAT(NamesOf(answer), ElementsAre("stiffness@mount"));
+  EXPECT_NEAR(answer.calibration.at(0).factor, 0.8, 0.01);
 }
 
 constexpr char kRigid[] =

@@ -16,8 +16,9 @@ class FrictionlossEffect final : public Effect {
                 .form = Form::kAttributes,
                 .variable = LawVariable::kVelocity,
                 .parameters = {NotNegative("force", Role::kAmplitude, "N")},
-                .meaning = "dry friction: -force sign(v), giving way at rest as MuJoCo's "
-                           "does by default",
+                .meaning =
+                    "dry friction: -force sign(v), giving way at rest as MuJoCo's "
+                    "does by default",
                 .odds = kLearned}) {}
 
   void Apply(mjModel& model, int joint, const EffectValues& values) const override {

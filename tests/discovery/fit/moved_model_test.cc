@@ -27,9 +27,9 @@ Block FrictionBlock(const std::string& name) {
   return block;
 }
 
-const std::vector<Block> kFriction{FrictionBlock("viscous_friction"),
-                                   FrictionBlock("coulomb_friction"),
-                                   FrictionBlock("smooth_coulomb_friction")};
+const std::vector<Block> kFriction{
+    FrictionBlock("viscous_friction"), FrictionBlock("coulomb_friction"),
+    FrictionBlock("smooth_coulomb_friction"), FrictionBlock("frictionloss")};
 
 TEST(MovedModel, LetsDryFrictionCreepWithinATenthOfTheFastestSpeed) {
   const Model creeps = Creeping(kFriction, {{1, Eigen::VectorXd::Constant(1, 0.7)}});
@@ -45,9 +45,20 @@ TEST(MovedModel, LetsDryFrictionThatCreepsBeThereAtOnce) {
   EXPECT_EQ(abrupt[0].values, Eigen::VectorXd::Constant(1, 0.7));
 }
 
+TEST(MovedModel, LetsJointsThatStandGiveWayAndHold) {
+  const Eigen::VectorXd size = Eigen::VectorXd::Constant(1, 0.7);
+  for (const Model& holds : {Model{{1, size}}, Model{{2, Eigen::Vector2d(0.7, 0.2)}}}) {
+    const Model gives = GivingWay(kFriction, holds);
+    EXPECT_EQ(gives[0].block, 3u);
+    EXPECT_EQ(gives[0].values, size);
+  }
+  EXPECT_EQ(Abrupt(kFriction, {{3, size}})[0].block, 1u);
+}
+
 TEST(MovedModel, LeavesWhatIsNoDryFriction) {
   const Model damps{{0, Eigen::VectorXd::Constant(1, 0.7)}};
-  for (const Model& other : {Creeping(kFriction, damps), Abrupt(kFriction, damps)}) {
+  for (const Model& other : {Creeping(kFriction, damps), Abrupt(kFriction, damps),
+                             GivingWay(kFriction, damps)}) {
     ASSERT_EQ(other.size(), 1u);
     EXPECT_EQ(other[0].block, 0u);
   }

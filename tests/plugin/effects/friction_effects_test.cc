@@ -62,6 +62,26 @@ TEST(FrictionEffects, StribeckFrictionWithoutAConstantPartHoldsAsWell) {
   EXPECT_LT(std::abs(bench.q()), kCreep);
 }
 
+/// Where 4 N have pushed a joint that rubs with 8 N after half a second.
+double PushedTo(const char* effect, const std::string& joint = R"(type="slide")") {
+  EffectBench bench({effect}, joint);
+  bench.StepUntil(0.5, 4.0);
+  return bench.q();
+}
+
+// d = 0.9 and b = 2 / (0.95 * 0.02 s) by MuJoCo's defaults.
+TEST(FrictionEffects, FrictionlossGivesWayAtRestAsMuJoCosDoes) {
+  const double speed = 0.1 / 0.9 * 4.0 / (kMass * 2.0 / (0.95 * 0.02));
+  EXPECT_NEAR(PushedTo("frictionloss@q:force=8"), 0.5 * speed, 0.05 * 0.5 * speed);
+  EXPECT_LT(std::abs(PushedTo("coulomb_friction@q:force=8")), kCreep);
+}
+
+TEST(FrictionEffects, CoulombFrictionSticksAsTheModelSaysWhereItSaysHow) {
+  const std::string soft = R"(type="slide" solreffriction="0.03 1")";
+  EXPECT_EQ(PushedTo("coulomb_friction@q:force=8", soft),
+            PushedTo("frictionloss@q:force=8", soft));
+}
+
 TEST(FrictionEffects, ViscousFrictionAddsToTheDampingThatThereIs) {
   EffectBench bench({"viscous_friction@q:coefficient=3"},
                     R"(type="slide" damping="1")");

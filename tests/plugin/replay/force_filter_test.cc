@@ -140,6 +140,26 @@ TEST(ForceFilter, CorrectsTheBodyThatAnEffectAdds) {
   EXPECT_NEAR(rms, kNoise, 0.1 * kNoise);
 }
 
+// The mass on a table of 3 kg whose mount no sensor sees: a force on the table moves it by the
+// inverse of its own mass.
+TEST(ForceFilter, KnowsWhatPushesWhereNothingIsDrivenOrMeasured) {
+  const Machine machine = test::MachineOf(
+      R"(<mujoco><option timestep="0.001"/><worldbody><body>
+      <joint name="mount" type="slide" axis="1 0 0" stiffness="1e4" damping="30"/>
+      <inertial pos="0 0 0" mass="3" diaginertia="1 1 1"/><body>
+      <joint name="j" type="slide" axis="1 0 0" damping="4"/>
+      <inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body></body></worldbody>
+      <actuator><motor name="u" joint="j"/></actuator>
+      <sensor><jointpos name="y" joint="j"/></sensor></mujoco>)",
+      "[rates]\ncontrol = 1000.0\n[sensors.y]\nelement = \"y\"\nunit = \"m\"\n"
+      "[actuators.u]\nelement = \"u\"\nunit = \"N\"\n");
+  const FilterNoise noise = SomeNoise();
+  const MeasuredRun run = Slide().Measure(None, 200);
+  const FilterPath path = RunForceFilter(
+      machine, run, {1}, FilterStarts(machine, run, noise.reading), noise);
+  EXPECT_NEAR(path.tangents.front().B(2, 0), 1e-3 / 3.0, 0.02 * 1e-3 / 3.0);
+}
+
 // How fast the machine usually is, and not how well its first speed is known, says how large
 // the forces may be behind which it is followed whatever it lacks.
 TEST(ForceFilter, FollowsAMachineThatBeginsAtRest) {
