@@ -419,6 +419,7 @@ void ModelSearch::Prepare() {
   BoundByRecord(candidates_, machine_, motion);
   BoundDriveLimits(candidates_, machine_, motion);
   BoundByReadings(candidates_, machine_, whole_);
+  BoundPlays(candidates_, machine_, reading_sd_);
   const std::vector<ModelParameter> in_doubt = IsExact(machine_.plant())
                                                    ? std::vector<ModelParameter>{}
                                                    : NumbersOf(machine_.plant());

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string>
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/regressor_signals.h"
+#include "mjdiag/plugin/plant/tangent_coordinates.h"
 
 namespace mjdiag {
 namespace {
@@ -69,6 +71,29 @@ void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
       }
     }
   }
+}
+
+void BoundPlays(std::vector<Candidate>& candidates, const Machine& machine,
+                const VectorXd& reading_sd) {
+  std::map<std::string, double> finest;  // by unit
+  for (Index i = 0; i < reading_sd.size(); ++i) {
+    const auto place = static_cast<std::size_t>(i);
+    const std::string& unit = machine.channels().sensors[place].unit;
+    const auto [one, is_first] = finest.try_emplace(unit, reading_sd[i]);
+    if (!is_first) one->second = std::min(one->second, reading_sd[i]);
+  }
+  const auto is_none = [&](Candidate& candidate) {
+    const Index place = PlaceOf(candidate, Role::kGap);
+    if (place >= std::ssize(candidate.parameters)) return false;
+    FitParameter& gap = candidate.parameters[static_cast<std::size_t>(place)];
+    const auto least = finest.find(
+        IsLength(machine.plant(), static_cast<int>(candidate.joint)) ? "m" : "rad");
+    if (least == finest.end()) return false;
+    if (gap.upper <= least->second) return true;
+    gap.lower = std::max(gap.lower, least->second);
+    return false;
+  };
+  std::erase_if(candidates, is_none);
 }
 
 void WidenFrequencies(Candidate& candidate, double sample_time) {

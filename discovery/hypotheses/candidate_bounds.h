@@ -28,6 +28,11 @@ void WidenFrequencies(Candidate& candidate, double sample_time);
 void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
                      const MeasuredRun& run);
 
+/// A play that is less than the noise of the finest reading of its unit nobody would see: a
+/// joint that moves no further has none.
+void BoundPlays(std::vector<Candidate>& candidates, const Machine& machine,
+                const Eigen::VectorXd& reading_sd);
+
 /// A limit of a drive is no lower than the amplitude of a sine as large as what the drive is
 /// asked for, sqrt(2) times its rms: below it is at its limit most of the time, and follows
 /// nothing.

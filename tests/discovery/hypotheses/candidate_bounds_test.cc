@@ -6,6 +6,7 @@
 
 #include "discovery/stage_motion.h"
 #include "mjdiag/plugin/effects/effect.h"
+#include "support/bonder.h"
 
 namespace mjdiag {
 namespace {
@@ -53,6 +54,23 @@ TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
   EXPECT_NEAR(Parameter(candidates, name, "period").lower, 4.0 * kStep, 1e-3 * kStep);
   EXPECT_NEAR(Parameter(candidates, name, "amplitude").least_size, 0.5 * kStep,
               1e-3 * kStep);
+}
+
+// Encoders of 20 nm see no play that is less, and none in a mount that moves no further.
+TEST(BoundPlays, LeavesNoneThatNoReadingWouldSee) {
+  const Machine bonder = test::Bonder();
+  const auto with_stroke = [&](double stroke) {
+    auto candidates = ListCandidates(bonder);
+    for (Candidate& one : candidates) {
+      if (CandidateName(one) == "backlash@u3") one.parameters[0].upper = stroke;
+    }
+    BoundPlays(candidates, bonder, Eigen::VectorXd::Constant(3, 2e-8));
+    return candidates;
+  };
+  EXPECT_EQ(Parameter(with_stroke(1e-6), "backlash@u3", "gap").lower, 2e-8);
+  EXPECT_EQ(std::ranges::count(with_stroke(1e-8), std::string("backlash@u3"),
+                               [](const Candidate& one) { return CandidateName(one); }),
+            0);
 }
 
 TEST(ListCandidates, EndWhereALawBecomesOtherPhysics) {
