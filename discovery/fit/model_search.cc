@@ -16,6 +16,7 @@
 #include "mjdiag/discovery/fit/first_look.h"
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/fit/moved_model.h"
+#include "mjdiag/discovery/fit/other_friction.h"
 #include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/force_moves.h"
@@ -23,7 +24,6 @@
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
-#include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/signals/error.h"
 
@@ -61,12 +61,16 @@ std::vector<FilterNoise> ModelSearch::NoisesBeside(const FilterNoise& near) cons
   return noises;
 }
 
+void ModelSearch::Take(ConvergedModel model) {
+  found_.score = model.score();
+  found_.fit = std::move(model.fit);
+  found_.path = std::move(model.path);
+}
+
 void ModelSearch::Adopt(Proposal proposal) {
   if (!SameBlocks(found_.fit.model, proposal.settled.fit.model)) hopeless_.clear();
   worthless_.clear();
-  found_.score = proposal.settled.score();
-  found_.fit = std::move(proposal.settled.fit);
-  found_.path = std::move(proposal.settled.path);
+  Take(std::move(proposal.settled));
   found_.input_width = proposal.input_width;
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
@@ -321,33 +325,16 @@ bool ModelSearch::ChooseSteps() {
       std::to_string(-gain));
   // Values made up for the steps as far as they could.
   ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, std::move(path));
-  found_.score = settled.score();
-  found_.fit = std::move(settled.fit);
-  found_.path = std::move(settled.path);
+  Take(std::move(settled));
   return true;
 }
 
 void ModelSearch::ChooseFriction() {
-  for (const Model& other : {GivingWay(found_.blocks, found_.fit.model),
-                             Abrupt(found_.blocks, found_.fit.model)}) {
-    if (SameBlocks(other, found_.fit.model) || IsOver()) continue;
-    try {
-      FilterPath path = RunForceFilter(With(other), run_, found_.path.dofs,
-                                       found_.path.starts, found_.path.noise);
-      ModelFit fit = FitModel([this](const Model& model) { return With(model); }, run_,
-                              path, KeepGains(path), found_.blocks, other, 0);
-      if (ConvergedModel{fit, path}.score() > found_.score - kLeastGain) continue;
-      ConvergedModel settled =
-          SettleNear(Beside(steps_), std::move(fit), std::move(path));
-      Say("joints that stand: " + Difference(settled.score()) + "  " +
-          ModelText(found_.blocks, settled.fit.model));
-      found_.score = settled.score();
-      found_.fit = std::move(settled.fit);
-      found_.path = std::move(settled.path);
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {
-    }
-  }
+  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path});
+  if (!other) return;
+  Say("joints that stand: " + Difference(other->score()) + "  " +
+      ModelText(found_.blocks, other->fit.model));
+  Take(std::move(*other));
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
@@ -472,9 +459,7 @@ void ModelSearch::LookAtAll() {
   found_.score = ConvergedModel{found_.fit, found_.path}.score();
   if (IsOver()) return;
   ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, found_.path);
-  found_.score = settled.score();
-  found_.fit = std::move(settled.fit);
-  found_.path = std::move(settled.path);
+  Take(std::move(settled));
   Say("with all of the run: " + std::to_string(found_.score) + "  " +
       ModelText(found_.blocks, found_.fit.model));
 }

@@ -50,6 +50,7 @@ class ModelSearch {
     MeasuredRun run;
   };
   void Adopt(Proposal proposal);
+  void Take(ConvergedModel model);
   void KeepRivals(const Moves& moves);
   /// What a rival is worth once it has been fitted. @param score  less that of the model
   void Rate(const Model& rival, double score);
