@@ -120,9 +120,15 @@ void OfNumber(const Machine& machine, const BlockMotion& along, std::size_t plac
   const MatrixXd force = NumberForce(
       machine.plant(), machine.actuator_addresses(), number, along.motion,
       StillSpeeds(machine.plant(), along.reading_noise, along.motion.sample_time));
+  // How joints that nothing tells are accelerated within a tick is known too badly to say what a
+  // mass does there: a fit asks the machine.
+  const bool is_of_bodies = ElementOf(number.kind) == mjOBJ_BODY;
+  const auto is_told = [&](Index dof) {
+    return std::ranges::find(along.told, dof) != along.told.end();
+  };
   Variation variation{place, 0, {{}}, {}, {}, {}};
   for (Index dof = 0; dof < force.cols(); ++dof) {
-    if (force.col(dof).isZero(0.0)) continue;
+    if (force.col(dof).isZero(0.0) || (is_of_bodies && !is_told(dof))) continue;
     variation.columns.front().forces.emplace_back(dof, force.col(dof));
   }
   block.price = PriceOf(block, 1);

@@ -69,8 +69,9 @@ struct Block {
 /// The motion of a run, and what of it does not change from block to block.
 struct BlockMotion {
   ObservedMotion motion;
-  Eigen::VectorXd reading_noise;  ///< ny
-  double duration = 0.0;          ///< [s]
+  Eigen::VectorXd reading_noise;   ///< ny
+  double duration = 0.0;           ///< [s]
+  std::vector<Eigen::Index> told;  ///< degrees of freedom that are driven or measured
 };
 
 /// Whether a number is at the end of what is known of it: it would be further off still, if

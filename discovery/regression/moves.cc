@@ -40,7 +40,7 @@ class MoveSearch {
       : machine_(machine),
         maps_(maps),
         along_{MotionAlong(machine, run, path), path.noise.reading,
-               run.Time().maxCoeff()},
+               run.Time().maxCoeff(), path.dofs},
         blocks_(blocks),
         terms_(terms),
         other_steps_(other_steps),
