@@ -242,7 +242,7 @@ bool Block::IsDryFriction() const {
 }
 
 bool Block::GivesWay() const {
-  return candidate && candidate->effect.get() == &Frictionloss();
+  return candidate && candidate->effect.get() == &YieldingFriction();
 }
 
 bool Block::IsSmoothFriction() const {

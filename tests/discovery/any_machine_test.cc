@@ -99,9 +99,9 @@ TEST(DiscoverAnyMachine, FindsFrictionBehindAValveThatLags) {
 // As most simulations have it, in their own steps: where it stands the joint gives way.
 TEST(DiscoverAnyMachine, FindsFrictionAsASimulationHasIt) {
   const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
-  const Machine rubs = valve.With({{}, {ParseEffect("frictionloss@j:force=0.3")}});
+  const Machine rubs = valve.With({{}, {ParseEffect("yielding_friction@j:force=0.3")}});
   const Discovery answer = Asked(valve, Measure(rubs, TwoSines, 1e-5, 2));
-  ASSERT_THAT(NamesOf(answer), ElementsAre("frictionloss@j"));
+  ASSERT_THAT(NamesOf(answer), ElementsAre("yielding_friction@j"));
   EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.3, 0.003);
 }
 

@@ -29,7 +29,7 @@ Block FrictionBlock(const std::string& name) {
 
 const std::vector<Block> kFriction{
     FrictionBlock("viscous_friction"), FrictionBlock("coulomb_friction"),
-    FrictionBlock("smooth_coulomb_friction"), FrictionBlock("frictionloss")};
+    FrictionBlock("smooth_coulomb_friction"), FrictionBlock("yielding_friction")};
 
 TEST(MovedModel, LetsDryFrictionCreepWithinATenthOfTheFastestSpeed) {
   const Model creeps = Creeping(kFriction, {{1, Eigen::VectorXd::Constant(1, 0.7)}});

@@ -70,16 +70,16 @@ double PushedTo(const char* effect, const std::string& joint = R"(type="slide")"
 }
 
 // d = 0.9 and b = 2 / (0.95 * 0.02 s) by MuJoCo's defaults.
-TEST(FrictionEffects, FrictionlossGivesWayAtRestAsMuJoCosDoes) {
+TEST(FrictionEffects, YieldingFrictionGivesWayAtRestAsMuJoCosDoes) {
   const double speed = 0.1 / 0.9 * 4.0 / (kMass * 2.0 / (0.95 * 0.02));
-  EXPECT_NEAR(PushedTo("frictionloss@q:force=8"), 0.5 * speed, 0.05 * 0.5 * speed);
+  EXPECT_NEAR(PushedTo("yielding_friction@q:force=8"), 0.5 * speed, 0.05 * 0.5 * speed);
   EXPECT_LT(std::abs(PushedTo("coulomb_friction@q:force=8")), kCreep);
 }
 
 TEST(FrictionEffects, CoulombFrictionSticksAsTheModelSaysWhereItSaysHow) {
   const std::string soft = R"(type="slide" solreffriction="0.03 1")";
   EXPECT_EQ(PushedTo("coulomb_friction@q:force=8", soft),
-            PushedTo("frictionloss@q:force=8", soft));
+            PushedTo("yielding_friction@q:force=8", soft));
 }
 
 TEST(FrictionEffects, ViscousFrictionAddsToTheDampingThatThereIs) {

@@ -155,7 +155,7 @@ TEST(RunPredictor, SaysThatItDiverges) {
   test::Replay replay = Measured({});
   replay.run.inputs(0, 100) = 1e300;
   EXPECT_THAT(test::MessageOf<NumericalError>([&] { replay.Follow({}); }),
-              HasSubstr("replay: diverged at 0.05"));
+              HasSubstr("replay: diverged at 0.1"));
 }
 
 TEST(ObserveMotion, IsOffQpos0WithAccelerationsByDifferences) {

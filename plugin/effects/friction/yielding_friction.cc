@@ -7,10 +7,10 @@
 namespace mjdiag {
 namespace {
 
-class FrictionlossEffect final : public Effect {
+class YieldingFrictionEffect final : public Effect {
  public:
-  FrictionlossEffect()
-      : Effect({.name = "frictionloss",
+  YieldingFrictionEffect()
+      : Effect({.name = "yielding_friction",
                 .family = Family::kFriction,
                 .kind = Kind::kDryFriction,
                 .form = Form::kAttributes,
@@ -45,8 +45,8 @@ class FrictionlossEffect final : public Effect {
 
 }  // namespace
 
-const Effect& Frictionloss() {
-  static const FrictionlossEffect effect;
+const Effect& YieldingFriction() {
+  static const YieldingFrictionEffect effect;
   return effect;
 }
 
