@@ -22,7 +22,7 @@ namespace {
 
 // White noises that measure how large a column is: to a third of it.
 constexpr Index kProbes = 16;
-constexpr double kUncertain = 1.5;
+constexpr double kUncertain = 1.5;  // times what a gain may be by that
 constexpr std::size_t kOfBlock = 3;
 // Of a group, which are alike.
 constexpr std::size_t kOfGroup = 4;
@@ -83,7 +83,7 @@ class PromiseBeside {
       H_.compute(H);
     }
     if (model.removed.empty()) return;
-    // Gains are known to a quarter.
+    // Gains are known to a third.
     least_ = 0.5 * Gain(products.of_W(Eigen::indexing::all, model.removed) *
                         VectorXd(sd(model.removed)).asDiagonal());
   }

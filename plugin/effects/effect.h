@@ -78,7 +78,7 @@ EffectValues ValuesOf(std::initializer_list<double> values);
 inline constexpr double kCommon = 1.0;
 inline constexpr double kSome = 0.3;
 inline constexpr double kRare = 0.1;
-/// What is never looked for, but made of what nothing else explains.
+/// What is never looked for, but made of another, or of what nothing else explains.
 inline constexpr double kLearned = 0.03;
 
 /// What is said of every effect.
