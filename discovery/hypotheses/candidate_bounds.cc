@@ -82,18 +82,25 @@ void BoundPlays(std::vector<Candidate>& candidates, const Machine& machine,
     const auto [one, is_first] = finest.try_emplace(unit, reading_sd[i]);
     if (!is_first) one->second = std::min(one->second, reading_sd[i]);
   }
-  const auto is_none = [&](Candidate& candidate) {
-    const Index place = PlaceOf(candidate, Role::kGap);
-    if (place >= std::ssize(candidate.parameters)) return false;
-    FitParameter& gap = candidate.parameters[static_cast<std::size_t>(place)];
+  // The least that is seen; 0 of what has no play.
+  const auto least_of = [&](const Candidate& candidate) {
+    if (PlaceOf(candidate, Role::kGap) >= std::ssize(candidate.parameters)) return 0.0;
     const auto least = finest.find(
         IsLength(machine.plant(), static_cast<int>(candidate.joint)) ? "m" : "rad");
-    if (least == finest.end()) return false;
-    if (gap.upper <= least->second) return true;
-    gap.lower = std::max(gap.lower, least->second);
-    return false;
+    return least == finest.end() ? 0.0 : least->second;
   };
-  std::erase_if(candidates, is_none);
+  const auto gap_of = [](auto& candidate) -> auto& {
+    return candidate
+        .parameters[static_cast<std::size_t>(PlaceOf(candidate, Role::kGap))];
+  };
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    const double least = least_of(candidate);
+    return least > 0.0 && gap_of(candidate).upper <= least;
+  });
+  for (Candidate& candidate : candidates) {
+    const double least = least_of(candidate);
+    if (least > 0.0) gap_of(candidate).lower = std::max(gap_of(candidate).lower, least);
+  }
 }
 
 void WidenFrequencies(Candidate& candidate, double sample_time) {

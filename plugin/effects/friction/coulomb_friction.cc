@@ -7,16 +7,17 @@
 namespace mjdiag {
 namespace {
 
-class CoulombFrictionEffect final : public Effect {
+class CoulombFrictionEffect final : public ConstantFrictionEffect {
  public:
   CoulombFrictionEffect()
-      : Effect({.name = "coulomb_friction",
-                .family = Family::kFriction,
-                .kind = Kind::kDryFriction,
-                .form = Form::kAttributes,
-                .variable = LawVariable::kVelocity,
-                .parameters = {NotNegative("force", Role::kAmplitude, "N")},
-                .meaning = "dry friction: -force sign(v), sticking at rest"}) {}
+      : ConstantFrictionEffect(
+            {.name = "coulomb_friction",
+             .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
+             .form = Form::kAttributes,
+             .variable = LawVariable::kVelocity,
+             .parameters = {NotNegative("force", Role::kAmplitude, "N")},
+             .meaning = "dry friction: -force sign(v), sticking at rest"}) {}
 
   void Apply(mjModel& model, int joint, const EffectValues& values) const override {
     AddDryFriction(model, joint, values[0]);
@@ -24,15 +25,6 @@ class CoulombFrictionEffect final : public Effect {
   std::vector<CandidateRegressor> CandidateRegressors(
       const SiteMotion& at) const override {
     return {LinearRegressor(-Direction(at.v()), at.JointEntry(), 0.0, true)};
-  }
-  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
-    return ModelParameter{ModelParameterKind::kFriction, joint};
-  }
-  std::optional<double> Law(double v, const EffectValues& values) const override {
-    return -values[0] * Sign(v);
-  }
-  Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.FrictionForce());
   }
 };
 

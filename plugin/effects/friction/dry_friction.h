@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/joint_force.h"
+#include "mjdiag/plugin/effects/regressor_signals.h"
 
 namespace mjdiag {
 
@@ -25,6 +27,21 @@ bool HasOwnFrictionSolver(const mjModel& model, int dof);
 /// Solver parameters that make a friction constraint behave as exact dry friction. The
 /// default ones are far too soft for a precision stage: it creeps.
 void StiffenFriction(mjModel& model, int dof);
+
+/// Dry friction of one bound, -force sign(v), however its joint sticks at rest.
+class ConstantFrictionEffect : public Effect {
+ public:
+  using Effect::Effect;
+  std::optional<ModelParameter> Number(const mjModel&, int joint) const final {
+    return ModelParameter{ModelParameterKind::kFriction, joint};
+  }
+  std::optional<double> Law(double v, const EffectValues& values) const final {
+    return -values[0] * Sign(v);
+  }
+  Sized Draw(const Scales& k, Random&) const final {
+    return Proportional(k.FrictionForce());
+  }
+};
 
 /// A bound that changes from step to step. MuJoCo makes no constraint where the bound
 /// is zero, so the plant has to have one, however small: kLeastBound.

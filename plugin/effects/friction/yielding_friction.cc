@@ -7,19 +7,19 @@
 namespace mjdiag {
 namespace {
 
-class YieldingFrictionEffect final : public Effect {
+class YieldingFrictionEffect final : public ConstantFrictionEffect {
  public:
   YieldingFrictionEffect()
-      : Effect({.name = "yielding_friction",
-                .family = Family::kFriction,
-                .kind = Kind::kDryFriction,
-                .form = Form::kAttributes,
-                .variable = LawVariable::kVelocity,
-                .parameters = {NotNegative("force", Role::kAmplitude, "N")},
-                .meaning =
-                    "dry friction: -force sign(v), giving way at rest as MuJoCo's "
-                    "does by default",
-                .odds = kLearned}) {}
+      : ConstantFrictionEffect(
+            {.name = "yielding_friction",
+             .family = Family::kFriction,
+             .kind = Kind::kDryFriction,
+             .form = Form::kAttributes,
+             .variable = LawVariable::kVelocity,
+             .parameters = {NotNegative("force", Role::kAmplitude, "N")},
+             .meaning = "dry friction: -force sign(v), giving way at rest as MuJoCo's "
+                        "does by default",
+             .odds = kLearned}) {}
 
   void Apply(mjModel& model, int joint, const EffectValues& values) const override {
     model.dof_frictionloss[model.jnt_dofadr[joint]] += values[0];
@@ -31,15 +31,6 @@ class YieldingFrictionEffect final : public Effect {
       return HasOwnFrictionSolver(map.plant(), static_cast<int>(site.joint));
     });
     return sites;
-  }
-  std::optional<ModelParameter> Number(const mjModel&, int joint) const override {
-    return ModelParameter{ModelParameterKind::kFriction, joint};
-  }
-  std::optional<double> Law(double v, const EffectValues& values) const override {
-    return -values[0] * Sign(v);
-  }
-  Sized Draw(const Scales& k, Random&) const override {
-    return Proportional(k.FrictionForce());
   }
 };
 
