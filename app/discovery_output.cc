@@ -35,6 +35,8 @@ std::string DiscoveryAsText(const Discovery& discovery) {
   return DiscoveryAnswer(discovery) + "\n" +
          Section("Kinds of physics", KindTable(discovery)) +
          Section("Causes", CauseTable(discovery)) +
+         Section("What resists a joint, all laws together",
+                 ResistanceTable(discovery)) +
          Section("Explanations", ExplanationTable(discovery)) +
          Section("Numbers of the plant", CalibrationTable(discovery)) +
          Section("Masses and where they are", MomentTable(discovery)) +

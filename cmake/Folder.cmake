@@ -79,6 +79,14 @@ function(mjdiag_folder path)
                         UNITY_BUILD_BATCH_SIZE 0)  # all of a folder
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${root}>
                                               $<INSTALL_INTERFACE:include>)
+  # What reads the headers is built as the library is.
+  foreach(definition IN LISTS mjdiag_processor_definitions)
+    target_compile_definitions(${target}
+                               INTERFACE $<INSTALL_INTERFACE:${definition}>)
+  endforeach()
+  foreach(option IN LISTS mjdiag_processor_options)
+    target_compile_options(${target} INTERFACE $<INSTALL_INTERFACE:${option}>)
+  endforeach()
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS})
   foreach(library IN LISTS arg_HEADERS_OF ITEMS mjdiag_warnings)

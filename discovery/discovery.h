@@ -65,6 +65,28 @@ struct CalibratedMoment {
   double doubt = 0.0;  ///< standard deviation as far as was known before the record
 };
 
+/// What the members of an answer that resist a joint do there together (resistances.h).
+struct FoundResistance {
+  std::string site;  ///< the joint
+  bool is_turning = false;
+  std::vector<std::string> members;
+  struct Span {
+    double value = 0.0;
+    double low = 0.0;  ///< 95 % interval
+    double high = 0.0;
+  };
+  Span dry;      ///< [N, N m]
+  Span viscous;  ///< [N s/m, N m s/rad]
+  /// Resistance at speeds along the motion, and half of its 95 % interval.
+  Eigen::VectorXd speeds;  ///< [m/s, rad/s]
+  Eigen::VectorXd force;   ///< [N, N m]
+  Eigen::VectorXd half;
+
+  std::string ForceUnit() const { return is_turning ? "N m" : "N"; }
+  std::string SpeedUnit() const { return is_turning ? "rad/s" : "m/s"; }
+  std::string ViscousUnit() const { return is_turning ? "N m s/rad" : "N s/m"; }
+};
+
 struct Alternative {
   Cause cause;
   double probability = 0.0;
@@ -164,6 +186,8 @@ struct Discovery {
   std::vector<CalibratedNumber> calibration;
   /// Of machines with hinges, what the record tells of masses and their places together.
   std::vector<CalibratedMoment> moments;
+  /// Of every joint that more than one law of one size resists.
+  std::vector<FoundResistance> resistances;
   std::optional<ResidualDependence> unexplained;  ///< of what is left, if anything is
   std::string unexplained_site;
   /// What cannot be judged, what cannot be told apart and which experiment would,

@@ -165,6 +165,30 @@ inline constexpr auto kFields<CalibratedMoment> = std::tuple{
     InJson("off", "", "Whether it is another than the model's.", &IsMoved)};
 
 template <>
+inline constexpr auto kFields<FoundResistance::Span> =
+    std::tuple{InJson("value", "", "Along the motion, by least squares.",
+                      &FoundResistance::Span::value),
+               InJson("ci95", "", kInterval, &IntervalOf<FoundResistance::Span>)};
+
+template <>
+inline constexpr auto kFields<FoundResistance> = std::tuple{
+    InJson("joint", "", "What is resisted.", &FoundResistance::site),
+    InJson("members", "", "Members of the answer that do.", &FoundResistance::members),
+    InJson("force_unit", "", R"("N" or "N m".)", &FoundResistance::ForceUnit),
+    InJson("speed_unit", "", R"("m/s" or "rad/s".)", &FoundResistance::SpeedUnit),
+    InJson("dry", "force_unit",
+           "What does not depend on the speed, of all of them together.",
+           &FoundResistance::dry),
+    InJson("viscous", "force_unit over speed_unit", "What is proportional to it.",
+           &FoundResistance::viscous),
+    InJson("speeds", "speed_unit", "Along the motion, of as many samples each.",
+           &FoundResistance::speeds),
+    InJson("force", "force_unit", "Resistance there, mean of both directions.",
+           &FoundResistance::force),
+    InJson("half_ci95", "force_unit", "Half of its 95 % interval.",
+           &FoundResistance::half)};
+
+template <>
 inline constexpr auto kFields<Discovery::Figures> = std::tuple{
     InJson("train", "of the channel", "On what fits saw, by channel.",
            &Discovery::Figures::train),
@@ -322,6 +346,10 @@ inline constexpr auto kFields<Discovery> = std::tuple{
     InJson("moments", "",
            "First moments of mass about hinges, of which a record tells no more.",
            &Discovery::moments),
+    InJson("resistances", "",
+           "Of every joint that more than one law of one size resists, all of them as "
+           "one curve.",
+           &Discovery::resistances),
     InJson("mismatch", "", "Rms of measured less simulated, before and after.",
            [](const Discovery& found) {
              return Named<Discovery::Figures>{{"before", found.mismatch_before},

@@ -90,6 +90,14 @@ void AddCauses(Page& page, const Discovery& discovery) {
   page.AddHeading("Candidates");
   page.AddTable(CandidateTable(discovery));
   page.AddParagraph(kHowToReadCauses);
+  const Table resistances = ResistanceTable(discovery);
+  if (!resistances.rows.empty()) {
+    page.AddHeading("What resists a joint");
+    page.AddTable(resistances);
+    page.AddParagraph(
+        "All laws that resist a joint together: the friction that a controller has to "
+        "make up for.");
+  }
   const Table explanations = ExplanationTable(discovery);
   if (explanations.rows.empty()) return;
   page.AddHeading("Explanations");

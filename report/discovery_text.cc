@@ -309,6 +309,33 @@ Table MomentTable(const Discovery& discovery) {
   return table;
 }
 
+Table ResistanceTable(const Discovery& discovery) {
+  Table table;
+  table.columns = {
+      {"Joint"}, {"Dry friction", true}, {"Viscous", true}, {"Resistance at a speed"}};
+  constexpr double kLeastStep = 0.1;  // of the largest
+  for (const FoundResistance& one : discovery.resistances) {
+    const auto text = [](const FoundResistance::Span& span, const std::string& unit) {
+      const CauseParameter value{"", unit, span.value, 0.0, span.low, span.high};
+      return ValueText(value) + " (" + IntervalText(value) + ")";
+    };
+    // Speeds at which it is another one.
+    std::string curve;
+    double last = 0.0;
+    const double step = kLeastStep * one.force.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < one.speeds.size(); ++i) {
+      const bool is_end = i == 0 || i + 1 == one.speeds.size();
+      if (!is_end && std::abs(one.force[i] - last) < step) continue;
+      last = one.force[i];
+      curve += (curve.empty() ? "" : ", ") + FormatQuantity(last, one.ForceUnit()) +
+               " at " + FormatQuantity(one.speeds[i], one.SpeedUnit());
+    }
+    table.rows.push_back({one.site, text(one.dry, one.ForceUnit()),
+                          text(one.viscous, one.ViscousUnit()), curve});
+  }
+  return table;
+}
+
 Table DecisionTable(const Discovery& discovery) {
   Table table;
   table.columns = {{"Tried"}, {"Difference", true}, {"What came of it"}};

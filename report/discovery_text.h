@@ -30,6 +30,8 @@ Table ExplanationTable(const Discovery& discovery);
 Table CalibrationTable(const Discovery& discovery);
 /// Masses and their places together (CalibratedMoment), those that are off.
 Table MomentTable(const Discovery& discovery);
+/// Laws that resist a joint as one curve (FoundResistance).
+Table ResistanceTable(const Discovery& discovery);
 /// Errors of the record after each cause that was added.
 Table LadderTable(const Discovery& discovery);
 /// The same of the validation record; no rows without one.

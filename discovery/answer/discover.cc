@@ -18,6 +18,7 @@
 #include "mjdiag/discovery/answer/posterior.h"
 #include "mjdiag/discovery/answer/prediction_figures.h"
 #include "mjdiag/discovery/answer/replay_figures.h"
+#include "mjdiag/discovery/answer/resistances.h"
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/discovery.h"
@@ -183,6 +184,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   const CoordinateErrors errors = CoordinateErrorsOf(data, judged.answer);
   AddMembers(data, judged, PosteriorOf(explained, judged), errors.sd, discovery);
   AddMoments(data, judged.answer, errors, discovery);
+  AddResistances(data, judged.answer, errors, discovery);
   // A force without a name is described, not explained.
   if (discovery.verdict == DiscoveryVerdict::kExplained &&
       !std::ranges::all_of(discovery.causes, &FoundCause::HasName)) {

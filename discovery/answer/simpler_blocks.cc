@@ -45,7 +45,7 @@ std::optional<VectorXd> SimpleValues(const Block& simple, const Candidate& own,
   if (parameters.size() == 1) return VectorXd::Constant(1, size);
   if (!simple.IsSmoothFriction()) return std::nullopt;
   const FitParameter& speed = parameters.back();
-  return Eigen::Vector2d(size, std::sqrt(speed.lower * speed.upper));
+  return VectorXd{{size, std::sqrt(speed.lower * speed.upper)}};
 }
 
 }  // namespace

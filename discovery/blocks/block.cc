@@ -245,6 +245,10 @@ bool Block::GivesWay() const {
   return candidate && candidate->effect.get() == &YieldingFriction();
 }
 
+bool Block::Springs() const {
+  return candidate && candidate->effect.get() == &PreslidingHysteresis();
+}
+
 bool Block::IsSmoothFriction() const {
   return IsDryFriction() && candidate->parameters.size() == 2 &&
          candidate->parameters.back().role == Role::kVelocity;

@@ -56,6 +56,8 @@ struct Block {
   bool IsDryFriction() const;
   /// Dry friction of a joint that gives way at rest as MuJoCo's does by default.
   bool GivesWay() const;
+  /// Dry friction of a joint that springs before it slides.
+  bool Springs() const;
   /// Dry friction that comes within a speed: a size and that.
   bool IsSmoothFriction() const;
   /// Changes what an actuator makes of its input.

@@ -44,9 +44,7 @@ class Settling {
     if (IsNowhere()) Relax();
     if (settled_.score() > hopeless) {
       is_likeliest_ = true;  // what is so far off is not worth it
-      return;
     }
-    RefitAsLongAsItGains();
   }
   void BeginWith(FilterPath path) {
     settled_.path = std::move(path);

@@ -43,6 +43,14 @@ bool SameBlocks(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
 }
 
+/// From which a fit goes the same way.
+bool IsNear(const Model& a, const Model& b) {
+  constexpr double kAlike = 1e-3;
+  return std::ranges::equal(a, b, [&](const Member& one, const Member& other) {
+    return one.block == other.block && one.values.isApprox(other.values, kAlike);
+  });
+}
+
 }  // namespace
 
 ConvergedBeside ModelSearch::Beside(bool steps) const {
@@ -62,6 +70,7 @@ std::vector<FilterNoise> ModelSearch::NoisesBeside(const FilterNoise& near) cons
 }
 
 void ModelSearch::Take(ConvergedModel model) {
+  standing_.reset();
   found_.score = model.score();
   found_.fit = std::move(model.fit);
   found_.path = std::move(model.path);
@@ -101,35 +110,55 @@ std::optional<ConvergedModel> ModelSearch::Resettled(const Whitenings& whitening
   return settled;
 }
 
-std::optional<ModelSearch::Proposal> ModelSearch::BestForces(
-    const Whitenings& whitenings, const ExactColumns& exact) {
-  const Moves moves = ForceMovesOf(With(found_.fit.model), run_, found_.path,
-                                   found_.blocks, exact.terms, at_every_shape_);
+ModelSearch::Standing& ModelSearch::StandingNow() {
+  if (!standing_) {
+    standing_ = Standing{WhiteningsOf(found_.path),
+                         ExactColumnsOf([&](const Model& model) { return With(model); },
+                                        With(found_.fit.model, !steps_), run_,
+                                        found_.path, found_.blocks, found_.fit.model),
+                         {},
+                         {}};
+  }
+  return *standing_;
+}
+
+const Moves& ModelSearch::MovesNow(Standing& standing) {
+  const auto known = standing.moves.find(at_every_shape_);
+  if (known != standing.moves.end()) return known->second;
+  Moves moves =
+      MovesOf(With(found_.fit.model), run_, found_.path, standing.whitenings.maps(),
+              found_.blocks, standing.exact.terms, standing.exact.other_steps,
+              {.at_forces = false, .at_every_shape = at_every_shape_});
+  return standing.moves.emplace(at_every_shape_, std::move(moves)).first->second;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing) {
+  const Moves moves =
+      ForceMovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
+                   standing.exact.terms, at_every_shape_);
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them.
   constexpr std::size_t kMost = 3;
   // What has just been settled is behind the noise that suits it.
-  return BestOf(moves, kMost, 0, whitenings, {}, found_.fit.model.empty());
+  AsFitted none;
+  return BestOf(moves, kMost, 0, standing.whitenings, none, found_.fit.model.empty());
 }
 
-std::optional<ModelSearch::Proposal> ModelSearch::BestMove(const Whitenings& whitenings,
-                                                           const ExactColumns& exact) {
-  const Moves moves =
-      MovesOf(With(found_.fit.model), run_, found_.path, whitenings.maps(),
-              found_.blocks, exact.terms, exact.other_steps,
-              {.at_forces = false, .at_every_shape = at_every_shape_});
+std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
+  const Moves& moves = MovesNow(standing);
   if (moves.other_steps && ChooseSteps()) return Incumbent();
   KeepRivals(moves);
-  AsFitted as_it_is;
-  const ModelFit& own = IncumbentBehind({moves.noise, false}, whitenings, as_it_is);
+  const Whitenings& whitenings = standing.whitenings;
+  const ModelFit& own =
+      IncumbentBehind({moves.noise, false}, whitenings, standing.as_fitted);
   if (auto settled = Resettled(whitenings, moves, own)) {
     return Proposal{std::move(*settled), steps_, found_.input_width, run_};
   }
   Say(std::to_string(moves.variations) + " shapes, " +
       std::to_string(moves.best.size()) + " moves");
-  return BestOf(moves, 4, kIterations, whitenings, std::move(as_it_is), false);
+  return BestOf(moves, 4, kIterations, whitenings, standing.as_fitted, false);
 }
 
 ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
@@ -152,7 +181,7 @@ const ModelFit& ModelSearch::IncumbentBehind(const Judged& judged,
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     const Moves& moves, std::size_t most, int iterations, const Whitenings& whitenings,
-    AsFitted as_it_is, bool beside_itself) {
+    AsFitted& as_it_is, bool beside_itself) {
   const auto fitted = [&](const Model& model, const Judged& judged) {
     return Fitted(model, whitenings, judged, iterations);
   };
@@ -164,9 +193,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   std::vector<Tried> tried;
   const auto try_one = [&](const Model& model, const ModelMove& move) {
     if (iterations > 0 && std::ranges::any_of(worthless_, [&](const Model& other) {
-          return std::ranges::equal(other, model, [](const Member& a, const Member& b) {
-            return a.block == b.block && a.values == b.values;
-          });
+          return IsNear(other, model);
         })) {
       return;
     }
@@ -358,23 +385,20 @@ void ModelSearch::AddCurves() {
 }
 
 bool ModelSearch::Step() {
-  const Whitenings whitenings = WhiteningsOf(found_.path);
+  Standing& standing = StandingNow();
   std::optional<Proposal> move;
-  const ExactColumns exact = ExactColumnsOf(
-      [&](const Model& model) { return With(model); }, With(found_.fit.model, !steps_),
-      run_, found_.path, found_.blocks, found_.fit.model);
   // Inputs that are noise are smoothed where forces say nothing more: before, what a machine
   // lacks passes for noise of its inputs, which takes away what would have told it.
   bool asks_inputs = true;
   if (looks_at_forces_) {
-    move = BestForces(whitenings, exact);
+    move = BestForces(standing);
     if (!move) {
       asks_inputs = false;
       move = SmoothedInputs();
     }
     looks_at_forces_ = move.has_value();
   }
-  if (!move) move = BestMove(whitenings, exact);
+  if (!move) move = BestMove(standing);
   if (!move && asks_inputs) move = SmoothedInputs();
   if (move) Adopt(std::move(*move));
   return move.has_value();
@@ -436,6 +460,7 @@ void ModelSearch::LookAtAll() {
   if (!is_part_ && ticks == before) return;
   found_.input_width *= before / ticks;
   LookAt(whole_, ticks);
+  standing_.reset();
   found_.rivals.clear();
   found_.steps_taken.clear();
   hopeless_.clear();

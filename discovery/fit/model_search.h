@@ -75,12 +75,19 @@ class ModelSearch {
   /// @param beside_itself  where there are none: beside the model as it is, behind its noise
   ///                       anew
   std::optional<Proposal> BestOf(const Moves& moves, std::size_t most, int iterations,
-                                 const Whitenings& whitenings, AsFitted as_it_is,
+                                 const Whitenings& whitenings, AsFitted& as_it_is,
                                  bool beside_itself);
-  std::optional<Proposal> BestForces(const Whitenings& whitenings,
-                                     const ExactColumns& exact);
-  std::optional<Proposal> BestMove(const Whitenings& whitenings,
-                                   const ExactColumns& exact);
+  /// What is known of the model as it is, along its path.
+  struct Standing {
+    Whitenings whitenings;
+    ExactColumns exact;
+    AsFitted as_fitted;
+    std::map<bool, Moves> moves;  ///< at the simplest shapes, and at every
+  };
+  Standing& StandingNow();
+  const Moves& MovesNow(Standing& standing);
+  std::optional<Proposal> BestForces(Standing& standing);
+  std::optional<Proposal> BestMove(Standing& standing);
   /// How much of its inputs did the machine not feel?
   std::optional<Proposal> SmoothedInputs() const;
   Proposal Incumbent() const {
@@ -170,6 +177,7 @@ class ModelSearch {
   /// What moves made of this one along this path, and fits behind kept gains found no better.
   std::vector<Model> worthless_;
   Explained found_;
+  std::optional<Standing> standing_;  // none where the model or its path is another
 };
 
 }  // namespace mjdiag

@@ -36,12 +36,18 @@ bool IsAbrupt(const Block& block) {
   return block.IsDryFriction() && block.IsSimplest() && !block.GivesWay();
 }
 
+/// Whether it slides by one force, however it comes to it.
+bool IsOfOneSize(const Block& block) {
+  return block.IsSmoothFriction() || block.GivesWay() || block.Springs() ||
+         IsAbrupt(block);
+}
+
 }  // namespace
 
 Model Abrupt(const std::vector<Block>& blocks, Model model) {
   for (Member& member : model) {
     const Block& block = blocks[member.block];
-    if (!block.IsSmoothFriction() && !block.GivesWay()) continue;
+    if (!IsOfOneSize(block) || IsAbrupt(block)) continue;
     const auto other = InPlaceOf(blocks, block, IsAbrupt);
     if (other) member = {*other, member.values.head(1)};
   }
@@ -60,7 +66,7 @@ Model Creeping(const std::vector<Block>& blocks, Model model) {
     constexpr double kOfFastest = 0.1;
     const double fastest = 0.5 * blocks[*other].candidate->parameters[1].upper;
     if (!(fastest > 0.0)) continue;
-    member = {*other, Eigen::Vector2d(member.values[0], kOfFastest * fastest)};
+    member = {*other, Eigen::VectorXd{{member.values[0], kOfFastest * fastest}}};
   }
   return model;
 }
@@ -68,10 +74,24 @@ Model Creeping(const std::vector<Block>& blocks, Model model) {
 Model GivingWay(const std::vector<Block>& blocks, Model model) {
   for (Member& member : model) {
     const Block& block = blocks[member.block];
-    if (!block.candidate || (!IsAbrupt(block) && !block.IsSmoothFriction())) continue;
+    if (!IsOfOneSize(block) || block.GivesWay()) continue;
     const auto other =
         InPlaceOf(blocks, block, [](const Block& one) { return one.GivesWay(); });
     if (other) member = {*other, member.values.head(1)};
+  }
+  return model;
+}
+
+Model Springing(const std::vector<Block>& blocks, Model model,
+                const Eigen::VectorXd& lengths) {
+  for (Member& member : model) {
+    const Block& block = blocks[member.block];
+    if (!IsOfOneSize(block)) continue;
+    const auto other =
+        InPlaceOf(blocks, block, [](const Block& one) { return one.Springs(); });
+    const double length = lengths[block.candidate->joint];
+    if (!other || !(length > 0.0)) continue;
+    member = {*other, Eigen::VectorXd{{member.values[0], member.values[0] / length}}};
   }
   return model;
 }

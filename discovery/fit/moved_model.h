@@ -17,8 +17,12 @@ Model Abrupt(const std::vector<Block>& blocks, Model model);
 /// The same, friction that is there at once as one that comes within a hundredth of the
 /// fastest speed.
 Model Creeping(const std::vector<Block>& blocks, Model model);
-/// The same, both as friction of a joint that gives way at rest.
+/// The same, each as friction of a joint that gives way at rest.
 Model GivingWay(const std::vector<Block>& blocks, Model model);
+/// The same, as friction of a joint that springs before it slides.
+/// @param lengths  over which, of every degree of freedom
+Model Springing(const std::vector<Block>& blocks, Model model,
+                const Eigen::VectorXd& lengths);
 
 /// The best of all that may be, of which no block comes in with more than two, and the best that
 /// brings one block and nothing else: the fewer come at once, the nearer is first order to what

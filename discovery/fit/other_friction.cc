@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "mjdiag/discovery/fit/moved_model.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/plugin/replay/kept_gains.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
 namespace {
 
 /// The same blocks in the same places.
@@ -16,33 +22,82 @@ bool IsSame(const Model& a, const Model& b) {
   return std::ranges::equal(a, b, {}, &Member::block, &Member::block);
 }
 
-/// Behind the noise that the model has.
-ConvergedModel Followed(const ConvergedBeside& beside, const Model& model,
-                        const FilterPath& like) {
+/// How far every joint of one degree of freedom went.
+VectorXd StrokesOf(const mjModel& plant, const FilterPath& path) {
+  VectorXd strokes = VectorXd::Zero(plant.nv);
+  for (Index dof = 0; dof < plant.nv; ++dof) {
+    const int joint = plant.dof_jntid[dof];
+    if (plant.jnt_type[joint] != mjJNT_SLIDE && plant.jnt_type[joint] != mjJNT_HINGE) {
+      continue;
+    }
+    const auto at = [&](const PlantState& state) {
+      return state.position[plant.jnt_qposadr[joint]];
+    };
+    const auto [least, most] = std::ranges::minmax_element(path.states, {}, at);
+    strokes[dof] = at(*most) - at(*least);
+  }
+  return strokes;
+}
+
+std::vector<Model> OtherForms(const ConvergedBeside& beside,
+                              const ConvergedModel& found) {
+  const Model& model = found.fit.model;
+  std::vector<Model> forms{GivingWay(beside.blocks, model),
+                           Abrupt(beside.blocks, model)};
+  const VectorXd strokes = StrokesOf(beside.machine_with(model).plant(), found.path);
+  // From what encoders tell of their stroke to what gears wind up: a fit finds the rest.
+  for (const double share : {1e-5, 1e-4, 1e-3, 1e-2}) {
+    forms.push_back(Springing(beside.blocks, model, share * strokes));
+  }
+  std::erase_if(forms, [&](const Model& one) { return IsSame(one, model); });
+  return forms;
+}
+
+/// Behind the noise that the model has; none where that cannot be better.
+std::optional<ConvergedModel> Followed(const ConvergedBeside& beside,
+                                       const Model& model,
+                                       const ConvergedModel& found) {
+  const FilterPath& like = found.path;
   FilterPath path = RunForceFilter(beside.machine_with(model), beside.run, like.dofs,
                                    like.starts, like.noise);
+  // What is known of values, which takes a run for each, costs no less than nothing.
+  double price = 0.0;
+  for (const Member& member : model) price += beside.blocks[member.block].price;
+  if (path.deviance + price > found.score() - kLeastGain) return std::nullopt;
   ModelFit fit = FitModel(beside.machine_with, beside.run, path, KeepGains(path),
                           beside.blocks, model, 0);
-  return {std::move(fit), std::move(path)};
+  ConvergedModel one{std::move(fit), std::move(path)};
+  if (one.score() > found.score() - kLeastGain) return std::nullopt;
+  return one;
 }
 
 }  // namespace
 
 std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
                                                 const ConvergedModel& found) {
-  const Model& model = found.fit.model;
-  for (const Model& other :
-       {GivingWay(beside.blocks, model), Abrupt(beside.blocks, model)}) {
-    if (IsSame(other, model) || beside.is_over()) continue;
+  const bool rubs = std::ranges::any_of(found.fit.model, [&](const Member& member) {
+    return beside.blocks[member.block].IsDryFriction();
+  });
+  if (!rubs || beside.is_over()) return std::nullopt;
+  const std::vector<Model> forms = OtherForms(beside, found);
+  std::vector<std::optional<ConvergedModel>> followed(forms.size());
+  ParallelForAll(static_cast<int>(forms.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
     try {
-      ConvergedModel one = Followed(beside, other, found.path);
-      if (one.score() > found.score() - kLeastGain) continue;
-      return SettleNear(beside, std::move(one.fit), std::move(one.path));
+      followed[i] = Followed(beside, forms[i], found);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
+  });
+  std::erase_if(followed, [](const auto& one) { return !one; });
+  if (followed.empty()) return std::nullopt;
+  ConvergedModel best = std::move(**std::ranges::min_element(
+      followed, {}, [](const auto& one) { return one->score(); }));
+  try {
+    return SettleNear(beside, std::move(best.fit), std::move(best.path));
+  } catch (const NumericalError&) {
+    return std::nullopt;
   }
-  return std::nullopt;
 }
 
 }  // namespace mjdiag

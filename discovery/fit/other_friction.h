@@ -1,6 +1,8 @@
 #pragma once
-// Joints that rub hold where they stand, as machines do, or give way, as simulations do: which
-// of both costs nothing, as the steps of a simulation do not, and the filter says it.
+// How a joint that rubs stands: it holds, as the textbook has it; gives way, as simulations do;
+// springs, as guides and gears do before they slide [Dahl 1968]. Which of them it is shows where
+// it stands, and behind the latent forces of a machine that lacks its friction first order says
+// nothing of it: the filter is asked.
 
 #include <optional>
 
@@ -8,8 +10,8 @@
 
 namespace mjdiag {
 
-/// The same model with its dry friction in the other of the two forms, fitted and with its noise
-/// anew; none if that is no better.
+/// The same model with its dry friction in the best of the other forms, fitted and with its
+/// noise anew; none if that is no better.
 std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
                                                 const ConvergedModel& found);
 

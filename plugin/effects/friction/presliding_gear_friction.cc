@@ -90,7 +90,8 @@ class PreslidingGearFrictionEffect final : public Effect {
     const Eigen::VectorXd q = at.q();
     const Eigen::ArrayXd tau = at.motor();
     std::vector<CandidateRegressor> trials;
-    for (const double length : LogGrid(1e-4 * Range(q), 0.5 * Range(q), 8)) {
+    // Encoders tell a millionth of their stroke.
+    for (const double length : LogGrid(1e-6 * Range(q), 0.5 * Range(q), 12)) {
       const Eigen::ArrayXd z = Follow(q, length).array() / length;
       Eigen::MatrixXd parts(q.size(), 2);
       parts.col(0) = -0.5 * (tau.abs() * z + tau * z.square());

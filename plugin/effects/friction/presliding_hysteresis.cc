@@ -52,7 +52,8 @@ class PreslidingHysteresisEffect final : public Effect {
       const SiteMotion& at) const override {
     const Eigen::VectorXd q = at.q();
     std::vector<CandidateRegressor> trials;
-    for (const double length : LogGrid(1e-4 * Range(q), 0.5 * Range(q), 8)) {
+    // Encoders tell a millionth of their stroke.
+    for (const double length : LogGrid(1e-6 * Range(q), 0.5 * Range(q), 12)) {
       trials.push_back({-Follow(q, length) / length, at.JointEntry(),
                         [length](const Amplitudes& a) -> RegressorValues {
                           if (a[0] <= 0.0) return std::nullopt;

@@ -1,0 +1,238 @@
+#include "mjdiag/discovery/answer/resistances.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/fit/tick_columns.h"
+#include "mjdiag/plugin/effects/number_forces.h"
+#include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/plant_forces.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Of so many samples a curve is made, and of so many speeds.
+constexpr Index kSamples = 4000;
+constexpr Index kSpeeds = 12;
+
+/// The samples in which a joint moves, and how fast.
+struct Moving {
+  std::vector<Index> samples;
+  VectorXd speed;
+};
+
+Moving MovingOf(const FilterPath& path, Index dof, double still) {
+  const Index stride = std::max<Index>(1, path.samples() / kSamples);
+  Moving moving;
+  std::vector<double> speeds;
+  for (Index k = 0; k < path.samples(); k += stride) {
+    const double v = path.states[static_cast<std::size_t>(k)].velocity[dof];
+    if (std::abs(v) <= still) continue;
+    moving.samples.push_back(k);
+    speeds.push_back(v);
+  }
+  moving.speed = VectorXd::Map(speeds.data(), std::ssize(speeds));
+  return moving;
+}
+
+/// What a column of ticks is as a force at a joint, where that moves.
+VectorXd ForceAt(const Column& column, const mjModel& plant, const FilterPath& path,
+                 Index dof, const Moving& moving) {
+  const DataPtr at = MakeData(plant);
+  VectorXd dv = VectorXd::Zero(plant.nv);
+  VectorXd force(std::ssize(moving.samples));
+  VectorXd momentum(plant.nv);
+  for (Index i = 0; i < force.size(); ++i) {
+    const Index k = moving.samples[static_cast<std::size_t>(i)];
+    dv.setZero();
+    for (const auto& [state, signal] : column.states) {
+      if (state >= plant.nv && state < 2 * plant.nv) dv[state - plant.nv] = signal[k];
+    }
+    SetState(plant, path.states[static_cast<std::size_t>(k)], *at);
+    mj_kinematics(&plant, at.get());
+    mj_comPos(&plant, at.get());
+    mj_crb(&plant, at.get());
+    mj_mulM(&plant, at.get(), momentum.data(), dv.data());
+    force[i] = momentum[dof] / path.sample_time;
+  }
+  return force;
+}
+
+/// What a force of a joint says as a curve: [dry, viscous, at every speed]. Linear in it.
+class CurveOf {
+ public:
+  CurveOf(const Moving& moving, const VectorXd& speeds)
+      : sign_(moving.speed.array().sign()),
+        A_(moving.speed.size(), 3),
+        speeds_(speeds) {
+    A_ << sign_, moving.speed, VectorXd::Ones(sign_.size());
+    normal_.compute(A_.transpose() * A_);
+    for (Index s = 0; s < speeds.size(); ++s) near_.push_back(NearestTo(moving, s));
+  }
+
+  VectorXd operator()(const VectorXd& force) const {
+    VectorXd values(2 + speeds_.size());
+    values.head(2) = normal_.solve(A_.transpose() * force).head(2);
+    for (Index s = 0; s < speeds_.size(); ++s) {
+      const auto& [forwards, backwards] = near_[static_cast<std::size_t>(s)];
+      double sum = 0.0;
+      int sides = 0;
+      // Both directions count the same: what does not change its sign is no resistance.
+      for (const std::vector<Index>* side : {&forwards, &backwards}) {
+        if (side->empty()) continue;
+        sum += (sign_(*side).array() * force(*side).array()).mean();
+        ++sides;
+      }
+      values[2 + s] = sides > 0 ? sum / sides : 0.0;
+    }
+    return values;
+  }
+
+ private:
+  using Sides = std::pair<std::vector<Index>, std::vector<Index>>;
+  /// Samples that are nearer to a speed than to the others.
+  Sides NearestTo(const Moving& moving, Index s) const {
+    Sides sides;
+    for (Index i = 0; i < moving.speed.size(); ++i) {
+      const double v = std::abs(moving.speed[i]);
+      Index nearest = 0;
+      (speeds_.array().log() - std::log(v)).abs().minCoeff(&nearest);
+      if (nearest != s) continue;
+      (moving.speed[i] > 0.0 ? sides.first : sides.second).push_back(i);
+    }
+    return sides;
+  }
+
+  VectorXd sign_;
+  MatrixXd A_;
+  Eigen::LDLT<MatrixXd> normal_;
+  VectorXd speeds_;
+  std::vector<Sides> near_;
+};
+
+/// Of as many samples each.
+VectorXd SpeedsOf(const Moving& moving) {
+  VectorXd all = moving.speed.cwiseAbs();
+  std::ranges::sort(all);
+  std::vector<double> speeds;
+  for (Index s = 0; s < kSpeeds; ++s) {
+    const double one = all[(2 * s + 1) * all.size() / (2 * kSpeeds)];
+    if (speeds.empty() || one > 1.02 * speeds.back()) speeds.push_back(one);
+  }
+  return VectorXd::Map(speeds.data(), std::ssize(speeds));
+}
+
+/// Where the answer's coordinates of some members are, and with one of them moved.
+struct Around {
+  std::vector<OtherMachine> machines;
+  std::vector<Index> coordinates;  ///< of every machine but the first
+};
+
+Around AroundOf(const AnswerData& data, const Model& model,
+                const std::set<std::size_t>& members) {
+  constexpr double kFurther = 1e-3;
+  Model without;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    if (!members.contains(m)) without.push_back(model[m]);
+  }
+  Around around{{{data.With(without)}}, {}};
+  const auto coordinates = CoordinatesOf(data.blocks, model);
+  const VectorXd x = Place(coordinates, model);
+  for (Index i = 0; i < x.size(); ++i) {
+    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
+    if (!members.contains(one.member)) continue;
+    double step = one.is_log ? kFurther : std::max(kFurther * std::abs(x[i]), 1e-6);
+    if (x[i] + step > one.upper) step = -step;
+    VectorXd moved = x;
+    moved[i] += step;
+    around.machines.push_back({data.With(At(coordinates, model, moved)), step});
+    around.coordinates.push_back(i);
+  }
+  return around;
+}
+
+FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
+                             const CoordinateErrors& errors, const std::string& site,
+                             const std::set<std::size_t>& members) {
+  FoundResistance found;
+  found.site = site;
+  const mjModel& plant = data.machine.plant();
+  const int joint = FindElement(plant, mjOBJ_JOINT, site);
+  const Index dof = plant.jnt_dofadr[joint];
+  found.is_turning = plant.jnt_type[joint] == mjJNT_HINGE;
+  const FilterPath& path = answer.seen;
+  const double still = StillSpeeds(plant, path.noise.reading, path.sample_time)[dof];
+  const Moving moving = MovingOf(path, dof, still);
+  if (moving.speed.size() < 10 * kSpeeds) return found;
+  found.speeds = SpeedsOf(moving);
+  const Model& model = answer.fit.model;
+  const Around around = AroundOf(data, model, members);
+  const std::vector<Column> columns =
+      TickColumns(data.With(model), data.run.seen, path, around.machines);
+  const CurveOf curve_of(moving, found.speeds);
+  const auto curve = [&](const Column& column) {
+    return curve_of(ForceAt(column, plant, path, dof, moving));
+  };
+  // What the machine does more without them is what they take.
+  const VectorXd value = curve(columns.front());
+  MatrixXd slopes(value.size(), std::ssize(around.coordinates));
+  for (Index i = 0; i < slopes.cols(); ++i) {
+    slopes.col(i) = -curve(columns[static_cast<std::size_t>(i) + 1]);
+  }
+  const VectorXd sd = errors.sd(around.coordinates);
+  const MatrixXd covariance =
+      sd.asDiagonal() * errors.correlation(around.coordinates, around.coordinates) *
+      sd.asDiagonal();
+  const VectorXd half =
+      TwoSidedNormalQuantile(0.05) *
+      (slopes * covariance * slopes.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+  found.dry = {value[0], value[0] - half[0], value[0] + half[0]};
+  found.viscous = {value[1], value[1] - half[1], value[1] + half[1]};
+  found.force = value.tail(found.speeds.size());
+  found.half = half.tail(found.speeds.size());
+  for (const std::size_t m : members) {
+    found.members.push_back(data.blocks[model[m].block].name);
+  }
+  return found;
+}
+
+}  // namespace
+
+void AddResistances(const AnswerData& data, const ModelOnRuns& answer,
+                    const CoordinateErrors& errors, Discovery& discovery) {
+  const Model& model = answer.fit.model;
+  std::map<std::string, std::set<std::size_t>> of_joint;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    const std::string& joint = data.blocks[model[m].block].resists;
+    if (FindElement(data.machine.plant(), mjOBJ_JOINT, joint) < 0) continue;
+    of_joint[joint].insert(m);
+  }
+  for (const auto& [joint, members] : of_joint) {
+    // One law of one size says itself.
+    if (members.size() == 1 &&
+        data.blocks[model[*members.begin()].block].IsSimplest()) {
+      continue;
+    }
+    try {
+      FoundResistance found = ResistanceOf(data, answer, errors, joint, members);
+      if (!found.members.empty()) discovery.resistances.push_back(std::move(found));
+    } catch (const NumericalError&) {
+      // Without its friction the machine does not stay with the run.
+    }
+  }
+}
+
+}  // namespace mjdiag
