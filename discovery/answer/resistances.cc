@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -13,7 +14,6 @@
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
-#include "mjdiag/plugin/plant/plant_forces.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -164,14 +164,24 @@ Around AroundOf(const AnswerData& data, const Model& model,
   return around;
 }
 
+/// Of a slide or a hinge that a block resists; none of anything else.
+std::optional<Index> ResistedDof(const mjModel& plant, const Block& block) {
+  if (block.resists.empty()) return std::nullopt;
+  if (block.number && ElementOf(block.number->kind) != mjOBJ_JOINT) return std::nullopt;
+  const int joint =
+      block.number ? block.number->element : plant.dof_jntid[block.candidate->joint];
+  const int type = plant.jnt_type[joint];
+  if (type != mjJNT_SLIDE && type != mjJNT_HINGE) return std::nullopt;
+  return plant.jnt_dofadr[joint];
+}
+
 FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
-                             const CoordinateErrors& errors, const std::string& site,
+                             const CoordinateErrors& errors, Index dof,
                              const std::set<std::size_t>& members) {
   FoundResistance found;
-  found.site = site;
   const mjModel& plant = data.machine.plant();
-  const int joint = FindElement(plant, mjOBJ_JOINT, site);
-  const Index dof = plant.jnt_dofadr[joint];
+  const int joint = plant.dof_jntid[dof];
+  found.site = ElementName(plant, mjOBJ_JOINT, joint);
   found.is_turning = plant.jnt_type[joint] == mjJNT_HINGE;
   const FilterPath& path = answer.seen;
   const double still = StillSpeeds(plant, path.noise.reading, path.sample_time)[dof];
@@ -214,20 +224,19 @@ FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
 void AddResistances(const AnswerData& data, const ModelOnRuns& answer,
                     const CoordinateErrors& errors, Discovery& discovery) {
   const Model& model = answer.fit.model;
-  std::map<std::string, std::set<std::size_t>> of_joint;
+  std::map<Index, std::set<std::size_t>> of_dof;
   for (std::size_t m = 0; m < model.size(); ++m) {
-    const std::string& joint = data.blocks[model[m].block].resists;
-    if (FindElement(data.machine.plant(), mjOBJ_JOINT, joint) < 0) continue;
-    of_joint[joint].insert(m);
+    const auto dof = ResistedDof(data.machine.plant(), data.blocks[model[m].block]);
+    if (dof) of_dof[*dof].insert(m);
   }
-  for (const auto& [joint, members] : of_joint) {
+  for (const auto& [dof, members] : of_dof) {
     // One law of one size says itself.
     if (members.size() == 1 &&
         data.blocks[model[*members.begin()].block].IsSimplest()) {
       continue;
     }
     try {
-      FoundResistance found = ResistanceOf(data, answer, errors, joint, members);
+      FoundResistance found = ResistanceOf(data, answer, errors, dof, members);
       if (!found.members.empty()) discovery.resistances.push_back(std::move(found));
     } catch (const NumericalError&) {
       // Without its friction the machine does not stay with the run.

@@ -105,6 +105,43 @@ TEST(DiscoverAnyMachine, FindsFrictionAsASimulationHasIt) {
   EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.3, 0.003);
 }
 
+// Behind the latent forces of a machine without its friction nobody sees that the joint springs
+// a milliradian before it slides.
+TEST(DiscoverAnyMachine, FindsFrictionThatSpringsBeforeItSlides) {
+  const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
+  const Machine rubs = valve.With(
+      {{}, {ParseEffect("presliding_hysteresis@j:force=0.3,stiffness=300")}});
+  const Discovery answer = Asked(valve, Measure(rubs, TwoSines, 1e-5));
+  ASSERT_THAT(NamesOf(answer), ElementsAre("presliding_hysteresis@j"));
+  EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.3, 0.003);
+  EXPECT_NEAR(answer.causes[0].parameters[1].value, 300.0, 30.0);
+  // One curve: all but a part at reversals is dry.
+  ASSERT_EQ(answer.resistances.size(), 1u);
+  const FoundResistance& curve = answer.resistances[0];
+  EXPECT_EQ(curve.site, "j");
+  EXPECT_NEAR(curve.dry.value, 0.3, 0.03);
+  EXPECT_NEAR(curve.force[curve.force.size() - 1], 0.3, 0.006);
+}
+
+// Two laws are one curve: what is dry of both, and what is viscous.
+TEST(DiscoverAnyMachine, SaysWhatResistsAJointAsOneCurve) {
+  const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
+  const Machine rubs =
+      valve.With({{},
+                  {ParseEffect("coulomb_friction@j:force=0.2"),
+                   ParseEffect("viscous_friction@j:coefficient=0.1")}});
+  const Discovery answer = Asked(valve, Measure(rubs, TwoSines, 1e-5));
+  ASSERT_EQ(answer.resistances.size(), 1u);
+  const FoundResistance& curve = answer.resistances[0];
+  EXPECT_EQ(curve.members.size(), 2u);
+  EXPECT_NEAR(curve.dry.value, 0.2, 0.01);
+  EXPECT_NEAR(curve.viscous.value, 0.1, 0.01);
+  EXPECT_LE(curve.dry.low, curve.dry.value);
+  EXPECT_LE(curve.dry.value, curve.dry.high);
+  const Eigen::Index last = curve.speeds.size() - 1;
+  EXPECT_NEAR(curve.force[last], 0.2 + 0.1 * curve.speeds[last], 0.01);
+}
+
 constexpr char kHovers[] =
     R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body name="craft">
        <freejoint name="free"/>
