@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/fit/model.h"
 #include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/machine/physics_steps.h"
 
 namespace mjdiag {
 
@@ -16,11 +17,10 @@ struct AnswerData {
   const SplitRun& run;
   const Eigen::VectorXd& reading_sd;  ///< of every sensor, by itself
   const std::vector<Block>& blocks;
-  bool steps = true;  ///< Explained::steps
+  PhysicsSteps steps = {};  ///< Explained::steps
 
   Machine With(const Model& model) const {
-    const Machine with = machine.With(ChangesOfModel(blocks, model));
-    return steps ? with : with.WithoutSteps();
+    return steps.Of(machine.With(ChangesOfModel(blocks, model)));
   }
 };
 

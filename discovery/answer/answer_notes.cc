@@ -165,9 +165,10 @@ void AddNotes(const AnswerData& data, const UnseenJudgement& judged,
     discovery.notes.push_back("not named, for data outside the fit contradict it: " +
                               refuted);
   }
-  if (!data.steps) {
+  if (data.steps.without > 0.0) {
     const double step = data.machine.plant().opt.timestep;
-    discovery.notes.push_back(NoteOfInputDelay(0.5 * step, step));
+    const double late = 0.5 * data.steps.without * step / data.steps.finer;
+    discovery.notes.push_back(NoteOfInputDelay(late, step));
   }
   const VectorXd& noise = judged.answer.seen.noise.reading;
   NoteQuiet(data, noise, discovery.notes);

@@ -160,11 +160,11 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   discovery.setup = machine.setup().name;
   discovery.train_share = run.share;
   discovery.sample_time = machine.rates().tick();
-  discovery.substeps = machine.rates().substeps;
 
   time.Say("the machine as given", 0.0);
   Explained explained =
       Explain(machine, run.seen, reading_sd, OptionsOfSearch(machine, options, time));
+  discovery.substeps = explained.steps.finer * machine.rates().substeps;
   const Machine looked_at = InTicksOf(machine, explained.ticks);
   const SplitRun looked = Coarser(run, explained.ticks);
   const SplitRun felt = WithInputsFelt(looked, explained.input_width);

@@ -66,8 +66,8 @@ double LimitBeside(const AnswerData& data, const Beside& beside,
   changes.faults.push_back({fault, 1.0 + kStep});
   const Machine faulty = data.machine.With(changes);
   try {
-    const VectorXd moved = PredictAlong(data.steps ? faulty : faulty.WithoutSteps(),
-                                        data.run.seen, beside.path, beside.gains);
+    const VectorXd moved =
+        PredictAlong(data.steps.Of(faulty), data.run.seen, beside.path, beside.gains);
     return HiddenFault((beside.left - moved) / kStep, beside.left);
   } catch (const NumericalError&) {
     return 0.0;

@@ -99,7 +99,7 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
                       const std::function<bool()>& is_over) {
   ModelOnRuns nothing;
   // Of an empty model the search has it with the physics steps that it chose.
-  const bool as_given = data.steps && explained.input_width == 0.0;
+  const bool as_given = data.steps.AreGiven() && explained.input_width == 0.0;
   nothing.seen = explained.fit.model.empty() ? explained.path
                  : as_given
                      ? explained.nothing

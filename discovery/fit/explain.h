@@ -16,6 +16,7 @@
 #include "mjdiag/discovery/fit/model_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/plugin/machine/physics_steps.h"
 #include "mjdiag/plugin/plant/model_parameter.h"
 #include "mjdiag/plugin/replay/force_filter.h"
 
@@ -50,7 +51,7 @@ struct Explained {
   FilterPath nothing;        ///< of the machine as given
   FilterPath path;           ///< of that with the model
   double score = 0.0;        ///< -2 ln L and what the model costs
-  bool steps = true;         ///< the physics steps of the model are part of it
+  PhysicsSteps steps = {};   ///< that it knows
   int ticks = 1;             ///< of a sample of the paths (coarser_run.h)
   double input_width = 0.0;  ///< over which inputs are smoothed [samples of the paths]
   std::vector<Decision> decisions;  ///< what was tried, in that order

@@ -25,6 +25,7 @@
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -38,6 +39,21 @@ namespace {
 // Of fits behind the gains of another model, which the best are fitted anew behind their own: as
 // many as two laws take that say nearly the same, of which one leaves.
 constexpr int kIterations = 6;
+
+/// Of a number that is between its ends.
+constexpr double kPriceOfShare = 2.0;
+
+/// Where the parabola through three points is least, between 0 and 1.
+double LeastOfParabola(const std::vector<std::pair<double, double>>& points) {
+  const auto slope = [&](std::size_t i, std::size_t j) {
+    return (points[j].second - points[i].second) / (points[j].first - points[i].first);
+  };
+  const double bend = (slope(1, 2) - slope(0, 1)) / (points[2].first - points[0].first);
+  // Where it has no least it goes down to one of the ends.
+  const double middle = 0.5 * (points[0].first + points[1].first);
+  if (!(bend > 0.0)) return slope(0, 1) + bend * (0.5 - middle) < 0.0 ? 1.0 : 0.0;
+  return std::clamp(middle - 0.5 * slope(0, 1) / bend, 0.0, 1.0);
+}
 
 bool SameBlocks(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
@@ -53,7 +69,7 @@ bool IsNear(const Model& a, const Model& b) {
 
 }  // namespace
 
-ConvergedBeside ModelSearch::Beside(bool steps) const {
+ConvergedBeside ModelSearch::Beside(PhysicsSteps steps) const {
   return {[this, steps](const Model& model) { return With(model, steps); },
           run_,
           reading_sd_,
@@ -114,7 +130,7 @@ ModelSearch::Standing& ModelSearch::StandingNow() {
   if (!standing_) {
     standing_ = Standing{WhiteningsOf(found_.path),
                          ExactColumnsOf([&](const Model& model) { return With(model); },
-                                        With(found_.fit.model, !steps_), run_,
+                                        With(found_.fit.model, steps_.Other()), run_,
                                         found_.path, found_.blocks, found_.fit.model),
                          {},
                          {}};
@@ -163,7 +179,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
 
 ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
                              const Judged& judged, int iterations) const {
-  const bool steps = steps_ != judged.second;
+  const PhysicsSteps steps = judged.second ? steps_.Other() : steps_;
   return FitModel(InTime([&](const Model& one) { return With(one, steps); },
                          [this] { return IsOver(); }),
                   run_, found_.path, whitenings.behind[judged.first].gains(),
@@ -284,9 +300,9 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     }
     if (fits.empty()) continue;
     const Tried& first = tried[places.front()];
-    auto rivals = SettleRivals(Beside(steps_ != other_steps), std::move(fits),
-                               NoisesBeside(whitenings.noises[first.judged.first]),
-                               found_.score, first.gain);
+    auto rivals = SettleRivals(
+        Beside(other_steps ? steps_.Other() : steps_), std::move(fits),
+        NoisesBeside(whitenings.noises[first.judged.first]), found_.score, first.gain);
     for (std::size_t i = 0; i < places.size(); ++i) {
       settled[places[i]] = std::move(rivals[i]);
     }
@@ -318,7 +334,8 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
                : "behind the noise that suits it, it is worth less than it costs");
   }
   if (!best) return std::nullopt;
-  return Proposal{std::move(*settled[*best]), steps_ != tried[*best].judged.second,
+  return Proposal{std::move(*settled[*best]),
+                  tried[*best].judged.second ? steps_.Other() : steps_,
                   found_.input_width, run_};
 }
 
@@ -341,19 +358,62 @@ void ModelSearch::Rate(const Model& rival, double score) {
   }
 }
 
+// What steps do is proportional to them, so that -2 ln L is a parabola over their share.
 bool ModelSearch::ChooseSteps() {
-  FilterPath path =
-      RunForceFilter(With(found_.fit.model, !steps_), run_, found_.path.dofs,
-                     found_.path.starts, found_.path.noise);
-  const double gain = found_.path.deviance - path.deviance;
+  std::vector<PhysicsSteps> asked;
+  for (const double without : {0.0, 0.5, 1.0}) {
+    if (without != steps_.without) asked.push_back({without, steps_.finer});
+  }
+  std::vector<FilterPath> paths(asked.size());
+  ParallelForAll(static_cast<int>(asked.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    paths[i] = Filtered(asked[i]);
+  });
+  std::vector<std::pair<double, double>> known{{steps_.without, found_.path.deviance}};
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    known.emplace_back(asked[i].without, paths[i].deviance);
+  }
+  const PhysicsSteps least{LeastOfParabola(known), steps_.finer};
+  if (std::ranges::find(known, least.without, &std::pair<double, double>::first) ==
+      known.end()) {
+    asked.push_back(least);
+    paths.push_back(Filtered(least));
+  }
+  // Steps that are known cost nothing; a share of them is a number.
+  const auto cost = [&](PhysicsSteps steps, const FilterPath& path) {
+    const bool is_share = steps.without != 0.0 && steps.without != 1.0;
+    return path.deviance + (is_share ? kPriceOfShare : 0.0);
+  };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < asked.size(); ++i) {
+    if (cost(asked[i], paths[i]) < cost(asked[best], paths[best])) best = i;
+  }
+  const double gain = cost(steps_, found_.path) - cost(asked[best], paths[best]);
   if (gain < kLeastGain) return false;
-  steps_ = !steps_;
-  Say((steps_ ? "with physics steps: " : "without physics steps: ") +
-      std::to_string(-gain));
-  // Values made up for the steps as far as they could.
-  ConvergedModel settled = SettleNear(Beside(steps_), found_.fit, std::move(path));
-  Take(std::move(settled));
+  TakeSteps(asked[best], std::move(paths[best]));
   return true;
+}
+
+bool ModelSearch::ChooseFinerSteps() {
+  constexpr int kFiner = 4;  // 16 times less of second order
+  if (steps_.AreGiven() || steps_.finer > 1 || found_.ticks > 1) return false;
+  // Of steps as long as those of the run nothing is left to take away.
+  const double own = 1.0 - steps_.without;
+  const PhysicsSteps finer{std::max(0.0, 1.0 - kFiner * own), kFiner};
+  FilterPath path = Filtered(finer);
+  if (found_.path.deviance - path.deviance < kLeastGain) return false;
+  TakeSteps(finer, std::move(path));
+  return true;
+}
+
+void ModelSearch::TakeSteps(PhysicsSteps steps, FilterPath path) {
+  char text[80];
+  std::snprintf(text, sizeof text, "steps %.3f of %d: %.1f", 1.0 - steps.without,
+                steps.finer, path.deviance - found_.path.deviance);
+  Say(text);
+  steps_ = steps;
+  // Values made up for the steps as far as they could.
+  Take(SettleNear(Beside(steps_), found_.fit, std::move(path)));
 }
 
 void ModelSearch::ChooseFriction() {
@@ -478,7 +538,7 @@ void ModelSearch::LookAtAll() {
     found_.path = found_.nothing;
     found_.input_width = 0.0;
     run_ = as_measured_;
-    steps_ = true;
+    steps_ = {};
   }
   // What was found so far is where the search begins, whatever it is worth by all.
   found_.score = ConvergedModel{found_.fit, found_.path}.score();
@@ -500,6 +560,7 @@ Explained ModelSearch::Run() {
     StepOn();
     is_last_ = true;
     if (!IsOver()) {
+      ChooseFinerSteps();
       may_be_at_ends_ = true;
       looks_at_forces_ = true;
       hopeless_.clear();

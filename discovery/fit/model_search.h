@@ -38,14 +38,13 @@ class ModelSearch {
 
  private:
   /// What models are settled beside.
-  /// @param steps  with the physics steps of the model
-  ConvergedBeside Beside(bool steps) const;
+  ConvergedBeside Beside(PhysicsSteps steps) const;
   /// Those to begin with: one that a move was judged behind, and that of the model so far.
   std::vector<FilterNoise> NoisesBeside(const FilterNoise& near) const;
   /// What the search may go on from.
   struct Proposal {
     ConvergedModel settled;
-    bool steps = true;
+    PhysicsSteps steps = {};
     double input_width = 0.0;  ///< [ticks]
     MeasuredRun run;
   };
@@ -138,23 +137,30 @@ class ModelSearch {
   }
 
   Machine With(const Model& model) const { return With(model, steps_); }
-  Machine With(const Model& model, bool steps) const {
+  Machine With(const Model& model, PhysicsSteps steps) const {
     if (IsStopped()) throw NumericalError("fit: asked to end");
     return Made(model, steps);
   }
-  Machine Made(const Model& model, bool steps) const {
-    const Machine machine = machine_.With(ChangesOfModel(found_.blocks, model));
-    return steps ? machine : machine.WithoutSteps();
+  Machine Made(const Model& model, PhysicsSteps steps) const {
+    return steps.Of(machine_.With(ChangesOfModel(found_.blocks, model)));
   }
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
-  /// with it, or of one that has none?
+  /// with it, of one that has none, or of shorter ones?
   bool ChooseSteps();
+  /// Whether the model's steps hide something that finer ones show.
+  bool ChooseFinerSteps();
+  FilterPath Filtered(PhysicsSteps steps) const {
+    return RunForceFilter(With(found_.fit.model, steps), run_, found_.path.dofs,
+                          found_.path.starts, found_.path.noise);
+  }
+  /// @param path  with those steps
+  void TakeSteps(PhysicsSteps steps, FilterPath path);
   /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.
   void ChooseFriction();
 
   const Machine& given_;
   Machine machine_;  // as given, in the ticks that are looked at
-  bool steps_ = true;
+  PhysicsSteps steps_;
   const MeasuredRun& whole_;
   MeasuredRun as_measured_;  // all of it, or pieces, or once in some ticks
   bool is_part_ = false;

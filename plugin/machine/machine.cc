@@ -160,27 +160,27 @@ Machine Machine::WithSubsteps(int substeps) const {
   return changed;
 }
 
-Machine Machine::WithoutSteps() const {
-  const double half = 0.5 * plant_->opt.timestep;
+Machine Machine::WithoutSteps(double share) const {
+  const double half = 0.5 * share * plant_->opt.timestep;
   Changes late;
   for (const ActuatorSetup& actuator : setup_->channels.actuators) {
     late.effects.push_back(
         {Lasting(InputDelay()), actuator.element, Eigen::VectorXd::Constant(1, half)});
   }
   Machine changed = With(late);
-  changed.DampBetweenSteps();
+  changed.DampBetweenSteps(share);
   return changed;
 }
 
-void Machine::DampBetweenSteps() {
+void Machine::DampBetweenSteps(double share) {
   ModelPtr model = CopyModel(*plant_);
-  const double half = 0.5 * model->opt.timestep;
+  const double half = 0.5 * share * model->opt.timestep;
   const Eigen::VectorXd of_motors = MotorBiasAtQpos0(*model).damping.diagonal();
   for (int dof = 0; dof < model->nv; ++dof) {
     model->dof_armature[dof] += half * (of_motors[dof] - model->dof_damping[dof]);
   }
   Adopt(std::move(model));
-  is_without_steps_ = true;
+  without_steps_ = share;
 }
 
 Machine Machine::ChangedAs(const Machine& other) const {
@@ -195,7 +195,9 @@ Machine Machine::ChangedAs(const Machine& other) const {
   changes.effects = further(all.effects, changes_.effects);
   changes.numbers = further(all.numbers, changes_.numbers);
   Machine changed = WithSubsteps(other.rates().substeps).With(changes);
-  if (other.is_without_steps_ && !is_without_steps_) changed.DampBetweenSteps();
+  if (without_steps_ == 0.0 && other.without_steps_ > 0.0) {
+    changed.DampBetweenSteps(other.without_steps_);
+  }
   return changed;
 }
 

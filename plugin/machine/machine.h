@@ -77,7 +77,8 @@ class Machine {
   ///
   /// of dampers D that it takes at the end of a step, (M - h D / 2) of those that it takes at
   /// the beginning: inputs act h / 2 later here, and rotors make up for what damps.
-  Machine WithoutSteps() const;
+  /// @param share  of them that is taken away: of a record in steps of h / 10 nine tenths
+  Machine WithoutSteps(double share = 1.0) const;
   /// With what With and WithoutSteps have made of another one since it had the changes of
   /// this one, in its steps: this machine with another load, for example.
   Machine ChangedAs(const Machine& other) const;
@@ -92,14 +93,14 @@ class Machine {
   struct Derived;
 
   void Adopt(std::shared_ptr<const mjModel> plant);
-  void DampBetweenSteps();
+  void DampBetweenSteps(double share);
 
   std::shared_ptr<const Setup> setup_;
   std::shared_ptr<const mjModel> plant_;
   std::vector<int> sensor_addresses_;
   std::vector<int> actuator_addresses_;
   Changes changes_;
-  bool is_without_steps_ = false;
+  double without_steps_ = 0.0;  // a share of them
   std::shared_ptr<Derived> derived_;
 };
 

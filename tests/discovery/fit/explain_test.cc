@@ -75,7 +75,7 @@ TEST(Explain, SaysHowWellValuesAreKnownBehindTheNoiseOfItsAnswer) {
               {.seconds = 300.0});
   const auto machine_with = [&](const Model& model) {
     const Machine machine = arm.machine.With(ChangesOfModel(found.blocks, model));
-    return found.steps ? machine : machine.WithoutSteps();
+    return found.steps.Of(machine);
   };
   const ModelFit anew = FitModel(machine_with, run, found.path, KeepGains(found.path),
                                  found.blocks, found.fit.model, 0);
