@@ -249,6 +249,10 @@ bool Block::Springs() const {
   return candidate && candidate->effect.get() == &PreslidingHysteresis();
 }
 
+bool Block::BreaksAway() const {
+  return candidate && candidate->effect.get() == &StribeckFriction();
+}
+
 bool Block::IsSmoothFriction() const {
   return IsDryFriction() && candidate->parameters.size() == 2 &&
          candidate->parameters.back().role == Role::kVelocity;

@@ -58,6 +58,8 @@ struct Block {
   bool GivesWay() const;
   /// Dry friction of a joint that springs before it slides.
   bool Springs() const;
+  /// Dry friction that holds by more than it slides by.
+  bool BreaksAway() const;
   /// Dry friction that comes within a speed: a size and that.
   bool IsSmoothFriction() const;
   /// Changes what an actuator makes of its input.

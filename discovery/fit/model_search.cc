@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -45,6 +46,7 @@ constexpr double kPriceOfShare = 2.0;
 
 /// Where the parabola through three points is least, between 0 and 1.
 double LeastOfParabola(const std::vector<std::pair<double, double>>& points) {
+  if (points.size() < 3) return points.front().first;
   const auto slope = [&](std::size_t i, std::size_t j) {
     return (points[j].second - points[i].second) / (points[j].first - points[i].first);
   };
@@ -60,10 +62,9 @@ bool SameBlocks(const Model& a, const Model& b) {
 }
 
 /// From which a fit goes the same way.
-bool IsNear(const Model& a, const Model& b) {
-  constexpr double kAlike = 1e-3;
+bool IsNear(const Model& a, const Model& b, double alike = 1e-3) {
   return std::ranges::equal(a, b, [&](const Member& one, const Member& other) {
-    return one.block == other.block && one.values.isApprox(other.values, kAlike);
+    return one.block == other.block && one.values.isApprox(other.values, alike);
   });
 }
 
@@ -358,38 +359,54 @@ void ModelSearch::Rate(const Model& rival, double score) {
   }
 }
 
-// What steps do is proportional to them, so that -2 ln L is a parabola over their share.
 bool ModelSearch::ChooseSteps() {
-  std::vector<PhysicsSteps> asked;
-  for (const double without : {0.0, 0.5, 1.0}) {
+  // Behind latent forces that make up for steps their share is hardly seen: it is asked again
+  // behind those that are left, nearer by.
+  constexpr double kNearBy = 0.1;
+  const double s = steps_.without;
+  if (!ChooseStepsOf({0.0, 0.5, 1.0})) return false;
+  for (int round = 0; round < 3 && !IsOver(); ++round) {
+    const double at = std::clamp(steps_.without, kNearBy, 1.0 - kNearBy);
+    if (!ChooseStepsOf({at - kNearBy, at, at + kNearBy})) break;
+  }
+  return steps_.without != s;
+}
+
+// What steps do is proportional to them, so that -2 ln L is a parabola over their share.
+bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
+  std::vector<PhysicsSteps> asked{steps_};
+  for (const double without : shares) {
     if (without != steps_.without) asked.push_back({without, steps_.finer});
   }
   std::vector<FilterPath> paths(asked.size());
-  ParallelForAll(static_cast<int>(asked.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    paths[i] = Filtered(asked[i]);
+  ParallelForAll(static_cast<int>(asked.size()) - 1, [&](int number) {
+    const auto i = static_cast<std::size_t>(number) + 1;
+    try {
+      paths[i] = Filtered(asked[i]);
+    } catch (const NumericalError&) {
+      paths[i].deviance = std::numeric_limits<double>::infinity();
+    }
   });
-  std::vector<std::pair<double, double>> known{{steps_.without, found_.path.deviance}};
+  paths.front().deviance = found_.path.deviance;
+  std::vector<std::pair<double, double>> known;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     known.emplace_back(asked[i].without, paths[i].deviance);
   }
   const PhysicsSteps least{LeastOfParabola(known), steps_.finer};
-  if (std::ranges::find(known, least.without, &std::pair<double, double>::first) ==
-      known.end()) {
+  if (std::ranges::find(asked, least.without, &PhysicsSteps::without) == asked.end()) {
     asked.push_back(least);
     paths.push_back(Filtered(least));
   }
   // Steps that are known cost nothing; a share of them is a number.
-  const auto cost = [&](PhysicsSteps steps, const FilterPath& path) {
-    const bool is_share = steps.without != 0.0 && steps.without != 1.0;
-    return path.deviance + (is_share ? kPriceOfShare : 0.0);
+  const auto cost = [&](std::size_t i) {
+    const bool is_share = asked[i].without != 0.0 && asked[i].without != 1.0;
+    return paths[i].deviance + (is_share ? kPriceOfShare : 0.0);
   };
   std::size_t best = 0;
   for (std::size_t i = 1; i < asked.size(); ++i) {
-    if (cost(asked[i], paths[i]) < cost(asked[best], paths[best])) best = i;
+    if (cost(i) < cost(best)) best = i;
   }
-  const double gain = cost(steps_, found_.path) - cost(asked[best], paths[best]);
-  if (gain < kLeastGain) return false;
+  if (cost(best) > cost(0) - kLeastGain) return false;
   TakeSteps(asked[best], std::move(paths[best]));
   return true;
 }
@@ -417,6 +434,14 @@ void ModelSearch::TakeSteps(PhysicsSteps steps, FilterPath path) {
 }
 
 void ModelSearch::ChooseFriction() {
+  // What was asked of all but the same friction is known.
+  constexpr double kAlike = 0.2;
+  Model rubs;
+  for (const Member& member : found_.fit.model) {
+    if (found_.blocks[member.block].IsDryFriction()) rubs.push_back(member);
+  }
+  if (IsNear(rubs, asked_forms_of_, kAlike)) return;
+  asked_forms_of_ = rubs;
   auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path});
   if (!other) return;
   Say("joints that stand: " + Difference(other->score()) + "  " +
@@ -525,6 +550,7 @@ void ModelSearch::LookAtAll() {
   found_.steps_taken.clear();
   hopeless_.clear();
   worthless_.clear();
+  asked_forms_of_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {
     if (block.candidate) WidenFrequencies(*block.candidate, as_measured_.sample_time);
@@ -562,6 +588,7 @@ Explained ModelSearch::Run() {
     if (!IsOver()) {
       ChooseFinerSteps();
       may_be_at_ends_ = true;
+      asked_forms_of_.clear();
       looks_at_forces_ = true;
       hopeless_.clear();
       StepOn();

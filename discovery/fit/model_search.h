@@ -147,6 +147,7 @@ class ModelSearch {
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, of one that has none, or of shorter ones?
   bool ChooseSteps();
+  bool ChooseStepsOf(const std::vector<double>& shares);
   /// Whether the model's steps hide something that finer ones show.
   bool ChooseFinerSteps();
   FilterPath Filtered(PhysicsSteps steps) const {
@@ -182,6 +183,8 @@ class ModelSearch {
   std::vector<Model> hopeless_;
   /// What moves made of this one along this path, and fits behind kept gains found no better.
   std::vector<Model> worthless_;
+  /// Dry friction whose forms have been asked (other_friction.h).
+  Model asked_forms_of_;
   Explained found_;
   std::optional<Standing> standing_;  // none where the model or its path is another
 };

@@ -96,6 +96,24 @@ Model Springing(const std::vector<Block>& blocks, Model model,
   return model;
 }
 
+Model BreakingAway(const std::vector<Block>& blocks, Model model,
+                   const Eigen::VectorXd& speeds) {
+  // What a law of one size says of one that has two is the larger.
+  constexpr double kSlides = 2.0 / 3.0;
+  for (Member& member : model) {
+    const Block& block = blocks[member.block];
+    if (!IsOfOneSize(block)) continue;
+    const auto other =
+        InPlaceOf(blocks, block, [](const Block& one) { return one.BreaksAway(); });
+    const double speed = speeds[block.candidate->joint];
+    if (!other || !(speed > 0.0)) continue;
+    const double force = member.values[0];
+    member = {*other,
+              Eigen::VectorXd{{kSlides * force, (1.0 - kSlides) * force, speed}}};
+  }
+  return model;
+}
+
 namespace {
 
 /// The one that leaves the fewest members, of those that gain at least half as much as the

@@ -24,6 +24,11 @@ Model GivingWay(const std::vector<Block>& blocks, Model model);
 Model Springing(const std::vector<Block>& blocks, Model model,
                 const Eigen::VectorXd& lengths);
 
+/// The same, as friction that holds by half more than it slides by.
+/// @param speeds  at which it slides, of every degree of freedom
+Model BreakingAway(const std::vector<Block>& blocks, Model model,
+                   const Eigen::VectorXd& speeds);
+
 /// The best of all that may be, of which no block comes in with more than two, and the best that
 /// brings one block and nothing else: the fewer come at once, the nearer is first order to what
 /// a fit finds; and, of those that gain half as much as the best, the one that leaves the fewest.

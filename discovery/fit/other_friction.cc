@@ -39,15 +39,28 @@ VectorXd StrokesOf(const mjModel& plant, const FilterPath& path) {
   return strokes;
 }
 
+VectorXd FastestOf(const mjModel& plant, const FilterPath& path) {
+  VectorXd fastest = VectorXd::Zero(plant.nv);
+  for (const PlantState& state : path.states) {
+    fastest = fastest.cwiseMax(state.velocity.cwiseAbs());
+  }
+  return fastest;
+}
+
 std::vector<Model> OtherForms(const ConvergedBeside& beside,
                               const ConvergedModel& found) {
   const Model& model = found.fit.model;
   std::vector<Model> forms{GivingWay(beside.blocks, model),
                            Abrupt(beside.blocks, model)};
-  const VectorXd strokes = StrokesOf(beside.machine_with(model).plant(), found.path);
+  const Machine machine = beside.machine_with(model);
+  const VectorXd strokes = StrokesOf(machine.plant(), found.path);
   // From what encoders tell of their stroke to what gears wind up: a fit finds the rest.
   for (const double share : {1e-5, 1e-4, 1e-3, 1e-2}) {
     forms.push_back(Springing(beside.blocks, model, share * strokes));
+  }
+  const VectorXd fastest = FastestOf(machine.plant(), found.path);
+  for (const double share : {0.003, 0.01, 0.03, 0.1}) {
+    forms.push_back(BreakingAway(beside.blocks, model, share * fastest));
   }
   std::erase_if(forms, [&](const Model& one) { return IsSame(one, model); });
   return forms;

@@ -179,6 +179,9 @@ void Machine::DampBetweenSteps(double share) {
   for (int dof = 0; dof < model->nv; ++dof) {
     model->dof_armature[dof] += half * (of_motors[dof] - model->dof_damping[dof]);
   }
+  // The inertia of bodies that move by themselves is a constant (dof_M0).
+  const DataPtr data = MakeData(*model);
+  mj_setConst(model.get(), data.get());
   Adopt(std::move(model));
   without_steps_ = share;
 }
