@@ -98,7 +98,8 @@ class Settling {
     const bool is_near = near_.empty() || !IsNowhere();
     FilterPath path =
         is_near ? FilterLikelier(machine, beside_.run, beside_.reading_sd,
-                                 settled_.path, beside_.is_over)
+                                 settled_.path, beside_.is_over,
+                                 beside_.is_last ? kMostReadings : kFewReadings)
                 : FilterLikeliestFrom(machine, beside_.run, beside_.reading_sd,
                                       beside_.dofs, near_, beside_.is_over);
     near_.clear();
@@ -226,10 +227,11 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
     const Settling& best = Best(rivals);
     if (best.IsNowhere()) break;
     if (!best.is_likeliest()) {
-      // Noises gain as much as laws do: whoever may come out best is asked at once.
+      // Noises gain as much as laws do, and what is large is nothing behind the noise of the
+      // machine without it: whoever may come out best is asked at once.
       constexpr double kMay = 0.5;  // of what the best gains
       const double score = best.settled().score();
-      const double may = kMay * std::max(0.0, beat - score);
+      const double may = std::max(kMay * std::max(0.0, beat - score), hoped);
       each([&](Settling& one) {
         if (one.MayReach(score, may)) one.Round();
       });

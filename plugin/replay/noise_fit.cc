@@ -112,13 +112,14 @@ class LikeliestOf {
  public:
   LikeliestOf(const Machine& machine, const MeasuredRun& run,
               const VectorXd& reading_sd, const std::vector<Index>& dofs,
-              double longest, const IsTimeOver& is_over)
+              double longest, const IsTimeOver& is_over, Index readings = kMostReadings)
       : machine_(machine),
         run_(run),
         reading_sd_(reading_sd),
         dofs_(dofs),
         longest_(longest),
         is_over_(is_over),
+        readings_(readings),
         starts_(FilterStarts(machine, run, reading_sd)) {}
 
   const std::vector<FilterStart>& starts() const { return starts_; }
@@ -152,7 +153,7 @@ class LikeliestOf {
     for (int round = 0; round < kRounds && !IsOver(); ++round) {
       const FilterNoise from = best().noise;
       const double before = best().deviance;
-      const NoiseSearch search(best(), reading_sd_, longest_);
+      const NoiseSearch search(best(), reading_sd_, longest_, readings_);
       const bool is_of_all = search.LooksAtAll();
       const LikelyNoise to = search.Descend(from, is_far);
       for (double part = 1.0; part > 0.2; part *= 0.5) {
@@ -176,6 +177,7 @@ class LikeliestOf {
   const std::vector<Index>& dofs_;
   double longest_;
   const IsTimeOver& is_over_;
+  Index readings_;
   std::vector<FilterStart> starts_;
   std::optional<FilterPath> best_;
 };
@@ -239,9 +241,10 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
 
 FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
                           const VectorXd& reading_sd, FilterPath path,
-                          const IsTimeOver& is_over) {
+                          const IsTimeOver& is_over, Index readings) {
   const std::vector<Index> dofs = path.dofs;
-  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run), is_over);
+  LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run), is_over,
+                  readings);
   all.Keep(std::move(path));
   all.Improve(false);
   return all.best();

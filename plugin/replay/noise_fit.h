@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/replay/force_filter.h"
+#include "mjdiag/plugin/replay/noise_search.h"
 
 namespace mjdiag {
 
@@ -53,9 +54,11 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const IsTimeOver& is_over = {});
 
 /// The path of a machine along a run with a noise that is likelier, from its own on.
+/// @param readings  so many say which
 FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
                           const Eigen::VectorXd& reading_sd, FilterPath path,
-                          const IsTimeOver& is_over = {});
+                          const IsTimeOver& is_over = {},
+                          Eigen::Index readings = kMostReadings);
 
 /// The same of a machine that is all but the one whose noise it begins with.
 FilterPath FilterLikeliestNear(const Machine& machine, const MeasuredRun& run,

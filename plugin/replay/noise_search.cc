@@ -127,17 +127,15 @@ Shown ShownBy(const TickTangent& tangent, const std::vector<Index>& dofs,
 }
 
 NoiseSearch::NoiseSearch(const FilterPath& path, const VectorXd& reading_sd,
-                         double longest)
+                         double longest, Index readings)
     : path_(path), nf_(path.dof_count()), ny_(path.sensors()) {
-  // What takes seconds.
-  constexpr Index kMostReadings = 40000;
   const Index enough = EnoughOf(ny_, path.pulled.rows());
   for (std::size_t r = 0; r < path.first.size(); ++r) {
     const auto pieces = [&](Index samples) {
       return PiecesOf(path.first[r], path.EndOf(r) - path.first[r], path.samples(),
                       samples);
     };
-    for (const Stretch& piece : pieces(kMostReadings / ny_)) {
+    for (const Stretch& piece : pieces(readings / ny_)) {
       std::ranges::copy(Halved(piece), std::back_inserter(pieces_));
     }
     std::ranges::copy(QuarterOf(pieces(enough)), std::back_inserter(quarter_));

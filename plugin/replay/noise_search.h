@@ -40,6 +40,11 @@ struct Shown {
 Shown ShownBy(const TickTangent& tangent, const std::vector<Eigen::Index>& dofs,
               const Eigen::VectorXd& reading_sd);
 
+/// What takes seconds.
+inline constexpr Eigen::Index kMostReadings = 40000;
+/// What tells a noise to 1.4 %.
+inline constexpr Eigen::Index kFewReadings = 10000;
+
 /// A noise, and -2 ln L of the pieces behind it.
 struct LikelyNoise {
   FilterNoise noise;
@@ -49,9 +54,10 @@ struct LikelyNoise {
 
 class NoiseSearch {
  public:
-  /// @param longest  memory [s]
-  NoiseSearch(const FilterPath& path, const Eigen::VectorXd& reading_sd,
-              double longest);
+  /// @param longest   memory [s]
+  /// @param readings  so many of the path at most
+  NoiseSearch(const FilterPath& path, const Eigen::VectorXd& reading_sd, double longest,
+              Eigen::Index readings = kMostReadings);
 
   /// Forces that, as long as they last, move readings by their noise.
   FilterNoise Slow(FilterNoise noise) const;
