@@ -1,9 +1,8 @@
 #pragma once
 // How a joint that rubs stands: it holds, as the textbook has it; gives way, as simulations do;
 // springs, as guides and gears do before they slide [Dahl 1968]; holds by more than it slides by
-// [Stribeck 1902]. Which of them it is shows where
-// it stands, and behind the latent forces of a machine that lacks its friction first order says
-// nothing of it: the filter is asked.
+// [Stribeck 1902]. Which of them it is shows where it stands, and behind the latent forces of a
+// machine that lacks its friction first order says nothing of it: the filter is asked.
 
 #include <optional>
 

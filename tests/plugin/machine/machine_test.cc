@@ -236,5 +236,26 @@ TEST(Machine, WithoutStepsIsWhatFinerAndFinerOnesComeTo) {
   }
 }
 
+// A tenth of the steps is left of a share of nine tenths; the inertia of a slide that moves by
+// itself is a constant of MuJoCo's, which has to be made anew.
+TEST(Machine, TakesAShareOfTheStepsOfASlideThatMovesByItself) {
+  const Machine machine = test::Stage().machine.WithSubsteps(1);
+  const auto outputs = [&](const Machine& one) {
+    RunOptions options;
+    options.noise_scale = 0.0;
+    return ToMeasuredRun(machine.setup(),
+                         Simulate(one, DefaultMotion(machine.setup()), options))
+        .outputs;
+  };
+  const Eigen::MatrixXd fine = outputs(machine.WithSubsteps(10));
+  const double of_steps = (outputs(machine) - fine).norm();
+  EXPECT_GT(of_steps, 0.0);
+  EXPECT_LT((outputs(machine.WithoutSteps(0.9)) - fine).norm(), 0.1 * of_steps);
+  const auto mass = [](const Machine& one) { return one.plant().dof_M0[0]; };
+  const double h = machine.plant().opt.timestep;
+  EXPECT_NEAR(mass(machine) - mass(machine.WithoutSteps(0.9)), 0.9 * 0.5 * h * 203.5,
+              1e-9);
+}
+
 }  // namespace
 }  // namespace mjdiag
