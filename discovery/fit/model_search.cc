@@ -379,6 +379,7 @@ bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
     if (without != steps_.without) asked.push_back({without, steps_.finer});
   }
   std::vector<FilterPath> paths(asked.size());
+  const double begin = time_.Seconds();
   ParallelForAll(static_cast<int>(asked.size()) - 1, [&](int number) {
     const auto i = static_cast<std::size_t>(number) + 1;
     try {
@@ -387,6 +388,7 @@ bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
       paths[i].deviance = std::numeric_limits<double>::infinity();
     }
   });
+  seconds_of_run_ = (time_.Seconds() - begin) / static_cast<double>(asked.size() - 1);
   paths.front().deviance = found_.path.deviance;
   std::vector<std::pair<double, double>> known;
   for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -411,15 +413,27 @@ bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
   return true;
 }
 
-bool ModelSearch::ChooseFinerSteps() {
+// What is of second order in them is of no law: it comes before one that explains less. Asking
+// takes as long as some runs, and all runs take as many times longer then.
+bool ModelSearch::ChooseFinerSteps(double beat) {
   constexpr int kFiner = 4;  // 16 times less of second order
-  if (steps_.AreGiven() || steps_.finer > 1 || found_.ticks > 1) return false;
+  constexpr int kFinest = 16;
+  constexpr double kShareOfTime = 0.02;
+  if (steps_.AreGiven() || steps_.finer == kFinest) return false;
+  if (kFiner * seconds_of_run_ > kShareOfTime * (seconds_ - time_.Seconds())) {
+    return false;
+  }
   // Of steps as long as those of the run nothing is left to take away.
   const double own = 1.0 - steps_.without;
-  const PhysicsSteps finer{std::max(0.0, 1.0 - kFiner * own), kFiner};
+  const PhysicsSteps finer{std::max(0.0, 1.0 - kFiner * own), kFiner * steps_.finer};
   FilterPath path = Filtered(finer);
   if (found_.path.deviance - path.deviance < kLeastGain) return false;
-  TakeSteps(finer, std::move(path));
+  ConvergedModel settled = SettleNear(Beside(finer), found_.fit, std::move(path));
+  if (settled.score() > beat) return false;
+  Say("finer steps: " + Difference(settled.score()));
+  steps_ = finer;
+  Take(std::move(settled));
+  ChooseSteps();
   return true;
 }
 
@@ -485,8 +499,9 @@ bool ModelSearch::Step() {
   }
   if (!move) move = BestMove(standing);
   if (!move && asks_inputs) move = SmoothedInputs();
-  if (move) Adopt(std::move(*move));
-  return move.has_value();
+  if (!move) return false;
+  if (!ChooseFinerSteps(move->settled.score())) Adopt(std::move(*move));
+  return true;
 }
 
 void ModelSearch::LookAt(const MeasuredRun& run, int ticks) {
@@ -586,7 +601,7 @@ Explained ModelSearch::Run() {
     StepOn();
     is_last_ = true;
     if (!IsOver()) {
-      ChooseFinerSteps();
+      ChooseFinerSteps(found_.score - kLeastGain);
       may_be_at_ends_ = true;
       asked_forms_of_.clear();
       looks_at_forces_ = true;

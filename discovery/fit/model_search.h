@@ -149,7 +149,8 @@ class ModelSearch {
   bool ChooseSteps();
   bool ChooseStepsOf(const std::vector<double>& shares);
   /// Whether the model's steps hide something that finer ones show.
-  bool ChooseFinerSteps();
+  /// @param beat  a score
+  bool ChooseFinerSteps(double beat);
   FilterPath Filtered(PhysicsSteps steps) const {
     return RunForceFilter(With(found_.fit.model, steps), run_, found_.path.dofs,
                           found_.path.starts, found_.path.noise);
@@ -169,6 +170,7 @@ class ModelSearch {
   const Eigen::VectorXd& reading_sd_;
   const ExplainOptions& options_;
   WorkTime time_;
+  double seconds_of_run_ = 0.0;        // of one filter, about
   double seconds_ = options_.seconds;  // allowed by now
   std::vector<Candidate> candidates_;
   /// What is large comes first.
