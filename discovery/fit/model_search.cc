@@ -101,7 +101,6 @@ void ModelSearch::Adopt(Proposal proposal) {
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
-  ChooseSteps();
   ChooseFriction();
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
@@ -163,9 +162,23 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing)
   return BestOf(moves, kMost, 0, standing.whitenings, none, found_.fit.model.empty());
 }
 
+// By first order, which of steps is exact.
+bool ModelSearch::StepsAreOff(const Standing& standing) const {
+  const Whitening& map = standing.whitenings.behind.front();
+  const VectorXd other = map.Of({&standing.exact.other_steps}).col(0);
+  const double bend = other.squaredNorm();
+  if (!(bend > 0.0)) return false;
+  const double slope = other.dot(map.left());
+  // As far as there are steps to take away, or to give back.
+  const double whole = steps_.Other().without - steps_.without;
+  const double s = std::clamp(steps_.without + whole * slope / bend, 0.0, 1.0);
+  const double part = (s - steps_.without) / whole;
+  return 2.0 * part * slope - part * part * bend > kLeastGain;
+}
+
 std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
+  if (StepsAreOff(standing) && ChooseSteps()) return Incumbent();
   const Moves& moves = MovesNow(standing);
-  if (moves.other_steps && ChooseSteps()) return Incumbent();
   KeepRivals(moves);
   const Whitenings& whitenings = standing.whitenings;
   const ModelFit& own =

@@ -85,6 +85,7 @@ class ModelSearch {
   };
   Standing& StandingNow();
   const Moves& MovesNow(Standing& standing);
+  bool StepsAreOff(const Standing& standing) const;
   std::optional<Proposal> BestForces(Standing& standing);
   std::optional<Proposal> BestMove(Standing& standing);
   /// How much of its inputs did the machine not feel?
