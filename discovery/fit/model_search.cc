@@ -163,22 +163,41 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing)
 }
 
 // By first order, which of steps is exact.
-bool ModelSearch::StepsAreOff(const Standing& standing) const {
-  const Whitening& map = standing.whitenings.behind.front();
+ModelSearch::StepsBehind ModelSearch::LikelySteps(const Standing& standing,
+                                                  std::size_t noise) const {
+  const Whitening& map = standing.whitenings.behind[noise];
   const VectorXd other = map.Of({&standing.exact.other_steps}).col(0);
   const double bend = other.squaredNorm();
-  if (!(bend > 0.0)) return false;
+  if (!(bend > 0.0)) return {steps_, 0.0};
   const double slope = other.dot(map.left());
   // As far as there are steps to take away, or to give back.
   const double whole = steps_.Other().without - steps_.without;
   const double s = std::clamp(steps_.without + whole * slope / bend, 0.0, 1.0);
   const double part = (s - steps_.without) / whole;
-  return 2.0 * part * slope - part * part * bend > kLeastGain;
+  return {{s, steps_.finer}, 2.0 * part * slope - part * part * bend};
+}
+
+/// What makes up for steps are latent forces, too: behind smaller ones other steps may be
+/// likelier.
+bool ModelSearch::TakeStepsBehind(const Standing& standing, std::size_t noise) {
+  const StepsBehind own = LikelySteps(standing, 0);
+  if (own.gain > kLeastGain && ChooseSteps(own.steps.without)) return true;
+  const StepsBehind likely = LikelySteps(standing, noise);
+  if (noise == 0 || likely.gain < kLeastGain) return false;
+  ConvergedModel settled = Settle(Beside(likely.steps), found_.fit,
+                                  NoisesBeside(standing.whitenings.noises[noise]),
+                                  found_.score, likely.gain);
+  if (settled.score() > found_.score - kLeastGain) return false;
+  Say("steps: " + Difference(settled.score()));
+  steps_ = likely.steps;
+  Take(std::move(settled));
+  ChooseSteps(steps_.without);
+  return true;
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
-  if (StepsAreOff(standing) && ChooseSteps()) return Incumbent();
   const Moves& moves = MovesNow(standing);
+  if (TakeStepsBehind(standing, moves.noise)) return Incumbent();
   KeepRivals(moves);
   const Whitenings& whitenings = standing.whitenings;
   const ModelFit& own =
@@ -372,17 +391,20 @@ void ModelSearch::Rate(const Model& rival, double score) {
   }
 }
 
-bool ModelSearch::ChooseSteps() {
+bool ModelSearch::ChooseSteps(std::optional<double> near) {
   // Behind latent forces that make up for steps their share is hardly seen: it is asked again
   // behind those that are left, nearer by.
-  constexpr double kNearBy = 0.1;
-  const double s = steps_.without;
-  if (!ChooseStepsOf({0.0, 0.5, 1.0})) return false;
+  constexpr double kApart = 0.02;
+  const auto choose_near = [&](double share) {
+    const double at = std::clamp(share, kApart, 1.0 - kApart);
+    return ChooseStepsOf({at - kApart, at, at + kApart});
+  };
+  const double before = steps_.without;
+  if (!(near ? choose_near(*near) : ChooseStepsOf({0.0, 0.5, 1.0}))) return false;
   for (int round = 0; round < 3 && !IsOver(); ++round) {
-    const double at = std::clamp(steps_.without, kNearBy, 1.0 - kNearBy);
-    if (!ChooseStepsOf({at - kNearBy, at, at + kNearBy})) break;
+    if (!choose_near(steps_.without)) break;
   }
-  return steps_.without != s;
+  return steps_.without != before;
 }
 
 // What steps do is proportional to them, so that -2 ln L is a parabola over their share.
@@ -431,7 +453,7 @@ bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
 bool ModelSearch::ChooseFinerSteps(double beat) {
   constexpr int kFiner = 4;  // 16 times less of second order
   constexpr int kFinest = 16;
-  constexpr double kShareOfTime = 0.02;
+  constexpr double kShareOfTime = 0.05;
   if (steps_.AreGiven() || steps_.finer == kFinest) return false;
   if (kFiner * seconds_of_run_ > kShareOfTime * (seconds_ - time_.Seconds())) {
     return false;
@@ -440,13 +462,17 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   const double own = 1.0 - steps_.without;
   const PhysicsSteps finer{std::max(0.0, 1.0 - kFiner * own), kFiner * steps_.finer};
   FilterPath path = Filtered(finer);
-  if (found_.path.deviance - path.deviance < kLeastGain) return false;
+  // Values that make up for steps hide them: where little is gained otherwise they are fitted anew.
+  constexpr double kLittle = 0.1;  // of what all did
+  const bool is_little =
+      found_.score - beat < kLittle * (found_.nothing.deviance - found_.score);
+  if (!is_little && found_.path.deviance - path.deviance < kLeastGain) return false;
   ConvergedModel settled = SettleNear(Beside(finer), found_.fit, std::move(path));
   if (settled.score() > beat) return false;
   Say("finer steps: " + Difference(settled.score()));
   steps_ = finer;
   Take(std::move(settled));
-  ChooseSteps();
+  ChooseSteps(steps_.without);
   return true;
 }
 

@@ -85,7 +85,12 @@ class ModelSearch {
   };
   Standing& StandingNow();
   const Moves& MovesNow(Standing& standing);
-  bool StepsAreOff(const Standing& standing) const;
+  struct StepsBehind {
+    PhysicsSteps steps;
+    double gain = 0.0;
+  };
+  StepsBehind LikelySteps(const Standing& standing, std::size_t noise) const;
+  bool TakeStepsBehind(const Standing& standing, std::size_t noise);
   std::optional<Proposal> BestForces(Standing& standing);
   std::optional<Proposal> BestMove(Standing& standing);
   /// How much of its inputs did the machine not feel?
@@ -147,7 +152,8 @@ class ModelSearch {
   }
   /// Is the run of a machine with the physics steps of the model, as one that was simulated
   /// with it, of one that has none, or of shorter ones?
-  bool ChooseSteps();
+  /// @param near  the share of them that is taken away, about; none: it may be any
+  bool ChooseSteps(std::optional<double> near = {});
   bool ChooseStepsOf(const std::vector<double>& shares);
   /// Whether the model's steps hide something that finer ones show.
   /// @param beat  a score
