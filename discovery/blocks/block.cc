@@ -241,6 +241,10 @@ bool Block::IsDryFriction() const {
   return IsResistance() && candidate->effect->kind() == Kind::kDryFriction;
 }
 
+bool Block::GrowsWithLoad() const {
+  return IsResistance() && candidate->effect->kind() == Kind::kLoadFriction;
+}
+
 bool Block::GivesWay() const {
   return candidate && candidate->effect.get() == &YieldingFriction();
 }

@@ -54,6 +54,7 @@ struct Block {
   /// Of a joint, whatever it is proportional to.
   bool IsResistance() const;
   bool IsDryFriction() const;
+  bool GrowsWithLoad() const;
   /// Dry friction of a joint that gives way at rest as MuJoCo's does by default.
   bool GivesWay() const;
   /// Dry friction of a joint that springs before it slides.

@@ -163,9 +163,10 @@ bool MoveSearch::MayCome(const Block& block) const {
   if (!block.HasShape() && any([&](const Block& in) { return &in == &block; })) {
     return false;
   }
-  // What cancels the inputs explains a machine that hardly moves, whatever holds it.
+  // What cancels the inputs explains a machine that hardly moves, whatever holds it, and noise
+  // of inputs that it did not feel: friction that grows with the motor's force does, too.
   if (looked_.at_forces) {
-    if (block.IsOfDrive()) return false;
+    if (block.IsOfDrive() || block.GrowsWithLoad()) return false;
     if (block.IsSmoothFriction()) return true;
   }
   return looked_.at_every_shape || !block.IsResistance() || block.IsSimplest() ||
