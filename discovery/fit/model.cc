@@ -120,6 +120,16 @@ Model Without(Model model, std::size_t place) {
   return model;
 }
 
+bool HaveSameBlocks(const Model& a, const Model& b) {
+  return std::ranges::is_permutation(a, b, {}, &Member::block, &Member::block);
+}
+
+bool AreNear(const Model& a, const Model& b, double share) {
+  return std::ranges::equal(a, b, [&](const Member& one, const Member& other) {
+    return one.block == other.block && one.values.isApprox(other.values, share);
+  });
+}
+
 bool IsResolved(const std::vector<Block>& blocks, const Model& model) {
   for (std::size_t m = 0; m < model.size(); ++m) {
     const auto one = LineOf(blocks[model[m].block], model[m].values);

@@ -29,6 +29,10 @@ using Model = std::vector<Member>;
 Changes ChangesOfModel(const std::vector<Block>& blocks, const Model& model);
 /// Without the member at a place.
 Model Without(Model model, std::size_t place);
+/// The same blocks, in any order.
+bool HaveSameBlocks(const Model& a, const Model& b);
+/// The same blocks in the same order with values that differ by that share at most.
+bool AreNear(const Model& a, const Model& b, double share);
 /// Whether members of one block can be told apart along what was seen: waves that differ by
 /// a turn of their phase (Rayleigh's criterion), resonances that do by both their half
 /// widths, zeta f. Two that are closer are one, of another shape.

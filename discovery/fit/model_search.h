@@ -158,10 +158,8 @@ class ModelSearch {
   /// Whether the model's steps hide something that finer ones show.
   /// @param beat  a score
   bool ChooseFinerSteps(double beat);
-  FilterPath Filtered(PhysicsSteps steps) const {
-    return RunForceFilter(With(found_.fit.model, steps), run_, found_.path.dofs,
-                          found_.path.starts, found_.path.noise);
-  }
+  /// Of infinite deviance where the machine diverges.
+  FilterPath Filtered(PhysicsSteps steps) const;
   /// @param path  with those steps
   void TakeSteps(PhysicsSteps steps, FilterPath path);
   /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.

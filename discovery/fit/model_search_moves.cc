@@ -1,0 +1,265 @@
+// The best of the moves that a model search may make: fitted behind kept gains, and the best of
+// those settled behind noises of their own.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjdiag/discovery/fit/converged_model.h"
+#include "mjdiag/discovery/fit/model_search.h"
+#include "mjdiag/discovery/fit/moved_model.h"
+#include "mjdiag/discovery/fit/pruned_fit.h"
+#include "mjdiag/discovery/regression/force_moves.h"
+#include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/signals/error.h"
+
+namespace mjdiag {
+
+namespace {
+
+// Of fits behind the gains of another model, which the best are fitted anew behind their own: as
+// many as two laws take that say nearly the same, of which one leaves.
+constexpr int kIterations = 6;
+// From there a fit goes the same way.
+constexpr double kAsNear = 1e-3;
+
+}  // namespace
+
+/// The model as it is behind the noise that suits it by now; none if nothing is gained, or a
+/// tenth of what a move promises: it is settled then with that.
+std::optional<ConvergedModel> ModelSearch::Resettled(const Whitenings& whitenings,
+                                                     const Moves& moves,
+                                                     const ModelFit& as_it_is) const {
+  constexpr double kShare = 0.1;
+  const double promised =
+      moves.best.empty() ? 0.0 : moves.score - moves.best.front().score;
+  const double least = std::max(kLeastGain, kShare * promised);
+  const KeptGains& own = whitenings.behind.front().gains();
+  const double before = own.left.squaredNorm() + own.log_determinant +
+                        found_.fit.prior + found_.fit.occam;
+  if (as_it_is.score() > before - least) return std::nullopt;
+  ConvergedModel settled =
+      Settle(Beside(steps_), as_it_is, NoisesBeside(whitenings.noises[moves.noise]),
+             found_.score, before - as_it_is.score());
+  if (settled.score() > found_.score - kLeastGain) return std::nullopt;
+  Say("settled: " + Difference(settled.score()));
+  return settled;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing) {
+  const Moves moves =
+      ForceMovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
+                   standing.exact.terms, at_every_shape_);
+  Say(std::to_string(moves.variations) + " shapes of forces, " +
+      std::to_string(moves.best.size()) + " moves");
+  // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
+  // values are those of the regression until the filter has been run with them.
+  constexpr std::size_t kMost = 3;
+  // What has just been settled is behind the noise that suits it.
+  AsFitted none;
+  return BestOf(moves, kMost, 0, standing.whitenings, none, found_.fit.model.empty());
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
+  const Moves& moves = MovesNow(standing);
+  if (TakeStepsBehind(standing, moves.noise)) return Incumbent();
+  KeepRivals(moves);
+  const Whitenings& whitenings = standing.whitenings;
+  const ModelFit& own =
+      IncumbentBehind({moves.noise, false}, whitenings, standing.as_fitted);
+  if (auto settled = Resettled(whitenings, moves, own)) {
+    return Proposal{std::move(*settled), steps_, found_.input_width, run_};
+  }
+  Say(std::to_string(moves.variations) + " shapes, " +
+      std::to_string(moves.best.size()) + " moves");
+  return BestOf(moves, 4, kIterations, whitenings, standing.as_fitted, false);
+}
+
+ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
+                             const Judged& judged, int iterations) const {
+  const PhysicsSteps steps = judged.second ? steps_.Other() : steps_;
+  return FitModel(InTime([&](const Model& one) { return With(one, steps); },
+                         [this] { return IsOver(); }),
+                  run_, found_.path, whitenings.behind[judged.first].gains(),
+                  found_.blocks, model, iterations);
+}
+
+const ModelFit& ModelSearch::IncumbentBehind(const Judged& judged,
+                                             const Whitenings& whitenings,
+                                             AsFitted& known) const {
+  const auto found = known.find(judged);
+  if (found != known.end()) return found->second;
+  ModelFit fit = Fitted(found_.fit.model, whitenings, judged, kIterations);
+  return known.emplace(judged, std::move(fit)).first->second;
+}
+
+std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
+    const Moves& moves, std::size_t most, int iterations, const Whitenings& whitenings,
+    AsFitted& as_it_is, bool beside_itself) {
+  const auto fitted = [&](const Model& model, const Judged& judged) {
+    return Fitted(model, whitenings, judged, iterations);
+  };
+  struct Tried {
+    ModelFit fit;
+    Judged judged;
+    double gain = 0.0;
+  };
+  std::vector<Tried> tried;
+  const auto try_one = [&](const Model& model, const ModelMove& move) {
+    if (iterations > 0 && std::ranges::any_of(worthless_, [&](const Model& other) {
+          return AreNear(other, model, kAsNear);
+        })) {
+      return;
+    }
+    try {
+      const Judged judged{std::min(move.noise, whitenings.behind.size() - 1),
+                          move.other_steps};
+      ModelFit fit = fitted(model, judged);
+      double gain = moves.score - move.score;
+      if (iterations > 0) {
+        fit = Pruned(found_.blocks, std::move(fit),
+                     [&](const Model& other) { return fitted(other, judged); });
+        gain = IncumbentBehind(judged, whitenings, as_it_is).score() - fit.score();
+      }
+      const auto is_this = [&](const Model& other) {
+        return HaveSameBlocks(other, fit.model);
+      };
+      if (std::ranges::any_of(hopeless_, is_this) ||
+          std::ranges::any_of(tried, is_this, [](const Tried& one) -> const Model& {
+            return one.fit.model;
+          })) {
+        return;
+      }
+      if (!IsResolved(found_.blocks, fit.model)) {
+        Decide(fit.model, -gain, "two of its members cannot be told apart");
+        return;
+      }
+      char text[80];
+      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
+                    -gain);
+      Say(text + ModelText(found_.blocks, fit.model));
+      Rate(model, -gain);
+      if (gain < kLeastGain) {
+        Decide(fit.model, -gain, "fitted, it is worth less than it costs");
+        if (iterations > 0) worthless_.push_back(model);
+      }
+      tried.push_back({std::move(fit), judged, gain});
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  };
+  const auto may_be = [&](const ModelMove& move) { return MayBe(move); };
+  for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
+    if (IsOver()) break;
+    const Model model = After(*move, found_.fit.model);
+    try_one(model, *move);
+    // Behind what sticks a filter may be lost, or without it: both are tried of what comes in.
+    const bool rubs = std::ranges::any_of(move->added, [&](const Added& added) {
+      return found_.blocks[added.variation.block].IsDryFriction();
+    });
+    const auto try_other = [&](const Model& other) {
+      if (!HaveSameBlocks(other, model)) try_one(other, *move);
+    };
+    if (rubs || iterations == 0) try_other(Creeping(found_.blocks, model));
+    if (iterations > 0) continue;
+    try_other(Abrupt(found_.blocks, model));
+    // A noise that is less likely than another one is no reason for a law.
+    if (beside_itself) try_one(found_.fit.model, *move);
+  }
+  std::ranges::sort(tried, std::greater<>(), &Tried::gain);
+  // Kept gains are those of what the machine was without a move: which is the best is said
+  // by the filters of the machines with each.
+  std::erase_if(tried, [&](const Tried& one) {
+    // Kept gains tell what is gained to a factor of two.
+    if (one.gain < std::max(kLeastGain, 0.5 * tried.front().gain)) {
+      Decide(one.fit.model, -one.gain, "another one is worth more than twice as much");
+      return true;
+    }
+    if (MayHave(one.fit.model)) return false;
+    Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
+    return true;
+  });
+  const bool has_itself = std::ranges::any_of(tried, [&](const Tried& one) {
+    return HaveSameBlocks(one.fit.model, found_.fit.model);
+  });
+  const std::size_t most_filtered = has_itself ? 4 : 3;
+  while (tried.size() > most_filtered) {
+    Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
+    tried.pop_back();
+  }
+  std::vector<std::optional<ConvergedModel>> settled(tried.size());
+  for (const bool other_steps : {false, true}) {
+    std::vector<ModelFit> fits;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      if (tried[i].judged.second != other_steps) continue;
+      fits.push_back(tried[i].fit);
+      places.push_back(i);
+    }
+    if (fits.empty()) continue;
+    const Tried& first = tried[places.front()];
+    auto rivals = SettleRivals(
+        Beside(other_steps ? steps_.Other() : steps_), std::move(fits),
+        NoisesBeside(whitenings.noises[first.judged.first]), found_.score, first.gain);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      settled[places[i]] = std::move(rivals[i]);
+    }
+  }
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    if (!settled[i]) continue;
+    Say("  filtered: " + Difference(settled[i]->score()) + "  " +
+        ModelText(found_.blocks, settled[i]->fit.model));
+    if (!IsOne(settled[i]->fit.model)) continue;
+    const double least = best ? settled[*best]->score() : found_.score - kLeastGain;
+    if (settled[i]->score() < least) best = i;
+  }
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    constexpr double kHopeless = 10.0;  // times what it was to gain
+    if (!settled[i] ||
+        settled[i]->score() - found_.score > kHopeless * std::abs(tried[i].gain)) {
+      hopeless_.push_back(tried[i].fit.model);
+    }
+    if (!settled[i]) continue;
+    const double score = settled[i]->score() - found_.score;
+    Rate(settled[i]->fit.model, score);
+    Decide(settled[i]->fit.model, score,
+           best == i ? "taken"
+           : !IsOne(settled[i]->fit.model)
+               ? "its values are at the end of what is known, or two of it are one"
+           : score < -kLeastGain
+               ? "another one is better"
+               : "behind the noise that suits it, it is worth less than it costs");
+  }
+  if (!best) return std::nullopt;
+  return Proposal{std::move(*settled[*best]),
+                  tried[*best].judged.second ? steps_.Other() : steps_,
+                  found_.input_width, run_};
+}
+
+/// Of a model that nothing is better than. Where first order says that something is, and a
+/// fit does not, that is as good.
+void ModelSearch::KeepRivals(const Moves& moves) {
+  found_.rivals.clear();
+  for (const std::vector<ModelMove>* some : {&moves.best, &moves.near}) {
+    for (ModelMove move : *some) {
+      move.score = std::max(0.0, move.score - moves.score);
+      found_.rivals.push_back(std::move(move));
+    }
+  }
+}
+
+void ModelSearch::Rate(const Model& rival, double score) {
+  for (ModelMove& move : found_.rivals) {
+    if (HaveSameBlocks(After(move, found_.fit.model), rival))
+      move.score = std::max(0.0, score);
+  }
+}
+
+}  // namespace mjdiag
