@@ -175,6 +175,7 @@ void ModelSearch::Prepare() {
   BoundDriveLimits(candidates_, machine_, motion);
   BoundByReadings(candidates_, machine_, whole_);
   BoundPlays(candidates_, machine_, reading_sd_);
+  BoundSprings(candidates_, machine_, whole_.sample_time);
   const std::vector<ModelParameter> in_doubt = IsExact(machine_.plant())
                                                    ? std::vector<ModelParameter>{}
                                                    : NumbersOf(machine_.plant());

@@ -91,7 +91,10 @@ Model Springing(const std::vector<Block>& blocks, Model model,
         InPlaceOf(blocks, block, [](const Block& one) { return one.Springs(); });
     const double length = lengths[block.candidate->joint];
     if (!other || !(length > 0.0)) continue;
-    member = {*other, Eigen::VectorXd{{member.values[0], member.values[0] / length}}};
+    const FitParameter& stiffness = blocks[*other].candidate->parameters.back();
+    const double force = member.values[0];
+    member = {*other,
+              Eigen::VectorXd{{force, std::min(force / length, stiffness.upper)}}};
   }
   return model;
 }

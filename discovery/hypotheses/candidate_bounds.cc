@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mjdiag/plugin/effects/effect.h"
+#include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/regressor_signals.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
 
@@ -100,6 +101,18 @@ void BoundPlays(std::vector<Candidate>& candidates, const Machine& machine,
   for (Candidate& candidate : candidates) {
     const double least = least_of(candidate);
     if (least > 0.0) gap_of(candidate).lower = std::max(gap_of(candidate).lower, least);
+  }
+}
+
+void BoundSprings(std::vector<Candidate>& candidates, const Machine& machine,
+                  double sample_time) {
+  constexpr double kOfNyquist = 0.5;
+  const double fastest = kOfNyquist * std::numbers::pi / sample_time;
+  for (Candidate& candidate : candidates) {
+    if (candidate.effect.get() != &PreslidingHysteresis()) continue;
+    const double mass = machine.mechanics().M(candidate.joint, candidate.joint);
+    FitParameter& stiffness = candidate.parameters.back();
+    stiffness.upper = std::min(stiffness.upper, mass * fastest * fastest);
   }
 }
 

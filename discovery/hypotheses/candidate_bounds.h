@@ -20,6 +20,11 @@ namespace mjdiag {
 void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion);
 
+/// What springs before it slides has no damper there: a frequency above half of what samples
+/// tell (Nyquist) is one that neither a record nor a filter follows.
+void BoundSprings(std::vector<Candidate>& candidates, const Machine& machine,
+                  double sample_time);
+
 /// Lets the frequencies of a candidate reach up to half of the rate of a finer look.
 void WidenFrequencies(Candidate& candidate, double sample_time);
 
