@@ -1,8 +1,9 @@
 # Instructions that the build may use. Filters are products of small dense matrices, which
-# registers of four numbers (AVX2, FMA) make in half the time.
-set(MJDIAG_PROCESSOR NATIVE CACHE STRING
-    "Processors that the build is for: NATIVE, those like this one, or ANY, as packages are")
-set_property(CACHE MJDIAG_PROCESSOR PROPERTY STRINGS NATIVE ANY)
+# registers of four numbers (AVX2, FMA) make in half the time; sums of what is not allocated at
+# 32 bytes depend on where it lies then, in their last bits, from one run to the next.
+set(MJDIAG_PROCESSOR ANY CACHE STRING
+    "Processors that the build is for: ANY, with the same bits on every run, or NATIVE, those like this one")
+set_property(CACHE MJDIAG_PROCESSOR PROPERTY STRINGS ANY NATIVE)
 
 # Arrays of Eigen pass between the library and programs that use it: both have to agree on
 # their alignment, whatever instructions each is built with.

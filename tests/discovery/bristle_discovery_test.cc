@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "mjdiag/discovery/discovery.h"
 #include "support/stage.h"
@@ -18,7 +19,9 @@ void ExpectFound(const std::string& spec) {
   options.choice.only = {"friction"};
   const Discovery answer =
       Discover(stage.machine, stage.Measure({spec}), nullptr, options);
-  ASSERT_EQ(answer.causes.size(), 1u);
+  std::string names;
+  for (const FoundCause& one : answer.causes) names += one.cause.name() + " ";
+  ASSERT_EQ(answer.causes.size(), 1u) << names;
   EXPECT_EQ(answer.causes[0].cause.name(), truth.name());
   EXPECT_EQ(answer.verdict, DiscoveryVerdict::kExplained);
   Eigen::Index i = 0;
