@@ -54,8 +54,8 @@ std::vector<Model> OtherForms(const ConvergedBeside& beside,
                            Abrupt(beside.blocks, model)};
   const Machine machine = beside.machine_with(model);
   const VectorXd strokes = StrokesOf(machine.plant(), found.path);
-  // From what encoders tell of their stroke to what gears wind up: a fit finds the rest.
-  for (const double share : {1e-5, 1e-4, 1e-3, 1e-2}) {
+  // From what encoders tell of their stroke to what a regression sees.
+  for (const double share : {1e-5, 1e-4, 1e-3}) {
     forms.push_back(Springing(beside.blocks, model, share * strokes));
   }
   const VectorXd fastest = FastestOf(machine.plant(), found.path);
