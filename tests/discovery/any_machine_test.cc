@@ -115,11 +115,12 @@ TEST(DiscoverAnyMachine, FindsFrictionThatSpringsBeforeItSlides) {
   ASSERT_THAT(NamesOf(answer), ElementsAre("presliding_hysteresis@j"));
   EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.3, 0.003);
   EXPECT_NEAR(answer.causes[0].parameters[1].value, 300.0, 30.0);
-  // One curve: all but a part at reversals is dry.
+  // One curve: dry, but where it turns round within its springs, which it does often.
   ASSERT_EQ(answer.resistances.size(), 1u);
   const FoundResistance& curve = answer.resistances[0];
   EXPECT_EQ(curve.site, "j");
-  EXPECT_NEAR(curve.dry.value, 0.3, 0.03);
+  EXPECT_GT(curve.dry.value, 0.2);
+  EXPECT_LT(curve.dry.value, 0.3);
   EXPECT_NEAR(curve.force[curve.force.size() - 1], 0.3, 0.006);
 }
 
