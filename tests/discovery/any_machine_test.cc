@@ -124,20 +124,6 @@ TEST(DiscoverAnyMachine, FindsFrictionThatSpringsBeforeItSlides) {
   EXPECT_NEAR(curve.force[curve.force.size() - 1], 0.3, 0.006);
 }
 
-// To a law of one size it is half as large again, and what is off after that a delay and a
-// weak motor.
-TEST(DiscoverAnyMachine, FindsFrictionThatHoldsByMoreThanItSlidesBy) {
-  const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
-  const Machine rubs = valve.With(
-      {{},
-       {ParseEffect("stribeck_friction@j:coulomb=0.3,breakaway=0.15,velocity=0.03")}});
-  const Discovery answer = Asked(valve, Measure(rubs, TwoSines, 1e-5));
-  ASSERT_THAT(NamesOf(answer), ElementsAre("stribeck_friction@j"));
-  EXPECT_NEAR(answer.causes[0].parameters[0].value, 0.3, 0.006);
-  EXPECT_NEAR(answer.causes[0].parameters[1].value, 0.15, 0.015);
-  EXPECT_NEAR(answer.causes[0].parameters[2].value, 0.03, 0.006);
-}
-
 // Two laws are one curve: what is dry of both, and what is viscous.
 TEST(DiscoverAnyMachine, SaysWhatResistsAJointAsOneCurve) {
   const Machine valve = MachineOf(kValve, "element = \"y\"\nunit = \"rad\"");
