@@ -48,27 +48,33 @@ Moving MovingOf(const FilterPath& path, Index dof, double still) {
   return moving;
 }
 
-/// What a column of ticks is as a force at a joint, where that moves.
-VectorXd ForceAt(const Column& column, const mjModel& plant, const FilterPath& path,
-                 Index dof, const Moving& moving) {
+/// The row of a joint in the mass matrix, nv x samples in which it moves.
+MatrixXd MassesAt(const mjModel& plant, const FilterPath& path, Index dof,
+                  const Moving& moving) {
   const DataPtr at = MakeData(plant);
-  VectorXd dv = VectorXd::Zero(plant.nv);
-  VectorXd force(std::ssize(moving.samples));
-  VectorXd momentum(plant.nv);
-  for (Index i = 0; i < force.size(); ++i) {
+  const VectorXd unit = VectorXd::Unit(plant.nv, dof);
+  MatrixXd masses(plant.nv, std::ssize(moving.samples));
+  for (Index i = 0; i < masses.cols(); ++i) {
     const Index k = moving.samples[static_cast<std::size_t>(i)];
-    dv.setZero();
-    for (const auto& [state, signal] : column.states) {
-      if (state >= plant.nv && state < 2 * plant.nv) dv[state - plant.nv] = signal[k];
-    }
     SetState(plant, path.states[static_cast<std::size_t>(k)], *at);
     mj_kinematics(&plant, at.get());
     mj_comPos(&plant, at.get());
     mj_crb(&plant, at.get());
-    mj_mulM(&plant, at.get(), momentum.data(), dv.data());
-    force[i] = momentum[dof] / path.sample_time;
+    mj_mulM(&plant, at.get(), masses.col(i).data(), unit.data());
   }
-  return force;
+  return masses;
+}
+
+/// What a column of ticks is as a force at a joint, where that moves.
+VectorXd ForceAt(const Column& column, const MatrixXd& masses, double sample_time,
+                 const Moving& moving) {
+  const Index nv = masses.rows();
+  VectorXd force = VectorXd::Zero(masses.cols());
+  for (const auto& [state, signal] : column.states) {
+    if (state < nv || state >= 2 * nv) continue;
+    force += masses.row(state - nv).transpose().cwiseProduct(signal(moving.samples));
+  }
+  return force / sample_time;
 }
 
 /// What a force of a joint says as a curve: [dry, viscous, at every speed]. Linear in it.
@@ -80,7 +86,14 @@ class CurveOf {
         speeds_(speeds) {
     A_ << sign_, moving.speed, VectorXd::Ones(sign_.size());
     normal_.compute(A_.transpose() * A_);
-    for (Index s = 0; s < speeds.size(); ++s) near_.push_back(NearestTo(moving, s));
+    near_.resize(static_cast<std::size_t>(speeds.size()));
+    for (Index i = 0; i < moving.speed.size(); ++i) {
+      const double v = std::abs(moving.speed[i]);
+      Index nearest = 0;
+      (speeds.array().log() - std::log(v)).abs().minCoeff(&nearest);
+      auto& [forwards, backwards] = near_[static_cast<std::size_t>(nearest)];
+      (moving.speed[i] > 0.0 ? forwards : backwards).push_back(i);
+    }
   }
 
   VectorXd operator()(const VectorXd& force) const {
@@ -103,24 +116,12 @@ class CurveOf {
 
  private:
   using Sides = std::pair<std::vector<Index>, std::vector<Index>>;
-  /// Samples that are nearer to a speed than to the others.
-  Sides NearestTo(const Moving& moving, Index s) const {
-    Sides sides;
-    for (Index i = 0; i < moving.speed.size(); ++i) {
-      const double v = std::abs(moving.speed[i]);
-      Index nearest = 0;
-      (speeds_.array().log() - std::log(v)).abs().minCoeff(&nearest);
-      if (nearest != s) continue;
-      (moving.speed[i] > 0.0 ? sides.first : sides.second).push_back(i);
-    }
-    return sides;
-  }
 
   VectorXd sign_;
   MatrixXd A_;
   Eigen::LDLT<MatrixXd> normal_;
   VectorXd speeds_;
-  std::vector<Sides> near_;
+  std::vector<Sides> near_;  // samples that are nearer to a speed than to the others
 };
 
 /// Of as many samples each.
@@ -143,7 +144,6 @@ struct Around {
 
 Around AroundOf(const AnswerData& data, const Model& model,
                 const std::set<std::size_t>& members) {
-  constexpr double kFurther = 1e-3;
   Model without;
   for (std::size_t m = 0; m < model.size(); ++m) {
     if (!members.contains(m)) without.push_back(model[m]);
@@ -154,8 +154,7 @@ Around AroundOf(const AnswerData& data, const Model& model,
   for (Index i = 0; i < x.size(); ++i) {
     const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
     if (!members.contains(one.member)) continue;
-    double step = one.is_log ? kFurther : std::max(kFurther * std::abs(x[i]), 1e-6);
-    if (x[i] + step > one.upper) step = -step;
+    const double step = one.Step(x[i]);
     VectorXd moved = x;
     moved[i] += step;
     around.machines.push_back({data.With(At(coordinates, model, moved)), step});
@@ -193,8 +192,9 @@ FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
   const std::vector<Column> columns =
       TickColumns(data.With(model), data.run.seen, path, around.machines);
   const CurveOf curve_of(moving, found.speeds);
+  const MatrixXd masses = MassesAt(plant, path, dof, moving);
   const auto curve = [&](const Column& column) {
-    return curve_of(ForceAt(column, plant, path, dof, moving));
+    return curve_of(ForceAt(column, masses, path.sample_time, moving));
   };
   // What the machine does more without them is what they take.
   const VectorXd value = curve(columns.front());

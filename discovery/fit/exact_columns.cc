@@ -11,13 +11,6 @@ namespace mjdiag {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-namespace {
-
-/// One coordinate further.
-constexpr double kStep = 1e-3;
-
-}  // namespace
-
 ExactColumns ExactColumnsOf(const MachineWith& machine_with, const Machine& other_steps,
                             const MeasuredRun& run, const FilterPath& path,
                             const std::vector<Block>& blocks, const Model& model) {
@@ -26,9 +19,7 @@ ExactColumns ExactColumnsOf(const MachineWith& machine_with, const Machine& othe
   std::vector<OtherMachine> others;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const auto place = static_cast<Index>(i);
-    const Coordinate& one = coordinates[i];
-    double step = one.is_log ? kStep : std::max(kStep * std::abs(x[place]), 1e-6);
-    if (x[place] + step > one.upper) step = -step;
+    const double step = coordinates[i].Step(x[place]);
     VectorXd moved = x;
     moved[place] += step;
     others.push_back({machine_with(At(coordinates, model, moved)), step});

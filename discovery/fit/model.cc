@@ -95,6 +95,12 @@ double Coordinate::ToX(double theta) const {
   return theta > 0.0 ? std::log(theta) / unit : -kAny;
 }
 
+double Coordinate::Step(double x) const {
+  constexpr double kStep = 1e-3;
+  const double step = is_log ? kStep : std::max(kStep * std::abs(x), 1e-6);
+  return x + step > upper ? -step : step;
+}
+
 double Coordinate::ToTheta(double x) const {
   return is_log ? std::exp(unit * x) : unit * x;
 }

@@ -52,6 +52,8 @@ struct Coordinate {
   double upper = 0.0;
 
   double ToX(double theta) const;
+  /// From x to a place near by, within the bounds, for a difference.
+  double Step(double x) const;
   double ToTheta(double x) const;
 };
 

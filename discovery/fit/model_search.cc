@@ -1,12 +1,8 @@
 #include "mjdiag/discovery/fit/model_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <functional>
 #include <iterator>
-#include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -16,23 +12,18 @@
 #include "mjdiag/discovery/fit/exact_columns.h"
 #include "mjdiag/discovery/fit/first_look.h"
 #include "mjdiag/discovery/fit/input_choice.h"
-#include "mjdiag/discovery/fit/moved_model.h"
 #include "mjdiag/discovery/fit/other_friction.h"
-#include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
-#include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 ConvergedBeside ModelSearch::Beside(PhysicsSteps steps) const {
@@ -69,6 +60,7 @@ void ModelSearch::Adopt(Proposal proposal) {
   ChooseFriction();
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
+
 ModelSearch::Standing& ModelSearch::StandingNow() {
   if (!standing_) {
     standing_ = Standing{WhiteningsOf(found_.path),

@@ -71,8 +71,9 @@ ModelSearch::StepsBehind ModelSearch::LikelySteps(const Standing& standing,
 bool ModelSearch::TakeStepsBehind(const Standing& standing, std::size_t noise) {
   const StepsBehind own = LikelySteps(standing, 0);
   if (own.gain > kLeastGain && ChooseSteps(own.steps.without)) return true;
+  if (noise == 0) return false;
   const StepsBehind likely = LikelySteps(standing, noise);
-  if (noise == 0 || likely.gain < kLeastGain) return false;
+  if (likely.gain < kLeastGain) return false;
   auto settled = SettleRivals(Beside(likely.steps), {found_.fit},
                               NoisesBeside(standing.whitenings.noises[noise]),
                               found_.score, likely.gain);

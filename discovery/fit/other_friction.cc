@@ -17,11 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The same blocks in the same places.
-bool IsSame(const Model& a, const Model& b) {
-  return std::ranges::equal(a, b, {}, &Member::block, &Member::block);
-}
-
 /// How far every joint of one degree of freedom went.
 VectorXd StrokesOf(const mjModel& plant, const FilterPath& path) {
   VectorXd strokes = VectorXd::Zero(plant.nv);
@@ -62,7 +57,7 @@ std::vector<Model> OtherForms(const ConvergedBeside& beside,
   for (const double share : {0.003, 0.01, 0.03, 0.1}) {
     forms.push_back(BreakingAway(beside.blocks, model, share * fastest));
   }
-  std::erase_if(forms, [&](const Model& one) { return IsSame(one, model); });
+  std::erase_if(forms, [&](const Model& one) { return HaveSameBlocks(one, model); });
   return forms;
 }
 
