@@ -189,10 +189,11 @@ FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
   found.speeds = SpeedsOf(moving);
   const Model& model = answer.fit.model;
   const Around around = AroundOf(data, model, members);
+  const Machine machine = data.With(model);
   const std::vector<Column> columns =
-      TickColumns(data.With(model), data.run.seen, path, around.machines);
+      TickColumns(machine, data.run.seen, path, around.machines);
   const CurveOf curve_of(moving, found.speeds);
-  const MatrixXd masses = MassesAt(plant, path, dof, moving);
+  const MatrixXd masses = MassesAt(machine.plant(), path, dof, moving);
   const auto curve = [&](const Column& column) {
     return curve_of(ForceAt(column, masses, path.sample_time, moving));
   };

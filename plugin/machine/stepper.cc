@@ -15,6 +15,22 @@ void ReadForces(const mjModel& model, mjData& data) noexcept {
   mj_sensorAcc(&model, &data);
 }
 
+namespace {
+
+/// mj_step1 without what follows from positions alone.
+void BeginStepInPlace(const mjModel& model, mjData& data) {
+  mj_checkVel(&model, &data);
+  if (data.nefc > 0) {
+    // Effects change bounds of friction.
+    mj_makeConstraint(&model, &data);
+    mj_projectConstraint(&model, &data);
+  }
+  mj_fwdVelocity(&model, &data);
+  mj_sensorVel(&model, &data);
+}
+
+}  // namespace
+
 Stepper::Stepper(const Machine& machine)
     : effects_(machine.channels(), machine.plant(), machine.effects()),
       tick_(machine.rates().tick()),
@@ -65,9 +81,14 @@ void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,
 
 void Stepper::AdvanceSteps(int steps, const mjModel& model, mjData& data,
                            TickControl& control,
-                           const std::function<void()>& after_step) {
+                           const std::function<void()>& after_step,
+                           bool has_positions) {
   for (int i = 0; i < steps; ++i) {
-    mj_step1(&model, &data);
+    if (i == 0 && has_positions) {
+      BeginStepInPlace(model, data);
+    } else {
+      mj_step1(&model, &data);
+    }
     if (!held_.empty()) mju_zero(data.qfrc_applied, static_cast<int>(model.nv));
     Act(model, data, control);
     if (!held_.empty()) {

@@ -57,8 +57,12 @@ class Stepper {
   void Advance(const mjModel& model, mjData& data, TickControl& control,
                const std::function<void()>& after_step = {});
   /// Its first physics steps.
+  /// @param has_positions  whether `data` have what follows from their positions, as behind a
+  ///                       step of Euler's from the same positions: what MuJoCo takes most of
+  ///                       its time for
   void AdvanceSteps(int steps, const mjModel& model, mjData& data, TickControl& control,
-                    const std::function<void()>& after_step = {});
+                    const std::function<void()>& after_step = {},
+                    bool has_positions = false);
   /// Whether the next physics step is the first of a tick.
   bool AtTickStart() const { return substep_ == 0 && stage_ == 0; }
   /// What the sensors read at the start of this tick, as the control was told.

@@ -78,27 +78,35 @@ TickDifferences::TickDifferences(TickMap& map, double tick, std::vector<Index> d
       force_steps_(ForceSteps(map.model(), steps_, tick)) {}
 
 TickTangent TickDifferences::Of(const PlantState& from, const VectorXd& forces,
-                                std::int64_t tick, TickControl& control) {
-  return By(&TickMap::Probe, from, forces, tick, control);
+                                std::int64_t tick, TickControl& control,
+                                std::span<const Index> without) {
+  return By(&TickMap::Probe, from, forces, tick, control, without);
 }
 
 TickTangent TickDifferences::OfFirstStep(const PlantState& from, const VectorXd& forces,
-                                         std::int64_t tick, TickControl& control) {
-  return By(&TickMap::ProbeStep, from, forces, tick, control);
+                                         std::int64_t tick, TickControl& control,
+                                         std::span<const Index> without) {
+  return By(&TickMap::ProbeStep, from, forces, tick, control, without);
 }
 
 TickTangent TickDifferences::By(Probe probe, const PlantState& from,
                                 const VectorXd& forces, std::int64_t tick,
-                                TickControl& control) {
+                                TickControl& control, std::span<const Index> without) {
   const Index ns = steps_.size();
   const Index nv = force_steps_.size();
-  TickTangent tangent{MatrixXd(ns, ns), MatrixXd::Zero(ns, nv),
-                      MatrixXd(map_.sensors(), ns), MatrixXd::Zero(map_.sensors(), nv)};
-  for (Index i = 0; i < ns; ++i) {
-    Column(probe, from, forces, tick, control, i, steps_[i], tangent);
-  }
+  TickTangent tangent{MatrixXd::Zero(ns, ns), MatrixXd::Zero(ns, nv),
+                      MatrixXd::Zero(map_.sensors(), ns),
+                      MatrixXd::Zero(map_.sensors(), nv)};
+  // Forces first, then velocities: ticks from the same positions follow each other.
   for (const Index dof : dofs_) {
     ForceColumn(probe, from, forces, tick, control, dof, force_steps_[dof], tangent);
+  }
+  const auto is_without = [&](Index state) {
+    return state < 2 * nv && std::ranges::find(without, state % nv) != without.end();
+  };
+  for (Index i = ns - 1; i >= 0; --i) {
+    if (is_without(i)) continue;
+    Column(probe, from, forces, tick, control, i, steps_[i], tangent);
   }
   return tangent;
 }
@@ -109,15 +117,18 @@ void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
                               const VectorXd& sd, const VectorXd& force_sd,
                               TickTangent& tangent) {
   const Probe probe = of_step ? &TickMap::ProbeStep : &TickMap::Probe;
+  const auto column = [&](Index state) {
+    Column(probe, from, forces, tick, control, state,
+           std::max(steps_[state], sd[state]), tangent);
+  };
   for (const Index dof : dofs) {
-    for (const Index state : {dof, force_steps_.size() + dof}) {
-      if (state == dof && !positions) continue;
-      const double step = std::max(steps_[state], sd[state]);
-      Column(probe, from, forces, tick, control, state, step, tangent);
-    }
-    if (std::ranges::find(dofs_, dof) == dofs_.end()) continue;
-    const double step = std::max(force_steps_[dof], force_sd[dof]);
-    ForceColumn(probe, from, forces, tick, control, dof, step, tangent);
+    if (of_step || std::ranges::find(dofs_, dof) == dofs_.end()) continue;
+    ForceColumn(probe, from, forces, tick, control, dof,
+                std::max(force_steps_[dof], force_sd[dof]), tangent);
+  }
+  for (const Index dof : dofs) column(force_steps_.size() + dof);
+  for (const Index dof : dofs) {
+    if (positions) column(dof);
   }
 }
 

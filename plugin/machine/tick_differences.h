@@ -32,13 +32,17 @@ class TickDifferences {
   TickDifferences(TickMap& map, double tick, std::vector<Eigen::Index> dofs);
 
   /// About the Run that was the last one. NumericalError if a tick beside it diverges.
+  /// @param without  degrees of freedom whose columns q and v are left 0
   TickTangent Of(const PlantState& from, const Eigen::VectorXd& forces,
-                 std::int64_t tick, TickControl& control);
-  /// The same of its first physics step alone.
+                 std::int64_t tick, TickControl& control,
+                 std::span<const Eigen::Index> without = {});
+  /// The same of its first physics step alone, of which forces are a linear function where
+  /// nothing sticks.
   TickTangent OfFirstStep(const PlantState& from, const Eigen::VectorXd& forces,
-                          std::int64_t tick, TickControl& control);
-  /// Computes columns q, v and w of some degrees of freedom anew, as secants over what is
-  /// not known of them:
+                          std::int64_t tick, TickControl& control,
+                          std::span<const Eigen::Index> without = {});
+  /// Computes columns q and v of some degrees of freedom anew, and of a whole tick w, as
+  /// secants over what is not known of them:
   ///   (F(x + sd_i e_i) - F(x - sd_i e_i)) / (2 sd_i)
   /// M. Norgaard, N. K. Poulsen, O. Ravn, "New developments in state estimation for
   /// nonlinear systems", Automatica 36(11), 2000.
@@ -61,7 +65,8 @@ class TickDifferences {
                                                     const Eigen::VectorXd&,
                                                     std::int64_t, TickControl&);
   TickTangent By(Probe probe, const PlantState& from, const Eigen::VectorXd& forces,
-                 std::int64_t tick, TickControl& control);
+                 std::int64_t tick, TickControl& control,
+                 std::span<const Eigen::Index> without);
   void Column(Probe probe, const PlantState& from, const Eigen::VectorXd& forces,
               std::int64_t tick, TickControl& control, Eigen::Index state, double step,
               TickTangent& tangent);

@@ -102,6 +102,8 @@ const TickMap::Result& TickMap::ProbeStep(const PlantState& from,
 void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
                       const VectorXd& forces, std::int64_t tick, TickControl& control,
                       Result& result) {
+  const bool has_positions = computed_at_.size() > 0 && computed_at_ == from.position;
+  computed_at_.resize(0);
   SetState(*model_, from, *data_);
   SetBodies(from.bodies, stepper.bodies());
   data_->time = static_cast<double>(tick) * tick_;
@@ -109,29 +111,32 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
   result.pattern = 0xcbf29ce484222325ULL;
   result.is_constrained = false;
   std::ranges::fill(friction_, Friction{});
-  stepper.AdvanceSteps(steps, *model_, *data_, control, [&] {
-    result.is_constrained |= data_->nefc > 0;
-    for (int row = 0; row < data_->nefc; ++row) {
-      const int type = data_->efc_type[row];
-      const int id = data_->efc_id[row];
-      const int state = data_->efc_state[row];
-      if (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON) {
-        Friction& friction = friction_[static_cast<std::size_t>(
-            type == mjCNSTR_FRICTION_DOF ? id : model_->nv + id)];
-        // Which way a joint slides makes no difference to its first order.
-        const bool slides =
-            state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
-        (slides ? friction.slides : friction.sticks) = true;
-        continue;
-      }
-      Mix(result.pattern, static_cast<std::uint64_t>(type));
-      Mix(result.pattern, static_cast<std::uint64_t>(id));
-      Mix(result.pattern, static_cast<std::uint64_t>(state));
-    }
-    for (const int motor : stepper.off()) {
-      Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
-    }
-  });
+  stepper.AdvanceSteps(
+      steps, *model_, *data_, control,
+      [&] {
+        for (int row = 0; row < data_->nefc; ++row) {
+          const int type = data_->efc_type[row];
+          const int id = data_->efc_id[row];
+          const int state = data_->efc_state[row];
+          if (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON) {
+            Friction& friction = friction_[static_cast<std::size_t>(
+                type == mjCNSTR_FRICTION_DOF ? id : model_->nv + id)];
+            // Which way a joint slides makes no difference to its first order.
+            const bool slides =
+                state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
+            (slides ? friction.slides : friction.sticks) = true;
+            continue;
+          }
+          result.is_constrained = true;
+          Mix(result.pattern, static_cast<std::uint64_t>(type));
+          Mix(result.pattern, static_cast<std::uint64_t>(id));
+          Mix(result.pattern, static_cast<std::uint64_t>(state));
+        }
+        for (const int motor : stepper.off()) {
+          Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
+        }
+      },
+      has_positions);
   // In which steps of a tick a joint sticks that slides in others is noise.
   for (const Friction& friction : friction_) {
     Mix(result.pattern, (friction.sticks ? 1U : 0U) + (friction.slides ? 2U : 0U));
@@ -148,11 +153,16 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
   result.state = StateOf(*model_, *data_);
   result.state.bodies = StateOf(stepper.bodies());
   result.diverged = HasDiverged(*data_);
-  if (result.diverged) mj_resetData(model_.get(), data_.get());
+  if (result.diverged) {
+    mj_resetData(model_.get(), data_.get());
+  } else if (steps == 1 && !reads_at_end_ && model_->opt.integrator != mjINT_RK4) {
+    computed_at_ = from.position;
+  }
 }
 
 VectorXd TickMap::Read(const PlantState& at, std::int64_t tick) {
   SetState(*model_, at, *data_);
+  computed_at_ = at.position;
   mj_fwdPosition(model_.get(), data_.get());
   mj_sensorPos(model_.get(), data_.get());
   mj_fwdVelocity(model_.get(), data_.get());

@@ -32,7 +32,8 @@ class TickMap {
     /// Of what decides by switching: constraints that are active and how, in every
     /// physics step, of dry friction in all steps together, and actuators that are off.
     std::uint64_t pattern = 0;
-    bool is_constrained = false;  ///< any constraint, in any step
+    /// Any constraint but dry friction, in any step.
+    bool is_constrained = false;
     bool diverged = false;
   };
 
@@ -95,7 +96,9 @@ class TickMap {
   std::vector<bool> late_;
   bool reads_at_end_ = false;
   std::vector<Friction> friction_;  // of joints, then of tendons
-  Result last_;                     // of Run
+  // Those of which data_ have what follows from positions; of no size: none.
+  Eigen::VectorXd computed_at_;
+  Result last_;  // of Run
   Result probed_;
 };
 

@@ -42,6 +42,9 @@ class Backwards {
 
  private:
   void Forwards();
+  NoiseSlope Back();
+  /// Whether a slope is one: -2 ln L is no steeper than what readings add to it, some times.
+  bool IsSlope(const VectorXd& slope) const;
   void Tick(Index k);
   /// @return the slope by the variance of that reading
   double Take(Index place);
@@ -52,6 +55,11 @@ class Backwards {
   Index first_, count_, nf_, n_, ns_;
   LinearPass pass_;
   double deviance_ = 0.0;
+  double steepest_ = 0.0;  // what readings add
+  // Whether what a cut reading is taken for stays as it is. A reading beyond the corner
+  // corrects by the same whatever it is: a machine that falls falls on by first order, though
+  // all of its readings together hold it.
+  bool keeps_weights_ = false;
   std::vector<Reading> readings_;
   std::vector<Index> ends_;  // of the readings of every tick
   MatrixXd u_, c_;           // n x readings
@@ -78,6 +86,7 @@ void Backwards::Forwards() {
     const ForceKalman& kalman = pass_.kalman;
     const auto place = std::ssize(readings_);
     deviance_ += deviance;
+    steepest_ += 1.0 + std::pow(kalman.last_innovation, 2) / kalman.variance;
     u_.col(place) = kalman.variance * kalman.gain;
     c_.col(place) = kalman.c();
     readings_.push_back({sensor, late, kalman.last_innovation,
@@ -103,7 +112,7 @@ double Backwards::Take(Index place) {
   const double Zu = Z_.dot(u);
   du_.noalias() = Q_ * u;
   const double uQu = u.dot(du_);
-  const double by_V = (uQu - one.e * Zu) / (V * V);
+  const double by_V = one.cut && keeps_weights_ ? 0.0 : (uQu - one.e * Zu) / (V * V);
   double by_S = 1.0 / one.S;
   double by_e = Zu / V;
   if (one.cut) {
@@ -154,6 +163,10 @@ void Backwards::Tick(Index k) {
     Q_.row(ns_ + j).noalias() += b.transpose() * QF_.topRows(ns_);
     Z_[ns_ + j] = rho[j] * Z_[ns_ + j] + b.dot(Z_.head(ns_));
   }
+  // No reading takes from what rounding leaves unlike on both sides, which grows along with what
+  // is unstable: an arm that stands upright.
+  QF_ = Q_;
+  Q_ = 0.5 * (QF_ + QF_.transpose());
   Z_[n_ - 1] *= rho[nf_];
   Z_.head(ns_) = (tangent.A.transpose() * Z_.head(ns_)).eval();
   const Index begin = k > 0 ? ends_[static_cast<std::size_t>(k - 1)] : 0;
@@ -188,8 +201,20 @@ VectorXd Backwards::Slope() const {
   return slope;
 }
 
+bool Backwards::IsSlope(const VectorXd& slope) const {
+  constexpr double kTimes = 100.0;
+  return slope.allFinite() && slope.norm() < kTimes * steepest_;
+}
+
 NoiseSlope Backwards::Run() {
   Forwards();
+  NoiseSlope slope = Back();
+  if (IsSlope(slope.slope)) return slope;
+  keeps_weights_ = true;
+  return Back();
+}
+
+NoiseSlope Backwards::Back() {
   Z_ = VectorXd::Zero(n_);
   Q_ = MatrixXd::Zero(n_, n_);
   QF_ = MatrixXd::Zero(n_, n_);

@@ -12,8 +12,10 @@
 //   Z - de c,   Q + (du c' + c du') / 2,
 //
 // and dS is the slope by r^2. Beyond Huber's corner c0 it is V = |e| sqrt(S) / c0 that stands
-// for S in z+ and P+, and the cost is ln S + c0 (2 |e| / sqrt(S) - c0). Through a tick, z = F z, P = F P F' + N: F' Z and F' Q F; Q is
-// the slope by N. Takes as long as three passes, however many noises there are.
+// for S in z+ and P+, and the cost is ln S + c0 (2 |e| / sqrt(S) - c0). Through a tick, z = F z,
+// P = F P F' + N: F' Z and F' Q F; Q is the slope by N. Takes as long as three passes, however
+// many noises there are. Where so many readings are beyond the corner that a machine that falls
+// is not held by first order, V is taken as it is.
 
 #include <Eigen/Core>
 

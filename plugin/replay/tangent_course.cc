@@ -147,12 +147,14 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   constexpr std::int64_t kLongest = 16;  // stretches
   if (tick < last_) known_.clear();
   last_ = tick;
+  const bool is_step = IsBySteps();
   const auto [entry, is_new] =
       known_.try_emplace(map_.last().pattern, Known{{}, 0, tick, shortest_});
   Known& known = entry->second;
   if (is_new || tick - known.since >= known.stretch) {
-    known.of_part = IsBySteps() ? differences_.OfFirstStep(from, forces, tick, control)
-                                : differences_.Of(from, forces, tick, control);
+    known.of_part =
+        is_step ? differences_.OfFirstStep(from, forces, tick, control, with_effects_)
+                : differences_.Of(from, forces, tick, control, with_effects_);
     TickTangent here = OfTick(known.of_part);
     known.since = tick;
     if (!is_new && AreAlike(here, tangents[known.place])) {
@@ -179,13 +181,11 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   std::erase_if(dofs, [&](Index dof) {
     return std::ranges::find(with_effects_, dof) != with_effects_.end();
   });
-  const auto refresh = [&](const std::vector<Index>& some, bool positions) {
-    differences_.Refresh(from, forces, tick, control, some, IsBySteps(), positions, sd,
-                         force_sd, part);
-  };
-  refresh(dofs, false);
-  refresh(with_effects_, true);
+  differences_.Refresh(from, forces, tick, control, with_effects_, is_step, true, sd,
+                       force_sd, part);
   TickTangent here = OfTick(part);
+  differences_.Refresh(from, forces, tick, control, dofs, false, false, sd, force_sd,
+                       here);
   // What stands may begin to move at any time.
   if (!may_stand && refreshed_ && refreshed_->of == now.of &&
       ColumnsAreAlike(tangents[refreshed_->place], here, with_effects_)) {

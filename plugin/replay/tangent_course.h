@@ -28,8 +28,8 @@ class TangentCourse {
   std::vector<TickTangent> tangents;
 
  private:
-  /// Where no constraint acts, and nothing is read at its end, a tick is its first physics
-  /// step as often as there are some.
+  /// Where no constraint acts but dry friction, and nothing is read at its end, a tick is its
+  /// first physics step as often as there are some, but for joints that may stand.
   bool IsBySteps() const;
   TickTangent OfTick(const TickTangent& part) const;
   /// Degrees of freedom that may stand, whose columns hold for this tick only.
@@ -44,7 +44,8 @@ class TangentCourse {
   std::int64_t shortest_;              // stretch, in ticks
   std::int64_t of_effects_;            // the same
   std::int64_t last_ = 0;              // tick
-  /// A tangent, from when on it is taken to hold, and for how long.
+  /// A tangent without columns q and v of where effects push, from when on it is taken to
+  /// hold, and for how long.
   struct Known {
     TickTangent of_part;  // of the tick, or of its first physics step
     std::size_t place = 0;

@@ -216,6 +216,33 @@ TEST(TickMap, ProbesFromWhatEffectsRememberedBefore) {
   EXPECT_NE(fresh.Run(from, none, 5, control).state.velocity[0], to.velocity[0]);
 }
 
+// What follows from positions is kept from one probe to the next, of every kind of model.
+TEST(TickMap, StepsTheSameFromWhereItHasJustBeen) {
+  for (const test::AnyKind& model : test::kEveryKind) {
+    SCOPED_TRACE(model.name);
+    const Machine machine = test::MachineOf(model);
+    HeldInput control(0.4);
+    const VectorXd none = VectorXd::Zero(machine.plant().nv);
+    const PlantState from = SomeState(machine.plant());
+    PlantState faster = from;
+    faster.velocity.array() += 0.01;
+    PlantState elsewhere = Moved(machine.plant(), from,
+                                 VectorXd::Constant(TangentSize(machine.plant()), 0.1));
+    TickMap here(machine), there(machine);
+    here.Run(from, none, 0, control);
+    there.Run(from, none, 0, control);
+    here.ProbeStep(from, none, 0, control);
+    there.ProbeStep(elsewhere, none, 0, control);
+    const TickMap::Result& a = here.ProbeStep(faster, none, 0, control);
+    const TickMap::Result& b = there.ProbeStep(faster, none, 0, control);
+    EXPECT_EQ(a.state.position, b.state.position);
+    EXPECT_EQ(a.state.velocity, b.state.velocity);
+    EXPECT_EQ(a.state.activation, b.state.activation);
+    EXPECT_EQ(a.reading, b.reading);
+    EXPECT_EQ(a.pattern, b.pattern);
+  }
+}
+
 // A mass on a spring on a mass: by the effect, and as two bodies of the model.
 TEST(TickDifferences, HaveTheBodyOfAnEffectAsAState) {
   const std::string rest =

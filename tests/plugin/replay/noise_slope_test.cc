@@ -110,5 +110,86 @@ TEST(NoiseSlope, IsTheDerivativeOfTheLikelihoodByEveryNoise) {
   }
 }
 
+/// Two links that stand upright, one on the other: what they are off by grows fivefold in 0.3 s.
+Machine Upright() {
+  return test::MachineOf(
+      R"(<mujoco><option timestep="0.01"/><worldbody><body>
+      <joint name="a" type="hinge" axis="0 1 0" damping="0.01"/>
+      <inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><body pos="0 0 0.2">
+      <joint name="b" type="hinge" axis="0 1 0" damping="0.01"/>
+      <inertial pos="0 0 0.1" mass="0.5" diaginertia="0.01 0.01 0.01"/></body></body>
+      </worldbody>
+      <actuator><motor name="u" joint="a"/><motor name="w" joint="b"/></actuator>
+      <sensor><jointpos name="y" joint="a"/><jointpos name="z" joint="b"/></sensor>
+      </mujoco>)",
+      "[rates]\ncontrol = 100.0\n[sensors.y]\nelement = \"y\"\nunit = \"rad\"\n"
+      "[sensors.z]\nelement = \"z\"\nunit = \"rad\"\n"
+      "[actuators.u]\nelement = \"u\"\nunit = \"N m\"\n"
+      "[actuators.w]\nelement = \"w\"\nunit = \"N m\"\n");
+}
+
+/// Held upright by what no input says.
+FilterPath PathUpright(const Machine& machine, const FilterNoise& noise,
+                       Index samples) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  MeasuredRun run;
+  run.sample_time = 0.01;
+  run.inputs = Eigen::MatrixXd::Zero(2, samples);
+  run.outputs.resize(2, samples);
+  for (Index k = 0; k < samples; ++k) {
+    const double t = 0.01 * static_cast<double>(k);
+    run.outputs.col(k) << 0.2 * std::sin(2.0 * t) + 1e-4 * normal(random),
+        0.1 * std::sin(3.0 * t) + 1e-4 * normal(random);
+  }
+  return RunForceFilter(machine, run, {0, 1}, FilterStarts(machine, run, noise.reading),
+                        noise);
+}
+
+FilterNoise NoiseUpright(double reading, double size) {
+  FilterNoise noise;
+  noise.reading = VectorXd::Constant(2, reading);
+  noise.clock = 1e-8;
+  noise.clock_memory = 0.01;
+  noise.size = VectorXd::Constant(2, size);
+  noise.memory = VectorXd::Constant(2, 0.3);
+  noise.white = VectorXd::Constant(2, 0.1 * size);
+  return noise;
+}
+
+// What rounds off on the way back grows by 1e60 along 2500 ticks of a machine that falls, unless
+// the recursion takes it out.
+TEST(NoiseSlope, IsThatOfAMachineThatFallsToo) {
+  const Machine machine = Upright();
+  const FilterNoise noise = NoiseUpright(1e-4, 0.3);
+  const FilterPath path = PathUpright(machine, noise, 2500);
+  const NoiseSlope slope = SlopeAlong(path, noise, 0, 2500);
+  const VectorXd x = LogarithmsOf(noise);
+  for (Index i = 0; i < 8; ++i) {
+    constexpr double kStep = 1e-4;
+    const auto deviance = [&](double step) {
+      const VectorXd at = x + step * VectorXd::Unit(x.size(), i);
+      return Score(path, NoiseOf(at), 0, 2500).deviance.sum();
+    };
+    const double expected = (deviance(kStep) - deviance(-kStep)) / (2.0 * kStep);
+    EXPECT_NEAR(slope.slope[i], expected, 1e-4 * std::abs(expected) + 1e-2) << i;
+  }
+}
+
+// Behind a noise that is far too small all readings are beyond the corner, and by first order
+// nothing holds the machine: a step down the slope gains all the same.
+TEST(NoiseSlope, PointsDownWhereAllReadingsAreBeyondTheCorner) {
+  const Machine machine = Upright();
+  const FilterPath path = PathUpright(machine, NoiseUpright(1e-4, 0.3), 2500);
+  const FilterNoise small = NoiseUpright(1e-6, 1e-3);
+  const NoiseSlope slope = SlopeAlong(path, small, 0, 2500);
+  const VectorXd step = -0.01 * slope.slope / slope.slope.norm();
+  const double there =
+      Score(path, NoiseOf(LogarithmsOf(small) + step), 0, 2500).deviance.sum();
+  const double promised = 0.01 * slope.slope.norm();
+  EXPECT_GT(slope.deviance - there, 0.2 * promised);
+  EXPECT_LT(slope.deviance - there, 5.0 * promised);
+}
+
 }  // namespace
 }  // namespace mjdiag
