@@ -42,14 +42,11 @@ class Innovations {
     return kept_;
   }
 
-  /// At x, or where it was taken last: as long as innovations change little it does, too,
-  /// and it takes as many runs as there are coordinates.
+  /// Where it was taken last, unless it has been dropped: it takes as many runs as there are
+  /// coordinates.
   const MatrixXd& Jacobian(const VectorXd& x) {
-    constexpr double kLittle = 0.01;
+    if (J_.size() > 0) return J_;
     const VectorXd base = Of(x);
-    if (J_.size() > 0 && std::abs(base.squaredNorm() - J_of_) <= kLittle * J_of_) {
-      return J_;
-    }
     MatrixXd J(rows(), size());
     ParallelForAll(static_cast<int>(size()), [&](int number) {
       const Index i = number;
@@ -61,9 +58,11 @@ class Innovations {
       J.col(i) = (RunAt(moved) - base) / step;
     });
     J_ = std::move(J);
-    J_of_ = base.squaredNorm();
+    J_at_ = x;
     return J_;
   }
+  bool HasJacobianOf(const VectorXd& x) const { return J_.size() > 0 && J_at_ == x; }
+  void DropJacobian() { J_.resize(0, 0); }
 
  private:
   VectorXd RunAt(const VectorXd& x) const {
@@ -79,7 +78,7 @@ class Innovations {
   std::vector<Coordinate> coordinates_;
   VectorXd at_, kept_;
   MatrixXd J_;
-  double J_of_ = 0.0;  // squared innovations where it was taken
+  VectorXd J_at_;
 };
 
 /// What is known beforehand of coordinates, SizePrice(w^T x) of the rows w of R: as a sum of
@@ -124,8 +123,10 @@ class Fitting {
   VectorXd From(VectorXd x, int iterations) {
     // A step that promises less is not tried: it is a tenth of what counts (kLeastGain).
     constexpr double kEnd = 0.1;
-    // A step that gains nothing takes one run, one that does as many as there are coordinates.
+    // A step takes one run, slopes as many as there are coordinates: these hold as long as steps
+    // gain what they say.
     constexpr int kTries = 3;
+    constexpr double kTold = 0.5;  // of what was hoped, more or less
     x = x.cwiseMax(lower_).cwiseMin(upper_);
     double here = CostAt(x);
     Near near = NearTo(x);
@@ -140,10 +141,19 @@ class Fitting {
       if (!(hoped > kEnd)) break;
       const double there = CostOf(x + s);
       if (there < here) {
+        if (std::abs(here - there - hoped) > kTold * hoped) {
+          innovations_.DropJacobian();
+          ++taken;
+        }
         x += s;
         here = there;
         damping *= 0.1;
-        if (++taken == iterations) break;
+        if (taken == iterations) break;
+        near = NearTo(x);
+        continue;
+      }
+      if (!innovations_.HasJacobianOf(x)) {
+        innovations_.DropJacobian();
         near = NearTo(x);
         continue;
       }

@@ -6,7 +6,7 @@
 //
 // by steps of Gauss and Newton within bounds, damped where nothing is gained (K. Levenberg 1944,
 // D. W. Marquardt 1963). A run of the machine is what takes time: a step that promises next to
-// nothing is not tried, and slopes are kept as long as innovations change little.
+// nothing is not tried, and slopes are kept as long as steps gain about what they say by them.
 
 #include <Eigen/Core>
 #include <functional>

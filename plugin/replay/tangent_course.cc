@@ -148,8 +148,7 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   if (tick < last_) known_.clear();
   last_ = tick;
   const bool is_step = IsBySteps();
-  const auto [entry, is_new] =
-      known_.try_emplace(map_.last().pattern, Known{{}, 0, tick, shortest_});
+  const auto [entry, is_new] = known_.try_emplace(map_.last().pattern);
   Known& known = entry->second;
   if (is_new || tick - known.since >= known.stretch) {
     known.of_part =
@@ -157,17 +156,24 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
                 : differences_.Of(from, forces, tick, control, with_effects_);
     TickTangent here = OfTick(known.of_part);
     known.since = tick;
-    if (!is_new && AreAlike(here, tangents[known.place])) {
+    if (!is_new && AreAlike(here, known.of_tick)) {
       known.stretch = std::min(2 * known.stretch, kLongest * shortest_);
     } else {
       known.stretch = shortest_;
-      known.place = tangents.size();
-      tangents.push_back(std::move(here));
+      known.of_tick = std::move(here);
+      known.number = ++numbers_;
+      known.place.reset();
     }
   }
   std::vector<Index> dofs = RestlessAt(from, sd, force_sd);
-  if (with_effects_.empty() && dofs.empty()) return known.place;
-  Refreshed now{known.place, tangents.size(), tick, of_effects_, {}};
+  if (with_effects_.empty() && dofs.empty()) {
+    if (!known.place) {
+      known.place = tangents.size();
+      tangents.push_back(known.of_tick);
+    }
+    return *known.place;
+  }
+  Refreshed now{known.number, tangents.size(), tick, of_effects_, {}};
   for (const Index dof : dofs) {
     const double spread =
         sd[from.velocity.size() + dof] + force_sd[dof] * differences_.VelocityOf(dof);

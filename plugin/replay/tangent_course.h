@@ -47,11 +47,14 @@ class TangentCourse {
   /// A tangent without columns q and v of where effects push, from when on it is taken to
   /// hold, and for how long.
   struct Known {
-    TickTangent of_part;  // of the tick, or of its first physics step
-    std::size_t place = 0;
+    TickTangent of_part = {};  // of the tick, or of its first physics step
+    TickTangent of_tick = {};
+    std::int64_t number = 0;           // another one each time that it changes
+    std::optional<std::size_t> place;  // in `tangents`, if it is used as it is
     std::int64_t since = 0;
     std::int64_t stretch = 0;
   };
+  std::int64_t numbers_ = 0;
   std::map<std::uint64_t, Known> known_;  // by pattern
   /// A joint that may stand: its velocity, that after the tick, its latent force and how far
   /// its velocity may be off.
@@ -65,7 +68,7 @@ class TangentCourse {
   /// A tangent with columns of effects and of joints that may stand, from which one it was
   /// made and when.
   struct Refreshed {
-    std::size_t of = 0;
+    std::int64_t of = 0;  // number of that
     std::size_t place = 0;
     std::int64_t since = 0;
     std::int64_t stretch = 0;
