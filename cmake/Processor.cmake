@@ -7,7 +7,7 @@ set_property(CACHE MJDIAG_PROCESSOR PROPERTY STRINGS ANY NATIVE)
 
 # Arrays of Eigen pass between the library and programs that use it: both have to agree on
 # their alignment, whatever instructions each is built with.
-set(mjdiag_processor_definitions EIGEN_MAX_ALIGN_BYTES=32)
+set(mjdiag_processor_definitions EIGEN_MAX_ALIGN_BYTES=16)
 set(mjdiag_processor_options)
 if(MJDIAG_PROCESSOR STREQUAL "NATIVE" AND NOT CMAKE_CROSSCOMPILING)
   include(CheckCXXSourceRuns)
@@ -16,7 +16,7 @@ if(MJDIAG_PROCESSOR STREQUAL "NATIVE" AND NOT CMAKE_CROSSCOMPILING)
       return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1;
     }" MJDIAG_HAS_AVX2)
   if(MJDIAG_HAS_AVX2)
-    set(mjdiag_processor_options -mavx2 -mfma -ffp-contract=off)
+    set(mjdiag_processor_options -mavx2 -mfma)
   endif()
 elseif(NOT MJDIAG_PROCESSOR STREQUAL "ANY" AND NOT MJDIAG_PROCESSOR STREQUAL "NATIVE")
   message(FATAL_ERROR "MJDIAG_PROCESSOR=${MJDIAG_PROCESSOR}: expected NATIVE or ANY")
