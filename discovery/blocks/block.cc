@@ -267,6 +267,13 @@ bool Block::IsOfDrive() const {
                    : IsDrive(number->kind);
 }
 
+bool Block::IsInertia() const {
+  if (candidate) return candidate->effect->kind() == Kind::kInertia;
+  return number->kind == ModelParameterKind::kMass ||
+         number->kind == ModelParameterKind::kInertia ||
+         number->kind == ModelParameterKind::kArmature;
+}
+
 bool Block::IsWave() const {
   return candidate && candidate->effect->Find(Role::kPhase).has_value();
 }

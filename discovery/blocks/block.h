@@ -65,6 +65,8 @@ struct Block {
   bool IsSmoothFriction() const;
   /// Changes what an actuator makes of its input.
   bool IsOfDrive() const;
+  /// Of a body or a rotor.
+  bool IsInertia() const;
   /// A sine and a cosine, of which there may be several.
   bool IsWave() const;
   /// A size and nothing that shapes it, as a load does.

@@ -16,6 +16,9 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Of what is as measured a little smoothing says whether any is worth it.
+constexpr double kLeastWidth = 2.0;  // ticks
+
 /// Up to 50 ms: what a torque does below 3 Hz a machine feels.
 std::vector<double> WidthsOf(const MeasuredRun& run) {
   constexpr double kLongest = 0.05;  // [s]
@@ -63,6 +66,10 @@ MeasuredRun WithInputsOver(const MeasuredRun& run, double width) {
   return WithSmoothedInputs(run, widths);
 }
 
+bool InputsAreNoise(const MeasuredRun& run) {
+  return WithInputsOver(run, kLeastWidth).inputs != run.inputs;
+}
+
 double PriceOfWidth(double width) {
   constexpr double kWidths = 12.0;  // that may be
   return width == 0.0 ? 0.0 : kClaim + 2.0 * std::log(kWidths);
@@ -77,18 +84,15 @@ std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRu
     return other.path.deviance + PriceOfWidth(other.width) <
            path.deviance + PriceOfWidth(width) - kLeastGain;
   };
-  // Of what is as measured a little smoothing says whether any is worth it, behind the same
-  // noise first.
-  constexpr double kLittle = 2.0;
   if (width == 0.0) {
-    const MeasuredRun smoother = WithInputsOver(run, kLittle);
-    if (smoother.inputs == run.inputs) return std::nullopt;  // without noise
+    const MeasuredRun smoother = WithInputsOver(run, kLeastWidth);
+    if (smoother.inputs == run.inputs) return std::nullopt;
     const FilterPath little =
         RunForceFilter(machine, smoother, path.dofs, path.starts, path.noise);
     if (little.deviance > path.deviance) return std::nullopt;
   }
   const std::vector<double> all = WidthsOf(run);
-  std::vector<double> few{width == 0.0 ? kLittle : 0.0};
+  std::vector<double> few{width == 0.0 ? kLeastWidth : 0.0};
   for (const double one : all) {
     if (one == 0.5 * width || one == 2.0 * width) few.push_back(one);
   }
@@ -96,7 +100,7 @@ std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRu
   if (!is_better(best)) return std::nullopt;
   if (width > 0.0 || is_over()) return best;
   std::vector<double> others = all;
-  std::erase(others, kLittle);
+  std::erase(others, kLeastWidth);
   return BestOf(others, machine, run, reading_sd, path, std::move(best), is_over);
 }
 

@@ -26,6 +26,9 @@ std::optional<InputChoice> ChooseInputs(const Machine& machine, const MeasuredRu
                                         const FilterPath& path, double width,
                                         const IsTimeOver& is_over);
 
+/// Whether a little smoothing takes anything from the inputs: they were measured with noise.
+bool InputsAreNoise(const MeasuredRun& run);
+
 /// The run with its inputs smoothed over so many ticks.
 MeasuredRun WithInputsOver(const MeasuredRun& run, double width);
 

@@ -144,6 +144,7 @@ void ModelSearch::LookAt(const MeasuredRun& run, int ticks) {
   machine_ = InTicksOf(given_, ticks);
   as_measured_ = Coarser(run, ticks);
   run_ = WithInputsOver(as_measured_, found_.input_width);
+  inputs_are_noise_ = InputsAreNoise(as_measured_);
   found_.ticks = ticks;
   is_part_ = run.samples() < whole_.samples();
 }

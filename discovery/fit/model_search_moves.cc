@@ -53,9 +53,10 @@ std::optional<ConvergedModel> ModelSearch::Resettled(const Whitenings& whitening
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing) {
-  const Moves moves =
-      ForceMovesOf(With(found_.fit.model), run_, found_.path, found_.blocks,
-                   standing.exact.terms, at_every_shape_);
+  const Moves moves = ForceMovesOf(
+      With(found_.fit.model), run_, found_.path, found_.blocks, standing.exact.terms,
+      {.at_every_shape = at_every_shape_,
+       .inputs_are_noise = found_.input_width == 0.0 && inputs_are_noise_});
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:

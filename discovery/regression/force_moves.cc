@@ -28,7 +28,8 @@ VectorXd LeftBehind(const ModelMove& move, const std::vector<Term>& terms,
 
 Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, std::vector<Block>& blocks,
-                   const std::vector<Term>& terms, bool at_every_shape) {
+                   const std::vector<Term>& terms, Looked looked) {
+  looked.at_forces = true;
   const DisturbanceRows missing(path, SmoothForces(path).value);
   DisturbanceMap::Rest rest = DisturbanceMap::RestOf(missing);
   // How lasting the rest is nobody knows before something is explained.
@@ -45,8 +46,7 @@ Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
     std::vector<const RowMap*> all;
     for (const DisturbanceMap& one : maps) all.push_back(&one);
     // What physics steps make is no force that lasts.
-    moves = MovesOf(machine, run, path, all, blocks, terms, {},
-                    {.at_forces = true, .at_every_shape = at_every_shape});
+    moves = MovesOf(machine, run, path, all, blocks, terms, {}, looked);
     if (moves.best.empty()) break;
     rest = maps.front().RestOf(LeftBehind(moves.best.front(), terms, maps.front()));
   }

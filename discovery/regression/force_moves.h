@@ -11,6 +11,6 @@ namespace mjdiag {
 /// Parameters as of MovesOf.
 Moves ForceMovesOf(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path, std::vector<Block>& blocks,
-                   const std::vector<Term>& terms, bool at_every_shape);
+                   const std::vector<Term>& terms, Looked looked);
 
 }  // namespace mjdiag

@@ -167,6 +167,7 @@ bool MoveSearch::MayCome(const Block& block) const {
   // of inputs that it did not feel: friction that grows with the motor's force does, too.
   if (looked_.at_forces) {
     if (block.IsOfDrive() || block.GrowsWithLoad()) return false;
+    if (looked_.inputs_are_noise && block.IsInertia()) return false;
     if (block.IsSmoothFriction()) return true;
   }
   return looked_.at_every_shape || !block.IsResistance() || block.IsSimplest() ||

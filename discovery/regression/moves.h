@@ -63,6 +63,8 @@ struct Looked {
   bool at_forces = false;  ///< what acts along the motion only
   /// Resistances of every shape, also where the simplest of their kind is not in.
   bool at_every_shape = false;
+  /// Inputs were measured with noise: a machine that did not feel it looks heavy.
+  bool inputs_are_noise = false;
 };
 
 /// @param maps         of the path, behind one noise each

@@ -100,7 +100,7 @@ TEST_F(Emps, ForcesThatAreMissingAreTheAuthorsFrictionAndOffset) {
   std::vector<Candidate> candidates = ListCandidates(machine);
   BoundByRecord(candidates, machine, MotionAlong(machine, run, path));
   std::vector<Block> blocks = BlocksOf(machine, candidates, {});
-  const Moves moves = ForceMovesOf(machine, run, path, blocks, {}, false);
+  const Moves moves = ForceMovesOf(machine, run, path, blocks, {}, {});
   ASSERT_FALSE(moves.best.empty());
   std::map<std::string, double> sizes;
   for (const Added& added : moves.best.front().added) {
