@@ -114,6 +114,7 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
   stepper.AdvanceSteps(
       steps, *model_, *data_, control,
       [&] {
+        result.is_constrained |= data_->nefc > 0;
         for (int row = 0; row < data_->nefc; ++row) {
           const int type = data_->efc_type[row];
           const int id = data_->efc_id[row];
@@ -127,7 +128,6 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
             (slides ? friction.slides : friction.sticks) = true;
             continue;
           }
-          result.is_constrained = true;
           Mix(result.pattern, static_cast<std::uint64_t>(type));
           Mix(result.pattern, static_cast<std::uint64_t>(id));
           Mix(result.pattern, static_cast<std::uint64_t>(state));

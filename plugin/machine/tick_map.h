@@ -32,8 +32,7 @@ class TickMap {
     /// Of what decides by switching: constraints that are active and how, in every
     /// physics step, of dry friction in all steps together, and actuators that are off.
     std::uint64_t pattern = 0;
-    /// Any constraint but dry friction, in any step.
-    bool is_constrained = false;
+    bool is_constrained = false;  ///< any constraint, in any step
     bool diverged = false;
   };
 

@@ -28,8 +28,8 @@ class TangentCourse {
   std::vector<TickTangent> tangents;
 
  private:
-  /// Where no constraint acts but dry friction, and nothing is read at its end, a tick is its
-  /// first physics step as often as there are some, but for joints that may stand.
+  /// Where no constraint acts, and nothing is read at its end, a tick is its first physics
+  /// step as often as there are some.
   bool IsBySteps() const;
   TickTangent OfTick(const TickTangent& part) const;
   /// Degrees of freedom that may stand, whose columns hold for this tick only.
