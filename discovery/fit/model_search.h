@@ -172,7 +172,7 @@ class ModelSearch {
   MeasuredRun as_measured_;  // all of it, or pieces, or once in some ticks
   bool is_part_ = false;
   bool inputs_are_noise_ = false;  // some of what was measured of them
-  MeasuredRun run_;  // with its inputs smoothed
+  MeasuredRun run_;                // with its inputs smoothed
   const Eigen::VectorXd& reading_sd_;
   const ExplainOptions& options_;
   WorkTime time_;
