@@ -111,32 +111,31 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
   result.pattern = 0xcbf29ce484222325ULL;
   result.is_constrained = false;
   std::ranges::fill(friction_, Friction{});
-  stepper.AdvanceSteps(
-      steps, *model_, *data_, control,
-      [&] {
-        result.is_constrained |= data_->nefc > 0;
-        for (int row = 0; row < data_->nefc; ++row) {
-          const int type = data_->efc_type[row];
-          const int id = data_->efc_id[row];
-          const int state = data_->efc_state[row];
-          if (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON) {
-            Friction& friction = friction_[static_cast<std::size_t>(
-                type == mjCNSTR_FRICTION_DOF ? id : model_->nv + id)];
-            // Which way a joint slides makes no difference to its first order.
-            const bool slides =
-                state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
-            (slides ? friction.slides : friction.sticks) = true;
-            continue;
-          }
-          Mix(result.pattern, static_cast<std::uint64_t>(type));
-          Mix(result.pattern, static_cast<std::uint64_t>(id));
-          Mix(result.pattern, static_cast<std::uint64_t>(state));
-        }
-        for (const int motor : stepper.off()) {
-          Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
-        }
-      },
-      has_positions);
+  const auto note_constraints = [&] {
+    result.is_constrained |= data_->nefc > 0;
+    for (int row = 0; row < data_->nefc; ++row) {
+      const int type = data_->efc_type[row];
+      const int id = data_->efc_id[row];
+      const int state = data_->efc_state[row];
+      if (type == mjCNSTR_FRICTION_DOF || type == mjCNSTR_FRICTION_TENDON) {
+        Friction& friction = friction_[static_cast<std::size_t>(
+            type == mjCNSTR_FRICTION_DOF ? id : model_->nv + id)];
+        // Which way a joint slides makes no difference to its first order.
+        const bool slides =
+            state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
+        (slides ? friction.slides : friction.sticks) = true;
+        continue;
+      }
+      Mix(result.pattern, static_cast<std::uint64_t>(type));
+      Mix(result.pattern, static_cast<std::uint64_t>(id));
+      Mix(result.pattern, static_cast<std::uint64_t>(state));
+    }
+    for (const int motor : stepper.off()) {
+      Mix(result.pattern, static_cast<std::uint64_t>(motor) + 1000);
+    }
+  };
+  stepper.AdvanceSteps(steps, *model_, *data_, control, note_constraints,
+                       has_positions);
   // In which steps of a tick a joint sticks that slides in others is noise.
   for (const Friction& friction : friction_) {
     Mix(result.pattern, (friction.sticks ? 1U : 0U) + (friction.slides ? 2U : 0U));

@@ -157,8 +157,8 @@ FilterNoise NoiseUpright(double reading, double size) {
   return noise;
 }
 
-// What rounds off on the way back grows by 1e60 along 2500 ticks of a machine that falls, unless
-// the recursion takes it out.
+// What rounds off on the way back grows beyond 1e100 along 2500 ticks of a machine that falls,
+// unless the recursion takes it out.
 TEST(NoiseSlope, IsThatOfAMachineThatFallsToo) {
   const Machine machine = Upright();
   const FilterNoise noise = NoiseUpright(1e-4, 0.3);
