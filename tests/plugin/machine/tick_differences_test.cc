@@ -216,6 +216,14 @@ TEST(TickMap, ProbesFromWhatEffectsRememberedBefore) {
   EXPECT_NE(fresh.Run(from, none, 5, control).state.velocity[0], to.velocity[0]);
 }
 
+void ExpectSame(const TickMap::Result& a, const TickMap::Result& b) {
+  EXPECT_EQ(a.state.position, b.state.position);
+  EXPECT_EQ(a.state.velocity, b.state.velocity);
+  EXPECT_EQ(a.state.activation, b.state.activation);
+  EXPECT_EQ(a.reading, b.reading);
+  EXPECT_EQ(a.pattern, b.pattern);
+}
+
 // What follows from positions is kept from one probe to the next, of every kind of model.
 TEST(TickMap, StepsTheSameFromWhereItHasJustBeen) {
   for (const test::AnyKind& model : test::kEveryKind) {
@@ -235,11 +243,12 @@ TEST(TickMap, StepsTheSameFromWhereItHasJustBeen) {
     there.ProbeStep(elsewhere, none, 0, control);
     const TickMap::Result& a = here.ProbeStep(faster, none, 0, control);
     const TickMap::Result& b = there.ProbeStep(faster, none, 0, control);
-    EXPECT_EQ(a.state.position, b.state.position);
-    EXPECT_EQ(a.state.velocity, b.state.velocity);
-    EXPECT_EQ(a.state.activation, b.state.activation);
-    EXPECT_EQ(a.reading, b.reading);
-    EXPECT_EQ(a.pattern, b.pattern);
+    ExpectSame(a, b);
+    // And elsewhere not what was there.
+    TickMap anew(machine);
+    anew.Run(elsewhere, none, 0, control);
+    ExpectSame(here.ProbeStep(elsewhere, none, 0, control),
+               anew.ProbeStep(elsewhere, none, 0, control));
   }
 }
 
